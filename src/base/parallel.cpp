@@ -1,0 +1,39 @@
+#include "base/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+#include <thread>
+
+namespace trilens {
+namespace {
+
+std::unique_ptr<tbb::global_control>& limit() {
+    static std::unique_ptr<tbb::global_control> control;
+    return control;
+}
+
+}  // namespace
+
+void set_thread_count(int threads) {
+    limit().reset();
+    if (threads > 0) {
+        limit() = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                        static_cast<std::size_t>(threads));
+    }
+}
+
+int thread_count() {
+    return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
+void parallel_for(std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t first, std::size_t last)>& body) {
+    if (count == 0) return;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain > 0 ? grain : 1),
+                      [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
+}
+
+}  // namespace trilens

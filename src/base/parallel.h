@@ -1,0 +1,21 @@
+// Parallel loops over independent items: the door to TBB.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace trilens {
+
+/// Limits every later parallel_for to `threads` threads; 0 means all that the machine has.
+void set_thread_count(int threads);
+
+/// The number of threads that parallel_for may use now, at least 1.
+int thread_count();
+
+/// Calls body(first, last) over disjoint ranges that cover [0, count), in any order and on any thread.
+/// Results must not depend on how the ranges fall. `grain`: smallest range worth a thread of its own.
+/// An exception thrown by body is rethrown here.
+void parallel_for(std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t first, std::size_t last)>& body);
+
+}  // namespace trilens

@@ -1,0 +1,58 @@
+// A curved surface as its users see it: faces with parameters, evaluated exactly.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/ids.h"
+#include "base/ray.h"
+
+namespace trilens {
+
+/// The parameter domain of a face: the unit square, or the triangle u >= 0, v >= 0, u + v <= 1.
+enum class FaceDomain { kSquare, kTriangle };
+
+/// A point of a surface with its derivatives with respect to the face's (u, v); world frame.
+struct SurfacePoint {
+    Vec3 position{0};
+    Vec3 du{0}, dv{0};
+    Vec3 duu{0}, duv{0}, dvv{0};
+    Vec3 normal{0};  // unit, du x dv turned to the front of the surface; zero where there is none
+};
+
+/// Where a ray meets a surface.
+struct SurfaceHit {
+    Id face = kNone;
+    Vec2 uv{0};
+    double t = 0;  // in units of the ray's direction
+    SurfacePoint point;
+};
+
+/// A surface of numbered faces in the world frame: the limit of a cage, or a primitive. Thread-safe to read.
+class Surface {
+  public:
+    virtual ~Surface() = default;
+    virtual std::size_t face_count() const = 0;
+    virtual FaceDomain domain(Id face) const = 0;
+
+    /// Position and derivatives at (u, v) of a face; parameters outside the domain are clamped to it.
+    virtual SurfacePoint eval(Id face, const Vec2& uv) const = 0;
+
+    /// The first hit with t > t_min in closed form, for surfaces that have one; `has_closed_form` says which.
+    virtual bool has_closed_form() const { return false; }
+    virtual std::optional<SurfaceHit> intersect(const Ray&, double /*t_min*/) const { return std::nullopt; }
+};
+
+/// An N x N grid on a surface: facets whose corners lie on the surface. Points on edges that faces share
+/// exist once, so there are no cracks; a corner is a point with one normal, so it splits along sharp creases.
+struct SurfaceGrid {
+    std::vector<Vec3> points;            // world frame, on the surface
+    std::vector<Id> corner_point;        // per corner: index into points
+    std::vector<Vec3> corner_normal;     // per corner: unit; zero where the surface has none
+    std::vector<IdTriple> facets;        // corners, counter-clockwise seen from the front
+    std::vector<Id> facet_face;          // per facet: face of the surface
+    std::vector<std::array<Vec2, 3>> facet_uv;  // per facet: (u, v) of its corners in that face
+};
+
+}  // namespace trilens

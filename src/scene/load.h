@@ -1,0 +1,35 @@
+// Reads a scene file with everything it names into a Scene.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace trilens {
+
+/// How the scene room gets pixels without knowing the image room: returns a linear Rec.709 picture, or throws
+/// an InputError that names the file. `encoded` overloads read a picture held in memory (GLB).
+struct TextureReader {
+    std::function<std::shared_ptr<const Texture>(const std::string& file)> from_file;
+    std::function<std::shared_ptr<const Texture>(std::span<const unsigned char> encoded, const std::string& name)> from_memory;
+};
+
+/// One `--set /json/pointer=VALUE`. VALUE is JSON; what does not parse as JSON is taken as a string.
+struct SceneOverride {
+    std::string pointer;
+    std::string value;
+};
+
+/// Reads, checks and resolves a scene file. `overrides` are applied to the JSON before it is checked; a pointer
+/// that names nothing is an error, but a missing last key that the schema knows is added.
+/// Throws InputError with the file and the place (JSON pointer, or line of an OBJ) of the first problem.
+/// What is legal but doubtful goes to Scene::warnings.
+Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides, const TextureReader& textures);
+
+/// The JSON Schema (draft 7) of a scene file, as text.
+const char* scene_schema();
+
+}  // namespace trilens

@@ -1,0 +1,88 @@
+// The scene as plain data: what a scene file says, resolved, checked, and with nothing left to load.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/appearance.h"
+#include "base/cage.h"
+#include "base/triangle_scene.h"
+#include "base/vec.h"
+
+namespace trilens {
+
+struct Film {
+    int width = 640, height = 480;
+    int spp = 1;  // S: S x S samples per pixel
+};
+
+/// A camera as the file gives it; the camera room makes rays of it.
+struct CameraDescription {
+    enum class Type { kPerspective, kRayMesh };
+    std::string name;
+    Type type = Type::kPerspective;
+    double yfov = 40;  // degrees, the whole vertical angle
+    Vec3 eye{0, 0, 1}, at{0}, up{0, 1, 0};
+
+    // kRayMesh: one entry per corner; screen in 0..1 from the film's top left.
+    std::vector<Vec3> points, directions;
+    std::vector<Vec2> screen;
+    std::vector<IdTriple> triangles;
+};
+
+enum class Role { kObject, kOptic };
+
+/// How an optic's normals are overridden (thesis chapter 7: planes with perturbed or spherical normals).
+struct NormalOverride {
+    enum class Type { kSmooth, kSphere, kNoise };
+    Type type = Type::kSmooth;
+    Vec3 center{0};  // kSphere: normals point away from it
+    int seed = 0;    // kNoise
+    double amplitude = 0, scale = 1;
+};
+
+/// The triangles of an object, ready to draw: world frame, polygons already cut into fans, in face order.
+struct ObjectMesh {
+    std::vector<Vec3> points;
+    std::vector<IdTriple> triangles;
+    // Per triangle and corner; either empty or one entry per triangle.
+    std::vector<std::array<Vec2, 3>> uvs;      // v upward from the picture's bottom, as OBJ; glTF's is turned on reading
+    std::vector<std::array<Vec3, 3>> normals;  // unit
+    std::vector<Id> material;                  // per triangle: index into Scene::materials
+};
+
+/// One entry of the file's `meshes`. Its index is the object id in images.
+struct Mesh {
+    std::string name;
+    Role role = Role::kObject;
+    Id material = kNone;     // index into Scene::materials; kNone where the triangles carry their own
+    int resolution = 8;      // optic: N x N facets per quad face
+    NormalOverride normals;  // optic
+
+    // An object has `object`; an optic has either `primitive` or `cage` (world frame, transform applied).
+    ObjectMesh object;
+    std::optional<Primitive> primitive;
+    Cage cage;
+};
+
+struct RenderSettings {
+    int max_depth = 0;
+    bool direct = true, reflect = true, refract = true;
+    bool fresnel = true;
+};
+
+struct Scene {
+    std::string file;      // where it came from, for messages
+    std::string resolved;  // the scene as JSON after --set, one line: goes into image headers
+    Film film;
+    std::vector<CameraDescription> cameras;  // at least one
+    Background background;
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Light> lights;
+    RenderSettings render;
+    std::vector<std::string> warnings;
+};
+
+}  // namespace trilens

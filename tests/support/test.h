@@ -1,0 +1,38 @@
+// What every test includes: Catch2 of either major version, skips that are counted, and where the data lie.
+#pragma once
+
+#if __has_include(<catch2/catch_all.hpp>)
+#include <catch2/catch_all.hpp>
+using Catch::Approx;
+#else
+#include <catch2/catch.hpp>
+#endif
+
+#include <string>
+
+namespace trilens_test {
+
+/// Counts and prints a skip; the run's last lines say how many there were.
+void note_skip(const std::string& test, const std::string& why);
+
+/// The project's own folder.
+inline std::string source_dir() { return TRILENS_SOURCE_DIR; }
+/// Cages and models that are not part of the project; may be missing: see data_missing.
+inline std::string data_dir() { return TRILENS_DATA_DIR; }
+/// Whether data_dir()/`relative` is missing.
+bool data_missing(const std::string& relative);
+/// A folder under the build tree for this test's files, made empty.
+std::string scratch_dir(const std::string& name);
+
+}  // namespace trilens_test
+
+/// Leaves the test, counted as skipped with a reason.
+#define TRILENS_SKIP(why)                                                              \
+    do {                                                                               \
+        trilens_test::note_skip(Catch::getResultCapture().getCurrentTestName(), (why)); \
+        return;                                                                        \
+    } while (false)
+
+/// Skips where a file of the outside data is missing.
+#define TRILENS_NEEDS_DATA(relative) \
+    if (trilens_test::data_missing(relative)) TRILENS_SKIP(std::string("needs data/") + (relative))
