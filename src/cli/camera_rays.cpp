@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "camera/perspective.h"
-#include "camera/ray_mesh_camera.h"
 
 namespace trilens {
 namespace {
@@ -30,9 +29,7 @@ CameraRays make_camera_rays(const Scene& scene, std::size_t index) {
         return camera;
     }
     PerspectiveParams params;
-    params.eye = from.eye;
-    params.at = from.at;
-    params.up = from.up;
+    params.look_at = {from.eye, from.at, from.up};
     params.yfov_degrees = from.yfov;
     params.width = width;
     params.height = height;

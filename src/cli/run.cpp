@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 #include "cli/command.h"
-#include "cli/nearest.h"
+#include "scene/nearest.h"
 #include "cli/version.h"
 #include "cli/write_text.h"
 #include "image/image_io.h"
@@ -113,7 +113,7 @@ UsageError usage_error(const CLI::App& app, const CLI::ParseError& complaint, co
     for (const CLI::App* command : app.get_subcommands(nullptr)) commands.push_back(command->get_name());
     if (words.empty()) return UsageError("a command is required; see trilens --help");
     if (words[0].rfind("-", 0) != 0 && std::find(commands.begin(), commands.end(), words[0]) == commands.end())
-        return UsageError("there is no command \"" + words[0] + "\"" + did_you_mean(words[0], commands));
+        return UsageError("there is no command \"" + words[0] + "\"" + suggestion(words[0], commands));
 
     // CLI11 lists what it did not take; the first option among it is the one to explain.
     std::vector<std::string> known;
@@ -127,7 +127,7 @@ UsageError usage_error(const CLI::App& app, const CLI::ParseError& complaint, co
         for (const std::string& word : words) {
             const std::string name = word.substr(0, word.find('='));
             if (word.rfind("--", 0) == 0 && std::find(known.begin(), known.end(), name) == known.end())
-                return UsageError("there is no option \"" + name + "\"" + did_you_mean(name, known));
+                return UsageError("there is no option \"" + name + "\"" + suggestion(name, known));
         }
     }
     return UsageError(complaint.what());

@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "cli/json.h"
-#include "cli/nearest.h"
+#include "scene/nearest.h"
 #include "image/image_io.h"
 #include "scene/load.h"
 
@@ -114,7 +114,7 @@ std::size_t chosen_camera(const SceneOptions& options, const Scene& scene) {
         if (scene.cameras[c].name == options.camera) return c;
         names.push_back(scene.cameras[c].name);
     }
-    throw UsageError("there is no camera \"" + options.camera + "\"" + did_you_mean(options.camera, names));
+    throw UsageError("there is no camera \"" + options.camera + "\"" + suggestion(options.camera, names));
 }
 
 LayerRequest layer_request(const SceneOptions& options, const Film& film) {
@@ -133,7 +133,7 @@ LayerRequest layer_request(const SceneOptions& options, const Film& film) {
         const std::size_t comma = std::min(options.aov.find(',', from), options.aov.size());
         const std::string layer = options.aov.substr(from, comma - from);
         if (std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end())
-            throw UsageError("--aov: there is no layer \"" + layer + "\"" + did_you_mean(layer, kLayers));
+            throw UsageError("--aov: there is no layer \"" + layer + "\"" + suggestion(layer, kLayers));
         request.aovs.push_back(layer);
         from = comma + 1;
     }

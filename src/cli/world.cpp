@@ -35,7 +35,7 @@ NormalField normal_field(const NormalOverride& from) {
                  : from.type == NormalOverride::Type::kNoise ? NormalField::Type::kNoise
                                                              : NormalField::Type::kSmooth;
     field.center = from.center;
-    field.seed = from.seed;
+    field.seed = static_cast<std::uint64_t>(from.seed);
     field.amplitude = from.amplitude;
     field.scale = from.scale;
     return field;
