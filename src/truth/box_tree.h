@@ -23,7 +23,7 @@ struct Box {
 class BoxTree {
   public:
     /// `isa`: Embree's instruction set ("sse2" .. "avx512"), or empty for the best.
-    /// Throws ComputationError where Embree fails.
+    /// Throws UsageError on another name, ComputationError where Embree fails.
     explicit BoxTree(std::span<const Box> boxes, const std::string& isa = "");
     ~BoxTree();
     BoxTree(BoxTree&&) noexcept;

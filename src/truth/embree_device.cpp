@@ -1,7 +1,10 @@
 // Devices, threads and version of Embree.
 #include "truth/embree_device.h"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <string_view>
 
 #include "base/error.h"
 #include "truth/tracer.h"
@@ -28,6 +31,13 @@ const char* error_name(RTCError code) {
     }
 }
 
+// Embree takes a name that it does not know for no name at all.
+void check_isa(const std::string& isa) {
+    constexpr std::array<std::string_view, 6> known{"", "sse2", "sse4.2", "avx", "avx2", "avx512"};
+    if (std::find(known.begin(), known.end(), isa) != known.end()) return;
+    throw UsageError("no instruction set '" + isa + "': sse2, sse4.2, avx, avx2 or avx512");
+}
+
 // Files of the user's that Embree would read are ignored: they could change results behind our back.
 std::string configuration(const std::string& isa) {
     std::string text = "ignore_config_files=1";
@@ -39,6 +49,7 @@ std::string configuration(const std::string& isa) {
 }  // namespace
 
 EmbreeDevice::EmbreeDevice(const std::string& isa) {
+    check_isa(isa);
     const std::string text = configuration(isa);
     device_ = rtcNewDevice(text.c_str());
     if (!device_) {

@@ -17,7 +17,7 @@ namespace trilens {
 class EmbreeDevice {
   public:
     /// `isa`: "sse2", "sse4.2", "avx", "avx2", "avx512", or empty for the best of this machine.
-    /// Throws ComputationError where Embree makes no device.
+    /// Throws UsageError on other names, ComputationError where Embree makes no device.
     explicit EmbreeDevice(const std::string& isa);
     ~EmbreeDevice();
     EmbreeDevice(const EmbreeDevice&) = delete;
