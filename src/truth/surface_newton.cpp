@@ -20,45 +20,37 @@ Vec2 clamp_to_domain(FaceDomain domain, Vec2 uv) {
     return uv;
 }
 
-/// The surface at parameters that may lie a little outside of the face, and how far off the ray that is.
+/// A point of the face, how far off the ray it is, and where to go from it.
 struct Trial {
     Vec2 uv{0};
     SurfacePoint point;
-    Vec3 local{0};  // in the ray's frame
-    double miss = 0;
+    double z = 0;              // along the ray
+    double miss = 0;           // distance from the ray's line
+    std::optional<Vec2> step;  // in (u, v); none where the tangent plane gives none
 };
 
-Trial eval_trial(const Surface& surface, const RayFrame& ray, const SurfaceGuess& guess, const Vec2& uv) {
-    const Vec2 inside = clamp_to_domain(surface.domain(guess.face), uv);
-    Trial trial{uv, surface.eval(guess.face, inside), {}, 0};
-
-    // Outside the face its Taylor expansion goes on.
-    if (inside != uv) {
-        const Vec2 d = glm::clamp(uv - inside, -guess.reach, guess.reach);
-        trial.uv = inside + d;
-        SurfacePoint& p = trial.point;
-        p.position +=
-            d.x * p.du + d.y * p.dv + 0.5 * d.x * d.x * p.duu + d.x * d.y * p.duv + 0.5 * d.y * d.y * p.dvv;
-        p.du += d.x * p.duu + d.y * p.duv;
-        p.dv += d.x * p.duv + d.y * p.dvv;
-    }
-    trial.local = ray.from_world(trial.point.position);
-    trial.miss = std::hypot(trial.local.x, trial.local.y);
-    return trial;
+// The step that brings the tangent plane's point onto the ray; none where the ray lies in that plane, or
+// there is none.
+std::optional<Vec2> newton_step(const RayFrame& ray, const SurfacePoint& point, const Vec3& local) {
+    const Vec2 du(dot(ray.x, point.du), dot(ray.y, point.du)), dv(dot(ray.x, point.dv), dot(ray.y, point.dv));
+    const double determinant = du.x * dv.y - dv.x * du.y;
+    const Vec2 step = Vec2(dv.x * local.y - dv.y * local.x, du.y * local.x - du.x * local.y) / determinant;
+    if (!std::isfinite(step.x) || !std::isfinite(step.y)) return std::nullopt;
+    return step;
 }
 
-// The step in (u, v) that brings the tangent plane's point onto the ray; none where the ray lies in that
-// plane.
-std::optional<Vec2> newton_step(const RayFrame& ray, const Trial& at, double reach) {
-    const Mat2 jacobian(dot(ray.x, at.point.du), dot(ray.y, at.point.du), dot(ray.x, at.point.dv),
-                        dot(ray.y, at.point.dv));
-    const double determinant = glm::determinant(jacobian);
-    const Vec2 step = Vec2(jacobian[1][0] * at.local.y - jacobian[1][1] * at.local.x,
-                           jacobian[0][1] * at.local.x - jacobian[0][0] * at.local.y) /
-                      determinant;
-    const double size = std::max(std::fabs(step.x), std::fabs(step.y));
-    if (!std::isfinite(size)) return std::nullopt;
-    return size > reach ? step * (reach / size) : step;
+Trial eval_trial(const Surface& surface, const RayFrame& ray, const SurfaceGuess& guess, const Vec2& uv) {
+    Trial trial;
+    trial.uv = clamp_to_domain(surface.domain(guess.face), uv);
+    trial.point = surface.eval(guess.face, trial.uv);
+    const Vec3 local = ray.from_world(trial.point.position);
+    trial.z = local.z;
+    trial.miss = std::hypot(local.x, local.y);
+    trial.step = newton_step(ray, trial.point, local);
+    if (!trial.step) return trial;
+    const double size = std::max(std::fabs(trial.step->x), std::fabs(trial.step->y));
+    if (size > guess.reach) *trial.step *= guess.reach / size;
+    return trial;
 }
 
 }  // namespace
@@ -82,27 +74,24 @@ std::optional<SurfaceHit> solve_surface_hit(const Surface& surface, const RayFra
                                             const SurfaceGuess& guess) {
     Trial best = eval_trial(surface, ray, guess, guess.uv);
     const double scale = length(best.point.position) + length(ray.origin);
-    for (int i = 0; i < kMaxSteps && best.miss > 0; ++i) {
-        const std::optional<Vec2> step = newton_step(ray, best, guess.reach);
-        if (!step) break;
-
-        // Take the longest of 1, 1/2, 1/4 .. of the step that helps; where none does, rounding is all that is
-        // left.
-        Trial next = eval_trial(surface, ray, guess, best.uv + *step);
-        for (int k = 1; k <= kMaxHalvings && !(next.miss < best.miss); ++k) {
-            if (best.miss <= kSurfaceResidual * scale) break;
-            next = eval_trial(surface, ray, guess, best.uv + std::ldexp(1.0, -k) * *step);
+    const double good_enough = kSurfaceResidual * scale, best_possible = 1e-3 * good_enough;
+    const auto improves = [&](const Trial& next) {
+        return next.miss < best.miss && (next.step || next.miss <= good_enough);
+    };
+    for (int i = 0; i < kMaxSteps && best.miss > best_possible && best.step; ++i) {
+        // Take the longest of 1, 1/2, 1/4 .. of the step that brings the point nearer to the ray, and not
+        // into a dead end. Steps end at the face's border: behind it derivatives say nothing where the
+        // surface is pinched.
+        Trial next = eval_trial(surface, ray, guess, best.uv + *best.step);
+        const int halvings = best.miss <= good_enough ? 0 : kMaxHalvings;
+        for (int k = 1; k <= halvings && !improves(next); ++k) {
+            next = eval_trial(surface, ray, guess, best.uv + std::ldexp(1.0, -k) * *best.step);
         }
-        if (!(next.miss < best.miss)) break;
+        if (!improves(next)) break;
         best = next;
-        if (best.miss <= 2 * std::numeric_limits<double>::epsilon() * scale) break;
     }
-
-    // Back onto the face: what strays from the ray by more than rounding was no hit of this face.
-    const Vec2 inside = clamp_to_domain(surface.domain(guess.face), best.uv);
-    if (inside != best.uv) best = eval_trial(surface, ray, guess, inside);
-    if (!(best.miss <= kSurfaceResidual * scale)) return std::nullopt;
-    return SurfaceHit{guess.face, best.uv, best.local.z / ray.speed, best.point};
+    if (!(best.miss <= good_enough)) return std::nullopt;
+    return SurfaceHit{guess.face, best.uv, best.z / ray.speed, best.point};
 }
 
 std::optional<SecondHit> predict_second_hit(const SurfaceHit& hit, const Vec3& direction) {
