@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/error.h"
 #include "cli/json.h"
 #include "scene/nearest.h"
 #include "image/image_io.h"
