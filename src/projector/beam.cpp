@@ -11,8 +11,10 @@ namespace {
 // A plane is trusted only beyond this share of the coordinates involved. Rounding in the planes, the boxes and the
 // decision who is hit stays below 64 units in the last place of them (1.4e-14).
 constexpr double kSlack = 1e-13;
-// Rounding of a dot product of a unit normal with a direction, as a share of the direction.
-constexpr double kAlong = 8 * std::numeric_limits<double>::epsilon();
+// Rounding of the dot product of two unit vectors.
+constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
+// A normal further off than this is not the plane of a side.
+constexpr double kLargestTurn = 1e-9;
 
 double size_of(const Vec3& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
 
@@ -54,28 +56,31 @@ Beam::Beam(const BlockRays& block) {
 void Beam::add_axis() {
     for (const Vec3& d : direction_) axis_ += normalize_or_zero(d);
     axis_ = normalize_or_zero(axis_);
-    add_plane(axis_);
-
-    // How fast the rays go along the axis tells how far t a box is, unless a ray goes nearly across it.
-    constexpr double kSteepest = 0.01;
-    bool steep = true;
+    least_cosine_ = 1;
     for (std::size_t k = 0; k < 4; ++k) {
-        const double speed = dot(axis_, direction_[k]);
-        if (!(speed > kSteepest * length(direction_[k]))) steep = false;
-        axis_speed_ = std::max(axis_speed_, speed);
+        least_cosine_ = std::min(least_cosine_, dot(axis_, normalize_or_zero(direction_[k])));
+        axis_speed_ = std::max(axis_speed_, dot(axis_, direction_[k]));
         axis_start_ = k == 0 ? dot(axis_, origin_[k]) : std::max(axis_start_, dot(axis_, origin_[k]));
     }
-    if (!steep) axis_speed_ = 0;
+    // How fast the rays go along the axis tells how far t a box is, unless a ray goes nearly across it.
+    constexpr double kSteep = 0.01;
+    if (!(least_cosine_ > kSteep)) axis_speed_ = least_cosine_ = 0;
+    add_plane(axis_);
 }
 
 void Beam::add_plane(const Vec3& normal) {
-    const Vec3 unit = normalize_or_zero(normal);
-    if (unit == Vec3(0) || planes_ == plane_.size()) return;
-    double offset = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < 4; ++k) {
-        if (!(dot(unit, direction_[k]) >= -kAlong * length(direction_[k]))) return;
-        offset = std::min(offset, dot(unit, origin_[k]));
+    Vec3 unit = normalize_or_zero(normal);
+    if (unit == Vec3(0)) return;
+
+    // A normal that should be square to two directions misses by rounding; turn it towards the axis by as much.
+    double least = 1;
+    for (const Vec3& d : direction_) least = std::min(least, dot(unit, normalize_or_zero(d)));
+    if (least < kRounding) {
+        if (!(least > -kLargestTurn && least_cosine_ > 0)) return;
+        unit += (kRounding - least) / least_cosine_ * axis_;
     }
+    double offset = std::numeric_limits<double>::infinity();
+    for (const Vec3& o : origin_) offset = std::min(offset, dot(unit, o));
     plane_[planes_++] = {unit, offset - kSlack * origin_size_};
 }
 

@@ -22,7 +22,7 @@ class Beam {
 
   private:
     struct Plane {
-        Vec3 normal{0};     // unit, into the beam
+        Vec3 normal{0};     // unit but for a tiny turn, into the beam
         double offset = 0;  // every point of the beam has normal . x >= offset
     };
     void add_plane(const Vec3& normal);
@@ -33,6 +33,7 @@ class Beam {
     std::array<Plane, 17> plane_{};
     std::size_t planes_ = 0;
     Vec3 axis_{0};
+    double least_cosine_ = 0;  // between the axis and a direction; 0: too wide for an axis to mean anything
     double axis_start_ = 0;  // the largest axis . origin
     double axis_speed_ = 0;  // the largest axis . direction; 0: `nearest` knows nothing
 };

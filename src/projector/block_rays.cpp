@@ -11,13 +11,14 @@ struct Rectangle {
     Vec2 centre{0}, half{0};
 };
 
-Rectangle bounding_rectangle(std::span<const Vec2> positions) {
+/// The positions' bounding rectangle; no thinner than `least` each way, so that its rays' hull has sides.
+Rectangle bounding_rectangle(std::span<const Vec2> positions, double least) {
     Vec2 lo = positions[0], hi = positions[0];
     for (const Vec2& p : positions) {
         lo = glm::min(lo, p);
         hi = glm::max(hi, p);
     }
-    return {(lo + hi) * 0.5, (hi - lo) * 0.5};
+    return {(lo + hi) * 0.5, glm::max((hi - lo) * 0.5, Vec2(least))};
 }
 
 double sum_of_sizes(const std::array<Vec3, 3>& v) {
@@ -42,11 +43,11 @@ BlockRays make_block_rays(const FacetOnScreen& facet, const SampleGrid& grid, st
     block.count = samples.size();
     std::array<Vec2, kBlockSamples> position{};
     for (std::size_t s = 0; s < samples.size(); ++s) position[s] = grid.position(samples[s]);
-    const Rectangle rectangle = bounding_rectangle(std::span(position).first(samples.size()));
+    const Rectangle rectangle = bounding_rectangle(std::span(position).first(samples.size()), 0.125 / grid.side);
     for (std::size_t s = 0; s < samples.size(); ++s) {
         const Vec2 from_centre = position[s] - rectangle.centre;
-        block.u[s] = rectangle.half.x > 0 ? from_centre.x / rectangle.half.x : 0;
-        block.v[s] = rectangle.half.y > 0 ? from_centre.y / rectangle.half.y : 0;
+        block.u[s] = from_centre.x / rectangle.half.x;
+        block.v[s] = from_centre.y / rectangle.half.y;
     }
 
     // The local origin is where the middle sample's ray starts: a sample, since the rectangle's own centre may lie
