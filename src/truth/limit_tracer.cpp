@@ -23,6 +23,10 @@ constexpr std::size_t kFacetsPerTask = 256, kRaysPerTask = 64;
 // as far inside a facet as at the middles of its edges; the rest is for terms of higher order.
 constexpr double kStraySafety = 2;
 
+// A patch that strays s from a facet of size h turns by about 4 s / h from its middle to its ends; the stray
+// kept is twice what was seen, and rays within twice that angle of the surface may meet the patch twice.
+constexpr double kGrazing = 4;
+
 /// A facet of the fine grid with the patch of surface that it stands for.
 struct Patch {
     std::array<Vec3, 3> corner;
@@ -37,8 +41,8 @@ struct Patch {
 struct Candidate {
     double t_near = 0;  // it meets none before this
     Id patch = kNone;
-    Vec3 weights{0};       // of the facet's point nearest to the ray
-    bool crosses = false;  // the ray's line meets the facet itself
+    Vec3 weights{0};                              // of the facet's point nearest to the ray
+    int nearest_corner = 0, farthest_corner = 0;  // along the ray
 };
 
 double largest(const Vec3& v) {
@@ -71,6 +75,10 @@ Patch make_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t fa
 Box box_of(const Patch& patch) {
     const auto& [a, b, c] = patch.corner;
     return {glm::min(a, glm::min(b, c)) - patch.stray, glm::max(a, glm::max(b, c)) + patch.stray};
+}
+
+Vec3 chord_normal(const Patch& patch) {
+    return normalize_or_zero(cross(patch.corner[1] - patch.corner[0], patch.corner[2] - patch.corner[0]));
 }
 
 /// The point of a triangle in the plane that is nearest to the origin.
@@ -142,22 +150,26 @@ struct LimitTracer::Data {
 
     std::optional<Candidate> candidate(const RayFrame& frame, Id index, double t_min) const;
     std::vector<Candidate> candidates(const Ray& ray, const RayFrame& frame, double t_min) const;
+    template <typename Use>
+    void for_each_hit(const Ray& ray, const RayFrame& frame, const Candidate& candidate, Use&& use) const;
 };
 
 // Keeps the patch if the ray passes within its stray, and some of it lies after t_min.
 std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, Id index, double t_min) const {
     const Patch& patch = patches[index];
     std::array<Vec2, 3> seen;
-    double z_low = kInfinity, z_high = -kInfinity;
+    Vec3 z;
     for (int k = 0; k < 3; ++k) {
         const Vec3 local = frame.from_world(patch.corner[k]);
         seen[k] = {local.x, local.y};
-        z_low = std::min(z_low, local.z), z_high = std::max(z_high, local.z);
+        z[k] = local.z;
     }
-    if (!((z_high + patch.stray) / frame.speed > t_min)) return std::nullopt;
+    const int low = z.x <= z.y && z.x <= z.z ? 0 : z.y <= z.z ? 1 : 2;
+    const int high = z.x >= z.y && z.x >= z.z ? 0 : z.y >= z.z ? 1 : 2;
+    if (!((z[high] + patch.stray) / frame.speed > t_min)) return std::nullopt;
     const Nearest nearest = nearest_to_origin(seen);
     if (!(nearest.distance <= patch.stray)) return std::nullopt;
-    return Candidate{(z_low - patch.stray) / frame.speed, index, nearest.weights, nearest.distance == 0};
+    return Candidate{(z[low] - patch.stray) / frame.speed, index, nearest.weights, low, high};
 }
 
 std::vector<Candidate> LimitTracer::Data::candidates(const Ray& ray, const RayFrame& frame,
@@ -174,6 +186,30 @@ std::vector<Candidate> LimitTracer::Data::candidates(const Ray& ray, const RayFr
     return found;
 }
 
+// Calls use(hit) for the hits that Newton's method reaches in the candidate's patch, with any t, some perhaps
+// twice.
+template <typename Use>
+void LimitTracer::Data::for_each_hit(const Ray& ray, const RayFrame& frame, const Candidate& candidate,
+                                     Use&& use) const {
+    const Patch& patch = patches[candidate.patch];
+    const auto solve = [&](const Vec2& uv) {
+        const auto hit = solve_surface_hit(surface, frame, {patch.face, uv, patch.reach});
+        if (hit) use(*hit);
+        return hit;
+    };
+    const Vec3& w = candidate.weights;
+    const auto hit = solve(w.x * patch.uv[0] + w.y * patch.uv[1] + w.z * patch.uv[2]);
+    const bool steep =
+        hit && std::fabs(dot(hit->point.normal, frame.z)) * patch.size > kGrazing * patch.stray;
+    if (steep) return;
+
+    // Near a silhouette a patch is met twice, and the hit found may be the farther one.
+    const auto second = hit ? predict_second_hit(*hit, ray.direction) : std::nullopt;
+    if (second && std::fabs(second->t_step) * frame.speed <= 2 * patch.size) solve(second->uv);
+    solve(patch.uv[candidate.nearest_corner]);
+    solve(patch.uv[candidate.farthest_corner]);
+}
+
 LimitTracer::LimitTracer(const Surface& surface, const SurfaceGrid& fine, const std::string& isa)
     : data_(std::make_unique<Data>(surface, fine, isa)) {}
 LimitTracer::~LimitTracer() = default;
@@ -187,27 +223,14 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
     if (!frame) return std::nullopt;
 
     std::optional<SurfaceHit> first;
-    const auto offer = [&](const std::optional<SurfaceHit>& hit, const Patch& patch) {
-        if (!hit || !(hit->t > t_min) || (first && !(hit->t < first->t))) return;
-        first = hit;
-        if (first->point.normal == Vec3(0)) {
-            first->point.normal = normalize_or_zero(
-                cross(patch.corner[1] - patch.corner[0], patch.corner[2] - patch.corner[0]));
-        }
-    };
     for (const Candidate& candidate : data_->candidates(ray, *frame, t_min)) {
         if (first && candidate.t_near > first->t) break;
         const Patch& patch = data_->patches[candidate.patch];
-        const Vec3& w = candidate.weights;
-        const Vec2 uv = w.x * patch.uv[0] + w.y * patch.uv[1] + w.z * patch.uv[2];
-        const auto hit = solve_surface_hit(surface, *frame, {patch.face, uv, patch.reach});
-        offer(hit, patch);
-
-        // Near a silhouette a patch is met twice, and Newton may have found the farther one.
-        if (!hit) continue;
-        const auto second = predict_second_hit(*hit, ray.direction);
-        if (!second || std::fabs(second->t_step) * frame->speed > 2 * patch.size) continue;
-        offer(solve_surface_hit(surface, *frame, {patch.face, second->uv, patch.reach}), patch);
+        data_->for_each_hit(ray, *frame, candidate, [&](const SurfaceHit& hit) {
+            if (!(hit.t > t_min) || (first && !(hit.t < first->t))) return;
+            first = hit;
+            if (hit.point.normal == Vec3(0)) first->point.normal = chord_normal(patch);
+        });
     }
     return first;
 }
