@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cli/command.h"
-#include "cli/write_text.h"
+#include "cli/check_output.h"
 #include "image/image_io.h"
 #include "measure/compare.h"
 #include "measure/difference.h"

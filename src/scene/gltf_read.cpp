@@ -31,7 +31,7 @@ std::string one_line(std::string text) {
 }
 
 tinygltf::Model load_model(const std::string& file) {
-    const std::string bytes = read_whole_file(file);
+    const std::string bytes = read_required_file(file);
     const std::string folder = std::filesystem::path(file).parent_path().string();
     tinygltf::TinyGLTF reader;
     reader.SetImageLoader(keep_encoded, nullptr);
