@@ -103,7 +103,7 @@ std::string report_html(const Report& report) {
 }
 
 void write_report(const std::string& file, const Report& report) {
-    write_text_file(file, report_html(report));
+    replace_text_file(file, report_html(report));
 }
 
 std::string gallery_html(const Gallery& gallery) {
@@ -114,7 +114,7 @@ std::string gallery_html(const Gallery& gallery) {
 }
 
 void write_gallery(const std::string& file, const Gallery& gallery) {
-    write_text_file(file, gallery_html(gallery));
+    replace_text_file(file, gallery_html(gallery));
 }
 
 }  // namespace trilens

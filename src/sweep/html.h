@@ -14,8 +14,8 @@ struct Headline {
 };
 
 struct ReportRun {
-    std::string title;              // "n = 8"
-    std::vector<Picture> pictures;  // projected, truth, difference, displacement
+    std::string title;                // "n = 8"
+    std::vector<Thumbnail> pictures;  // projected, truth, difference, displacement
     Facts facts;
     std::vector<std::string> warnings;
     std::string error;  // not empty: the run failed with this
@@ -52,7 +52,7 @@ void write_report(const std::string& file, const Report& report);
 /// One scene of a gallery.
 struct GalleryEntry {
     std::string title, text;
-    std::vector<Picture> pictures;  // projected, truth, difference
+    std::vector<Thumbnail> pictures;  // projected, truth, difference
     Facts metrics;
     std::string
         link;  // a relative path, empty for none; one with a scheme ("https:") is shown but not linked

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "sweep/plot.h"
+#include "sweep/plot_style.h"
 #include "sweep/text.h"
 
 namespace trilens {
@@ -34,7 +34,7 @@ tbody tr:hover{background:var(--panel)}
 .pictures img.big{image-rendering:pixelated;cursor:zoom-out;max-width:none}
 .pictures figure:has(img.big){grid-column:1/-1}
 figcaption{color:var(--soft);font-size:13px;margin-top:4px}
-.facts{display:grid;grid-template-columns:repeat(auto-fill,minmax(230px,1fr));gap:2px 24px;margin:8px 0;font-size:14px}
+.facts{display:grid;grid-template-columns:repeat(auto-fill,minmax(290px,1fr));gap:2px 24px;margin:8px 0;font-size:14px}
 .facts div{display:flex;justify-content:space-between;gap:12px;border-bottom:1px dotted var(--line)}
 .facts dt{color:var(--soft)}.facts dd{margin:0;font-variant-numeric:tabular-nums;text-align:right;overflow-wrap:anywhere}
 .warning{border-left:4px solid #b07d00;padding:4px 12px;background:var(--panel);margin:6px 0}
@@ -68,9 +68,9 @@ std::string html_page(const std::string& title, const std::string& body) {
            "</script>\n</body>\n</html>\n";
 }
 
-std::string html_pictures(const std::vector<Picture>& pictures) {
+std::string html_pictures(const std::vector<Thumbnail>& pictures) {
     std::string html = "<div class=\"pictures\">\n";
-    for (const Picture& picture : pictures) {
+    for (const Thumbnail& picture : pictures) {
         const std::string caption = escape_markup(picture.caption);
         html += "<figure>";
         if (!picture.png.empty())
