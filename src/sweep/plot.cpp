@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kLeft = 68, kRight = 18, kTop = 38, kBottom = 54;  // pixels around the frame
 constexpr double kCharWidth = 6.4;                                  // of the 11 px font, on average
+constexpr double kReferenceLabelWidth = 36;                         // "order 2" in the small font
 constexpr double kReferenceLift = 1.8;  // reference orders start so far above the data
 
 struct Plot {
@@ -123,10 +124,9 @@ void draw_reference_orders(Plot& plot) {
         if (!inside) continue;
         const auto& [start, end] = *inside;
         plot.svg += line("tp-reference", start, end);
-        // The label stands under the line's end, or left of it where the line leaves through the bottom.
-        const bool leaves_below = end.y > plot.y.first - 16;
-        plot.svg += text("tp-note", {end.x - (leaves_below ? 10 : 5), end.y + (leaves_below ? -5 : 12)},
-                         "end", "order " + std::to_string(order));
+        // The label stands on the line's end, where no measurement is.
+        const double rise = (end.y - start.y) / (end.x - start.x) * kReferenceLabelWidth;
+        plot.svg += text("tp-note", {end.x - 4, end.y - rise - 4}, "end", "order " + std::to_string(order));
     }
 }
 
