@@ -122,6 +122,25 @@ TEST_CASE("rays that graze the silhouette hit or miss as the surface says, not a
     CHECK(touching < 50);
 }
 
+TEST_CASE("no ray slips between faces, not even straight at their edges and corners") {
+    Random random(17);
+    for (const FaceDomain domain : {FaceDomain::kSquare, FaceDomain::kTriangle}) {
+        const double radius = random.log_uniform(1e-4, 1e4);
+        const Vec3 centre = radius * random.direction();
+        const ProjectedSphere sphere(domain, centre, radius);
+        const LimitTracer tracer(sphere, grid_of(sphere, 12));
+        int leaks = 0;
+        for (int i = 0; i < 6000; ++i) {
+            const double along = i % 3 == 0 ? static_cast<double>(random.below(2)) : random.uniform(0, 1);
+            const Vec2 uv = i % 2 == 0 ? Vec2(along, 0) : Vec2(0, along);
+            const Vec3 target = sphere.eval(static_cast<Id>(random.below(sphere.face_count())), uv).position;
+            const Vec3 origin = centre + radius * 0.9 * random.in_box(0.5);
+            leaks += tracer.first_hit({origin, target - origin}) ? 0 : 1;
+        }
+        CHECK(leaks == 0);
+    }
+}
+
 TEST_CASE("a torus shows the first of its up to four hits") {
     Random random(13);
     int touching = 0, later = 0, hits = 0;
