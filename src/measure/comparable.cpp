@@ -39,12 +39,14 @@ void require_comparable(const Image& reference, const Image& test) {
     if (reference.width != test.width || reference.height != test.height)
         refuse("size", "the reference is " + size_of(reference) + ", the test " + size_of(test));
     if (window_of(reference) != window_of(test))
-        refuse("data window", "the reference's is " + window_of(reference) + ", the test's " + window_of(test));
+        refuse("data window",
+               "the reference's is " + window_of(reference) + ", the test's " + window_of(test));
     require_same_channels(reference, test, "the reference");
     require_same_channels(test, reference, "the test");
 }
 
-std::vector<std::uint8_t> compared_pixels(const Image& reference, const Image& test, std::optional<Id> mask_object) {
+std::vector<std::uint8_t> compared_pixels(const Image& reference, const Image& test,
+                                          std::optional<Id> mask_object) {
     if (!mask_object) return std::vector<std::uint8_t>(reference.pixels(), 1);
     const std::vector<Id>&a = id_channel(reference, "optic.object"), &b = id_channel(test, "optic.object");
     std::vector<std::uint8_t> mask(reference.pixels());

@@ -37,12 +37,14 @@ ChannelPair pair_of(const Image& reference, const Image& test, const std::string
 /// R, G, B, then the beauty's A where it has one.
 std::vector<ChannelPair> channels_of(const Image& reference, const Image& test, const std::string& layer) {
     std::vector<ChannelPair> channels;
-    for (const char* name : {"R", "G", "B"}) channels.push_back(pair_of(reference, test, channel_of(layer, name)));
+    for (const char* name : {"R", "G", "B"})
+        channels.push_back(pair_of(reference, test, channel_of(layer, name)));
     if (layer.empty() && reference.find("A")) channels.push_back(pair_of(reference, test, "A"));
     return channels;
 }
 
-// --- Values that are not finite ----------------------------------------------------------------------------------
+// --- Values that are not finite
+// ----------------------------------------------------------------------------------
 
 constexpr std::uint8_t kNan = 1, kInf = 2;
 
@@ -53,8 +55,10 @@ std::vector<std::uint8_t> non_finite(const Image& image) {
         if (channel.is_id()) continue;
         const std::vector<float>& values = channel.floats();
         for (std::size_t i = 0; i < values.size(); ++i) {
-            if (std::isnan(values[i])) kinds[i] |= kNan;
-            else if (std::isinf(values[i])) kinds[i] |= kInf;
+            if (std::isnan(values[i]))
+                kinds[i] |= kNan;
+            else if (std::isinf(values[i]))
+                kinds[i] |= kInf;
         }
     }
     return kinds;
@@ -66,9 +70,12 @@ std::size_t count_kind(const std::vector<std::uint8_t>& kinds, const Mask& mask,
     return count;
 }
 
-// --- Metrics -----------------------------------------------------------------------------------------------------
+// --- Metrics
+// -----------------------------------------------------------------------------------------------------
 
-double luminance(double r, double g, double b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
+double luminance(double r, double g, double b) {
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
 
 double ssim_of(const Image& image, const std::vector<ChannelPair>& rgb, const Mask& mask) {
     std::vector<double> reference(image.pixels()), test(image.pixels());
@@ -102,7 +109,8 @@ Metrics metrics_of(const Image& image, const std::vector<ChannelPair>& channels,
     metrics.mae = sum / count;
     metrics.rmse = std::sqrt(squares / count);
     metrics.relmse = relative / count;
-    metrics.psnr_db = squares > 0 ? -10 * std::log10(squares / count) : std::numeric_limits<double>::infinity();
+    metrics.psnr_db =
+        squares > 0 ? -10 * std::log10(squares / count) : std::numeric_limits<double>::infinity();
     metrics.ssim = ssim_of(image, channels, mask);
     const Summary summary = summarize(std::move(largest));
     metrics.max = summary.max;
@@ -112,7 +120,8 @@ Metrics metrics_of(const Image& image, const std::vector<ChannelPair>& channels,
     return metrics;
 }
 
-// --- Verdict -----------------------------------------------------------------------------------------------------
+// --- Verdict
+// -----------------------------------------------------------------------------------------------------
 
 /// What one pixel's channels say together.
 struct PixelFlags {
@@ -150,7 +159,8 @@ void count_flags(const Image& image, const std::vector<ChannelPair>& channels, c
             largest = d;
             const int column = static_cast<int>(i % static_cast<std::size_t>(image.data_width));
             const int row = static_cast<int>(i / static_cast<std::size_t>(image.data_width));
-            result.worst = {image.x0 + column, image.y0 + row, channel.name, channel.reference[i], channel.test[i]};
+            result.worst = {image.x0 + column, image.y0 + row, channel.name, channel.reference[i],
+                            channel.test[i]};
         }
     }
 }

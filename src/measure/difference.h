@@ -11,8 +11,8 @@
 namespace trilens {
 
 struct DifferenceOptions {
-    std::string layer;              // "": the beauty; as in CompareOptions
-    std::optional<Id> mask_object;  // as in CompareOptions
+    std::string layer;                           // "": the beauty; as in CompareOptions
+    std::optional<Id> mask_object;               // as in CompareOptions
     const Displacement* displacement = nullptr;  // of the same two images; null: no shift channels
 };
 

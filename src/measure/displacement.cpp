@@ -39,7 +39,8 @@ void collect_statistics(Displacement& result) {
 
 }  // namespace
 
-std::optional<Displacement> measure_displacement(const Image& reference, const Image& test, const std::string& layer,
+std::optional<Displacement> measure_displacement(const Image& reference, const Image& test,
+                                                 const std::string& layer,
                                                  const DisplacementOptions& options) {
     require_comparable(reference, test);
     const std::vector<std::uint8_t> mask = compared_pixels(reference, test, options.mask_object);

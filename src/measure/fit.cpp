@@ -11,9 +11,11 @@ std::vector<std::size_t> usable_by_n(std::span<const FitPoint> points, double fl
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto [n, error] = points[i];
-        if (std::isfinite(n) && n > 0 && std::isfinite(error) && error > 0 && error > floor) order.push_back(i);
+        if (std::isfinite(n) && n > 0 && std::isfinite(error) && error > 0 && error > floor)
+            order.push_back(i);
     }
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return points[a].n < points[b].n; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return points[a].n < points[b].n; });
     return order;
 }
 
@@ -22,7 +24,8 @@ std::vector<double> step_orders(std::span<const FitPoint> points, const std::vec
     std::vector<double> orders;
     for (std::size_t i = 1; i < runs.size(); ++i) {
         const FitPoint &coarse = points[runs[i - 1]], &fine = points[runs[i]];
-        if (fine.n > coarse.n) orders.push_back(std::log(coarse.error / fine.error) / std::log(fine.n / coarse.n));
+        if (fine.n > coarse.n)
+            orders.push_back(std::log(coarse.error / fine.error) / std::log(fine.n / coarse.n));
     }
     return orders;
 }
@@ -30,7 +33,8 @@ std::vector<double> step_orders(std::span<const FitPoint> points, const std::vec
 void drop_plateau(std::span<const FitPoint> points, std::vector<std::size_t>& runs) {
     std::vector<double> orders = step_orders(points, runs);
     if (orders.empty()) return;
-    std::nth_element(orders.begin(), orders.begin() + static_cast<std::ptrdiff_t>(orders.size() / 2), orders.end());
+    std::nth_element(orders.begin(), orders.begin() + static_cast<std::ptrdiff_t>(orders.size() / 2),
+                     orders.end());
     const double median = orders[orders.size() / 2];
     if (!(median > 0)) return;
     while (runs.size() > 3) {

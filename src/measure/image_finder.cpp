@@ -10,12 +10,13 @@
 namespace trilens {
 namespace {
 
-/// How far the surface of a cell may leave the box of its corners, in steps between pixels: bulge, overshoot and
-/// residual of a whole cell; of a cell that is partly extrapolated also the longer steps there.
+/// How far the surface of a cell may leave the box of its corners, in steps between pixels: bulge, overshoot
+/// and residual of a whole cell; of a cell that is partly extrapolated also the longer steps there.
 constexpr double kWholeMargin = 0.35, kPartMargin = 4;
 
-/// A hit outside its cell is the cell next door's business, a hit on another triangle is less exact: both count as
-/// farther away, so that the better answer wins where two say nearly the same. Never less than the distance.
+/// A hit outside its cell is the cell next door's business, a hit on another triangle is less exact: both
+/// count as farther away, so that the better answer wins where two say nearly the same. Never less than the
+/// distance.
 constexpr double kOvershootPenalty = 2, kOtherPrimitivePenalty = 0.25;
 
 /// Pixels. Two images of one point this near to each other are the two sides of one fold.
@@ -68,12 +69,14 @@ bool is_whole(const SeenField& field, int column, int row) {
     if (!field.contains(column, row) || !field.contains(column + 1, row + 1)) return false;
     constexpr std::uint8_t both = SeenField::kRight | SeenField::kDown;
     const std::size_t i = field.index(column, row), below = field.index(column, row + 1);
-    return field.links[i] == both && (field.links[i + 1] & SeenField::kDown) && (field.links[below] & SeenField::kRight);
+    return field.links[i] == both && (field.links[i + 1] & SeenField::kDown) &&
+           (field.links[below] & SeenField::kRight);
 }
 
 }  // namespace
 
-ImageFinder::ImageFinder(SeenField reference, SeenField test) : field_(std::move(reference)), test_(std::move(test)) {
+ImageFinder::ImageFinder(SeenField reference, SeenField test)
+    : field_(std::move(reference)), test_(std::move(test)) {
     link_neighbours(field_);
     link_neighbours(test_);
     build_pyramid();
@@ -106,7 +109,8 @@ void ImageFinder::build_pyramid() {
     parallel_for(static_cast<std::size_t>(cells.rows), 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t row = first; row < last; ++row)
             for (int column = 0; column < cells.columns; ++column)
-                cells.boxes[row * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(column)] =
+                cells
+                    .boxes[row * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(column)] =
                     cell_box(column - 1, static_cast<int>(row) - 1);
     });
     levels_.push_back(std::move(cells));
@@ -118,8 +122,9 @@ void ImageFinder::build_pyramid() {
                             empty_box<Box>());
         for (int row = 0; row < fine.rows; ++row) {
             for (int column = 0; column < fine.columns; ++column) {
-                add(coarse.boxes[static_cast<std::size_t>(row / 2) * static_cast<std::size_t>(coarse.columns) +
-                                 static_cast<std::size_t>(column / 2)],
+                add(coarse
+                        .boxes[static_cast<std::size_t>(row / 2) * static_cast<std::size_t>(coarse.columns) +
+                               static_cast<std::size_t>(column / 2)],
                     fine.boxes[static_cast<std::size_t>(row) * static_cast<std::size_t>(fine.columns) +
                                static_cast<std::size_t>(column)]);
             }
@@ -128,9 +133,10 @@ void ImageFinder::build_pyramid() {
     }
 }
 
-/// Tries every piece of the wanted object and optic that has a pixel among the cell's corners. Says whether one was
-/// solid enough to be tried.
-bool ImageFinder::try_pieces(const SeenPoint& wanted, int column, int row, bool same_primitive, Best& best) const {
+/// Tries every piece of the wanted object and optic that has a pixel among the cell's corners. Says whether
+/// one was solid enough to be tried.
+bool ImageFinder::try_pieces(const SeenPoint& wanted, int column, int row, bool same_primitive,
+                             Best& best) const {
     Piece piece{wanted.object, wanted.optic, std::nullopt};
     if (same_primitive) piece.primitive = wanted.primitive;
     std::uint16_t tried = 0;
@@ -167,7 +173,8 @@ void ImageFinder::try_cell(const SeenPoint& wanted, int column, int row, Best& b
     if (!try_pieces(wanted, column, row, true, best)) try_pieces(wanted, column, row, false, best);
 }
 
-/// Depth first, nearest child first; a box is entered if it may hold the point nearer than the best hit so far.
+/// Depth first, nearest child first; a box is entered if it may hold the point nearer than the best hit so
+/// far.
 void ImageFinder::search(const SeenPoint& wanted, Best& best) const {
     struct Node {
         int level, column, row;
@@ -175,8 +182,9 @@ void ImageFinder::search(const SeenPoint& wanted, Best& best) const {
     };
     const auto node_at = [&](int level, int column, int row) {
         const double size = std::ldexp(1.0, level);
-        return Node{level, column, row, distance_to(wanted, column * size - 1, row * size - 1,
-                                                    (column + 1) * size - 1, (row + 1) * size - 1)};
+        return Node{level, column, row,
+                    distance_to(wanted, column * size - 1, row * size - 1, (column + 1) * size - 1,
+                                (row + 1) * size - 1)};
     };
     std::array<Node, 4 * 32> stack;  // four children per level, and fewer than 32 levels
     std::size_t size = 0;
@@ -193,24 +201,32 @@ void ImageFinder::search(const SeenPoint& wanted, Best& best) const {
         const std::size_t first = size;
         for (int child = 0; child < 4; ++child) {
             const int column = 2 * node.column + child % 2, row = 2 * node.row + child / 2;
-            if (column < finer.columns && row < finer.rows) stack[size++] = node_at(node.level - 1, column, row);
+            if (column < finer.columns && row < finer.rows)
+                stack[size++] = node_at(node.level - 1, column, row);
         }
-        std::sort(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.begin() + static_cast<std::ptrdiff_t>(size),
+        std::sort(stack.begin() + static_cast<std::ptrdiff_t>(first),
+                  stack.begin() + static_cast<std::ptrdiff_t>(size),
                   [](const Node& a, const Node& b) { return a.distance > b.distance; });
     }
 }
 
 /// Which way from its pixel the point lies, by the slopes there: the signs of its offset.
 std::array<int, 2> ImageFinder::likely_side(const SeenPoint& wanted) const {
-    const std::size_t here = field_.index(wanted.column, wanted.row), below = static_cast<std::size_t>(field_.width);
+    const std::size_t here = field_.index(wanted.column, wanted.row),
+                      below = static_cast<std::size_t>(field_.width);
     if (!field_.sees(here)) return {1, 1};
     const Vec3 p = field_.point(here), offset = wanted.point - p;
     Vec3 du(0), dv(0);
-    if (field_.links[here] & SeenField::kRight) du = field_.point(here + 1) - p;
-    else if (wanted.column > 0 && (field_.links[here - 1] & SeenField::kRight)) du = p - field_.point(here - 1);
-    if (field_.links[here] & SeenField::kDown) dv = field_.point(here + below) - p;
-    else if (wanted.row > 0 && (field_.links[here - below] & SeenField::kDown)) dv = p - field_.point(here - below);
-    const double a = dot(du, du), b = dot(du, dv), d = dot(dv, dv), g0 = dot(du, offset), g1 = dot(dv, offset);
+    if (field_.links[here] & SeenField::kRight)
+        du = field_.point(here + 1) - p;
+    else if (wanted.column > 0 && (field_.links[here - 1] & SeenField::kRight))
+        du = p - field_.point(here - 1);
+    if (field_.links[here] & SeenField::kDown)
+        dv = field_.point(here + below) - p;
+    else if (wanted.row > 0 && (field_.links[here - below] & SeenField::kDown))
+        dv = p - field_.point(here - below);
+    const double a = dot(du, du), b = dot(du, dv), d = dot(dv, dv), g0 = dot(du, offset),
+                 g1 = dot(dv, offset);
     return {d * g0 - b * g1 < 0 ? -1 : 1, a * g1 - b * g0 < 0 ? -1 : 1};
 }
 
@@ -220,8 +236,9 @@ std::optional<Vec2> ImageFinder::find(const SeenPoint& wanted, double radius) co
     if (field_.shows(here, {wanted.object, wanted.optic, std::nullopt}) && field_.point(here) == wanted.point)
         return Vec2(0);
 
-    // Only the four cells round the pixel reach nearer than one pixel: a hit there that is nearer ends the search. The
-    // likeliest comes first; within a quarter of a pixel it is not asked whether another image lies nearer still.
+    // Only the four cells round the pixel reach nearer than one pixel: a hit there that is nearer ends the
+    // search. The likeliest comes first; within a quarter of a pixel it is not asked whether another image
+    // lies nearer still.
     Best best{radius, std::nullopt};
     const auto [side_x, side_y] = likely_side(wanted);
     for (const int dy : {side_y, -side_y}) {

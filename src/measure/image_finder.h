@@ -19,16 +19,19 @@ struct SeenPoint {
     int column = 0, row = 0;  // of the data window
 };
 
-/// A reference field with a pyramid of bounding boxes over its cells. Holds the fields' views, not their images.
+/// A reference field with a pyramid of bounding boxes over its cells. Holds the fields' views, not their
+/// images.
 class ImageFinder {
   public:
-    /// `test`: the field that points are looked for from, of the same size; it guides the reference beyond its borders.
+    /// `test`: the field that points are looked for from, of the same size; it guides the reference beyond
+    /// its borders.
     ImageFinder(SeenField reference, SeenField test);
 
     const SeenField& test() const { return test_; }
 
-    /// The screen vector from the pixel to the nearest place, at most `radius` pixels away, where the reference shows
-    /// the point; nothing where there is none. Pixels of the point's own triangle are preferred to others of its object.
+    /// The screen vector from the pixel to the nearest place, at most `radius` pixels away, where the
+    /// reference shows the point; nothing where there is none. Pixels of the point's own triangle are
+    /// preferred to others of its object.
     std::optional<Vec2> find(const SeenPoint& wanted, double radius) const;
 
   private:
@@ -53,7 +56,8 @@ class ImageFinder {
     void search(const SeenPoint& wanted, Best& best) const;
 
     SeenField field_, test_;
-    std::vector<Level> levels_;  // the first has one box per cell; cell (column, row) is entry (column + 1, row + 1)
+    std::vector<Level>
+        levels_;  // the first has one box per cell; cell (column, row) is entry (column + 1, row + 1)
 };
 
 }  // namespace trilens

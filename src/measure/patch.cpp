@@ -9,10 +9,15 @@ using Nodes = std::array<Vec3, 16>;
 
 constexpr std::uint16_t kLastColumn = 0x8888, kAll = 0xffff;
 
-bool has(std::uint16_t mask, int node) { return (mask >> node) & 1; }
-std::uint16_t bit(int node) { return static_cast<std::uint16_t>(1u << node); }
+bool has(std::uint16_t mask, int node) {
+    return (mask >> node) & 1;
+}
+std::uint16_t bit(int node) {
+    return static_cast<std::uint16_t>(1u << node);
+}
 
-// --- Which pixels belong -------------------------------------------------------------------------------------------
+// --- Which pixels belong
+// -------------------------------------------------------------------------------------------
 
 /// Bits of the nodes that may belong (and are in the field), and of those linked to the right and down.
 struct Neighbourhood {
@@ -57,7 +62,8 @@ Nodes points_of(const SeenField& field, const PatchPlace& place, std::uint16_t m
     return points;
 }
 
-// --- Extrapolation -------------------------------------------------------------------------------------------------
+// --- Extrapolation
+// -------------------------------------------------------------------------------------------------
 
 enum Kind { kNoEstimate, kConstant, kLinear, kParallelogram, kQuadratic };
 
@@ -77,7 +83,9 @@ struct Estimate {
 
 Estimate estimate(const Nodes& nodes, std::uint16_t known, int a, int b) {
     Estimate result;
-    const auto is_known = [&](int i, int j) { return i >= 0 && i < 4 && j >= 0 && j < 4 && has(known, i + 4 * j); };
+    const auto is_known = [&](int i, int j) {
+        return i >= 0 && i < 4 && j >= 0 && j < 4 && has(known, i + 4 * j);
+    };
     const auto at = [&](int i, int j) -> const Vec3& { return nodes[static_cast<std::size_t>(i + 4 * j)]; };
     for (const auto& [da, db] : {std::array{1, 0}, std::array{-1, 0}, std::array{0, 1}, std::array{0, -1}}) {
         if (!is_known(a + da, b + db)) continue;
@@ -87,8 +95,10 @@ Estimate estimate(const Nodes& nodes, std::uint16_t known, int a, int b) {
             continue;
         }
         const Vec3& q = at(a + 2 * da, b + 2 * db);
-        if (is_known(a + 3 * da, b + 3 * db)) result.add(kQuadratic, 3.0 * (p - q) + at(a + 3 * da, b + 3 * db));
-        else result.add(kLinear, 2.0 * p - q);
+        if (is_known(a + 3 * da, b + 3 * db))
+            result.add(kQuadratic, 3.0 * (p - q) + at(a + 3 * da, b + 3 * db));
+        else
+            result.add(kLinear, 2.0 * p - q);
     }
     for (const int da : {-1, 1}) {
         for (const int db : {-1, 1}) {
@@ -99,7 +109,8 @@ Estimate estimate(const Nodes& nodes, std::uint16_t known, int a, int b) {
     return result;
 }
 
-/// Fills the nodes of `wanted` that are not `known`, ring by ring outward, by estimates of kind `worst` or better.
+/// Fills the nodes of `wanted` that are not `known`, ring by ring outward, by estimates of kind `worst` or
+/// better.
 void extrapolate(Nodes& nodes, std::uint16_t& known, std::uint16_t wanted, Kind worst) {
     for (int pass = 0; pass < 4 && (known & wanted) != wanted; ++pass) {
         Nodes next = nodes;
@@ -117,8 +128,9 @@ void extrapolate(Nodes& nodes, std::uint16_t& known, std::uint16_t wanted, Kind 
     }
 }
 
-/// Continues the patch to pixels where the other image sees the piece: there the difference of the two images is
-/// extrapolated, which is small and smooth where they nearly agree, however much the seen points themselves bend.
+/// Continues the patch to pixels where the other image sees the piece: there the difference of the two images
+/// is extrapolated, which is small and smooth where they nearly agree, however much the seen points
+/// themselves bend.
 void extend_alongside(const SeenField& other, const PatchPlace& place, const Piece& piece, Patch& patch) {
     const std::uint16_t sees = flood(look_around(other, place, piece), patch.measured);
     std::uint16_t known = patch.measured & sees;

@@ -51,8 +51,9 @@ Tangents bicubic(const Nodes& n, const Vec2& uv) {
     return result;
 }
 
-/// Moves uv to where `surface` comes closest to the origin, and returns the length of the last move: small where it
-/// arrived. Moves are at most half a cell; a direction in which the surface stands still is not followed.
+/// Moves uv to where `surface` comes closest to the origin, and returns the length of the last move: small
+/// where it arrived. Moves are at most half a cell; a direction in which the surface stands still is not
+/// followed.
 template <typename Surface>
 double gauss_newton(const Surface& surface, int steps, Vec2& uv) {
     double size = 0;
@@ -75,7 +76,8 @@ double gauss_newton(const Surface& surface, int steps, Vec2& uv) {
 
 /// How much the flat cell's value at uv rests on corners that are mere extrapolation.
 double extrapolated_share(const Patch& patch, const Vec2& uv) {
-    const std::array<double, 4> weight = {(1 - uv.x) * (1 - uv.y), uv.x * (1 - uv.y), (1 - uv.x) * uv.y, uv.x * uv.y};
+    const std::array<double, 4> weight = {(1 - uv.x) * (1 - uv.y), uv.x * (1 - uv.y), (1 - uv.x) * uv.y,
+                                          uv.x * uv.y};
     double share = 0;
     for (std::size_t corner = 0; corner < 4; ++corner)
         if (!((patch.supported >> kCellCorner[corner]) & 1)) share += std::abs(weight[corner]);
@@ -86,8 +88,9 @@ constexpr double kMostExtrapolated = 0.25;
 constexpr int kMostSteps = 12;
 constexpr double kArrived = 1e-4;  // pixels
 
-/// Whether steps along the lines change so little that a cubic through them means something: a third difference is at
-/// most a quarter of the longest step. A jump at a patch's end gives 1, a crease of 25 % gives a quarter.
+/// Whether steps along the lines change so little that a cubic through them means something: a third
+/// difference is at most a quarter of the longest step. A jump at a patch's end gives 1, a crease of 25 %
+/// gives a quarter.
 bool is_smooth(const Nodes& n) {
     for (const std::size_t along : {std::size_t{1}, std::size_t{4}}) {
         double step = 0, third = 0;
@@ -103,11 +106,13 @@ bool is_smooth(const Nodes& n) {
     return true;
 }
 
-double outside_of(const Vec2& uv) { return std::max({-uv.x, uv.x - 1, -uv.y, uv.y - 1, 0.0}); }
+double outside_of(const Vec2& uv) {
+    return std::max({-uv.x, uv.x - 1, -uv.y, uv.y - 1, 0.0});
+}
 
-/// Whether the origin lies on the surface at uv, where the surface comes closest to it. What is left is along the
-/// normal; it may be as large as the surface's own bends between pixels (a crease, facets as small as pixels), a
-/// twentieth of the shorter tangent, and the rounding of float positions.
+/// Whether the origin lies on the surface at uv, where the surface comes closest to it. What is left is along
+/// the normal; it may be as large as the surface's own bends between pixels (a crease, facets as small as
+/// pixels), a twentieth of the shorter tangent, and the rounding of float positions.
 bool lies_on(const Nodes& n, const Tangents& at, double rounding) {
     const Vec3 normal = normalize_or_zero(cross(at.du, at.dv));
     std::array<double, 16> height{};

@@ -15,7 +15,8 @@ std::optional<SeenMismatch> compare_seen(const Image& reference, const Image& te
     // Without a channel of primitives every object is one piece.
     const std::string primitive = channel_of(layer, "primitive");
     const bool has_primitive = reference.find(primitive) != nullptr;
-    const std::vector<Id>& primitive_reference = has_primitive ? id_channel(reference, primitive) : object_reference;
+    const std::vector<Id>& primitive_reference =
+        has_primitive ? id_channel(reference, primitive) : object_reference;
     const std::vector<Id>& primitive_test = has_primitive ? id_channel(test, primitive) : object_test;
 
     SeenMismatch result;
@@ -23,9 +24,12 @@ std::optional<SeenMismatch> compare_seen(const Image& reference, const Image& te
         const Id a = object_reference[i], b = object_test[i];
         if (!mask[i] || (a == kNone && b == kNone)) continue;
         ++result.pixels;
-        if (a == kNone || b == kNone) ++result.coverage_mismatch;
-        else if (a != b) ++result.object_mismatch;
-        else if (primitive_reference[i] != primitive_test[i]) ++result.primitive_mismatch;
+        if (a == kNone || b == kNone)
+            ++result.coverage_mismatch;
+        else if (a != b)
+            ++result.object_mismatch;
+        else if (primitive_reference[i] != primitive_test[i])
+            ++result.primitive_mismatch;
     }
     return result;
 }

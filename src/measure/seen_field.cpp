@@ -42,7 +42,8 @@ void link_line(const Line& line, std::uint8_t bit, std::vector<std::uint8_t>& li
 }  // namespace
 
 bool SeenField::sees(std::size_t i) const {
-    return (*object)[i] != kNone && std::isfinite((*x)[i]) && std::isfinite((*y)[i]) && std::isfinite((*z)[i]);
+    return (*object)[i] != kNone && std::isfinite((*x)[i]) && std::isfinite((*y)[i]) &&
+           std::isfinite((*z)[i]);
 }
 
 std::optional<SeenField> make_seen_field(const Image& image, const std::string& layer) {
@@ -62,7 +63,8 @@ std::optional<SeenField> make_seen_field(const Image& image, const std::string& 
 }
 
 void link_neighbours(SeenField& field) {
-    const std::size_t columns = static_cast<std::size_t>(field.width), rows = static_cast<std::size_t>(field.height);
+    const std::size_t columns = static_cast<std::size_t>(field.width),
+                      rows = static_cast<std::size_t>(field.height);
     std::vector<std::uint8_t> links(columns * rows, 0);
     parallel_for(rows, 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t row = first; row < last; ++row)

@@ -1,4 +1,5 @@
-// What an image sees through its optics as a field on the screen: a world point per pixel, in connected pieces.
+// What an image sees through its optics as a field on the screen: a world point per pixel, in connected
+// pieces.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +19,10 @@ struct Piece {
     std::optional<Id> primitive;
 };
 
-/// Views into an image's channels (the image must outlive it) and which neighbours belong to one piece of surface.
+/// Views into an image's channels (the image must outlive it) and which neighbours belong to one piece of
+/// surface.
 struct SeenField {
-    int width = 0, height = 0;  // the data window
+    int width = 0, height = 0;                                         // the data window
     const std::vector<float>*x = nullptr, *y = nullptr, *z = nullptr;  // seen points, world frame
     const std::vector<Id>* object = nullptr;
     const std::vector<Id>* optic = nullptr;      // null: the image does not say which optic a pixel shows
@@ -29,9 +31,12 @@ struct SeenField {
 
     static constexpr std::uint8_t kRight = 1, kDown = 2;
 
-    bool contains(int column, int row) const { return column >= 0 && row >= 0 && column < width && row < height; }
+    bool contains(int column, int row) const {
+        return column >= 0 && row >= 0 && column < width && row < height;
+    }
     std::size_t index(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(column);
     }
     Vec3 point(std::size_t i) const { return {(*x)[i], (*y)[i], (*z)[i]}; }
     Id optic_of(std::size_t i) const { return optic ? (*optic)[i] : 0; }
@@ -50,14 +55,14 @@ struct SeenField {
 /// `layer`.X, Y, Z.
 std::optional<SeenField> make_seen_field(const Image& image, const std::string& layer);
 
-/// Fills `links`: two neighbours are linked where they see the same object in the same optic, and the step between
-/// their points is no jump: not more than kJump times the longer of the steps before and after it on its line (where
-/// there is one, and it is not zero).
+/// Fills `links`: two neighbours are linked where they see the same object in the same optic, and the step
+/// between their points is no jump: not more than kJump times the longer of the steps before and after it on
+/// its line (where there is one, and it is not zero).
 void link_neighbours(SeenField& field);
 
-/// Along a smooth field steps change slowly; even next to a horizon, where points recede like 1 / distance, the first
-/// two differ by less than 8 for three pixels in four. A longer step means that two pieces of the object meet by
-/// occlusion.
+/// Along a smooth field steps change slowly; even next to a horizon, where points recede like 1 / distance,
+/// the first two differ by less than 8 for three pixels in four. A longer step means that two pieces of the
+/// object meet by occlusion.
 inline constexpr double kJump = 8;
 
 }  // namespace trilens

@@ -50,7 +50,8 @@ struct Filter {
 
 double similarity(const Moments& sum) {
     const double ma = sum[1] / sum[0], mb = sum[2] / sum[0];
-    const double aa = sum[3] / sum[0] - ma * ma, bb = sum[4] / sum[0] - mb * mb, ab = sum[5] / sum[0] - ma * mb;
+    const double aa = sum[3] / sum[0] - ma * ma, bb = sum[4] / sum[0] - mb * mb,
+                 ab = sum[5] / sum[0] - ma * mb;
     return (2 * ma * mb + kC1) * (2 * ab + kC2) / ((ma * ma + mb * mb + kC1) * (aa + bb + kC2));
 }
 
@@ -70,11 +71,13 @@ void measure_rows(const Filter& filter, std::span<const std::uint8_t> counted, i
         for (; made <= bottom; ++made) filter.filter_row(made, kept[static_cast<std::size_t>(made % kKept)]);
         for (int x = 0; x < filter.a.width; ++x) {
             const std::size_t i = filter.index(x, y);
-            if (!counted[i] || !std::isfinite(filter.a.values[i]) || !std::isfinite(filter.b.values[i])) continue;
+            if (!counted[i] || !std::isfinite(filter.a.values[i]) || !std::isfinite(filter.b.values[i]))
+                continue;
             Moments total{};
             for (int row = top; row <= bottom; ++row) {
                 const double weight = filter.weights[static_cast<std::size_t>(row - y + kReach)];
-                const Moments& part = kept[static_cast<std::size_t>(row % kKept)][static_cast<std::size_t>(x)];
+                const Moments& part =
+                    kept[static_cast<std::size_t>(row % kKept)][static_cast<std::size_t>(x)];
                 for (std::size_t m = 0; m < 6; ++m) total[m] += weight * part[m];
             }
             sums[static_cast<std::size_t>(y)].sum += similarity(total);
@@ -85,7 +88,8 @@ void measure_rows(const Filter& filter, std::span<const std::uint8_t> counted, i
 
 }  // namespace
 
-double structural_similarity(const GreyPicture& a, const GreyPicture& b, std::span<const std::uint8_t> counted) {
+double structural_similarity(const GreyPicture& a, const GreyPicture& b,
+                             std::span<const std::uint8_t> counted) {
     const std::size_t pixels = static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height);
     TRILENS_CHECK(a.width == b.width && a.height == b.height, "pictures of one size");
     TRILENS_CHECK(a.values.size() == pixels && b.values.size() == pixels && counted.size() == pixels,

@@ -5,8 +5,8 @@
 
 namespace trilens {
 
-/// All zero where there are no numbers. A percentile p is the smallest number that at least p % of all do not exceed
-/// (nearest rank), so it is always one of them.
+/// All zero where there are no numbers. A percentile p is the smallest number that at least p % of all do not
+/// exceed (nearest rank), so it is always one of them.
 struct Summary {
     double mean = 0, p50 = 0, p95 = 0, p99 = 0, max = 0;
 };

@@ -1,4 +1,5 @@
-// Images of known fields: what is seen is a formula of the screen position, so displacements are known exactly.
+// Images of known fields: what is seen is a formula of the screen position, so displacements are known
+// exactly.
 #pragma once
 
 #include <cmath>
@@ -44,8 +45,9 @@ inline trilens::Image image_of(int width, int height, const Field& field) {
     return image;
 }
 
-/// A mirror sphere of radius 1 at the origin, seen from (0, 0, 3.2) with a film of `size` pixels that just holds it, in
-/// a box room of half side 4: object 7, walls as primitives 0..5 (or one primitive). Nothing beside the sphere.
+/// A mirror sphere of radius 1 at the origin, seen from (0, 0, 3.2) with a film of `size` pixels that just
+/// holds it, in a box room of half side 4: object 7, walls as primitives 0..5 (or one primitive). Nothing
+/// beside the sphere.
 inline Seen mirror_sphere(double x, double y, double size, bool walls_are_primitives = true) {
     using trilens::Vec3;
     const Vec3 eye(0, 0, 3.2);
