@@ -8,8 +8,9 @@
 
 namespace trilens {
 
-/// The rays of a block start in the hull of the four origins at its rectangle's corners and go along the cone of the four
-/// directions there (both by convexity, where the weights are positive). All positions are from the block's centre.
+/// The rays of a block start in the hull of the four origins at its rectangle's corners and go along the cone
+/// of the four directions there (both by convexity, where the weights are positive). All positions are from
+/// the block's centre.
 class Beam {
   public:
     explicit Beam(const BlockRays& block);
@@ -28,14 +29,14 @@ class Beam {
     void add_plane(const Vec3& normal);
     void add_axis();
 
-    std::array<Vec3, 4> origin_{}, direction_{};  // around the rectangle
+    std::array<Vec3, 4> origin_{}, direction_{}, unit_direction_{};  // around the rectangle
     double origin_size_ = 0;
     std::array<Plane, 17> plane_{};
     std::size_t planes_ = 0;
     Vec3 axis_{0};
     double least_cosine_ = 0;  // between the axis and a direction; 0: too wide for an axis to mean anything
-    double axis_start_ = 0;  // the largest axis . origin
-    double axis_speed_ = 0;  // the largest axis . direction; 0: `nearest` knows nothing
+    double axis_start_ = 0;    // the largest axis . origin
+    double axis_speed_ = 0;    // the largest axis . direction; 0: `nearest` knows nothing
 };
 
 }  // namespace trilens

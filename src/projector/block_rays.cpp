@@ -28,7 +28,8 @@ double sum_of_sizes(const std::array<Vec3, 3>& v) {
 }
 
 /// The facet's unnormalised weights e as 1, u and v parts, scaled so that they sum to 1 or -1 at `reference`.
-std::array<Vec3, 3> local_weights(const FacetWeights& weights, const Rectangle& rectangle, const Vec3& reference) {
+std::array<Vec3, 3> local_weights(const FacetWeights& weights, const Rectangle& rectangle,
+                                  const Vec3& reference) {
     const double sum = std::fabs(reference.x + reference.y + reference.z);
     const double scale = sum > 0 ? 1 / sum : 1;
     return {scale * weights.unnormalised(rectangle.centre.x, rectangle.centre.y),
@@ -43,15 +44,16 @@ BlockRays make_block_rays(const FacetOnScreen& facet, const SampleGrid& grid, st
     block.count = samples.size();
     std::array<Vec2, kBlockSamples> position{};
     for (std::size_t s = 0; s < samples.size(); ++s) position[s] = grid.position(samples[s]);
-    const Rectangle rectangle = bounding_rectangle(std::span(position).first(samples.size()), 0.125 / grid.side);
+    const Rectangle rectangle =
+        bounding_rectangle(std::span(position).first(samples.size()), 0.125 / grid.side);
     for (std::size_t s = 0; s < samples.size(); ++s) {
         const Vec2 from_centre = position[s] - rectangle.centre;
         block.u[s] = from_centre.x / rectangle.half.x;
         block.v[s] = from_centre.y / rectangle.half.y;
     }
 
-    // The local origin is where the middle sample's ray starts: a sample, since the rectangle's own centre may lie
-    // beyond the facet's horizon.
+    // The local origin is where the middle sample's ray starts: a sample, since the rectangle's own centre
+    // may lie beyond the facet's horizon.
     const Vec2 middle = position[samples.size() / 2];
     const Vec3 reference = facet.weights.unnormalised(middle.x, middle.y);
     const double sum = reference.x + reference.y + reference.z;

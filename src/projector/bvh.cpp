@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 
 namespace trilens {
 namespace {
@@ -18,7 +19,9 @@ double half_area(const Box& box) {
 }
 
 /// Twice the centre: only comparisons are made with it.
-Vec3 centre(const Box& box) { return box.lo + box.hi; }
+Vec3 centre(const Box& box) {
+    return box.lo + box.hi;
+}
 
 struct Cut {
     double cost = std::numeric_limits<double>::infinity();
@@ -35,7 +38,9 @@ struct Binning {
         scale = extent > 0 ? static_cast<double>(kBins) / extent : 0;
     }
     bool usable() const { return scale > 0 && scale < std::numeric_limits<double>::infinity(); }
-    std::size_t bin(double at) const { return std::min(kBins - 1, static_cast<std::size_t>((at - low) * scale)); }
+    std::size_t bin(double at) const {
+        return std::min(kBins - 1, static_cast<std::size_t>((at - low) * scale));
+    }
 };
 
 struct Builder {

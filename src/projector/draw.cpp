@@ -1,6 +1,7 @@
 // The exact engine: for each block of a facet's samples, the scene's tree is walked with the block's beam.
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "base/check.h"
@@ -106,7 +107,8 @@ Hit BlockDrawing::hit(std::size_t s) const {
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
           std::span<Hit> hits, const DrawOptions& options) {
     TRILENS_CHECK(hits.size() == grid.size(), "one hit per sample of the grid");
-    TRILENS_CHECK(owned.first.size() == mesh.facets.size() + 1, "the samples must be grouped by the mesh's facets");
+    TRILENS_CHECK(owned.first.size() == mesh.facets.size() + 1,
+                  "the samples must be grouped by the mesh's facets");
     const std::vector<Strip> strips = make_strips(owned, grid);
     parallel_for(strips.size(), 1, [&](std::size_t first, std::size_t last) {
         std::vector<Waiting> stack;

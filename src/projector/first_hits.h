@@ -1,4 +1,5 @@
-// The nearest triangle at each sample of a block so far, with ties in depth resolved whatever the order of arrival.
+// The nearest triangle at each sample of a block so far, with ties in depth resolved whatever the order of
+// arrival.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +17,9 @@ struct LineHit {
     Vec2 barycentric{0};  // weights of the second and third sorted corner
 };
 
-/// At each sample: among the triangles whose t is within kDepthTie of the smallest, the one with the smallest rank.
-/// A rival may leave that band after it has driven out another that stays; `order_mattered` then asks for a
-/// second pass over the same triangles, which starts with the smallest t known and so is exact.
+/// At each sample: among the triangles whose t is within kDepthTie of the smallest, the one with the smallest
+/// rank. A rival may leave that band after it has driven out another that stays; `order_mattered` then asks
+/// for a second pass over the same triangles, which starts with the smallest t known and so is exact.
 class FirstHits {
   public:
     explicit FirstHits(std::size_t count) : count_(count), unseen_(count) {
@@ -33,8 +34,9 @@ class FirstHits {
     double farthest() {
         if (unseen_ > 0) return kFar;
         if (stale_) {
-            farthest_ = *std::max_element(nearest_.begin(), nearest_.begin() + static_cast<std::ptrdiff_t>(count_)) *
-                        (1 + kDepthTie);
+            farthest_ =
+                *std::max_element(nearest_.begin(), nearest_.begin() + static_cast<std::ptrdiff_t>(count_)) *
+                (1 + kDepthTie);
             stale_ = false;
         }
         return farthest_;

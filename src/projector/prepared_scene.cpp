@@ -17,7 +17,8 @@ std::vector<Box> triangle_boxes(const TriangleScene& scene) {
         for (const Id corner : scene.triangles[i]) {
             TRILENS_CHECK(corner < scene.points.size(), "a triangle's corner must be a point of the scene");
             const Vec3& p = scene.points[corner];
-            TRILENS_CHECK(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "points must be finite");
+            TRILENS_CHECK(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z),
+                          "points must be finite");
             boxes[i].include(p);
         }
     }

@@ -1,6 +1,7 @@
 // Gives each sample to the facet that covers it, by exact signs of homogeneous edge functions.
 // Based on: Olano and Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, 1997.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -64,8 +65,8 @@ std::vector<ScreenFacet> facets_on_screen(const RayMesh& mesh, const SampleGrid&
             facet.corner[k] = mesh.screen[mesh.facets[f][k]];
             all_in_front = all_in_front && facet.corner[k].z > 0;
         }
-        // Where a corner lies behind the camera, the corners' determinant tells front from behind: it is the sum of
-        // the edge functions times the corners' depths.
+        // Where a corner lies behind the camera, the corners' determinant tells front from behind: it is the
+        // sum of the edge functions times the corners' depths.
         if (!all_in_front) {
             const double determinant = triple(facet.corner[0], facet.corner[1], facet.corner[2]);
             facet.orientation = determinant > 0 ? 1 : -1;
@@ -77,20 +78,22 @@ std::vector<ScreenFacet> facets_on_screen(const RayMesh& mesh, const SampleGrid&
 }
 
 std::size_t sample_at(const SampleGrid& grid, std::size_t column, std::size_t row) {
-    const std::size_t side = static_cast<std::size_t>(grid.side), width = static_cast<std::size_t>(grid.width());
+    const std::size_t side = static_cast<std::size_t>(grid.side),
+                      width = static_cast<std::size_t>(grid.width());
     const std::size_t pixel = row / side * width + column / side;
     return pixel * side * side + row % side * side + column % side;
 }
 
 /// Rasterises rows of samples; facets ascend, so the first to claim a sample has the smallest index.
-void fill_rows(const std::vector<ScreenFacet>& facets, const SampleGrid& grid, std::vector<Id>& owner, std::size_t first,
-               std::size_t last) {
+void fill_rows(const std::vector<ScreenFacet>& facets, const SampleGrid& grid, std::vector<Id>& owner,
+               std::size_t first, std::size_t last) {
     for (const ScreenFacet& facet : facets) {
         const std::size_t end = std::min(last, facet.window.y1);
         for (std::size_t row = std::max(first, facet.window.y0); row < end; ++row) {
             for (std::size_t column = facet.window.x0; column < facet.window.x1; ++column) {
                 const std::size_t sample = sample_at(grid, column, row);
-                if (owner[sample] == kNone && covers(facet, grid.position(sample))) owner[sample] = facet.facet;
+                if (owner[sample] == kNone && covers(facet, grid.position(sample)))
+                    owner[sample] = facet.facet;
             }
         }
     }

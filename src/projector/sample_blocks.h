@@ -23,7 +23,8 @@ struct Strip {
 /// that is more.
 std::vector<Strip> make_strips(const FacetSamples& owned, const SampleGrid& grid);
 
-/// Calls body once for each block of a strip's samples (at most kBlockSamples, neighbours on the film).
+/// Calls body once for each block of a strip's samples (at most kBlockSamples, neighbours on the film). A
+/// strip has at least one sample.
 void for_each_block(std::span<const Id> strip, const SampleGrid& grid,
                     const std::function<void(std::span<const Id> block)>& body);
 

@@ -1,4 +1,5 @@
-// Evaluates a triangle's three edge conics over a block; where rounding could matter, decides the sample exactly.
+// Evaluates a triangle's three edge conics over a block; where rounding could matter, decides the sample
+// exactly.
 #include "projector/triangle_in_block.h"
 
 #include <algorithm>
@@ -12,10 +13,13 @@ namespace trilens {
 namespace {
 
 // An edge conic further from zero than this share of its terms has the sign of the exact decision. Counting
-// roundings: 20 in the conic, 24 in the corners' positions on the ray's screen; each half a unit in the last place.
+// roundings: 20 in the conic, 24 in the corners' positions on the ray's screen; each half a unit in the last
+// place.
 constexpr double kDoubt = 64 * std::numeric_limits<double>::epsilon();
 
-double size_of(const Vec3& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
+double size_of(const Vec3& v) {
+    return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
+}
 
 /// Below this an edge conic's sign is in doubt. With p = weight corner - origin', the conic is
 /// direction' . (p_a x p_b) / weight.
@@ -43,10 +47,12 @@ struct PlaneDepth {
     }
 };
 
-/// The same question answered for one ray with exact signs: the corners are projected along the ray on the plane of two
-/// axes, where the ray is the origin. Every triangle with a corner gets the same projection of it, so the rounded
-/// picture is still a mesh without gaps (Woop, Benthin, Wald, Watertight Ray/Triangle Intersection, 2013).
-std::optional<LineHit> decide_exactly(const BlockRays& block, const std::array<Vec3, 3>& corner, std::size_t s) {
+/// The same question answered for one ray with exact signs: the corners are projected along the ray on the
+/// plane of two axes, where the ray is the origin. Every triangle with a corner gets the same projection of
+/// it, so the rounded picture is still a mesh without gaps (Woop, Benthin, Wald, Watertight Ray/Triangle
+/// Intersection, 2013).
+std::optional<LineHit> decide_exactly(const BlockRays& block, const std::array<Vec3, 3>& corner,
+                                      std::size_t s) {
     const double u = block.u[s], v = block.v[s];
     const Vec3 origin = block.rays.origin_at(u, v), direction = block.rays.direction_at(u, v);
     const double weight = block.rays.weight_at(u, v);
@@ -63,7 +69,8 @@ std::optional<LineHit> decide_exactly(const BlockRays& block, const std::array<V
         t[static_cast<int>(k)] = p[z] / direction[z];
     }
     const int side = side_of_edge(flat[0], flat[1]);
-    if (side == 0 || side_of_edge(flat[1], flat[2]) != side || side_of_edge(flat[2], flat[0]) != side) return std::nullopt;
+    if (side == 0 || side_of_edge(flat[1], flat[2]) != side || side_of_edge(flat[2], flat[0]) != side)
+        return std::nullopt;
 
     // Barycentrics and depth as convex combinations: never outside the triangle, however thin it is.
     const auto area = [&](std::size_t a, std::size_t b) {
@@ -89,7 +96,8 @@ bool may_be_seen(const std::array<EdgeConic, 3>& edge, double doubt) {
 
 void draw_triangle(const BlockRays& block, const LocalTriangle& triangle, FirstHits& hits) {
     const std::array<Vec3, 3>& p = triangle.corner;
-    const std::array<EdgeConic, 3> edge{edge_conic(block.line, p[1], p[2]), edge_conic(block.line, p[2], p[0]),
+    const std::array<EdgeConic, 3> edge{edge_conic(block.line, p[1], p[2]),
+                                        edge_conic(block.line, p[2], p[0]),
                                         edge_conic(block.line, p[0], p[1])};
     const double doubt = doubt_of_edges(block, p);
     if (!may_be_seen(edge, doubt)) return;

@@ -15,8 +15,8 @@ struct LocalTriangle {
     Id rank = 0;
 };
 
-/// Offers the triangle to every sample whose ray's line meets it. Coverage is that of the corners as they round on the
-/// ray's own screen: exact signs, so that triangles around an edge or a corner leave no gap.
+/// Offers the triangle to every sample whose ray's line meets it. Coverage is that of the corners as they
+/// round on the ray's own screen: exact signs, so that triangles around an edge or a corner leave no gap.
 void draw_triangle(const BlockRays& block, const LocalTriangle& triangle, FirstHits& hits);
 
 }  // namespace trilens

@@ -1,5 +1,5 @@
-// A scene edge, seen through rays that vary linearly over a plane of parameters, images as a conic (mathematics,
-// section 2).
+// A scene edge, seen through rays that vary linearly over a plane of parameters, images as a conic
+// (mathematics, section 2).
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace trilens {
 
 /// Rays over a plane of parameters (u, v), unnormalised: with W = weight[0] + u weight[1] + v weight[2], and
-/// likewise origin' and direction', the ray has origin origin' / W and direction direction' / W. A facet is such a
-/// family over its screen (W varies: perspective) and over its weights (W = 1).
+/// likewise origin' and direction', the ray has origin origin' / W and direction direction' / W. A facet is
+/// such a family over its screen (W varies: perspective) and over its weights (W = 1).
 struct AffineRays {
     std::array<Vec3, 3> origin{}, direction{};
     std::array<double, 3> weight{};
@@ -22,8 +22,8 @@ struct AffineRays {
     double weight_at(double u, double v) const { return weight[0] + u * weight[1] + v * weight[2]; }
 };
 
-/// The Pluecker coordinates of the rays' lines, times W^2: direction W direction', moment origin' x direction'.
-/// Coefficients of 1, u, v, u^2, u v, v^2.
+/// The Pluecker coordinates of the rays' lines, times W^2: direction W direction', moment origin' x
+/// direction'. Coefficients of 1, u, v, u^2, u v, v^2.
 struct LineQuadratic {
     std::array<Vec3, 6> direction{}, moment{};
 };
@@ -40,10 +40,10 @@ struct EdgeConic {
     }
 };
 
-/// The side of the edge a -> b: W^2 direction . ((a - origin) x (b - origin)). Antisymmetric in a and b; the three
-/// conics of a triangle's edges (01, 12, 20) have one sign where the ray's line meets the triangle, their sum
-/// is W^2 n . direction with n = (p1 - p0) x (p2 - p0), and their shares of the sum are the barycentrics of the
-/// corners opposite.
+/// The side of the edge a -> b: W^2 direction . ((a - origin) x (b - origin)). Antisymmetric in a and b; the
+/// three conics of a triangle's edges (01, 12, 20) have one sign where the ray's line meets the triangle,
+/// their sum is W^2 n . direction with n = (p1 - p0) x (p2 - p0), and their shares of the sum are the
+/// barycentrics of the corners opposite.
 inline EdgeConic edge_conic(const LineQuadratic& line, const Vec3& a, const Vec3& b) {
     const Vec3 l = b - a, m = cross(a, b);
     EdgeConic conic;

@@ -1,4 +1,5 @@
-// What a ray sees by the shortest road: every triangle, in long double, with nothing shared with the projector.
+// What a ray sees by the shortest road: every triangle, in long double, with nothing shared with the
+// projector.
 #pragma once
 
 #include <array>
@@ -14,13 +15,21 @@ using namespace trilens;
 using Real = long double;
 using Real3 = std::array<Real, 3>;
 
-inline Real3 minus(const Real3& a, const Real3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Real inner(const Real3& a, const Real3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Real3 minus(const Real3& a, const Real3& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Real inner(const Real3& a, const Real3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 inline Real3 outer(const Real3& a, const Real3& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-inline Real size(const Real3& a) { return std::sqrt(inner(a, a)); }
-inline Real3 real(const Vec3& a) { return {a.x, a.y, a.z}; }
+inline Real size(const Real3& a) {
+    return std::sqrt(inner(a, a));
+}
+inline Real3 real(const Vec3& a) {
+    return {a.x, a.y, a.z};
+}
 
 struct RealRay {
     Real3 origin{}, direction{};

@@ -19,7 +19,8 @@ bool rounding_explains(const std::vector<PlaneHit>& hits, std::size_t seen, std:
     if (truth != kNone && hits[truth].marginal()) return true;
     if (seen == kNone || truth == kNone) return false;
     const PlaneHit &s = hits[seen], &t = hits[truth];
-    return s.inside() && std::fabs(s.t - t.t) <= s.t_error + t.t_error + 2 * static_cast<Real>(kDepthTie) * t.t;
+    return s.inside() &&
+           std::fabs(s.t - t.t) <= s.t_error + t.t_error + 2 * static_cast<Real>(kDepthTie) * t.t;
 }
 
 void compare_sample(const TriangleScene& scene, const RealRay& ray, const Hit& hit, Tally& tally) {
@@ -42,8 +43,8 @@ void compare_sample(const TriangleScene& scene, const RealRay& ray, const Hit& h
     if (!good) ++tally.inaccurate;
 }
 
-void compare_case(const RayMesh& mesh, const TriangleScene& scene, const SampleGrid& grid, const FacetSamples& owned,
-                  Tally& tally) {
+void compare_case(const RayMesh& mesh, const TriangleScene& scene, const SampleGrid& grid,
+                  const FacetSamples& owned, Tally& tally) {
     std::vector<Hit> hits(grid.size());
     draw(PreparedScene(scene), mesh, owned, grid, hits);
     for (const Id sample : owned.of(0)) {

@@ -1,5 +1,8 @@
-// Through a pinhole the projector is the ordinary rasteriser: projected triangles, edge functions, a depth buffer.
+// Through a pinhole the projector is the ordinary rasteriser: projected triangles, edge functions, a depth
+// buffer.
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "projector/projector.h"
 #include "random_cases.h"
@@ -37,7 +40,8 @@ std::vector<Pixel> rasterized(const TriangleScene& scene, const SampleGrid& grid
         std::array<Vec3, 3> p;
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3& world = scene.points[scene.triangles[i][k]];
-            p[k] = {kFocal * world.x / world.z + kPixels / 2.0, kFocal * world.y / world.z + kPixels / 2.0, 1 / world.z};
+            p[k] = {kFocal * world.x / world.z + kPixels / 2.0, kFocal * world.y / world.z + kPixels / 2.0,
+                    1 / world.z};
         }
         const auto edge = [](const Vec3& a, const Vec3& b, const Vec2& x) {
             return (b.x - a.x) * (x.y - a.y) - (b.y - a.y) * (x.x - a.x);
@@ -87,8 +91,10 @@ TEST_CASE("through a pinhole, draw is textbook rasterisation with a depth buffer
             }
             seen += hits[s].seen();
             // The rays' directions have z = 1, so t is the depth.
-            if (hits[s].triangle != expected[s].triangle) ++wrong;
-            else if (hits[s].seen() && std::fabs(hits[s].t - expected[s].depth) > 1e-9 * hits[s].t) ++wrong;
+            if (hits[s].triangle != expected[s].triangle)
+                ++wrong;
+            else if (hits[s].seen() && std::fabs(hits[s].t - expected[s].depth) > 1e-9 * hits[s].t)
+                ++wrong;
         }
     }
     CHECK(seen > 50000);

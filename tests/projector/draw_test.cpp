@@ -13,7 +13,8 @@ using namespace trilens_test;
 
 namespace {
 
-std::vector<Hit> drawn(const TriangleScene& scene, const RayMesh& mesh, const SampleGrid& grid, DrawOptions options = {}) {
+std::vector<Hit> drawn(const TriangleScene& scene, const RayMesh& mesh, const SampleGrid& grid,
+                       DrawOptions options = {}) {
     std::vector<Hit> hits(grid.size());
     draw(PreparedScene(scene), mesh, rasterize_facets(mesh, grid), grid, hits, options);
     return hits;
@@ -30,7 +31,8 @@ RayMesh curved_mesh(const SampleGrid& grid, int cells, double bulge) {
         for (int i = 0; i <= cells; ++i) {
             const double x = 2.0 * i / cells - 1, y = 2.0 * j / cells - 1;
             mesh.rays.push_back({Vec3(x, y, bulge * (x * x + y * y)), Vec3(bulge * x, bulge * y, 1)});
-            mesh.screen.push_back({grid.x0 + (x + 1) / 2 * grid.width(), grid.y0 + (y + 1) / 2 * grid.height(), 1});
+            mesh.screen.push_back(
+                {grid.x0 + (x + 1) / 2 * grid.width(), grid.y0 + (y + 1) / 2 * grid.height(), 1});
         }
     }
     const Id row = static_cast<Id>(cells + 1);
@@ -74,7 +76,8 @@ TEST_CASE("the order and winding of the scene's triangles do not matter, coincid
     for (int i = 0; i < 60; ++i) {
         const SampleGrid grid{0, 0, 24, 24, 1};
         const Frame frame = random_frame(random);
-        const RayMesh mesh = random_facet(random, grid, frame, static_cast<Rays>(i % 5), Screen::kPerspective);
+        const RayMesh mesh =
+            random_facet(random, grid, frame, static_cast<Rays>(i % 5), Screen::kPerspective);
         TriangleScene scene = random_triangles(random, frame, 40);
         for (std::size_t k = 0; k < 20; ++k) {
             const IdTriple t = scene.triangles[k];
@@ -85,7 +88,8 @@ TEST_CASE("the order and winding of the scene's triangles do not matter, coincid
         const std::vector<Hit> a = drawn(scene, mesh, grid), b = drawn(other, mesh, grid);
         for (std::size_t s = 0; s < grid.size(); ++s) {
             const auto id = [](const TriangleScene& in, const Hit& hit) {
-                return hit.seen() ? std::pair(in.object[hit.triangle], in.primitive[hit.triangle]) : std::pair(kNone, kNone);
+                return hit.seen() ? std::pair(in.object[hit.triangle], in.primitive[hit.triangle])
+                                  : std::pair(kNone, kNone);
             };
             compared += a[s].seen();
             different += id(scene, a[s]) != id(other, b[s]) || a[s].t != b[s].t;
@@ -120,9 +124,11 @@ TEST_CASE("culling changes no bit") {
     for (int i = 0; i < 400; ++i) {
         const SampleGrid grid{0, 0, 24, 24, 1};
         const Frame frame = random_frame(random);
-        const RayMesh mesh = random_facet(random, grid, frame, static_cast<Rays>(i % 5), static_cast<Screen>(i / 5 % 4));
+        const RayMesh mesh =
+            random_facet(random, grid, frame, static_cast<Rays>(i % 5), static_cast<Screen>(i / 5 % 4));
         const TriangleScene scene = random_triangles(random, frame, 100);
-        const std::vector<Hit> culled = drawn(scene, mesh, grid), all = drawn(scene, mesh, grid, {.cull = false});
+        const std::vector<Hit> culled = drawn(scene, mesh, grid),
+                               all = drawn(scene, mesh, grid, {.cull = false});
         for (std::size_t s = 0; s < grid.size(); ++s) {
             seen += all[s].seen();
             different += !same(culled[s], all[s]);
@@ -209,19 +215,22 @@ TEST_CASE("whatever the triangles, hits are finite and inside their triangle") {
     std::size_t seen = 0;
     for (int i = 0; i < 300; ++i) {
         const Frame frame = random_frame(random);
-        const RayMesh mesh = random_facet(random, grid, frame, static_cast<Rays>(i % 5), static_cast<Screen>(i / 5 % 4));
+        const RayMesh mesh =
+            random_facet(random, grid, frame, static_cast<Rays>(i % 5), static_cast<Screen>(i / 5 % 4));
         TriangleScene scene;
         for (int k = 0; k < 30; ++k) {
             // Slivers, needles and specks, some through the rays' origins.
             const Vec3 a = random.in_cube(3), b = a + random.in_cube(random.log_uniform(1e-9, 10));
-            const Vec3 c = a + random.uniform(-1, 2) * (b - a) + random.in_cube(random.log_uniform(1e-16, 10));
+            const Vec3 c =
+                a + random.uniform(-1, 2) * (b - a) + random.in_cube(random.log_uniform(1e-16, 10));
             add_triangle(scene, frame(a), frame(b), frame(k % 5 == 0 ? a : c));
         }
         for (const Hit& hit : drawn(scene, mesh, grid)) {
             if (!hit.seen()) continue;
             ++seen;
             const Vec2 b = hit.barycentric;
-            const bool good = std::isfinite(hit.t) && hit.t >= 0 && b.x >= 0 && b.y >= 0 && b.x + b.y <= 1 + 1e-15;
+            const bool good =
+                std::isfinite(hit.t) && hit.t >= 0 && b.x >= 0 && b.y >= 0 && b.x + b.y <= 1 + 1e-15;
             if (!good) FAIL("t " << hit.t << " b " << b.x << " " << b.y);
         }
     }

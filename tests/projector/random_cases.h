@@ -66,7 +66,8 @@ inline std::vector<Vec3> random_screen(Random& random, const SampleGrid& grid, S
 }
 
 /// One facet near the frame's origin whose rays go roughly along +z, except the wild.
-inline RayMesh random_facet(Random& random, const SampleGrid& grid, const Frame& frame, Rays rays, Screen screen) {
+inline RayMesh random_facet(Random& random, const SampleGrid& grid, const Frame& frame, Rays rays,
+                            Screen screen) {
     RayMesh mesh;
     mesh.screen = random_screen(random, grid, screen);
     mesh.facets = {{0, 1, 2}};

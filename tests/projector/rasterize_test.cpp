@@ -1,4 +1,5 @@
 // Facets that tile the film own every sample once.
+#include <algorithm>
 #include <array>
 
 #include "projector/projector.h"
@@ -34,8 +35,8 @@ std::size_t not_once(const std::vector<int>& counts) {
     return wrong;
 }
 
-/// Tiles the window with cells x cells quads, corners jittered (or snapped to samples), diagonals, windings and starts at random.
-/// Every facet has corners of its own.
+/// Tiles the window with cells x cells quads, corners jittered (or snapped to samples), diagonals, windings
+/// and starts at random. Every facet has corners of its own.
 RayMesh random_tiling(Random& random, const SampleGrid& grid, int cells, bool snapped) {
     const auto row = static_cast<std::size_t>(cells + 1);
     std::vector<Vec3> point;
@@ -62,8 +63,10 @@ RayMesh random_tiling(Random& random, const SampleGrid& grid, int cells, bool sn
     for (std::size_t j = 0; j + 1 < row; ++j) {
         for (std::size_t i = 0; i + 1 < row; ++i) {
             const std::size_t a = j * row + i, b = a + 1, c = a + row, d = c + 1;
-            if (random.below(2) == 0) add({a, b, c}), add({b, d, c});
-            else add({a, b, d}), add({a, d, c});
+            if (random.below(2) == 0)
+                add({a, b, c}), add({b, d, c});
+            else
+                add({a, b, d}), add({a, d, c});
         }
     }
     return screen_mesh(screen, facets);
@@ -85,7 +88,9 @@ TEST_CASE("facets that tile the film own every sample exactly once") {
     CHECK(unowned == 0);
 }
 
-TEST_CASE("around a camera inside a closed box, walls behind it and through it included, every sample has one facet") {
+TEST_CASE(
+    "around a camera inside a closed box, walls behind it and through it included, every sample has one "
+    "facet") {
     Random random(13);
     const SampleGrid grid{0, 0, 24, 24, 1};
     constexpr std::array<std::array<int, 4>, 6> kFaces{
@@ -94,7 +99,8 @@ TEST_CASE("around a camera inside a closed box, walls behind it and through it i
     for (int i = 0; i < 200; ++i) {
         const double scale = random.log_uniform(1e-4, 1e4);
         const Vec3 inside = random.in_cube(0.9);
-        const Quat turn = glm::normalize(Quat(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), 0.1));
+        const Quat turn =
+            glm::normalize(Quat(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), 0.1));
         std::vector<Vec3> screen;
         for (int k = 0; k < 8; ++k) {
             const Vec3 p = scale * (turn * (Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1) - inside));
@@ -102,7 +108,8 @@ TEST_CASE("around a camera inside a closed box, walls behind it and through it i
         }
         std::vector<IdTriple> facets;
         for (const auto& f : kFaces) {
-            const std::array<Id, 4> c{static_cast<Id>(f[0]), static_cast<Id>(f[1]), static_cast<Id>(f[2]), static_cast<Id>(f[3])};
+            const std::array<Id, 4> c{static_cast<Id>(f[0]), static_cast<Id>(f[1]), static_cast<Id>(f[2]),
+                                      static_cast<Id>(f[3])};
             facets.push_back({c[0], c[1], c[2]});
             facets.push_back({c[0], c[2], c[3]});
         }
@@ -112,11 +119,13 @@ TEST_CASE("around a camera inside a closed box, walls behind it and through it i
 }
 
 TEST_CASE("samples on an edge or a corner go to the facet right of it or below it") {
-    // The diagonal and the outline of a square from the centre of pixel 2 to that of pixel 5 run through samples.
+    // The diagonal and the outline of a square from the centre of pixel 2 to that of pixel 5 run through
+    // samples.
     const SampleGrid grid{0, 0, 8, 8, 1};
     const std::vector<Vec3> screen{{2.5, 2.5, 1}, {5.5, 2.5, 1}, {5.5, 5.5, 1}, {2.5, 5.5, 1}};
     const FacetSamples owned = rasterize_facets(screen_mesh(screen, {{0, 1, 2}, {0, 2, 3}}), grid);
-    CHECK(owned.sample.size() == 9);  // the left and top outline belong to the square, the right and bottom do not
+    CHECK(owned.sample.size() ==
+          9);  // the left and top outline belong to the square, the right and bottom do not
     const auto owns = [&](std::size_t facet, int x, int y) {
         const auto of = owned.of(facet);
         return std::find(of.begin(), of.end(), static_cast<Id>(grid.first_sample(x, y))) != of.end();
@@ -145,9 +154,11 @@ TEST_CASE("the sign of a difference of products is exact") {
         const double near = std::floor(a * b / (a + random.below(3) - 1 + (a == 1)));
         const double c = a + random.below(3) - 1, d = i % 3 == 0 ? b : near;
         const double scale = random.log_uniform(1e-4, 1e4);
-        const long double exact = static_cast<long double>(a * scale) * b - static_cast<long double>(c * scale) * d;
+        const long double exact =
+            static_cast<long double>(a * scale) * b - static_cast<long double>(c * scale) * d;
         const int sign = exact > 0 ? 1 : exact < 0 ? -1 : 0;
-        // 53 + 27 bits need not fit long double's 64: only compare where the difference is clear of its rounding.
+        // 53 + 27 bits need not fit long double's 64: only compare where the difference is clear of its
+        // rounding.
         if (sign == 0 || std::fabs(exact) < 1e-18L * static_cast<long double>(a * scale) * b) continue;
         REQUIRE(sign_of_difference(a * scale, b, c * scale, d) == sign);
         REQUIRE(sign_of_difference(c * scale, d, a * scale, b) == -sign);

@@ -30,9 +30,11 @@ TriangleScene closed_box(const Frame& frame, const Vec3& half) {
 
 TriangleScene closed_sphere(const Frame& frame, double radius, int rings, int sectors) {
     const auto point = [&](int ring, int sector) {
-        const double polar = 3.14159265358979 * ring / rings, turn = 6.28318530717959 * (sector % sectors) / sectors;
+        const double polar = 3.14159265358979 * ring / rings,
+                     turn = 6.28318530717959 * (sector % sectors) / sectors;
         if (ring == 0 || ring == rings) return frame(Vec3(0, 0, ring == 0 ? radius : -radius));
-        return frame(radius * Vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)));
+        return frame(radius * Vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn),
+                                   std::cos(polar)));
     };
     TriangleScene scene;
     for (int r = 0; r < rings; ++r) {
@@ -45,7 +47,8 @@ TriangleScene closed_sphere(const Frame& frame, double radius, int rings, int se
     return scene;
 }
 
-std::size_t missed(const PreparedScene& scene, const RayMesh& mesh, const SampleGrid& grid, const FacetSamples& owned) {
+std::size_t missed(const PreparedScene& scene, const RayMesh& mesh, const SampleGrid& grid,
+                   const FacetSamples& owned) {
     std::vector<Hit> hits(grid.size());
     draw(scene, mesh, owned, grid, hits);
     std::size_t count = 0;
@@ -61,7 +64,8 @@ TEST_CASE("every ray inside a closed box or sphere sees it") {
     std::size_t samples = 0, lost = 0;
     for (int i = 0; i < 3000; ++i) {
         const Frame frame = random_frame(random);
-        const RayMesh mesh = random_facet(random, grid, frame, static_cast<Rays>(i % 5), static_cast<Screen>(i / 5 % 4));
+        const RayMesh mesh =
+            random_facet(random, grid, frame, static_cast<Rays>(i % 5), static_cast<Screen>(i / 5 % 4));
         const double radius = random.log_uniform(8, 1e3);
         const TriangleScene scene = i % 2 == 0 ? closed_box(frame, Vec3(radius, radius * 2, radius * 1.5))
                                                : closed_sphere(frame, radius, 6, 8);
@@ -74,7 +78,8 @@ TEST_CASE("every ray inside a closed box or sphere sees it") {
 }
 
 TEST_CASE("rays that run exactly along edges and through corners see the closed surface") {
-    // A pinhole at the centre of a cube, pixels on its diagonals and its axes, at scales where nothing is a power of two.
+    // A pinhole at the centre of a cube, pixels on its diagonals and its axes, at scales where nothing is a
+    // power of two.
     for (const double scale : {1.0, 0.1, 1e-4 / 3, 1e4 / 7}) {
         for (const int pixels : {2, 5, 8, 15}) {
             const Frame frame{scale, Vec3(0)};
@@ -116,7 +121,8 @@ TEST_CASE("around a corner that lies on a ray exactly one triangle is seen") {
         for (int k = 0; k < spokes; ++k) {
             const double turn = 6.28318530717959 * (k + random.uniform(-0.2, 0.2)) / spokes;
             rim.push_back(hub + frame.scale * random.uniform(0.2, 3) *
-                                    (std::cos(turn) * across + std::sin(turn) * up + random.uniform(-0.9, 0.9) * along));
+                                    (std::cos(turn) * across + std::sin(turn) * up +
+                                     random.uniform(-0.9, 0.9) * along));
         }
         int seen = 0;
         for (std::size_t k = 0; k < rim.size(); ++k) {

@@ -10,8 +10,12 @@ using namespace trilens;
 namespace {
 
 std::mt19937_64 engine(21);
-double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); }
-Vec3 random_vector(double half) { return {uniform(-half, half), uniform(-half, half), uniform(-half, half)}; }
+double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+}
+Vec3 random_vector(double half) {
+    return {uniform(-half, half), uniform(-half, half), uniform(-half, half)};
+}
 
 AffineRays random_rays() {
     AffineRays rays;
@@ -34,7 +38,8 @@ TEST_CASE("an edge conic is the signed volume between the ray and the edge, time
         const EdgeConic conic = edge_conic(line_quadratic(rays), a, b);
         const double u = uniform(-1, 1), v = uniform(-1, 1), w = rays.weight_at(u, v);
         const Vec3 pa = w * a - rays.origin_at(u, v), pb = w * b - rays.origin_at(u, v);
-        CHECK(w * conic.at(u, v) == Approx(triple(rays.direction_at(u, v), pa, pb)).margin(1e-12 * scale * scale * 100));
+        CHECK(w * conic.at(u, v) ==
+              Approx(triple(rays.direction_at(u, v), pa, pb)).margin(1e-12 * scale * scale * 100));
     }
 }
 
