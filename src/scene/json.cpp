@@ -64,10 +64,14 @@ class Builder : public nlohmann::json_sax<Json> {
         std::unordered_set<std::string> keys;
     };
 
+    /// Of the value that comes next.
     std::string place() const {
         std::string pointer;
-        for (const Level& level : levels_)
-            pointer += "/" + (level.value->is_object() ? escape_key(level.key) : std::to_string(level.value->size()));
+        for (const Level& level : levels_) {
+            const bool next_is_inside = &level != &levels_.back();  // then the entry stands in its array already
+            pointer += "/" + (level.value->is_object() ? escape_key(level.key)
+                                                       : std::to_string(level.value->size() - (next_is_inside ? 1 : 0)));
+        }
         return pointer;
     }
     Json* insert(Json&& value) {

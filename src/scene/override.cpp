@@ -51,7 +51,8 @@ Json& step(Json& value, const std::string& key, const Json* schema, const Target
         std::size_t index = value.size();
         const auto end = key.data() + key.size();
         const auto [stop, error] = std::from_chars(key.data(), end, index);
-        if (error != std::errc() || stop != end || index >= value.size())
+        const bool leading_zero = key.size() > 1 && key[0] == '0';
+        if (error != std::errc() || stop != end || leading_zero || index >= value.size())
             target.fail("no entry '" + key + "': the array has " + std::to_string(value.size()) +
                         (value.size() == 1 ? " entry" : " entries") + ", counted from 0");
         return value[index];
