@@ -30,10 +30,14 @@ double lattice_slope(const Lattice& at, std::uint64_t seed, const Vec3& offset) 
     return first * offset.z + second * offset.x;
 }
 
-/// Perlin's quintic blend: first and second derivatives vanish at 0 and 1, so the noise is twice differentiable.
-double fade(double x) { return x * x * x * (x * (x * 6 - 15) + 10); }
+/// Perlin's quintic blend: first and second derivatives vanish at 0 and 1, so the noise is twice
+/// differentiable.
+double fade(double x) {
+    return x * x * x * (x * (x * 6 - 15) + 10);
+}
 
-/// Gradient noise in about [-1, 1] (Perlin, Improving Noise, 2002), with a hash in place of the permutation table.
+/// Gradient noise in about [-1, 1] (Perlin, Improving Noise, 2002), with a hash in place of the permutation
+/// table.
 double gradient_noise(const Vec3& position, std::uint64_t seed) {
     const Vec3 cell = glm::floor(position), inside = position - cell;
     const Lattice base{static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
@@ -58,7 +62,8 @@ double gradient_noise(const Vec3& position, std::uint64_t seed) {
 Vec3 tilted(const NormalField& field, const Vec3& position, const Vec3& own) {
     const Vec3 where = position * field.scale;
     Vec3 noise;
-    for (int k = 0; k < 3; ++k) noise[k] = gradient_noise(where, mixed(field.seed) + static_cast<std::uint64_t>(k));
+    for (int k = 0; k < 3; ++k)
+        noise[k] = gradient_noise(where, mixed(field.seed) + static_cast<std::uint64_t>(k));
 
     // Only the part along the surface, so that no amplitude can turn the normal to the other side.
     const Vec3 tangential = noise - dot(noise, own) * own;
