@@ -2,10 +2,10 @@
 #include "surfaces/checked_cage.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <unordered_set>
 
 #include "base/error.h"
@@ -65,15 +65,19 @@ void check_counts(const Gate& gate) {
     gate.check_indices("faceVertexIndices", cage.face_vertex_indices, cage.points.size());
 }
 
+std::vector<int> sorted(std::vector<int> numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
+}
+
 /// The polygon without corners repeated in a row; empty where it is no simple polygon.
 std::vector<int> simple_polygon(const int* first, int count) {
     std::vector<int> polygon(first, first + count);
     polygon.erase(std::unique(polygon.begin(), polygon.end()), polygon.end());
     while (polygon.size() > 1 && polygon.front() == polygon.back()) polygon.pop_back();
 
-    std::vector<int> sorted = polygon;
-    std::sort(sorted.begin(), sorted.end());
-    const bool repeats = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+    const std::vector<int> in_order = sorted(polygon);
+    const bool repeats = std::adjacent_find(in_order.begin(), in_order.end()) != in_order.end();
     if (repeats || polygon.size() < 3) polygon.clear();
     return polygon;
 }
@@ -83,7 +87,8 @@ void add_faces(const Gate& gate, CheckedCage& checked) {
     std::vector<bool> is_hole(cage.face_vertex_counts.size(), false);
     for (int hole : cage.hole_indices) is_hole[static_cast<std::size_t>(hole)] = true;
 
-    std::size_t repaired = 0, left_out = 0;
+    std::set<std::vector<int>> triangles;
+    std::size_t repaired = 0, left_out = 0, doubled = 0;
     const int* next = cage.face_vertex_indices.data();
     for (std::size_t f = 0; f < cage.face_vertex_counts.size(); ++f) {
         const int count = cage.face_vertex_counts[f];
@@ -93,6 +98,10 @@ void add_faces(const Gate& gate, CheckedCage& checked) {
             ++left_out;
             continue;
         }
+        if (cage.scheme == SubdivisionScheme::kLoop && !triangles.insert(sorted(polygon)).second) {
+            ++doubled;
+            continue;
+        }
         if (static_cast<int>(polygon.size()) < count) ++repaired;
         if (is_hole[f]) checked.holes.push_back(checked.face_count());
         checked.vertices.insert(checked.vertices.end(), polygon.begin(), polygon.end());
@@ -100,6 +109,8 @@ void add_faces(const Gate& gate, CheckedCage& checked) {
     }
     if (repaired > 0) gate.say(std::to_string(repaired) + " faces repeat a corner; one of each is kept");
     if (left_out > 0) gate.say(std::to_string(left_out) + " faces are no simple polygons and are left out");
+    if (doubled > 0)
+        gate.say(std::to_string(doubled) + " triangles lie on others' vertices and are left out");
 }
 
 std::uint64_t edge_key(int a, int b) {

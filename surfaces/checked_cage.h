@@ -35,7 +35,8 @@ inline constexpr float kInfiniteSharpness = 10;
 
 /// The cage ready for subdivision. Throws InputError(name, field, ...) where the cage cannot be used at all.
 /// Told to `warn` and repaired: corners that a face repeats in a row (one is kept), faces that still visit a
-/// vertex twice or have fewer than three corners left (left out), creases along no edge (left out).
+/// vertex twice or have fewer than three corners left (left out), under Loop triangles on the same three
+/// vertices (the first is kept: refined, two of them share an edge twice), creases along no edge (left out).
 CheckedCage check_cage(const Cage& cage, const std::string& name, const Warn& warn);
 
 }  // namespace trilens

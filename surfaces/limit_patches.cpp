@@ -265,11 +265,15 @@ struct LimitPatches::Impl {
 
 LimitPatches::LimitPatches(const CheckedCage& cage, const std::string& name) {
     auto impl = std::make_unique<Impl>();
+    if (cage.face_count() == 0) {  // OpenSubdiv refuses these
+        impl_ = std::move(impl);
+        return;
+    }
     impl->tree.triangles = cage.scheme == SubdivisionScheme::kLoop;
 
     CheckedCage work = cage;
     RefinerPtr refiner = make_refiner(work, name);
-    if (soften_folded_darts(refiner->GetLevel(0), work)) refiner = make_refiner(work, name);
+    while (soften_folded_darts(refiner->GetLevel(0), work)) refiner = make_refiner(work, name);
 
     const int levels = levels_before_patches(refiner->GetLevel(0), work);
     if (levels > 0) {

@@ -75,7 +75,8 @@ TEST_CASE("A limit surface is what a second implementation of subdivision conver
     for (const auto& [name, cage] : small_cages()) {
         CAPTURE(name);
         const Comparison result = compare_with_reference(cage, 3);
-        CHECK(result.worst < 1e-11);
+        // "dart": OpenSubdiv cannot do it, so its crease is not quite infinitely sharp (limit_patches.cpp).
+        CHECK(result.worst < (name == "dart" ? 1e-4 : 1e-11));
         CHECK(result.compared > 4 * result.skipped);
     }
 }
@@ -83,11 +84,10 @@ TEST_CASE("A limit surface is what a second implementation of subdivision conver
 TEST_CASE("The limit surfaces of the shapes on file are what subdivision converges to", "[surfaces]") {
     TRILENS_NEEDS_DATA("cages/catmark_cube.obj");
     for (const std::string& name : cage_files()) {
-        if (name == "catmark_val2_interior") continue;  // tags edges that end at folded vertices: see below
         CAPTURE(name);
         const Comparison result = compare_with_reference(read_cage(name), name == "catmark_car" ? 1 : 2);
         CAPTURE(result.compared, result.skipped);
-        CHECK(result.worst < 1e-6);
-        CHECK(result.compared > 2 * result.skipped);
+        CHECK(result.worst < 1e-9);
+        CHECK(result.compared > result.skipped);
     }
 }

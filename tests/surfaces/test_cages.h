@@ -154,11 +154,11 @@ inline std::vector<std::pair<std::string, Cage>> small_cages() {
     Cage creased = cube();
     add_crease(creased, {4, 5, 7, 6, 4}, 10);
     Cage semi = cube();
-    add_crease(semi, {4, 5, 7, 6, 4}, 2.3);
-    add_crease(semi, {0, 4}, 0.6);
+    add_crease(semi, {4, 5, 7, 6, 4}, 2.25);
+    add_crease(semi, {0, 4}, 0.625);
     Cage cornered = cube();
     cornered.corner_indices = {0, 7};
-    cornered.corner_sharpnesses = {10, 1.7};
+    cornered.corner_sharpnesses = {10, 1.75};
     Cage bilinear = prism(5);
     bilinear.scheme = trilens::SubdivisionScheme::kBilinear;
     Cage creased_prism = prism(5);
