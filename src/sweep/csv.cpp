@@ -12,49 +12,15 @@ namespace trilens {
 namespace {
 
 // In the order of the file; those that are no metric are filled from the manifest and the plan.
-constexpr std::array kColumns = {"id",
-                                 "scene",
-                                 "camera",
-                                 "mesh",
-                                 "method",
-                                 "truth",
-                                 "n",
-                                 "facets",
-                                 "width",
-                                 "height",
-                                 "spp",
-                                 "seed",
-                                 "rgb_mae",
-                                 "rgb_rmse",
-                                 "rgb_relmse",
-                                 "rgb_psnr_db",
-                                 "rgb_ssim",
-                                 "rgb_flip",
-                                 "rgb_max",
-                                 "rgb_p95",
-                                 "rgb_p99",
-                                 "disp_mean_px",
-                                 "disp_p95_px",
-                                 "disp_max_px",
-                                 "false_hit",
-                                 "false_miss",
-                                 "nonfinite",
-                                 "failed_px",
-                                 "t_tess_s",
-                                 "t_project_s",
-                                 "t_trace_s",
-                                 "t_total_s",
-                                 "peak_rss_mb",
-                                 "threads",
-                                 "isa",
-                                 "status",
-                                 "exit_code",
-                                 "image",
-                                 "diff",
-                                 "image_fnv1a",
-                                 "coverage_mismatch",
-                                 "object_mismatch",
-                                 "primitive_mismatch"};
+// clang-format off
+constexpr std::array kColumns = {
+    "id", "scene", "camera", "mesh", "method", "truth", "n", "facets", "width", "height", "spp", "seed",
+    "rgb_mae", "rgb_rmse", "rgb_relmse", "rgb_psnr_db", "rgb_ssim", "rgb_flip", "rgb_max", "rgb_p95", "rgb_p99",
+    "disp_mean_px", "disp_p95_px", "disp_max_px", "false_hit", "false_miss", "nonfinite", "failed_px",
+    "t_tess_s", "t_project_s", "t_trace_s", "t_total_s", "peak_rss_mb", "threads", "isa",
+    "status", "exit_code", "image", "diff", "image_fnv1a",
+    "coverage_mismatch", "object_mismatch", "primitive_mismatch"};
+// clang-format on
 constexpr std::array kDisplacementColumns = {"disp_mean_px", "disp_p50_px", "disp_p95_px", "disp_p99_px",
                                              "disp_max_px",  "disp_pixels", "disp_lost"};
 
@@ -91,9 +57,7 @@ std::map<std::string, std::string> run_words(const SweepSummary& summary, const 
             {"spp", std::to_string(subject.spp)},
             {"threads", std::to_string(subject.threads)},
             {"isa", subject.isa},
-            {"status", is_done                          ? "done"
-                       : run.state == RunState::kFailed ? "failed"
-                                                        : "missing"},
+            {"status", state_name(run.state)},
             {"exit_code", run.state == RunState::kMissing ? "" : std::to_string(run.exit_code)},
             {"image", is_done ? files + "/image.exr" : ""},
             {"diff", is_done ? files + "/diff.exr" : ""},

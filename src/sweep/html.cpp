@@ -91,7 +91,7 @@ std::string report_html(const Report& report) {
     if (!report.plots.empty()) {
         body += heading("Convergence") + "<div class=\"plots\">\n";
         for (const std::string& plot : report.plots) body += plot_figure(plot);
-        body += "</div>\n";
+        body += "</div>\n" + paragraph("soft", report.plots_note);
     }
     if (!report.table_rows.empty())
         body += heading("Numbers") + html_table(report.table_columns, report.table_rows);

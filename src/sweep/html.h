@@ -34,6 +34,7 @@ struct Report {
     std::vector<Headline> headlines;
     std::vector<std::string> warnings;
     std::vector<std::string> plots;
+    std::string plots_note;
     std::vector<std::string> table_columns;
     std::vector<std::vector<std::string>> table_rows;
     std::string pictures_note;  // "differences are shown times 16"

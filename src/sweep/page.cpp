@@ -26,7 +26,7 @@ pre{background:var(--panel);border:1px solid var(--line);border-radius:8px;paddi
 figure{margin:0}.plot{border:1px solid var(--line);border-radius:10px;overflow:hidden}.plot svg{display:block;width:100%;height:auto}
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:14px}
 th,td{padding:5px 12px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
-th{color:var(--soft);font-weight:600;border-bottom-width:2px;vertical-align:bottom}th:first-child,td:first-child{text-align:left}
+th{white-space:normal;color:var(--soft);font-weight:600;border-bottom-width:2px;vertical-align:bottom}th:first-child,td:first-child{text-align:left}
 tbody tr:hover{background:var(--panel)}
 .run{border:1px solid var(--line);border-radius:10px;padding:14px 16px;margin:14px 0;break-inside:avoid}
 .pictures{display:grid;grid-template-columns:repeat(auto-fit,minmax(200px,1fr));gap:12px;margin:8px 0}

@@ -65,6 +65,11 @@ struct OpticDisplacement {
 
 enum class RunState { kMissing, kDone, kFailed };
 
+/// "done", "failed", "missing": as in runs.csv.
+inline const char* state_name(RunState state) {
+    return state == RunState::kDone ? "done" : state == RunState::kFailed ? "failed" : "missing";
+}
+
 /// A run as its folder tells it.
 struct RunRecord {
     PlannedRun plan;

@@ -19,10 +19,6 @@ constexpr const char* kManifestSchema = "trilens.sweep-manifest/1";
 constexpr const char* kRunSchema = "trilens.sweep-run/1";
 constexpr const char* kSummarySchema = "trilens.sweep-summary/1";
 
-const char* state_name(RunState state) {
-    return state == RunState::kDone ? "done" : state == RunState::kFailed ? "failed" : "missing";
-}
-
 Json json_of_metrics(const MetricValues& metrics) {
     Json json = Json::object();
     for (const auto& [name, value] : metrics) json[name] = json_of_number(value);

@@ -77,15 +77,16 @@ std::string summary_words(const SweepSummary& summary) {
 
 void fill_table(const SweepSummary& summary, Report& report) {
     const std::vector<std::string> layers = layers_of(summary);
-    report.table_columns = {"n", "facets"};
+    report.table_columns = {"n", "status", "facets"};
     for (const std::string& layer : layers)
-        for (const char* what : {" mean [px]", " 95 % [px]", " max [px]", " lost [pixels]"})
+        for (const char* what : {": mean [px]", ": 95 % [px]", ": max [px]", ": pixels lost"})
             report.table_columns.push_back(layer + what);
-    for (const char* column : {"RGB RMSE", "PSNR [dB]", "SSIM", "time [s]", "status"})
+    for (const char* column : {"RGB RMSE", "PSNR [dB]", "SSIM", "time [s]"})
         report.table_columns.push_back(column);
 
     for (const RunRecord& run : summary.runs) {
-        std::vector<std::string> row = {std::to_string(run.plan.n), count_text(run.metrics, "facets")};
+        std::vector<std::string> row = {std::to_string(run.plan.n), state_name(run.state),
+                                        count_text(run.metrics, "facets")};
         for (const std::string& layer : layers) {
             MetricValues metrics;
             for (const OpticDisplacement& one : run.displacement)
@@ -96,9 +97,6 @@ void fill_table(const SweepSummary& summary, Report& report) {
         }
         for (const char* name : {"rgb_rmse", "rgb_psnr_db", "rgb_ssim", "t_total_s"})
             row.push_back(value_text(run.metrics, name));
-        row.push_back(run.state == RunState::kDone     ? "done"
-                      : run.state == RunState::kFailed ? "failed"
-                                                       : "missing");
         report.table_rows.push_back(row);
     }
 }
@@ -227,6 +225,11 @@ void write_sweep_report(const SweepSummary& summary) {
         replace_text_file(summary.folder + "/plots/" + plot.name + ".svg", plot.svg);
         report.plots.push_back(plot.svg);
     }
+
+    report.plots_note =
+        "A straight line is the law error = constant × n^−order fitted to the points. Runs that lost more "
+        "than a "
+        "tenth of an optic's pixels take no part in its fit, nor does a plateau at the fine end.";
 
     fill_table(summary, report);
     const PictureScales scales = picture_scales(summary);

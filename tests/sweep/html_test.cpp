@@ -20,7 +20,7 @@ const std::string kEvil = "<img src=x onerror=\"alert('1')\"> & \x01\xFF";
 
 Report evil_report() {
     Report report;
-    report.title = report.summary = report.pictures_note = kEvil;
+    report.title = report.summary = report.plots_note = report.pictures_note = kEvil;
     report.headlines = {{kEvil, kEvil}};
     report.warnings = report.commands = {kEvil};
     report.plots = {log_log_plot({kEvil, kEvil, kEvil, {{1, kEvil}}, true, 640, 420},
