@@ -105,6 +105,10 @@ ImageVertex side_crossing(const FacetAndTriangle& pair, const ImageVertex& a, co
     Vec3 w = a.weights + share * (b.weights - a.weights);
     w[k] = 0;
     w[(k + 2) % 3] = 1 - w[(k + 1) % 3];
+    // What both ends are inside of, so is the point between, whatever rounding says.
+    for (const int j : {(k + 1) % 3, (k + 2) % 3}) {
+        if (a.weights[j] >= 0 && b.weights[j] >= 0) w[j] = std::max(w[j], 0.0);
+    }
     return at_weights(pair, w);
 }
 

@@ -13,15 +13,17 @@ namespace {
 // A tangent that passes the other end at less than this share of the chord is the chord itself.
 constexpr double kStraight = 1e-12;
 
-// Halving a stretch of t that often reaches neighbouring doubles; a conic needs a few arcs, and more only where rounding
-// hides it.
+// Halving a stretch of t that often reaches neighbouring doubles; a conic needs a few arcs, and more only
+// where rounding hides it.
 constexpr int kDeepest = 60;
 constexpr std::size_t kMostArcs = 200;
 
 // What rounding makes of form's products with weights.
 constexpr double kRounding = 2e-15;
 
-double size_of(const Mat3& form) { return length(form[0]) + length(form[1]) + length(form[2]); }
+double size_of(const Mat3& form) {
+    return length(form[0]) + length(form[1]) + length(form[2]);
+}
 
 double sum(const Vec3& v) {
     return v.x + v.y + v.z;
@@ -140,8 +142,15 @@ std::array<ConicArc, 2> halves(const ConicArc& arc, const Coplanarity& facet, co
 }
 
 double sagitta(const ConicArc& arc) {
+    // The shoulder's tangent is parallel to the chord, so that no point is farther from the chord's line.
+    // Beyond the chord's ends the arc reaches at most as far as this share of the way to the control point.
     const auto& [c0, c1, c2] = arc.control;
-    return length((c0 + 2.0 * c1 + c2) / (2 * (1 + sum(c1))) - 0.5 * (c0 + c2));
+    const double w = sum(c1);
+    const Vec3 chord = c2 - c0, shoulder = (c0 + 2.0 * c1 + c2) / (2 * (1 + w)) - c0, pole = c1 / w - c0;
+    const double length2 = dot(chord, chord);
+    if (length2 == 0) return length(shoulder);
+    const double beyond = std::max({0.0, -dot(pole, chord), dot(pole, chord) - length2}) / std::sqrt(length2);
+    return length(cross(chord, shoulder)) / std::sqrt(length2) + beyond * w / (1 + w);
 }
 
 }  // namespace trilens
