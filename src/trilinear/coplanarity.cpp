@@ -5,21 +5,19 @@
 #include <cmath>
 
 namespace trilens {
-namespace {
 
-Vec3 difference(const Vec3& a, const Vec3& b) {
+Vec3 corner_difference(const Vec3& a, const Vec3& b) {
     const Vec3 d = a - b;
     return length(d) <= kSameCorner * std::max(length(a), length(b)) ? Vec3(0) : d;
 }
-
-}  // namespace
 
 Coplanarity make_coplanarity(const TrilinearFacet& facet) {
     const auto& [r0, r1, r2] = facet.corner;
     Coplanarity c;
     c.origin = r0.origin, c.direction = r0.direction;
-    c.e1 = difference(r1.origin, r0.origin), c.e2 = difference(r2.origin, r0.origin);
-    c.f1 = difference(r1.direction, r0.direction), c.f2 = difference(r2.direction, r0.direction);
+    c.e1 = corner_difference(r1.origin, r0.origin), c.e2 = corner_difference(r2.origin, r0.origin);
+    c.f1 = corner_difference(r1.direction, r0.direction),
+    c.f2 = corner_difference(r2.direction, r0.direction);
 
     // (e1 + t f1) x (e2 + t f2), and what the moving base point p_0 = o_0 + t d_0 takes away.
     c.n0 = cross(c.e1, c.e2);

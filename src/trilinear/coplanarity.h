@@ -26,6 +26,9 @@ struct Coplanarity {
 /// pinhole or parallel rays that come out of a computation stay what they are.
 inline constexpr double kSameCorner = 1e-15;
 
+/// a - b, or zero where they are equal in this sense.
+Vec3 corner_difference(const Vec3& a, const Vec3& b);
+
 Coplanarity make_coplanarity(const TrilinearFacet& facet);
 
 /// The coefficients, constant first, of F(t; X); X in the world frame.

@@ -13,11 +13,11 @@ namespace {
 // the triangle in units of the longest direction.
 constexpr double kFarthestView = 1e6;
 
-// Where the rays start from one point or line, t is followed from this share of its end on.
+// Where the rays start from one point or line, t is followed from this share of that distance on.
 constexpr double kNearestView = 1e-9;
 
-// No ray with weights in [0, 1] meets the triangle beyond this t.
-double last_t(const Coplanarity& facet, const SceneTriangle& triangle) {
+// No ray with weights in [0, 1] meets the triangle after the window's end; its begin is near, but not zero.
+Window reach_of(const Coplanarity& facet, const SceneTriangle& triangle) {
     const Vec3 o[3] = {facet.origin, facet.origin + facet.e1, facet.origin + facet.e2};
     const Vec3 d[3] = {facet.direction, facet.direction + facet.f1, facet.direction + facet.f2};
     double reach = 0, longest = 0;
@@ -27,18 +27,21 @@ double last_t(const Coplanarity& facet, const SceneTriangle& triangle) {
         longest = std::max(longest, length(d[k]));
         axis += normalize_or_zero(d[k]);
     }
-    if (longest == 0) return 0;
+    if (longest == 0 || reach == 0) return {0, 0};
 
     // Along an axis that all directions share, every ray advances at least this much per t.
     axis = normalize_or_zero(axis);
     const double advance = std::min({dot(d[0], axis), dot(d[1], axis), dot(d[2], axis)});
-    return std::min(reach / std::max(advance, 0.0), kFarthestView * reach / longest) * (1 + kCollapseGap);
+    const double unit = reach / longest;
+    const double farthest =
+        advance > 0 ? std::min(reach / advance, kFarthestView * unit) : kFarthestView * unit;
+    return {kNearestView * unit, farthest * (1 + kCollapseGap)};
 }
 
 }  // namespace
 
 std::vector<Window> view_windows(const Coplanarity& facet, const SceneTriangle& triangle) {
-    const double end = last_t(facet, triangle);
+    const auto [near, end] = reach_of(facet, triangle);
     if (!(end > 0)) return {};
 
     // Where the normal vanishes, so does its component along any of its own coefficients: a quadratic. Two
@@ -52,12 +55,12 @@ std::vector<Window> view_windows(const Coplanarity& facet, const SceneTriangle& 
     for (const double t : real_roots({q[0], q[1], q[2], 0})) candidates.push_back(t);
     std::stable_sort(candidates.begin(), candidates.end());
 
-    std::vector<Window> windows{{0, end}};
+    std::vector<Window> windows{Window{0, end}};
     const auto collapsed = [&](double t) {
         const double parts = length(n0) + t * (length(n1) + t * length(n2));
         return !(length(n0 + t * (n1 + t * n2)) > kCollapsed * parts);
     };
-    if (collapsed(0)) windows[0].begin = kNearestView * end;
+    if (collapsed(0)) windows[0].begin = near;
     for (const double t : candidates) {
         if (!(t > windows.back().begin && t < end) || !collapsed(t)) continue;
         windows.back().end = std::max(windows.back().begin, t * (1 - kCollapseGap));
