@@ -45,7 +45,7 @@ bool is_srgb(const OIIO::ImageSpec& spec) {
     const auto type = spec.format.basetype;
     if (type != OIIO::TypeDesc::UINT8 && type != OIIO::TypeDesc::UINT16) return false;
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
-    for (const char* linear : {"linear", "lin_rec709", "lin_srgb", "scene_linear"})
+    for (const char* linear : {"linear", "lin_rec709", "lin_rec709_scene", "lin_srgb", "scene_linear"})
         if (OIIO::Strutil::iequals(space, linear)) return false;
     return true;
 }

@@ -36,13 +36,15 @@ struct Displacement {
 };
 
 /// For every pixel of `test` that sees, in `layer` ("reflect", "refract"), a point q of an object: the vector
-/// to the nearest place where `reference` shows q, on the same object and through the same optic. Between the
-/// reference's pixel centres positions are interpolated (cubically where 4 x 4 neighbours are smooth, on the
-/// same triangle where the images name triangles), beyond a border of what it sees extrapolated by up to one
-/// pixel. Where both images agree to the last bit the answer is exactly zero; for small displacements of
-/// smooth fields the error is O(displacement h^3), plus the rounding of float positions over their change
-/// from pixel to pixel. Nothing where the images have no such layer with X, Y, Z. Throws InputError where
-/// they cannot be compared.
+/// to the nearest place where `reference` shows q, on the same object and through the same optic (of two
+/// places within a quarter of a pixel either may be taken). Between the reference's pixel centres positions
+/// are interpolated: cubically where 4 x 4 neighbours are smooth, on q's own triangle where the images name
+/// triangles. Beyond a border of what the reference sees they are continued by up to one pixel, guided by the
+/// test where that sees on. Exactly zero where both images agree to the last bit. For small displacements of
+/// smooth fields the error is a small share of the displacement, plus the rounding of float positions over
+/// their change from pixel to pixel; where a pixel holds much of the scene (the rim of a sphere) and the
+/// displacement is not small, it may reach some pixels. Nothing where the images have no such layer with X,
+/// Y, Z. Throws InputError where they cannot be compared.
 std::optional<Displacement> measure_displacement(const Image& reference, const Image& test,
                                                  const std::string& layer,
                                                  const DisplacementOptions& options = {});
