@@ -1,3 +1,4 @@
+// The mirror law at every corner of a grid.
 #include "reflect/reflection.h"
 
 #include "base/parallel.h"
@@ -8,7 +9,9 @@ namespace {
 
 constexpr std::size_t kCornersPerTask = 4096;  // some tens of microseconds of work
 
-bool has_ray(const RayMesh& mesh, Id corner) { return mesh.rays[corner].direction != Vec3(0); }
+bool has_ray(const RayMesh& mesh, Id corner) {
+    return mesh.rays[corner].direction != Vec3(0);
+}
 
 }  // namespace
 
@@ -23,7 +26,8 @@ RayMesh make_reflection(const SurfaceGrid& grid, const LinearCamera& camera) {
             const Vec3& normal = grid.corner_normal[k];
             mesh.screen[k] = screen_from_world(camera, point);
             mesh.rays[k].origin = point;
-            if (normal != Vec3(0)) mesh.rays[k].direction = mirrored(incident_direction(camera, point), normal);
+            if (normal == Vec3(0)) continue;
+            mesh.rays[k].direction = mirrored(incident_direction(camera, point), normal);
         }
     });
 

@@ -1,3 +1,4 @@
+// Snell's law at every corner of a grid, on the side that each facet is seen from.
 #include "refract/refraction.h"
 
 #include <cmath>
@@ -15,7 +16,8 @@ constexpr std::size_t kCornersPerTask = 4096;  // some tens of microseconds of w
 /// One corner's refracted ray on one side; a zero direction says that there is none.
 Ray corner_ray(const LinearCamera& camera, const Vec3& point, const Vec3& normal_toward_eye, double eta) {
     if (normal_toward_eye == Vec3(0)) return {point, Vec3(0)};
-    const std::optional<Vec3> direction = refracted(incident_direction(camera, point), normal_toward_eye, eta);
+    const std::optional<Vec3> direction =
+        refracted(incident_direction(camera, point), normal_toward_eye, eta);
     return {point, direction.value_or(Vec3(0))};
 }
 

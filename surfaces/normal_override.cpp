@@ -1,3 +1,4 @@
+// Sphere normals and gradient noise, for grids and for exact surfaces alike.
 #include "surfaces/normal_override.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// The screen map of linear cameras, and its inverse: the rays of the film.
 #include "camera/perspective.h"
 
 #include <cmath>
@@ -17,7 +18,9 @@ constexpr double kSmallestSine = 1e-9;
     throw InputError("", place, message);
 }
 
-bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite(const Vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// The film's axes in the world: unit, at right angles; `up` here is exact, pointing to the film's top.
 struct Frame {
@@ -43,15 +46,20 @@ void require_film(int width, int height) {
 }
 
 /// The row of the screen map that is direction . (point - origin).
-Vec4 row_through(const Vec3& direction, const Vec3& origin) { return {direction, -dot(direction, origin)}; }
+Vec4 row_through(const Vec3& direction, const Vec3& origin) {
+    return {direction, -dot(direction, origin)};
+}
 
-Vec3 linear_part(const Vec4& row) { return {row.x, row.y, row.z}; }
+Vec3 linear_part(const Vec4& row) {
+    return {row.x, row.y, row.z};
+}
 
 /// The p with rows . p = values, by Cramer's rule.
 Vec3 solve_rows(const Vec3& row_x, const Vec3& row_y, const Vec3& row_z, const Vec3& values) {
     const double determinant = triple(row_x, row_y, row_z);
     TRILENS_CHECK(determinant != 0, "a linear camera's map must have full rank");
-    return (values.x * cross(row_y, row_z) + values.y * cross(row_z, row_x) + values.z * cross(row_x, row_y)) /
+    return (values.x * cross(row_y, row_z) + values.y * cross(row_z, row_x) +
+            values.z * cross(row_x, row_y)) /
            determinant;
 }
 
@@ -65,7 +73,9 @@ Ray film_ray(const LinearCamera& camera, double x, double y) {
     return {camera.eye + offset, camera.view_direction};
 }
 
-std::string entry(const char* field, std::size_t index) { return field + ("/" + std::to_string(index)); }
+std::string entry(const char* field, std::size_t index) {
+    return field + ("/" + std::to_string(index));
+}
 
 }  // namespace
 
@@ -133,13 +143,15 @@ RayMesh make_ray_mesh(const ExplicitRays& rays, int width, int height) {
         if (normalize_or_zero(rays.directions[k]) == Vec3(0)) {
             reject(entry("directions", k), "a direction must be finite and not zero");
         }
-        if (!std::isfinite(screen.x) || !std::isfinite(screen.y)) reject(entry("screen", k), "not a finite position");
+        if (!std::isfinite(screen.x) || !std::isfinite(screen.y))
+            reject(entry("screen", k), "not a finite position");
         mesh.rays.push_back({rays.points[k], rays.directions[k]});
         mesh.screen.emplace_back(screen.x * width, screen.y * height, 1);
     }
     for (std::size_t f = 0; f < rays.triangles.size(); ++f) {
         for (const Id corner : rays.triangles[f]) {
-            if (corner >= corners) reject(entry("triangles", f), "there is no corner " + std::to_string(corner));
+            if (corner >= corners)
+                reject(entry("triangles", f), "there is no corner " + std::to_string(corner));
         }
         mesh.facets.push_back(rays.triangles[f]);
     }

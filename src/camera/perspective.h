@@ -25,20 +25,22 @@ struct OrthographicParams {
     int width = 640, height = 480;  // the film, in pixels
 };
 
-/// A pinhole at look_at.eye with square pixels. Throws InputError (place "lookAt", "yfov" or "film") where the parameters
-/// leave no camera: eye and at coincide, up is parallel to the view axis, an angle or size out of range.
+/// A pinhole at look_at.eye with square pixels. Throws InputError (place "lookAt", "yfov" or "film") where
+/// the parameters leave no camera: eye and at coincide, up is parallel to the view axis, an angle or size out
+/// of range.
 LinearCamera make_perspective(const PerspectiveParams& params);
 
 /// A camera of parallel rays with square pixels; the film's middle lies at look_at.eye. Throws as above
 /// (place "worldHeight" for a height that is not positive).
 LinearCamera make_orthographic(const OrthographicParams& params);
 
-/// The film [0, width] x [0, height] in pixels as two facets with affine screens (w = 1). Each ray's direction has unit
-/// depth along the view axis, so t is the planar depth (the Z layer): from the eye for perspective, from the
-/// plane through `eye` for parallel cameras.
+/// The film [0, width] x [0, height] in pixels as two facets with affine screens (w = 1). Each ray's
+/// direction has unit depth along the view axis, so t is the planar depth (the Z layer): from the eye for
+/// perspective, from the plane through `eye` for parallel cameras.
 RayMesh make_camera_mesh(const LinearCamera& camera, int width, int height);
 
-/// A camera given corner by corner (the thesis' projections are such). One entry per corner, `triangles` index them.
+/// A camera given corner by corner (the thesis' projections are such). One entry per corner, `triangles`
+/// index them.
 struct ExplicitRays {
     std::span<const Vec3> points;      // origins, world frame
     std::span<const Vec3> directions;  // not zero, any length: the unit of t
@@ -46,8 +48,8 @@ struct ExplicitRays {
     std::span<const IdTriple> triangles;
 };
 
-/// The RayMesh of explicit rays on a film of width x height pixels. Throws InputError whose place is the field at
-/// fault ("directions/3") for lengths that differ, indices out of range, zero or non-finite entries.
+/// The RayMesh of explicit rays on a film of width x height pixels. Throws InputError whose place is the
+/// field at fault ("directions/3") for lengths that differ, indices out of range, zero or non-finite entries.
 RayMesh make_ray_mesh(const ExplicitRays& rays, int width, int height);
 
 }  // namespace trilens

@@ -1,10 +1,10 @@
+// One image of a point on a curved surface: Levenberg-Marquardt on the law that Fermat's principle gives.
 #include "camera/specular_point.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "base/check.h"
 
@@ -12,19 +12,23 @@ namespace trilens {
 namespace {
 
 constexpr int kMaxIterations = 100;
-constexpr double kFirstDamping = 1e-3;   // of the normal matrix's mean diagonal
-constexpr double kLastDamping = 1e12;    // steps are then shorter than rounding
-constexpr double kAngleTolerance = 1e-13;    // residual of a solution, per n1 + n2: some hundred rounding errors
-constexpr double kRoundingErrors = 64;       // coordinates carry this many units of rounding through the evaluation
-constexpr double kParameterTolerance = 1e-9;  // a remaining step that counts as none: an image on the rim between two
-                                              // faces then belongs to both, and is one by distinct_images
+constexpr double kFirstDamping = 1e-3;  // of the normal matrix's mean diagonal
+constexpr double kLastDamping = 1e12;   // steps are then shorter than rounding
+constexpr double kAngleTolerance =
+    1e-13;  // residual of a solution, per n1 + n2: some hundred rounding errors
+constexpr double kRoundingErrors =
+    64;  // coordinates carry this many units of rounding through the evaluation
+constexpr double kParameterTolerance =
+    1e-9;                           // a remaining step that counts as none: an image on the rim between two
+                                    // faces then belongs to both, and is one by distinct_images
+constexpr double kLastStep = 1e-6;  // in (u, v): Newton's error after it is below rounding
 constexpr double kDifferenceStep = 1e-5;  // cube root of the rounding unit, for central differences in (u, v)
 
 /// The light's path over one point of the surface.
 struct Path {
-    Vec3 from_eye{0}, from_point{0};         // unit: e and x
+    Vec3 from_eye{0}, from_point{0};              // unit: e and x
     double eye_distance = 0, point_distance = 0;  // eye_distance infinite for parallel cameras
-    Vec3 bend{0};                            // h = n1 e + n2 x
+    Vec3 bend{0};                                 // h = n1 e + n2 x
 };
 
 struct Indices {
@@ -66,7 +70,8 @@ Vec2 gradient(const SpecularQuery& query, const SurfacePoint& point) {
     return {dot(path.bend, along[0]), dot(path.bend, along[1])};
 }
 
-/// The Hessian of the optical path: the turning of e and x along the tangents, plus h along the surface's bending.
+/// The Hessian of the optical path: the turning of e and x along the tangents, plus h along the surface's
+/// bending.
 Mat2 path_hessian(const SpecularQuery& query, const SurfacePoint& point) {
     const Path path = path_over(query, point.position);
     const Indices n = indices(query);
@@ -94,9 +99,9 @@ Vec2 clamped(FaceDomain domain, Vec2 uv) {
 struct Iterate {
     SurfaceParameter at;
     SurfacePoint point;
-    bool regular = false;     // du and dv span the tangent plane
-    Mat2 metric_root{0};      // L, lower: L L^T = (du, dv)^T (du, dv)
-    Vec2 law{0};              // L^-1 gradient: h along the surface
+    bool regular = false;  // du and dv span the tangent plane
+    Mat2 metric_root{0};   // L, lower: L L^T = (du, dv)^T (du, dv)
+    Vec2 law{0};           // L^-1 gradient: h along the surface
     double residual = std::numeric_limits<double>::infinity();
 };
 
@@ -129,7 +134,8 @@ Mat2 difference_jacobian(const Surface& surface, const SurfaceParameter& at, con
         Vec2 step(0);
         step[k] = kDifferenceStep;
         Vec2 low = clamped(domain, at.uv - step), high = at.uv + step;
-        if (clamped(domain, high) != high) high = at.uv;  // at a triangle's long side clamping would move both parameters
+        if (clamped(domain, high) != high)
+            high = at.uv;  // at a triangle's long side clamping would move both parameters
         const Vec2 change =
             gradient(query, surface.eval(at.face, high)) - gradient(query, surface.eval(at.face, low));
         jacobian[k] = change / (high[k] - low[k]);
@@ -145,7 +151,9 @@ Mat2 metric_jacobian(const Surface& surface, const Iterate& iterate, const Specu
     return inverse_root * plain * glm::transpose(inverse_root);
 }
 
-double squared_size(const Mat2& m) { return dot(m[0], m[0]) + dot(m[1], m[1]); }
+double squared_size(const Mat2& m) {
+    return dot(m[0], m[0]) + dot(m[1], m[1]);
+}
 
 /// The step in (u, v) that minimises |law + J s|^2 + damping |s|^2, s measured along the surface.
 Vec2 damped_step(const Iterate& iterate, const Mat2& jacobian, double damping) {
@@ -164,8 +172,8 @@ Vec2 damped_step(const Iterate& iterate, const Mat2& jacobian, double damping) {
 /// The residual that rounding leaves: of the directions, and of coordinates that moved by their last bits.
 double rounding_floor(const Iterate& iterate, const Mat2& jacobian, const SpecularQuery& query) {
     const Vec3 &p = iterate.point.position, &x = query.point;
-    const double coordinate = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), std::fabs(x.x), std::fabs(x.y),
-                                        std::fabs(x.z), length(query.camera.eye)});
+    const double coordinate = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), std::fabs(x.x),
+                                        std::fabs(x.y), std::fabs(x.z), length(query.camera.eye)});
     const double moved = kRoundingErrors * std::numeric_limits<double>::epsilon() * coordinate;
     const Indices n = indices(query);
     return kAngleTolerance * (n.eye + n.point) + moved * std::sqrt(squared_size(jacobian));
@@ -178,6 +186,20 @@ struct Rest {
     int iterations = 0;
 };
 
+double largest(const Vec2& v) {
+    return std::max(std::fabs(v.x), std::fabs(v.y));
+}
+
+/// One last undamped step, which brings grazing images from the tolerance down to rounding. Longer steps than
+/// kLastStep come from a singular Jacobian (a point on a caustic) and are not taken.
+void polish(const Surface& surface, const SpecularQuery& query, const Mat2& jacobian, Iterate& iterate) {
+    const Vec2 step = damped_step(iterate, jacobian, 0);
+    if (largest(step) > kLastStep) return;
+    const Vec2 uv = clamped(surface.domain(iterate.at.face), iterate.at.uv + step);
+    const Iterate next = evaluate(surface, {iterate.at.face, uv}, query);
+    if (next.residual < iterate.residual) iterate = next;
+}
+
 Rest solve_law(const Surface& surface, const SurfaceParameter& start, const SpecularQuery& query) {
     const FaceDomain domain = surface.domain(start.face);
     Rest rest{evaluate(surface, {start.face, clamped(domain, start.uv)}, query)};
@@ -186,7 +208,11 @@ Rest solve_law(const Surface& surface, const SurfaceParameter& start, const Spec
     while (now.regular && std::isfinite(now.residual)) {
         const Mat2 jacobian = metric_jacobian(surface, now, query);
         const double scale = 0.5 * squared_size(jacobian);
-        const double enough = rounding_floor(now, jacobian, query);
+        rest.solved = now.residual <= rounding_floor(now, jacobian, query);
+        if (rest.solved) {
+            polish(surface, query, jacobian, now);
+            break;
+        }
 
         // Shorten the step until the residual falls.
         bool fell = false;
@@ -196,13 +222,11 @@ Rest solve_law(const Surface& surface, const SurfaceParameter& start, const Spec
             fell = next.regular && next.residual < now.residual;
             if (fell) now = next;
             damping = fell ? 0.03 * damping : std::max(16 * damping, kFirstDamping);
-            if (!fell && now.residual <= enough) break;
         }
         if (fell) continue;
 
         const Vec2 left = damped_step(now, jacobian, 0);
-        rest.solved = now.residual <= enough ||
-                      (left != Vec2(0) && std::max(std::fabs(left.x), std::fabs(left.y)) <= kParameterTolerance);
+        rest.solved = left != Vec2(0) && largest(left) <= kParameterTolerance;
         break;
     }
     return rest;
@@ -237,48 +261,6 @@ std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const
     image.residual = rest.iterate.residual;
     image.iterations = rest.iterations;
     return image;
-}
-
-std::vector<SpecularPoint> specular_points(const Surface& surface, std::span<const SurfaceParameter> starts,
-                                           const SpecularQuery& query) {
-    std::vector<SpecularPoint> images;
-    for (const SurfaceParameter& start : starts) {
-        if (const auto image = refine_specular_point(surface, start, query)) images.push_back(*image);
-    }
-    return distinct_images(std::move(images));
-}
-
-std::vector<SurfaceParameter> regular_starts(const Surface& surface, int n) {
-    TRILENS_CHECK(n > 0, "a domain is divided into one cell at least");
-    std::vector<SurfaceParameter> starts;
-    for (Id face = 0; face < surface.face_count(); ++face) {
-        const bool triangle = surface.domain(face) == FaceDomain::kTriangle;
-        const double middle = triangle ? 1.0 / 3 : 0.5;
-        for (int row = 0; row < n; ++row) {
-            for (int column = 0; column < (triangle ? n - row : n); ++column) {
-                starts.push_back({face, (Vec2(column, row) + middle) / static_cast<double>(n)});
-            }
-        }
-    }
-    return starts;
-}
-
-std::vector<SpecularPoint> distinct_images(std::vector<SpecularPoint> images) {
-    std::stable_sort(images.begin(), images.end(),
-                     [](const SpecularPoint& a, const SpecularPoint& b) { return a.residual < b.residual; });
-    auto same = [](const SpecularPoint& a, const SpecularPoint& b) {
-        return a.front == b.front && length(a.pixel - b.pixel) < kSamePixels &&
-               length(a.position - b.position) <= kSameCrossing * a.distance;
-    };
-    std::vector<SpecularPoint> distinct;
-    for (const SpecularPoint& image : images) {
-        const bool known = std::any_of(distinct.begin(), distinct.end(),
-                                       [&](const SpecularPoint& other) { return same(other, image); });
-        if (!known) distinct.push_back(image);
-    }
-    std::stable_sort(distinct.begin(), distinct.end(),
-                     [](const SpecularPoint& a, const SpecularPoint& b) { return a.t < b.t; });
-    return distinct;
 }
 
 }  // namespace trilens

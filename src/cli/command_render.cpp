@@ -5,7 +5,7 @@
 #include "cli/explain.h"
 #include "cli/picture.h"
 #include "cli/scene_options.h"
-#include "cli/write_text.h"
+#include "cli/check_output.h"
 #include "image/image_io.h"
 
 namespace trilens {

@@ -52,11 +52,11 @@ void LimitViewer::follow(const Optic& optic, const SurfaceHit& hit, SampleView& 
     view.cos_incident = std::min(1.0, std::fabs(cosine));
 
     // The secondary rays carry the eye-to-surface length, as corner rays do.
-    const Ray incoming{hit.point.position, hit.t * view.ray.direction};
+    const Ray incoming{view.ray.origin, hit.t * view.ray.direction};
     const RenderSettings& settings = world->scene.render;
-    if (settings.reflect) view.reflect = look_along(mirrored_ray(incoming, hit.point.normal));
+    if (settings.reflect) view.reflect = look_along(mirrored_ray(incoming, hit));
     if (settings.refract && !optic.mirror)
-        view.refract = look_along(refracted_ray(incoming, hit.point.normal, world->scene.materials[optic.material].ior));
+        view.refract = look_along(refracted_ray(incoming, hit, world->scene.materials[optic.material].ior));
 }
 
 void LimitViewer::view_sample(SampleView& view) const {

@@ -9,7 +9,7 @@
 #include "cli/command.h"
 #include "scene/nearest.h"
 #include "cli/version.h"
-#include "cli/write_text.h"
+#include "sweep/files.h"
 #include "image/image_io.h"
 #include "truth/tracer.h"
 
@@ -86,7 +86,7 @@ void give_answer(const Chosen& chosen, const CommonOptions& common, const Consol
     Json object = answer_object(chosen.name, answer.code, console);
     object.update(answer.fields);
     if (common.json == "-") return print(object.dump(2));
-    write_text_file(common.json, object.dump(2) + "\n");
+    replace_text_file(common.json, object.dump(2) + "\n");
     print(answer.text);
 }
 
@@ -99,7 +99,7 @@ int fail(const std::string& command, const std::string& json, Console& console, 
         object["errors"].push_back(error.what());
         try {
             if (json == "-") print(object.dump(2, ' ', false, Json::error_handler_t::replace));
-            else write_text_file(json, object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+            else replace_text_file(json, object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
         } catch (const Error& second) {
             console.error(second.what());
         }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/error.h"
 #include "cli/json.h"
 #include "scene/nearest.h"
 #include "image/image_io.h"
@@ -74,6 +75,10 @@ std::vector<int> parse_integers(const std::string& text, char separator, std::si
 void add_scene_options(CLI::App& command, SceneOptions& options) {
     command.add_option("SCENE", options.scene, "scene file (JSON), or an image that carries its scene")->required();
     command.add_option("-n,--resolution", options.resolution, "N x N facets per quad face of every optic")->check(CLI::Range(1, 1024));
+    add_scene_overrides(command, options);
+}
+
+void add_scene_overrides(CLI::App& command, SceneOptions& options) {
     command.add_option("--size", options.size, "film size in pixels")->type_name("WxH");
     command.add_option("--spp", options.spp, "S x S samples per pixel")->check(CLI::Range(1, 64))->type_name("S");
     command.add_option("--camera", options.camera, "camera by name; default: the first")->type_name("NAME");

@@ -27,8 +27,10 @@ struct SceneOptions {
     std::string aov = "all";
 };
 
-/// Adds the scene argument and what overrides it.
+/// Adds the scene argument, its resolution, and what overrides it.
 void add_scene_options(CLI::App& command, SceneOptions& options);
+/// Adds the overrides alone: --size, --spp, --camera, --max-depth, --set.
+void add_scene_overrides(CLI::App& command, SceneOptions& options);
 /// Adds --crop and --aov.
 void add_window_options(CLI::App& command, SceneOptions& options);
 

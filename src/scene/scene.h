@@ -1,6 +1,8 @@
 // The scene as plain data: what a scene file says, resolved, checked, and with nothing left to load.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +60,7 @@ struct Mesh {
     Role role = Role::kObject;
     Id material = kNone;     // index into Scene::materials; kNone where the triangles carry their own
     int resolution = 8;      // optic: N x N facets per quad face
+    std::size_t face_count = 0;  // polygons of the file, holes among them; 0 for a primitive
     NormalOverride normals;  // optic
 
     // An object has `object`; an optic has either `primitive` or `cage` (world frame, transform applied).

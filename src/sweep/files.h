@@ -6,11 +6,11 @@
 
 namespace trilens {
 
-/// Writes `text` beside `file` under a name of its own, then renames it. Throws OutputError.
-void write_text_file(const std::string& file, const std::string& text);
+/// Makes `text` the content of `file` in one step. Throws OutputError.
+void replace_text_file(const std::string& file, const std::string& text);
 
 /// The bytes of `file`; none where it cannot be read.
-std::optional<std::string> read_text_file(const std::string& file);
+std::optional<std::string> read_whole_file(const std::string& file);
 
 /// Makes `folder` and what it lies in. Throws OutputError.
 void make_folder(const std::string& folder);

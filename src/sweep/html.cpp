@@ -91,7 +91,7 @@ std::string report_html(const Report& report) {
     if (!report.plots.empty()) {
         body += heading("Convergence") + "<div class=\"plots\">\n";
         for (const std::string& plot : report.plots) body += plot_figure(plot);
-        body += "</div>\n";
+        body += "</div>\n" + paragraph("soft", report.plots_note);
     }
     if (!report.table_rows.empty())
         body += heading("Numbers") + html_table(report.table_columns, report.table_rows);
@@ -103,7 +103,7 @@ std::string report_html(const Report& report) {
 }
 
 void write_report(const std::string& file, const Report& report) {
-    write_text_file(file, report_html(report));
+    replace_text_file(file, report_html(report));
 }
 
 std::string gallery_html(const Gallery& gallery) {
@@ -114,7 +114,7 @@ std::string gallery_html(const Gallery& gallery) {
 }
 
 void write_gallery(const std::string& file, const Gallery& gallery) {
-    write_text_file(file, gallery_html(gallery));
+    replace_text_file(file, gallery_html(gallery));
 }
 
 }  // namespace trilens

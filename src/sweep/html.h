@@ -14,8 +14,8 @@ struct Headline {
 };
 
 struct ReportRun {
-    std::string title;              // "n = 8"
-    std::vector<Picture> pictures;  // projected, truth, difference, displacement
+    std::string title;                // "n = 8"
+    std::vector<Thumbnail> pictures;  // projected, truth, difference, displacement
     Facts facts;
     std::vector<std::string> warnings;
     std::string error;  // not empty: the run failed with this
@@ -34,6 +34,7 @@ struct Report {
     std::vector<Headline> headlines;
     std::vector<std::string> warnings;
     std::vector<std::string> plots;
+    std::string plots_note;
     std::vector<std::string> table_columns;
     std::vector<std::vector<std::string>> table_rows;
     std::string pictures_note;  // "differences are shown times 16"
@@ -52,7 +53,7 @@ void write_report(const std::string& file, const Report& report);
 /// One scene of a gallery.
 struct GalleryEntry {
     std::string title, text;
-    std::vector<Picture> pictures;  // projected, truth, difference
+    std::vector<Thumbnail> pictures;  // projected, truth, difference
     Facts metrics;
     std::string
         link;  // a relative path, empty for none; one with a scheme ("https:") is shown but not linked

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "sweep/plot.h"
+#include "sweep/plot_style.h"
 #include "sweep/text.h"
 
 namespace trilens {
@@ -26,7 +26,7 @@ pre{background:var(--panel);border:1px solid var(--line);border-radius:8px;paddi
 figure{margin:0}.plot{border:1px solid var(--line);border-radius:10px;overflow:hidden}.plot svg{display:block;width:100%;height:auto}
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:14px}
 th,td{padding:5px 12px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
-th{color:var(--soft);font-weight:600;border-bottom-width:2px;vertical-align:bottom}th:first-child,td:first-child{text-align:left}
+th{white-space:normal;color:var(--soft);font-weight:600;border-bottom-width:2px;vertical-align:bottom}th:first-child,td:first-child{text-align:left}
 tbody tr:hover{background:var(--panel)}
 .run{border:1px solid var(--line);border-radius:10px;padding:14px 16px;margin:14px 0;break-inside:avoid}
 .pictures{display:grid;grid-template-columns:repeat(auto-fit,minmax(200px,1fr));gap:12px;margin:8px 0}
@@ -34,7 +34,7 @@ tbody tr:hover{background:var(--panel)}
 .pictures img.big{image-rendering:pixelated;cursor:zoom-out;max-width:none}
 .pictures figure:has(img.big){grid-column:1/-1}
 figcaption{color:var(--soft);font-size:13px;margin-top:4px}
-.facts{display:grid;grid-template-columns:repeat(auto-fill,minmax(230px,1fr));gap:2px 24px;margin:8px 0;font-size:14px}
+.facts{display:grid;grid-template-columns:repeat(auto-fill,minmax(290px,1fr));gap:2px 24px;margin:8px 0;font-size:14px}
 .facts div{display:flex;justify-content:space-between;gap:12px;border-bottom:1px dotted var(--line)}
 .facts dt{color:var(--soft)}.facts dd{margin:0;font-variant-numeric:tabular-nums;text-align:right;overflow-wrap:anywhere}
 .warning{border-left:4px solid #b07d00;padding:4px 12px;background:var(--panel);margin:6px 0}
@@ -68,9 +68,9 @@ std::string html_page(const std::string& title, const std::string& body) {
            "</script>\n</body>\n</html>\n";
 }
 
-std::string html_pictures(const std::vector<Picture>& pictures) {
+std::string html_pictures(const std::vector<Thumbnail>& pictures) {
     std::string html = "<div class=\"pictures\">\n";
-    for (const Picture& picture : pictures) {
+    for (const Thumbnail& picture : pictures) {
         const std::string caption = escape_markup(picture.caption);
         html += "<figure>";
         if (!picture.png.empty())

@@ -16,7 +16,7 @@ std::string html_page(const std::string& title, const std::string& body);
 
 /// A row of pictures with captions, side by side. Hovering over the first shows the second in its place; a
 /// click enlarges.
-std::string html_pictures(const std::vector<Picture>& pictures);
+std::string html_pictures(const std::vector<Thumbnail>& pictures);
 
 /// A two-column list.
 std::string html_facts(const Facts& facts);

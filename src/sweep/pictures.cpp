@@ -16,7 +16,6 @@ namespace {
 constexpr LinearRgb kNotFinite = {1.0f, 0.0f, 1.0f};
 constexpr LinearRgb kNothing = {0.216f, 0.216f, 0.216f};  // sRGB 0.5
 constexpr LinearRgb kLost = {1.0f, 0.2f, 0.0f};
-constexpr double kShareKept = 0.995;  // of pixels that the difference's scale must not saturate
 
 /// Linear RGB triples of a film, rows from the top.
 struct Film {
@@ -115,7 +114,7 @@ Film shrink(const Film& film) {
     return small;
 }
 
-Picture picture_of(Film film, const std::string& caption) {
+Thumbnail picture_of(Film film, const std::string& caption) {
     mark_not_finite(film);
     const Film small = shrink(film);
     return {caption, small.width, small.height, encode_png(small.width, small.height, small.rgb)};
@@ -128,18 +127,19 @@ LinearRgb displacement_colour(float pixels, const ColourRange& range) {
 
 }  // namespace
 
-Picture beauty_picture(const Image& image, const std::string& caption) {
+Thumbnail beauty_picture(const Image& image, const std::string& caption) {
     return picture_of(film_of(image), caption);
 }
 
-Picture difference_picture(const Image& test, const Image& truth, double scale, const std::string& caption) {
+Thumbnail difference_picture(const Image& test, const Image& truth, double scale,
+                             const std::string& caption) {
     Film film = difference_of(test, truth);
     for (float& value : film.rgb) value *= static_cast<float>(scale);
     return picture_of(std::move(film), caption);
 }
 
-Picture displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
-                             const std::string& caption) {
+Thumbnail displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
+                               const std::string& caption) {
     TRILENS_CHECK(width > 0 && pixels.size() % static_cast<std::size_t>(width) == 0, "whole rows");
     const int height = static_cast<int>(pixels.size() / static_cast<std::size_t>(width));
     Film small = make_film(shrunk_width(width), shrunk_height(width, height));
@@ -160,19 +160,9 @@ Picture displacement_picture(std::span<const float> pixels, int width, const Col
     return {caption, small.width, small.height, encode_png(small.width, small.height, small.rgb)};
 }
 
-double difference_scale(const Image& test, const Image& truth) {
-    const Film film = difference_of(test, truth);
-    std::vector<float> largest;
-    for (std::size_t i = 0; i < film.rgb.size(); i += 3) {
-        const float value = std::max({film.rgb[i], film.rgb[i + 1], film.rgb[i + 2]});
-        if (std::isfinite(value)) largest.push_back(value);
-    }
-    if (largest.empty()) return 1;
-    const auto place =
-        largest.begin() + static_cast<std::ptrdiff_t>(kShareKept * static_cast<double>(largest.size() - 1));
-    std::nth_element(largest.begin(), place, largest.end());
+double difference_scale(double difference) {
     double scale = 1;
-    while (scale < 1024 && 2 * scale * static_cast<double>(*place) < 1) scale *= 2;
+    while (scale < 1024 && 2 * scale * difference < 1) scale *= 2;
     return scale;
 }
 

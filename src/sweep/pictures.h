@@ -12,8 +12,8 @@ namespace trilens {
 
 inline constexpr int kThumbnailWidth = 320;  // pixels
 
-/// A picture as a report embeds it: PNG bytes and what they show.
-struct Picture {
+/// A small picture as a report embeds it: PNG bytes and what they show.
+struct Thumbnail {
     std::string caption;
     int width = 0, height = 0;
     std::vector<unsigned char> png;  // empty: there is none, and the caption says why
@@ -21,17 +21,17 @@ struct Picture {
 
 /// R G B of the whole film (black outside the data window), scaled down to kThumbnailWidth where wider;
 /// values that are not finite show as magenta. Throws InputError where a channel is missing.
-Picture beauty_picture(const Image& image, const std::string& caption);
+Thumbnail beauty_picture(const Image& image, const std::string& caption);
 
 /// scale * |test - truth| per channel, the same way. The films must be of one size.
-Picture difference_picture(const Image& test, const Image& truth, double scale, const std::string& caption);
+Thumbnail difference_picture(const Image& test, const Image& truth, double scale, const std::string& caption);
 
 /// The colours of `range` over a film of width x height values, rows from the top: NaN (nothing to measure)
 /// is grey, infinite (lost) is orange. Where it is scaled down, a pixel shows the largest value under it.
-Picture displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
-                             const std::string& caption);
+Thumbnail displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
+                               const std::string& caption);
 
-/// The largest power of two, between 1 and 1024, that keeps scale * difference below 1 in 99.5 of 100 pixels.
-double difference_scale(const Image& test, const Image& truth);
+/// The largest power of two, between 1 and 1024, that keeps scale * difference below 1.
+double difference_scale(double difference);
 
 }  // namespace trilens

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sweep/plot_scale.h"
+#include "sweep/plot_style.h"
 #include "sweep/text.h"
 
 namespace trilens {
@@ -16,11 +17,8 @@ namespace {
 
 constexpr double kLeft = 68, kRight = 18, kTop = 38, kBottom = 54;  // pixels around the frame
 constexpr double kCharWidth = 6.4;                                  // of the 11 px font, on average
+constexpr double kReferenceLabelWidth = 36;                         // "order 2" in the small font
 constexpr double kReferenceLift = 1.8;  // reference orders start so far above the data
-constexpr std::array<const char*, 8> kLight = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                               "#b07d00", "#56b4e9", "#7a4fb5", "#444444"};
-constexpr std::array<const char*, 8> kDark = {"#4aa8e0", "#f0803c", "#2fc79c", "#e3a1c6",
-                                              "#e6b93c", "#8fd0f5", "#b394e0", "#c8c8c8"};
 
 struct Plot {
     const PlotParams& params;
@@ -39,10 +37,6 @@ std::string number(double pixel) {
 std::string attribute(const char* name, double pixel) {
     return std::string(" ") + name + "=\"" + number(pixel) + "\"";
 }
-std::string series_class(std::size_t i) {
-    return "tp-c" + std::to_string(i % kLight.size());
-}
-
 std::string line(const std::string& kind, const Vec2& a, const Vec2& b) {
     return "<line class=\"" + kind + "\"" + attribute("x1", a.x) + attribute("y1", a.y) +
            attribute("x2", b.x) + attribute("y2", b.y) + "/>\n";
@@ -62,7 +56,7 @@ std::string marker(std::size_t i, const Vec2& at, const std::string& inside) {
     const std::string shape =
         i % 8 == 0 ? "<circle" + attribute("cx", at.x) + attribute("cy", at.y) + " r=\"4\""
                    : "<path d=\"M" + number(at.x) + "," + number(at.y) + kPaths[i % 8 - 1] + "\"";
-    const std::string start = shape + " class=\"tp-marker " + series_class(i) + "\"";
+    const std::string start = shape + " class=\"tp-marker " + plot_series_class(i) + "\"";
     return inside.empty() ? start + "/>\n"
                           : start + "><title>" + escape_markup(inside) + "</title>" +
                                 (i % 8 == 0 ? "</circle>\n" : "</path>\n");
@@ -130,10 +124,9 @@ void draw_reference_orders(Plot& plot) {
         if (!inside) continue;
         const auto& [start, end] = *inside;
         plot.svg += line("tp-reference", start, end);
-        // The label stands above the line's end, or left of it where the line leaves through the bottom.
-        const bool leaves_below = end.y > plot.y.first - 1;
-        plot.svg += text("tp-note", {end.x - (leaves_below ? 8 : 5), end.y - (leaves_below ? 8 : 6)}, "end",
-                         "order " + std::to_string(order));
+        // The label stands on the line's end, where no measurement is.
+        const double rise = (end.y - start.y) / (end.x - start.x) * kReferenceLabelWidth;
+        plot.svg += text("tp-note", {end.x - 4, end.y - rise - 4}, "end", "order " + std::to_string(order));
     }
 }
 
@@ -153,11 +146,11 @@ void draw_series(Plot& plot, std::size_t i) {
             return plot.pixel({x, series.fit->constant * std::pow(x, -series.fit->order)});
         };
         const auto inside = clip_to_frame(plot, on_fit(plot.x.lo), on_fit(plot.x.hi));
-        if (inside) plot.svg += line("tp-fit " + series_class(i), (*inside)[0], (*inside)[1]);
+        if (inside) plot.svg += line("tp-fit " + plot_series_class(i), (*inside)[0], (*inside)[1]);
         if (!path.empty())
-            plot.svg += "<path class=\"tp-join " + series_class(i) + "\" d=\"" + path + "\"/>\n";
+            plot.svg += "<path class=\"tp-join " + plot_series_class(i) + "\" d=\"" + path + "\"/>\n";
     } else if (!path.empty()) {
-        plot.svg += "<path class=\"tp-line " + series_class(i) + "\" d=\"" + path + "\"/>\n";
+        plot.svg += "<path class=\"tp-line " + plot_series_class(i) + "\" d=\"" + path + "\"/>\n";
     }
     plot.svg += markers;
 }
@@ -223,26 +216,6 @@ void draw_left_out(Plot& plot) {
     plot.svg += text("tp-note", {plot.x.last, plot.y.first + 49}, "end", words);
 }
 
-std::string style() {
-    std::string rules =
-        "text{font-family:system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue','DejaVu "
-        "Sans',sans-serif;"
-        "font-size:11px;fill:#333}"
-        ".tp-paper{fill:#fff}.tp-title{font-size:14px;font-weight:600;fill:#111}.tp-label{font-size:12px}"
-        ".tp-grid{stroke:#cdd2d8;stroke-width:1}.tp-minor{stroke:#eceff2;stroke-width:1}"
-        ".tp-frame{fill:none;stroke:#8a929b;stroke-width:1}"
-        ".tp-level{stroke:#8a929b;stroke-width:1;stroke-dasharray:2 3}"
-        ".tp-reference{stroke:#b9c0c8;stroke-width:1.5;stroke-dasharray:7 "
-        "4}.tp-note{font-size:10px;fill:#7a828b}"
-        ".tp-legend{fill:#fff;fill-opacity:.88;stroke:#cdd2d8}"
-        ".tp-line{fill:none;stroke-width:1.8}.tp-fit{stroke-width:1.8}"
-        ".tp-join{fill:none;stroke-width:1;stroke-opacity:.35}.tp-marker{stroke-width:1.6;fill-opacity:.9}";
-    for (std::size_t i = 0; i < kLight.size(); ++i)
-        rules += "." + series_class(i) + "{stroke:" + kLight[i] + "}.tp-marker." + series_class(i) +
-                 "{fill:" + kLight[i] + "}";
-    return "<style>" + rules + "</style>\n";
-}
-
 std::string draw(const PlotParams& params, std::span<const PlotSeries> series, ScaleKind kind) {
     std::vector<double> xs, ys;
     const PlotScale any{kind, 0, 1, 0, 1};
@@ -261,8 +234,8 @@ std::string draw(const PlotParams& params, std::span<const PlotSeries> series, S
     const std::string width = std::to_string(params.width), height = std::to_string(params.height);
     plot.svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tp\" width=\"" + width + "\" height=\"" +
                height + "\" viewBox=\"0 0 " + width + " " + height + "\" role=\"img\" aria-label=\"" +
-               escape_markup(params.title) + "\">\n" + style() + "<rect class=\"tp-paper\" width=\"" + width +
-               "\" height=\"" + height + "\"/>\n";
+               escape_markup(params.title) + "\">\n" + "<style>" + plot_style() + "</style>\n" +
+               "<rect class=\"tp-paper\" width=\"" + width + "\" height=\"" + height + "\"/>\n";
     draw_frame(plot);
     draw_levels(plot);
     if (plot.is_log() && params.reference_orders) draw_reference_orders(plot);
@@ -280,26 +253,6 @@ std::string log_log_plot(const PlotParams& params, std::span<const PlotSeries> s
 
 std::string linear_plot(const PlotParams& params, std::span<const PlotSeries> series) {
     return draw(params, series, ScaleKind::kLinear);
-}
-
-std::string dark_plot_style(const std::string& scope) {
-    const std::array<std::pair<const char*, const char*>, 10> rules = {
-        {{"text", "fill:#c9d1d9"},
-         {".tp-paper", "fill:#161b22"},
-         {".tp-title", "fill:#f0f3f6"},
-         {".tp-grid", "stroke:#3a424c"},
-         {".tp-minor", "stroke:#242b33"},
-         {".tp-frame", "stroke:#6e7781"},
-         {".tp-level", "stroke:#8a929b"},
-         {".tp-reference", "stroke:#57606a"},
-         {".tp-note", "fill:#8b949e"},
-         {".tp-legend", "fill:#161b22;stroke:#3a424c"}}};
-    std::string style;
-    for (const auto& [selector, properties] : rules) style += scope + " " + selector + "{" + properties + "}";
-    for (std::size_t i = 0; i < kDark.size(); ++i)
-        style += scope + " ." + series_class(i) + "{stroke:" + kDark[i] + "}" + scope + " .tp-marker." +
-                 series_class(i) + "{fill:" + kDark[i] + "}";
-    return style;
 }
 
 }  // namespace trilens

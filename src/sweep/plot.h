@@ -43,7 +43,4 @@ std::string log_log_plot(const PlotParams& params, std::span<const PlotSeries> s
 /// orders.
 std::string linear_plot(const PlotParams& params, std::span<const PlotSeries> series);
 
-/// Style rules for pages that hold plots inline, for dark backgrounds: every rule begins with `scope`.
-std::string dark_plot_style(const std::string& scope);
-
 }  // namespace trilens

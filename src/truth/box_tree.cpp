@@ -84,7 +84,7 @@ void on_bounds(const RTCBoundsFunctionArguments* arguments) {
 }
 
 // Embree offers a box: ask the visitor, and shorten the ray to what still matters.
-void on_box(const RTCIntersectFunctionNArguments* arguments) {
+void on_box(const RTCIntersectFunctionNArguments* arguments) noexcept {
     if (!arguments->valid[0]) return;
     const Query& query = *static_cast<const Query*>(arguments->context);
     RTCRayHit& hit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);

@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "base/vec.h"
-#include "camera/perspective.h"
 
 namespace trilens_test {
 
@@ -14,7 +13,9 @@ class Draw {
   public:
     explicit Draw(std::uint64_t seed) : state_(seed) {}
 
-    double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(next() >> 11) * 0x1p-53); }
+    double uniform(double low, double high) {
+        return low + (high - low) * (static_cast<double>(next() >> 11) * 0x1p-53);
+    }
     double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
 
     trilens::Vec3 in_cube(double half_side) {
@@ -28,18 +29,20 @@ class Draw {
             if (size > 0.1 && size < 1) return v / size;
         }
     }
+    /// Any direction, length in [low, high). One call per draw: a product of two draws has no fixed order.
+    trilens::Vec3 away(double low, double high) {
+        const trilens::Vec3 direction = unit();
+        return uniform(low, high) * direction;
+    }
+    /// x and y in [-half_side, half_side), z log-uniform in [low, high).
+    trilens::Vec3 above(double half_side, double low, double high) {
+        const trilens::Vec3 across = in_cube(half_side);
+        return {across.x, across.y, log_uniform(low, high)};
+    }
     /// Weights of a point inside a triangle.
     trilens::Vec3 weights() {
         const double a = uniform(0, 1), b = uniform(0, 1);
         return a + b < 1 ? trilens::Vec3(1 - a - b, a, b) : trilens::Vec3(a + b - 1, 1 - a, 1 - b);
-    }
-    trilens::PerspectiveParams perspective(double size) {
-        trilens::PerspectiveParams params;
-        params.look_at = {size * in_cube(1), size * in_cube(1), log_uniform(1e-4, 1e4) * unit()};
-        params.yfov_degrees = uniform(5, 150);
-        params.width = static_cast<int>(uniform(1, 4000));
-        params.height = static_cast<int>(uniform(1, 4000));
-        return params;
     }
 
   private:

@@ -10,6 +10,15 @@ using trilens_test::Draw;
 
 namespace {
 
+PerspectiveParams draw_camera(Draw& draw, double size) {
+    PerspectiveParams params;
+    params.look_at = {size * draw.in_cube(1), size * draw.in_cube(1), draw.away(1e-4, 1e4)};
+    params.yfov_degrees = draw.uniform(5, 150);
+    params.width = static_cast<int>(draw.uniform(1, 4000));
+    params.height = static_cast<int>(draw.uniform(1, 4000));
+    return params;
+}
+
 /// The film's ray through a screen position, by the facet that contains it.
 Ray film_ray_at(const RayMesh& mesh, const Vec2& screen) {
     Vec3 best(-1e300);
@@ -37,7 +46,7 @@ TEST_CASE("the film's ray through a point's screen position passes through the p
     int tested = 0;
     for (int round = 0; round < 2000; ++round) {
         const double size = draw.log_uniform(1e-4, 1e4);
-        const PerspectiveParams params = draw.perspective(size);
+        const PerspectiveParams params = draw_camera(draw, size);
         const LinearCamera camera = make_perspective(params);
         const RayMesh mesh = make_camera_mesh(camera, params.width, params.height);
 
@@ -81,7 +90,7 @@ TEST_CASE("a camera's film spans its angle, x to the right and y down, square pi
 TEST_CASE("scaling the world leaves the picture as it was") {
     Draw draw(2);
     for (int round = 0; round < 200; ++round) {
-        PerspectiveParams params = draw.perspective(1);
+        PerspectiveParams params = draw_camera(draw, 1);
         const Vec3 point = draw.in_cube(3);
         const Vec3 before = screen_from_world(make_perspective(params), point);
         const double scale = draw.log_uniform(1e-4, 1e4);
@@ -98,7 +107,7 @@ TEST_CASE("a parallel camera's rays pass through the points that it projects") {
     for (int round = 0; round < 500; ++round) {
         const double size = draw.log_uniform(1e-4, 1e4);
         OrthographicParams params;
-        params.look_at = draw.perspective(size).look_at;
+        params.look_at = draw_camera(draw, size).look_at;
         params.world_height = size * draw.uniform(0.1, 5);
         params.width = static_cast<int>(draw.uniform(1, 2000));
         const LinearCamera camera = make_orthographic(params);
@@ -139,7 +148,8 @@ TEST_CASE("cameras that cannot be are refused with their place") {
 }
 
 TEST_CASE("explicit rays become a mesh with pixels for screen positions") {
-    const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, directions{{0, 0, 2}, {0, 0, 1}, {1, 0, 1}};
+    const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+        directions{{0, 0, 2}, {0, 0, 1}, {1, 0, 1}};
     const std::vector<Vec2> screen{{0, 0}, {1, 0}, {0, 1}};
     const std::vector<IdTriple> triangles{{0, 1, 2}};
     const RayMesh mesh = make_ray_mesh({points, directions, screen, triangles}, 640, 480);
@@ -153,6 +163,8 @@ TEST_CASE("explicit rays become a mesh with pixels for screen positions") {
     const std::vector<Vec3> still{{0, 0, 2}, {0, 0, 0}, {1, 0, 1}};
     CHECK_THROWS_AS(make_ray_mesh({points, directions, screen, outside}, 640, 480), InputError);
     CHECK_THROWS_AS(make_ray_mesh({points, still, screen, triangles}, 640, 480), InputError);
-    CHECK_THROWS_AS(make_ray_mesh({points, std::span(directions).first(2), screen, triangles}, 640, 480), InputError);
-    CHECK_THROWS_AS(make_ray_mesh({points, directions, std::span(screen).first(2), triangles}, 640, 480), InputError);
+    CHECK_THROWS_AS(make_ray_mesh({points, std::span(directions).first(2), screen, triangles}, 640, 480),
+                    InputError);
+    CHECK_THROWS_AS(make_ray_mesh({points, directions, std::span(screen).first(2), triangles}, 640, 480),
+                    InputError);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "base/surface.h"
 
@@ -52,8 +53,8 @@ struct CubeSphere : Surface {
     }
 };
 
-/// One face z = bend (x^2 + y^2) over a square of the plane z = 0 around `center`: a plane, or a paraboloid with focus at
-/// height 1 / (4 bend).
+/// One face z = bend (x^2 + y^2) over a square of the plane z = 0 around `center`: a plane, or a paraboloid
+/// with focus at height 1 / (4 bend).
 struct Patch : Surface {
     Vec3 center{0};
     double half_side = 1, bend = 0;

@@ -20,7 +20,7 @@ const std::string kEvil = "<img src=x onerror=\"alert('1')\"> & \x01\xFF";
 
 Report evil_report() {
     Report report;
-    report.title = report.summary = report.pictures_note = kEvil;
+    report.title = report.summary = report.plots_note = report.pictures_note = kEvil;
     report.headlines = {{kEvil, kEvil}};
     report.warnings = report.commands = {kEvil};
     report.plots = {log_log_plot({kEvil, kEvil, kEvil, {{1, kEvil}}, true, 640, 420},
@@ -96,9 +96,9 @@ TEST_CASE("sweep: a page holds its pictures' bytes, captions and the reason wher
 TEST_CASE("sweep: pages are written whole or not at all") {
     const std::string folder = trilens_test::scratch_dir("sweep_html");
     write_report(folder + "/report.html", evil_report());
-    CHECK(read_text_file(folder + "/report.html") == report_html(evil_report()));
+    CHECK(read_whole_file(folder + "/report.html") == report_html(evil_report()));
     write_gallery(folder + "/gallery.html", {});
-    CHECK(read_text_file(folder + "/gallery.html") == gallery_html({}));
+    CHECK(read_whole_file(folder + "/gallery.html") == gallery_html({}));
 
     CHECK_THROWS_AS(write_report(folder + "/none/report.html", {}), OutputError);
     std::filesystem::create_directories(folder + "/taken/x");

@@ -1,29 +1,13 @@
-#include "cli/write_text.h"
+#include "cli/check_output.h"
 
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
 #include "base/error.h"
 
 namespace trilens {
-
-void write_text_file(const std::string& file, const std::string& text) {
-    check_writable(file);
-    const std::string beside = file + ".partial";
-    std::ofstream out(beside, std::ios::binary);
-    out << text;
-    out.close();
-    std::error_code code;
-    if (out) std::filesystem::rename(beside, file, code);
-    if (!out || code) {
-        std::error_code ignored;
-        std::filesystem::remove(beside, ignored);
-        throw OutputError(file, code ? code.message() : "cannot be written");
-    }
-}
 
 void check_writable(const std::string& file) {
     const std::filesystem::path path(file);

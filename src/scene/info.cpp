@@ -1,0 +1,122 @@
+// Counts and bounds of a scene.
+#include "scene/info.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trilens {
+namespace {
+
+void grow(Bounds& bounds, const Vec3& point) {
+    bounds.low = bounds.empty ? point : glm::min(bounds.low, point);
+    bounds.high = bounds.empty ? point : glm::max(bounds.high, point);
+    bounds.empty = false;
+}
+
+void grow(Bounds& bounds, const Bounds& other) {
+    if (other.empty) return;
+    grow(bounds, other.low);
+    grow(bounds, other.high);
+}
+
+/// The box of a disk: its half-width along e is radius * sqrt(1 - (axis . e)^2).
+void grow_by_disk(Bounds& bounds, const Vec3& center, const Vec3& axis, double radius) {
+    Vec3 half;
+    for (int k = 0; k < 3; ++k) half[k] = radius * std::sqrt(std::max(0.0, 1 - axis[k] * axis[k]));
+    grow(bounds, center - half);
+    grow(bounds, center + half);
+}
+
+Bounds primitive_bounds(const Primitive& p) {
+    Bounds bounds;
+    switch (p.type) {
+        case Primitive::Type::kSphere:
+            grow(bounds, p.center - Vec3(p.radius));
+            grow(bounds, p.center + Vec3(p.radius));
+            break;
+        case Primitive::Type::kParaboloid:
+            // Apex and rim; between them the surface lies in the box of the solid cylinder around it.
+            grow_by_disk(bounds, p.center, p.axis, p.radius);
+            grow_by_disk(bounds, p.center + p.radius * p.radius / (4 * p.focal_length) * p.axis, p.axis, p.radius);
+            break;
+        case Primitive::Type::kCylinder:
+            grow_by_disk(bounds, p.center - 0.5 * p.height * p.axis, p.axis, p.radius);
+            grow_by_disk(bounds, p.center + 0.5 * p.height * p.axis, p.axis, p.radius);
+            break;
+        case Primitive::Type::kPlane: {
+            const Vec3 u = 0.5 * p.size.x * p.tangent, v = 0.5 * p.size.y * cross(p.axis, p.tangent);
+            for (const Vec3& corner : {u + v, u - v, -u + v, -u - v}) grow(bounds, p.center + corner);
+            break;
+        }
+    }
+    return bounds;
+}
+
+std::string shape_name(const Mesh& mesh) {
+    if (mesh.role == Role::kObject) return "polygons";
+    if (!mesh.primitive)
+        return mesh.cage.scheme == SubdivisionScheme::kCatmullClark ? "catmullClark"
+               : mesh.cage.scheme == SubdivisionScheme::kLoop       ? "loop"
+                                                                    : "bilinear";
+    switch (mesh.primitive->type) {
+        case Primitive::Type::kSphere: return "sphere";
+        case Primitive::Type::kParaboloid: return "paraboloid";
+        case Primitive::Type::kCylinder: return "cylinder";
+        case Primitive::Type::kPlane: return "plane";
+    }
+    return "";
+}
+
+MeshInfo make_mesh_info(const Mesh& mesh, const Scene& scene) {
+    MeshInfo info;
+    info.name = mesh.name;
+    info.role = mesh.role;
+    info.shape = shape_name(mesh);
+    info.material = mesh.material == kNone ? "inherit" : scene.materials[mesh.material].name;
+    info.faces = mesh.face_count;
+    const bool is_object = mesh.role == Role::kObject;
+    const std::vector<Vec3>& points = is_object ? mesh.object.points : mesh.cage.points;
+    info.points = points.size();
+    info.triangles = mesh.object.triangles.size();
+    info.creases = mesh.cage.crease_indices.size() - mesh.cage.crease_lengths.size();
+    info.corners = mesh.cage.corner_indices.size();
+    info.holes = mesh.cage.hole_indices.size();
+    info.resolution = is_object ? 0 : mesh.resolution;
+    if (mesh.primitive) info.bounds = primitive_bounds(*mesh.primitive);
+    for (const Vec3& point : points) grow(info.bounds, point);
+    return info;
+}
+
+MaterialInfo make_material_info(Id index, const Scene& scene) {
+    const Material& material = scene.materials[index];
+    MaterialInfo info;
+    info.name = material.name;
+    info.kind = material.metallic_factor == 1       ? "mirror"
+                : material.transmission_factor == 1 ? "glass"
+                : material.unlit                    ? "unlit"
+                                                    : "plain";
+    info.has_texture = material.base_color_texture != nullptr;
+    for (const Mesh& mesh : scene.meshes) {
+        const std::vector<Id>& used = mesh.object.material;
+        if (mesh.material == index || std::find(used.begin(), used.end(), index) != used.end()) ++info.meshes;
+    }
+    return info;
+}
+
+}  // namespace
+
+SceneInfo make_scene_info(const Scene& scene) {
+    SceneInfo info;
+    for (const CameraDescription& camera : scene.cameras) info.cameras.push_back(camera.name);
+    for (const Mesh& mesh : scene.meshes) {
+        info.meshes.push_back(make_mesh_info(mesh, scene));
+        ++(mesh.role == Role::kObject ? info.objects : info.optics);
+        info.triangles += info.meshes.back().triangles;
+        grow(info.bounds, info.meshes.back().bounds);
+    }
+    for (Id i = 0; i < scene.materials.size(); ++i) info.materials.push_back(make_material_info(i, scene));
+    info.lights = scene.lights.size();
+    return info;
+}
+
+}  // namespace trilens

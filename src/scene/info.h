@@ -1,0 +1,49 @@
+// What a scene holds, counted: the answer of `trilens scene info`.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace trilens {
+
+/// An axis-parallel box, world frame. `empty` until a point is in it.
+struct Bounds {
+    bool empty = true;
+    Vec3 low{0}, high{0};
+};
+
+struct MeshInfo {
+    std::string name;
+    Role role = Role::kObject;
+    std::string shape;         // "polygons", "catmullClark", "loop", "bilinear", "sphere", "paraboloid", "cylinder", "plane"
+    std::string material;      // its name; "inherit" where the triangles carry their own
+    std::size_t points = 0;    // 0 for a primitive
+    std::size_t faces = 0;     // 0 for a primitive
+    std::size_t triangles = 0; // of an object
+    std::size_t creases = 0, corners = 0, holes = 0;  // of a cage: crease edges, corner points, hole faces
+    int resolution = 0;        // of an optic
+    Bounds bounds;             // an optic's: of its cage, which holds its limit surface; of a primitive: exact or a little larger
+};
+
+struct MaterialInfo {
+    std::string name;
+    std::string kind;         // "mirror", "glass", "unlit", "plain"
+    bool has_texture = false;
+    std::size_t meshes = 0;   // that name it or have a triangle of it
+};
+
+struct SceneInfo {
+    std::vector<std::string> cameras;  // names
+    std::vector<MeshInfo> meshes;
+    std::vector<MaterialInfo> materials;
+    std::size_t lights = 0;
+    std::size_t objects = 0, optics = 0, triangles = 0;
+    Bounds bounds;
+};
+
+SceneInfo make_scene_info(const Scene& scene);
+
+}  // namespace trilens

@@ -1,0 +1,83 @@
+// From a scene file to a Scene: parse, override, check against the schema, then read part by part.
+#include "scene/load.h"
+
+#include <set>
+
+#include "scene/files.h"
+#include "scene/json_check.h"
+#include "scene/override.h"
+#include "scene/reading.h"
+
+namespace trilens {
+namespace {
+
+void check_unique(const std::string& name, const Node& node, std::set<std::string>& names) {
+    if (names.insert(name).second) return;
+    (node.has("name") ? node["name"] : node).fail("the name '" + name + "' is taken already");
+}
+
+void read_cameras(const Node& root, Reading& reading) {
+    std::set<std::string> names;
+    const Node cameras = root["cameras"];
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        reading.scene.cameras.push_back(read_camera(cameras[i], i, reading));
+        check_unique(reading.scene.cameras.back().name, cameras[i], names);
+    }
+}
+
+void read_materials(const Node& root, Reading& reading) {
+    std::set<std::string> names;
+    if (!root.has("materials")) return;
+    const Node materials = root["materials"];
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        reading.scene.materials.push_back(read_material(materials[i], reading));
+        check_unique(reading.scene.materials.back().name, materials[i], names);
+    }
+}
+
+void read_meshes(const Node& root, Reading& reading) {
+    const std::size_t named_materials = reading.scene.materials.size();
+    std::set<std::string> names;
+    std::set<Id> used;
+    if (root.has("meshes")) {
+        const Node meshes = root["meshes"];
+        for (std::size_t i = 0; i < meshes.size(); ++i) {
+            const Mesh& mesh = reading.scene.meshes.emplace_back(read_mesh(meshes[i], i, reading));
+            if (!names.insert(mesh.name).second) reading.warn(meshes[i].place, "the name '" + mesh.name + "' is taken already");
+            used.insert(mesh.material);
+        }
+    }
+    if (reading.scene.meshes.empty()) reading.warn("", "the scene has no meshes");
+    for (Id i = 0; i < named_materials; ++i)
+        if (used.count(i) == 0)
+            reading.warn("/materials/" + std::to_string(i), "the material '" + reading.scene.materials[i].name + "' is not used");
+}
+
+}  // namespace
+
+Scene load_scene_text(const std::string& text, const std::string& file, std::span<const SceneOverride> overrides,
+                      const TextureReader& textures) {
+    Json json = parse_json(text, file);
+    apply_overrides(json, overrides, file);
+    if (const auto found = find_problem(json, scene_schema_json())) throw InputError(file, found->place, found->message);
+
+    Reading reading{file, textures, {}, {}};
+    const Node root{json, "", file};
+    reading.scene.file = file;
+    reading.scene.resolved = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    reading.scene.film = read_film(root);
+    read_cameras(root, reading);
+    reading.scene.background = read_background(root, reading);
+    read_materials(root, reading);
+    read_meshes(root, reading);
+    if (root.has("lights"))
+        for (std::size_t i = 0; i < root["lights"].size(); ++i) reading.scene.lights.push_back(read_light(root["lights"][i]));
+    reading.scene.render = read_render(root, reading);
+    return std::move(reading.scene);
+}
+
+Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides, const TextureReader& textures) {
+    return load_scene_text(read_required_file(file), file, overrides, textures);
+}
+
+}  // namespace trilens

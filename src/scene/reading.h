@@ -1,0 +1,56 @@
+// What the readers of a scene file's parts share.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "scene/json.h"
+#include "scene/load.h"
+#include "scene/polygons.h"
+
+namespace trilens {
+
+/// One scene being read.
+struct Reading {
+    const std::string& file;
+    const TextureReader& textures;
+    Scene scene;
+    std::map<std::string, std::shared_ptr<const Texture>> texture_of_path;
+
+    /// A path as the scene file writes it, relative to that file.
+    std::string resolve(const std::string& path) const { return (std::filesystem::path(file).parent_path() / path).string(); }
+    void warn(const std::string& place, const std::string& message) {
+        scene.warnings.push_back(file + ": " + (place.empty() ? "" : place + ": ") + message);
+    }
+};
+
+/// Reads each picture once. Throws what the texture reader throws.
+std::shared_ptr<const Texture> read_picture(Reading& reading, const std::string& path);
+
+/// The picture that a JSON string names. Throws InputError with the string's place.
+std::shared_ptr<const Texture> read_picture(Reading& reading, const Node& path);
+
+/// A direction of any length but 0, made unit.
+Vec3 read_direction(const Node& direction);
+
+// Parts of a scene, all of a checked document.
+CameraDescription read_camera(const Node& camera, std::size_t index, Reading& reading);
+Film read_film(const Node& scene);
+Background read_background(const Node& scene, Reading& reading);
+Light read_light(const Node& light);
+RenderSettings read_render(const Node& scene, Reading& reading);
+Material read_material(const Node& material, Reading& reading);
+Mesh read_mesh(const Node& mesh, std::size_t index, Reading& reading);
+Primitive read_primitive(const Node& primitive, const Transform& transform, const Node& mesh);
+Transform read_transform(const Node& mesh);
+
+/// Inline points, faces and uvs of a mesh.
+PolygonMesh read_inline_polygons(const Node& mesh);
+/// Polygons of the file that a mesh names; with `inherit`, the file's materials are read too.
+PolygonMesh read_mesh_file(const Node& mesh, bool inherit, Reading& reading);
+/// Scheme, boundary, creases, corners and holes that the JSON gives; they replace those of a file.
+void read_subdivision(const Node& mesh, Cage& cage);
+
+}  // namespace trilens

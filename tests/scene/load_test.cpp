@@ -1,0 +1,121 @@
+// What a good scene becomes.
+#include <cmath>
+#include <fstream>
+
+#include "scene_text.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+TEST_CASE("a scene file becomes plain data") {
+    const Scene scene = load_text(kRoom);
+    CHECK(scene.file == "room.json");
+    CHECK(scene.film.width == 64);
+    CHECK(scene.film.spp == 2);
+
+    REQUIRE(scene.cameras.size() == 2);
+    CHECK(scene.cameras[0].eye == Vec3(0, 1, 4));
+    CHECK(scene.cameras[0].yfov == 40);
+    CHECK(scene.cameras[1].type == CameraDescription::Type::kRayMesh);
+    CHECK(scene.cameras[1].directions[2] == Vec3(0, 0, -2));
+    CHECK(scene.cameras[1].triangles[0] == IdTriple{0, 1, 2});
+
+    REQUIRE(scene.materials.size() == 3);
+    CHECK(scene.materials[1].attenuation_color == Vec3(1, 0.5, 1));
+    CHECK(scene.materials[1].attenuation_distance == 2);
+    CHECK(scene.materials[2].unlit);
+
+    REQUIRE(scene.meshes.size() == 3);
+    const Mesh &cage = scene.meshes[0], &ball = scene.meshes[1], &wall = scene.meshes[2];
+    CHECK(cage.role == Role::kOptic);
+    CHECK(cage.material == 1);
+    CHECK(cage.cage.points[2] == Vec3(1, 2, 1));  // scaled by 2 along Y, moved by 1 along Z
+    CHECK(cage.cage.interpolate_boundary == InterpolateBoundary::kEdgeOnly);
+    CHECK(cage.cage.crease_lengths == std::vector<int>{3});
+    CHECK(cage.normals.type == NormalOverride::Type::kNoise);
+    CHECK(cage.normals.seed == 7);
+    REQUIRE(ball.primitive);
+    CHECK(ball.resolution == 8);
+    CHECK(wall.object.triangles == std::vector<IdTriple>{{0, 1, 2}, {0, 2, 3}});
+    CHECK(wall.object.material == std::vector<Id>{2, 2});
+    CHECK(wall.object.uvs[1][1] == Vec2(1, 1));
+
+    REQUIRE(scene.lights.size() == 3);
+    CHECK(length(scene.lights[0].direction) == Approx(1));
+    CHECK(scene.lights[0].shadows);
+    CHECK(scene.lights[1].position == Vec3(2, 3, 2));
+    CHECK(scene.render.reflect);
+}
+
+TEST_CASE("the resolved scene is one line that loads as the same scene") {
+    const Scene scene = load_text(kRoom, {{"/film/width", "99"}, {"/render/paths", "[\"reflect\"]"}});
+    CHECK(scene.resolved.find('\n') == std::string::npos);
+    const Scene again = load_text(scene.resolved);
+    CHECK(again.resolved == scene.resolved);
+    CHECK(again.film.width == 99);
+    CHECK_FALSE(again.render.direct);
+    CHECK(again.meshes[0].cage.points == scene.meshes[0].cage.points);
+}
+
+TEST_CASE("comments, free keys and the smallest scene") {
+    const std::string small = R"({ "version": 1, // a comment
+        /* another */ "x-tool": { "any": [1, {"thing": null}] }, "extras": 3,
+        "cameras": [ { "lookAt": { "eye": [0,0,1], "at": [0,0,0], "x-why": 1 } } ] })";
+    const Scene scene = load_text(small);
+    CHECK(scene.cameras[0].name == "camera0");
+    CHECK(scene.cameras[0].up == Vec3(0, 1, 0));
+    REQUIRE(scene.warnings.size() == 1);
+    CHECK(scene.warnings[0] == "room.json: the scene has no meshes");
+}
+
+TEST_CASE("what is doubtful is a warning with its place") {
+    const auto warned = [](const std::vector<SceneOverride>& overrides, const std::string& warning) {
+        const Scene scene = load_text(kRoom, overrides);
+        for (const std::string& found : scene.warnings)
+            if (found == "room.json: " + warning) return true;
+        for (const std::string& found : scene.warnings) UNSCOPED_INFO(found);
+        return false;
+    };
+    CHECK(warned({{"/render/maxDepth", "2"}}, "/render/maxDepth: first hits only are drawn so far"));
+    CHECK(warned({{"/materials/1/dispersion", "0.3"}}, "/materials/1/dispersion: dispersion is ignored so far"));
+    CHECK(warned({{"/meshes/0/material", "chrome"}}, "/materials/1: the material 'glass' is not used"));
+    CHECK(warned({}, "/meshes/0: 6 edges have one face only: this glass is one interface, or a body with holes"));
+    CHECK(warned({{"/meshes/2/faceVertexIndices", "[0,1,1,3]"}}, "/meshes/2: 1 triangles have no area"));
+    CHECK(warned({{"/meshes/0/faceVertexIndices", "[0,1,2,3,1,2,5,4]"}},
+                 "/meshes/0: 1 edges are not manifold: more than two faces meet there, or their windings disagree"));
+    CHECK(warned({{"/meshes/0/creaseIndices", "[0,1,3]"}}, "/meshes/0: 1 creases lie where there is no edge"));
+    CHECK(warned({{"/meshes/1/name", "wall"}}, "/meshes/2: the name 'wall' is taken already"));
+    CHECK(warned({{"/meshes/2/material", "glass"}},
+                 "/meshes/2/material: a mirror or glass on an object is drawn as a plain surface: an optic reflects and refracts"));
+}
+
+TEST_CASE("creases come in chains, pairs, and with one sharpness per chain or edge") {
+    const Scene pairs = load_text(replaced(kRoom, R"("creaseIndices": [0,1,2], "creaseLengths": [3], "creaseSharpnesses": [2.5])",
+                                           R"("creaseIndices": [0,1,1,2], "creaseSharpnesses": [1,2])"));
+    CHECK(pairs.meshes[0].cage.crease_lengths == std::vector<int>{2, 2});
+    const Scene per_edge = load_text(kRoom, {{"/meshes/0/creaseSharpnesses", "[1,2]"}});
+    CHECK(per_edge.meshes[0].cage.crease_sharpnesses == std::vector<double>{1, 2});
+}
+
+TEST_CASE("holes of an object are not drawn, and uvIndices pick uvs") {
+    const Scene scene = load_text(kRoom, {{"/meshes/2/points", "[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[2,0,0],[2,1,0]]"},
+                                          {"/meshes/2/faceVertexCounts", "[4,4]"},
+                                          {"/meshes/2/faceVertexIndices", "[0,1,2,3,1,4,5,2]"},
+                                          {"/meshes/2/uvs", "[[0,0],[1,1]]"},
+                                          {"/meshes/2/uvIndices", "[0,0,0,0,1,1,1,0]"},
+                                          {"/meshes/2/holeIndices", "[0]"}});
+    CHECK(scene.meshes[2].face_count == 2);
+    CHECK(scene.meshes[2].object.triangles == std::vector<IdTriple>{{1, 4, 5}, {1, 5, 2}});
+    CHECK(scene.meshes[2].object.uvs[1] == std::array<Vec2, 3>{Vec2(1, 1), Vec2(1, 1), Vec2(0, 0)});
+}
+
+TEST_CASE("a background picture turns about the Y axis") {
+    const std::string folder = scratch_dir("scene_background");
+    std::ofstream(folder + "/sky.exr") << "stands for a picture";
+    const std::string text = replaced(kRoom, R"({ "color": [0.2,0.3,0.5] })", R"({ "file": "sky.exr", "rotate": 390 })");
+    const Scene scene = load_text(text, {}, folder + "/room.json");
+    CHECK(scene.background.environment);
+    CHECK(scene.background.rotate_cos == Approx(std::sqrt(0.75)));
+    CHECK(scene.background.rotate_sin == Approx(0.5));
+    CHECK(begins_with(error_of(text, {}, folder + "/elsewhere/room.json"), folder + "/elsewhere/room.json: /background/file: the picture '"));
+}
