@@ -30,8 +30,9 @@ struct FaceSide {
     bool reversed = false;    // the side runs against the edge
 };
 
-/// How a face hangs together with its neighbours. Square: corners (0,0), (1,0), (1,1), (0,1); triangle: (0,0), (1,0),
-/// (0,1). Side k runs from corner k to the next. Equal corners are one point in the world; kNone: no other face has it.
+/// How a face hangs together with its neighbours. Square: corners (0,0), (1,0), (1,1), (0,1); triangle: (0,0),
+/// (1,0), (0,1). Side k runs from corner k to the next. Equal corners are one point in the world; kNone: no other
+/// face has it.
 struct FaceBorder {
     std::array<Id, 4> corners{kNone, kNone, kNone, kNone};
     std::array<FaceSide, 4> sides{};

@@ -5,6 +5,7 @@
 // transitions between rules as OpenSubdiv documents them; limit masks: Halstead, Kass and DeRose 1993.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>

@@ -1,9 +1,12 @@
 // Cages for tests: small ones by hand, and the shapes under data/cages.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/cage.h"
