@@ -114,8 +114,7 @@ TEST_CASE("a flat mirror's rays meet what the mirrored eye sees") {
         TriangleScene scene;
         for (int k = 0; k < 20; ++k) {
             const Vec3 centre = random.in_cube(2) - Vec3(0, 0, 3);
-            add_triangle(scene, frame(centre + random.in_cube(1)), frame(centre + random.in_cube(1)),
-                         frame(centre + random.in_cube(1)));
+            add_random_triangle(scene, random, frame, {centre, 1});
         }
         const PreparedScene prepared(scene);
         const FacetSamples owned = rasterize_facets(mirror, grid);

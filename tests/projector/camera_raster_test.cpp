@@ -77,9 +77,10 @@ TEST_CASE("through a pinhole, draw is textbook rasterisation with a depth buffer
         for (int k = 0; k < 40; ++k) {
             const auto corner = [&] {
                 const double z = random.log_uniform(0.5, 50);
-                return Vec3(random.uniform(-1, 1) * z, random.uniform(-1, 1) * z, z);
+                return Vec3{random.uniform(-1, 1) * z, random.uniform(-1, 1) * z, z};
             };
-            add_triangle(scene, corner(), corner(), corner());
+            const Vec3 a = corner(), b = corner(), c = corner();
+            add_triangle(scene, a, b, c);
         }
         const std::vector<Pixel> expected = rasterized(scene, grid);
         std::vector<Hit> hits(grid.size());

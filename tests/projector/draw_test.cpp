@@ -220,9 +220,10 @@ TEST_CASE("whatever the triangles, hits are finite and inside their triangle") {
         TriangleScene scene;
         for (int k = 0; k < 30; ++k) {
             // Slivers, needles and specks, some through the rays' origins.
-            const Vec3 a = random.in_cube(3), b = a + random.in_cube(random.log_uniform(1e-9, 10));
-            const Vec3 c =
-                a + random.uniform(-1, 2) * (b - a) + random.in_cube(random.log_uniform(1e-16, 10));
+            const Vec3 a = random.in_cube(3);
+            const Vec3 b = a + random.in_cube(random.log_uniform(1e-6, 100));
+            const Vec3 on_line = a + random.uniform(-1, 2) * (b - a);
+            const Vec3 c = on_line + random.in_cube(random.log_uniform(1e-14, 100));
             add_triangle(scene, frame(a), frame(b), frame(k % 5 == 0 ? a : c));
         }
         for (const Hit& hit : drawn(scene, mesh, grid)) {

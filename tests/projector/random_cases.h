@@ -14,6 +14,7 @@ namespace trilens_test {
 
 using namespace trilens;
 
+/// The same draws with every compiler: take each in a statement or a braced list of its own.
 struct Random {
     std::mt19937_64 engine;
 
@@ -101,14 +102,27 @@ inline void add_triangle(TriangleScene& scene, const Vec3& a, const Vec3& b, con
     scene.primitive.push_back(static_cast<Id>(scene.primitive.size()));
 }
 
+struct Place {
+    Vec3 centre{0};
+    double half = 1;
+};
+
+/// A triangle with corners in the cube around the place.
+inline void add_random_triangle(TriangleScene& scene, Random& random, const Frame& frame,
+                                const Place& place) {
+    const Vec3 a = place.centre + random.in_cube(place.half);
+    const Vec3 b = place.centre + random.in_cube(place.half);
+    const Vec3 c = place.centre + random.in_cube(place.half);
+    add_triangle(scene, frame(a), frame(b), frame(c));
+}
+
 /// Triangles around the frame's origin, of sizes from specks to far larger than the facet.
 inline TriangleScene random_triangles(Random& random, const Frame& frame, int count) {
     TriangleScene scene;
     for (int i = 0; i < count; ++i) {
         const double reach = random.log_uniform(0.5, 8), half = reach * random.log_uniform(0.02, 2);
         const Vec3 centre = random.in_cube(reach);
-        add_triangle(scene, frame(centre + random.in_cube(half)), frame(centre + random.in_cube(half)),
-                     frame(centre + random.in_cube(half)));
+        add_random_triangle(scene, random, frame, {centre, half});
         scene.object.back() = static_cast<Id>(random.below(3));
     }
     return scene;

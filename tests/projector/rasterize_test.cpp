@@ -100,7 +100,7 @@ TEST_CASE(
         const double scale = random.log_uniform(1e-4, 1e4);
         const Vec3 inside = random.in_cube(0.9);
         const Quat turn =
-            glm::normalize(Quat(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), 0.1));
+            glm::normalize(Quat{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), 0.1});
         std::vector<Vec3> screen;
         for (int k = 0; k < 8; ++k) {
             const Vec3 p = scale * (turn * (Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1) - inside));
@@ -147,23 +147,25 @@ TEST_CASE("where facets overlap the smaller index owns; facets without rays or a
 }
 
 TEST_CASE("the sign of a difference of products is exact") {
-    // Products of 27-bit numbers are exact in long double.
+    // Integers of 53 bits have exact products in 128; c and d lie so close to a and b that double sees no
+    // difference.
+    __extension__ using Wide = __int128;
     Random random(14);
+    std::size_t equal_in_double = 0, wrong = 0;
     for (int i = 0; i < 20000; ++i) {
-        const double a = random.below(1 << 27) + 1.0, b = random.below(1 << 27) + 1.0;
-        const double near = std::floor(a * b / (a + random.below(3) - 1 + (a == 1)));
-        const double c = a + random.below(3) - 1, d = i % 3 == 0 ? b : near;
-        const double scale = random.log_uniform(1e-4, 1e4);
-        const long double exact =
-            static_cast<long double>(a * scale) * b - static_cast<long double>(c * scale) * d;
+        const double a = std::floor(random.uniform(0x1p52, 0x1p53));
+        const double b = a + random.below(9) - 4, c = a + random.below(9) - 4, d = b + random.below(9) - 4;
+        const Wide exact =
+            static_cast<Wide>(a) * static_cast<Wide>(b) - static_cast<Wide>(c) * static_cast<Wide>(d);
         const int sign = exact > 0 ? 1 : exact < 0 ? -1 : 0;
-        // 53 + 27 bits need not fit long double's 64: only compare where the difference is clear of its
-        // rounding.
-        if (sign == 0 || std::fabs(exact) < 1e-18L * static_cast<long double>(a * scale) * b) continue;
-        REQUIRE(sign_of_difference(a * scale, b, c * scale, d) == sign);
-        REQUIRE(sign_of_difference(c * scale, d, a * scale, b) == -sign);
-        REQUIRE((difference_of_products(a * scale, b, c * scale, d) > 0) == (sign > 0));
+        const double value = difference_of_products(a, b, c, d);
+        equal_in_double += a * b == c * d && sign != 0;
+        wrong += sign_of_difference(a, b, c, d) != sign || sign_of_difference(c, d, a, b) != -sign;
+        wrong +=
+            std::fabs(value - static_cast<double>(exact)) > 4e-16 * std::fabs(static_cast<double>(exact));
     }
+    CHECK(equal_in_double > 100);
+    CHECK(wrong == 0);
     const double e = 0x1p-52;
     CHECK(sign_of_difference(1 + e, 1 - e, 1, 1) == -1);
     CHECK(sign_of_difference(1, 1, 1 + e, 1 - e) == 1);

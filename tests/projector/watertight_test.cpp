@@ -120,9 +120,8 @@ TEST_CASE("around a corner that lies on a ray exactly one triangle is seen") {
         const int spokes = 3 + random.below(8);
         for (int k = 0; k < spokes; ++k) {
             const double turn = 6.28318530717959 * (k + random.uniform(-0.2, 0.2)) / spokes;
-            rim.push_back(hub + frame.scale * random.uniform(0.2, 3) *
-                                    (std::cos(turn) * across + std::sin(turn) * up +
-                                     random.uniform(-0.9, 0.9) * along));
+            const double reach = frame.scale * random.uniform(0.2, 3), lean = random.uniform(-0.9, 0.9);
+            rim.push_back(hub + reach * (std::cos(turn) * across + std::sin(turn) * up + lean * along));
         }
         int seen = 0;
         for (std::size_t k = 0; k < rim.size(); ++k) {

@@ -79,7 +79,8 @@ TEST_CASE("a pinhole's edge conics are lines") {
     const Vec3 eye = random_vector(1);
     rays.weight = {1, 0, 0};
     rays.origin = {eye, Vec3(0), Vec3(0)};
-    const EdgeConic conic = edge_conic(line_quadratic(rays), random_vector(2), random_vector(2));
+    const Vec3 a = random_vector(2), b = random_vector(2);
+    const EdgeConic conic = edge_conic(line_quadratic(rays), a, b);
     CHECK(conic.c[3] == 0);
     CHECK(conic.c[4] == 0);
     CHECK(conic.c[5] == 0);
