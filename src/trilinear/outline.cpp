@@ -24,6 +24,14 @@ bool beyond_border(const ConicArc& arc) {
     return false;
 }
 
+// From the facet's middle.
+double distance_of_chord(const ConicArc& arc) {
+    const Vec3 from = arc.control[0] - Vec3(1.0 / 3), chord = arc.control[2] - arc.control[0];
+    const double length2 = dot(chord, chord);
+    const double share = length2 > 0 ? std::clamp(-dot(from, chord) / length2, 0.0, 1.0) : 0.0;
+    return length(from + share * chord);
+}
+
 // Draws sections of shapes as polylines.
 class Pen {
   public:
@@ -59,9 +67,8 @@ class Pen {
     // Appends the end of every piece that is flat enough.
     void flatten(const ConicArc& arc, std::size_t edge, int depth, std::vector<ImageVertex>& vertices) const {
         double tolerance = params_.tolerance;
-        if (params_.clip == Clip::kUnclipped) {
-            for (const Vec3& c : arc.control) tolerance = std::max(tolerance, params_.tolerance * length(c));
-        }
+        if (params_.clip == Clip::kUnclipped)
+            tolerance *= std::max(1.0, distance_of_chord(arc) - sagitta(arc));
         const bool unseen = params_.clip != Clip::kUnclipped && beyond_border(arc);
         if (unseen || depth == kDeepestHalving || sagitta(arc) <= tolerance) {
             const EdgePoint cut =
@@ -169,7 +176,6 @@ std::optional<ImageVertex> plane_hit(const TrilinearFacet& facet, const SceneTri
 }
 
 bool may_image(const TrilinearFacet& facet, const SceneTriangle& triangle) {
-    const Coplanarity cubic = make_coplanarity(facet);
     const Vec3& a = triangle.corner[0];
     const Vec3 normal = cross(triangle.corner[1] - a, triangle.corner[2] - a);
 
@@ -179,14 +185,16 @@ bool may_image(const TrilinearFacet& facet, const SceneTriangle& triangle) {
     double size = 0;
     for (const Ray& ray : facet.corner) {
         const double slope = dot(normal, ray.direction), height = dot(normal, a - ray.origin);
-        const double slack = kRejectSlack * length(normal) * (length(a - ray.origin) + length(ray.direction));
-        up &= slope > slack, down &= slope<-slack, above &= height> slack, below &= height < -slack;
+        const double steep = kRejectSlack * length(normal) * length(ray.direction);
+        const double high = kRejectSlack * length(normal) * length(a - ray.origin);
+        up &= slope > steep, down &= slope<-steep, above &= height> high, below &= height < -high;
         size = std::max({size, length(ray.direction) * length(a - ray.origin)});
     }
     if ((up && below) || (down && above)) return false;
 
     // A ray that hits has all three sides of the sign of normal . direction. The form's six coefficients are
     // those of Bernstein over the facet, so that they bound the side.
+    const Coplanarity cubic = make_coplanarity(facet);
     bool positive = !down, negative = !up;
     for (std::size_t e = 0; e < 3; ++e) {
         const Mat3 form = conic_form(cubic, triangle.from(e), triangle.to(e));

@@ -34,7 +34,8 @@ struct ShapeParams {
     Curves curves = Curves::kArcs;
     Clip clip = Clip::kScene;
     int pieces = 8;           // kSlices, kTessellate: at least 1
-    double tolerance = 1e-3;  // kArcs: how far a polygon may leave its curve, in weights
+    double tolerance = 1e-3;  // kArcs: how far a polygon may leave its curve, in weights; kUnclipped: away
+                              // from the facet times the distance
 };
 
 /// The image with t >= 0. A weight belongs to it where an odd number of outlines holds it (even-odd rule over
