@@ -79,6 +79,7 @@ class BorrowedNormals final : public Surface {
 
     std::size_t face_count() const override { return surface_->face_count(); }
     FaceDomain domain(Id face) const override { return surface_->domain(face); }
+    FaceBorder border(Id face) const override { return surface_->border(face); }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override { return turned(surface_->eval(face, uv)); }
 

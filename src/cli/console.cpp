@@ -38,7 +38,7 @@ int stop_exit_code() { return g_signal == SIGTERM ? 143 : 130; }
 Console::Console(const ConsoleOptions& options) : options_(options) {
     if (options_.progress == ProgressStyle::kAuto)
         options_.progress = is_live_terminal() ? ProgressStyle::kBar : ProgressStyle::kPlain;
-    if (options_.quiet) options_.progress = ProgressStyle::kNone;
+    if (options_.quiet) options_.progress = ProgressStyle::kSilent;
     colour_ = options_.colour == ColourStyle::kAlways ||
               (options_.colour == ColourStyle::kAuto && is_live_terminal() && !std::getenv("NO_COLOR"));
 }
@@ -82,7 +82,7 @@ Progress Console::progress(const std::string& job) {
     started_ = last_time_ = std::chrono::steady_clock::now();
     Progress progress;
     progress.cancel = &stop_requested();
-    if (options_.progress != ProgressStyle::kNone)
+    if (options_.progress != ProgressStyle::kSilent)
         progress.report = [this, job](double done) { draw(job, done); };
     return progress;
 }

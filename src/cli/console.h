@@ -11,7 +11,7 @@
 
 namespace trilens {
 
-enum class ProgressStyle { kAuto, kBar, kPlain, kJson, kNone };
+enum class ProgressStyle { kAuto, kBar, kPlain, kJson, kSilent };
 enum class ColourStyle { kAuto, kAlways, kNever };
 
 struct ConsoleOptions {

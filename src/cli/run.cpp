@@ -36,7 +36,7 @@ struct Chosen {
 };
 
 const std::map<std::string, ProgressStyle> kProgressNames{{"auto", ProgressStyle::kAuto}, {"bar", ProgressStyle::kBar},
-    {"plain", ProgressStyle::kPlain}, {"json", ProgressStyle::kJson}, {"none", ProgressStyle::kNone}};
+    {"plain", ProgressStyle::kPlain}, {"json", ProgressStyle::kJson}, {"none", ProgressStyle::kSilent}};
 const std::map<std::string, ColourStyle> kColourNames{
     {"auto", ColourStyle::kAuto}, {"always", ColourStyle::kAlways}, {"never", ColourStyle::kNever}};
 
