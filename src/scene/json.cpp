@@ -15,7 +15,8 @@ constexpr std::size_t kDeepest = 64;  // levels; the scene format itself needs 6
 
 std::string line_and_column(const std::string& text, std::size_t position) {
     const std::size_t at = position == 0 ? 0 : std::min(position, text.size() + 1) - 1;
-    const auto begin = text.begin(), end = text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size()));
+    const auto begin = text.begin(),
+               end = text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size()));
     const auto line = std::count(begin, end, '\n') + 1;
     const std::size_t newline = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
     const std::size_t column = newline == std::string::npos ? at + 1 : at - newline;
@@ -46,7 +47,8 @@ class Builder : public nlohmann::json_sax<Json> {
         return true;
     }
 
-    bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
+    bool parse_error(std::size_t position, const std::string&,
+                     const nlohmann::detail::exception& error) override {
         std::string message = error.what();
         for (const char* start : {"syntax error", "number overflow", "parse error"}) {
             const std::size_t found = message.find(start);
@@ -68,9 +70,11 @@ class Builder : public nlohmann::json_sax<Json> {
     std::string place() const {
         std::string pointer;
         for (const Level& level : levels_) {
-            const bool next_is_inside = &level != &levels_.back();  // then the entry stands in its array already
-            pointer += "/" + (level.value->is_object() ? escape_key(level.key)
-                                                       : std::to_string(level.value->size() - (next_is_inside ? 1 : 0)));
+            const bool next_is_inside =
+                &level != &levels_.back();  // then the entry stands in its array already
+            pointer += "/" + (level.value->is_object()
+                                  ? escape_key(level.key)
+                                  : std::to_string(level.value->size() - (next_is_inside ? 1 : 0)));
         }
         return pointer;
     }
@@ -137,7 +141,8 @@ std::string describe(const Json& value) {
     if (value.is_number_float()) return "the number " + describe(value.get<double>());
     const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (value.is_number()) return "the number " + text;
-    if (value.is_string()) return "the string " + (text.size() <= kLongest ? text : text.substr(0, kLongest) + "...\"");
+    if (value.is_string())
+        return "the string " + (text.size() <= kLongest ? text : text.substr(0, kLongest) + "...\"");
     return text;
 }
 
@@ -145,7 +150,9 @@ Vec3 to_vec3(const Json& value) {
     return {value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>()};
 }
 
-Vec2 to_vec2(const Json& value) { return {value.at(0).get<double>(), value.at(1).get<double>()}; }
+Vec2 to_vec2(const Json& value) {
+    return {value.at(0).get<double>(), value.at(1).get<double>()};
+}
 
 Vec3 vec3_or(const Node& parent, const char* key, const Vec3& fallback) {
     return parent.has(key) ? to_vec3(parent.json.at(key)) : fallback;

@@ -36,7 +36,9 @@ struct Node {
     std::size_t size() const { return json.size(); }
     bool has(const char* key) const { return json.contains(key); }
     Node operator[](const char* key) const { return {json.at(key), place + "/" + escape_key(key), file}; }
-    Node operator[](std::size_t index) const { return {json.at(index), place + "/" + std::to_string(index), file}; }
+    Node operator[](std::size_t index) const {
+        return {json.at(index), place + "/" + std::to_string(index), file};
+    }
 };
 
 // Readers for values whose type and length the schema has checked already.
