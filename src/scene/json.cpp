@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <unordered_set>
 #include <utility>
@@ -43,7 +44,7 @@ class Builder : public nlohmann::json_sax<Json> {
     bool key(string_t& key) override {
         levels_.back().key = key;
         if (!levels_.back().keys.insert(key).second)
-            throw InputError(file_, place(), "this key stands twice in its object");
+            fail_at(file_, place(), "this key stands twice in its object");
         return true;
     }
 
@@ -56,7 +57,7 @@ class Builder : public nlohmann::json_sax<Json> {
             message = message.substr(found);
             break;
         }
-        throw InputError(file_, line_and_column(text_, position), message);
+        fail_at(file_, line_and_column(text_, position), message);
     }
 
   private:
@@ -91,7 +92,7 @@ class Builder : public nlohmann::json_sax<Json> {
     }
     bool open(Json&& value) {
         if (levels_.size() >= kDeepest)
-            throw InputError(file_, place(), "nested deeper than " + std::to_string(kDeepest) + " levels");
+            fail_at(file_, place(), "nested deeper than " + std::to_string(kDeepest) + " levels");
         levels_.push_back({insert(std::move(value)), {}, {}});
         return true;
     }
@@ -113,6 +114,16 @@ Json parse_json(const std::string& text, const std::string& file) {
     constexpr bool kWholeText = true, kIgnoreComments = true;
     Json::sax_parse(text, &builder, Json::input_format_t::json, kWholeText, kIgnoreComments);
     return builder.take();
+}
+
+std::string one_line(std::string text) {
+    for (char& letter : text)
+        if (std::iscntrl(static_cast<unsigned char>(letter))) letter = ' ';
+    return text;
+}
+
+void fail_at(const std::string& file, const std::string& place, const std::string& message) {
+    throw InputError(file, one_line(place), one_line(message));
 }
 
 std::string escape_key(std::string_view key) {

@@ -62,7 +62,7 @@ Scene load_scene_text(const std::string& text, const std::string& file,
     Json json = parse_json(text, file);
     apply_overrides(json, overrides, file);
     if (const auto found = find_problem(json, scene_schema_json()))
-        throw InputError(file, found->place, found->message);
+        fail_at(file, found->place, found->message);
 
     Reading reading{file, textures, {}, {}};
     const Node root{json, "", file};

@@ -15,7 +15,7 @@ struct Target {
     const std::string& file;
 
     [[noreturn]] void fail(const std::string& message) const {
-        throw InputError(file, change.pointer, message + " (in --set)");
+        fail_at(file, change.pointer, message + " (in --set)");
     }
 };
 

@@ -27,7 +27,7 @@ struct Reading {
         return (std::filesystem::path(file).parent_path() / path).string();
     }
     void warn(const std::string& place, const std::string& message) {
-        scene.warnings.push_back(file + ": " + (place.empty() ? "" : place + ": ") + message);
+        scene.warnings.push_back(file + ": " + one_line((place.empty() ? "" : place + ": ") + message));
     }
 };
 

@@ -27,7 +27,7 @@ TEST_CASE("the room that the others break is good") {
     CHECK(error_of(kRoom) == "");
 }
 
-TEST_CASE("files that are missing, unreadable or no JSON") {
+TEST_CASE("files that are missing or unreadable or no JSON") {
     const std::string folder = scratch_dir("scene_bad_files");
     const auto error = [&](const std::string& file) {
         try {
@@ -51,7 +51,7 @@ TEST_CASE("files that are missing, unreadable or no JSON") {
     CHECK(error(folder + "/good.json") == "");
 }
 
-TEST_CASE("syntax errors come with line and column, in one line") {
+TEST_CASE("syntax errors come with line and column in one line") {
     const std::string trailing = error_of("{\n  \"version\": 1,\n  \"cameras\": [],\n}");
     CHECK(begins_with(trailing, "room.json: line 4, column 1: syntax error"));
     CHECK(trailing.find('\n') == std::string::npos);
@@ -86,7 +86,14 @@ TEST_CASE("an unknown key is named with the nearest known one") {
           "room.json: /meshes/1/primitive/height: 'height' is no key of a sphere");
 }
 
-TEST_CASE("wrong types, ranges and lengths") {
+TEST_CASE("what a message quotes does not break its line") {
+    CHECK(error_of(replaced(kRoom, "\"spp\"", "\"s\\np\"")) ==
+          "room.json: /film/s p: unknown key 's p' of a film; did you mean 'spp'?");
+    CHECK(error_with("/meshes/2/material", "\"a\\nb\"") ==
+          "room.json: /meshes/2/material: unknown material 'a b'; known: chrome, glass, red");
+}
+
+TEST_CASE("wrong types and ranges and lengths") {
     check_all({
         {"/version", "2", "/version: the number 2 is not 1"},
         {"/film", "[1]", "/film: expected an object, found an array of 1"},
@@ -173,7 +180,7 @@ TEST_CASE("indices and lengths that do not fit each other") {
         "room.json: /meshes/0/creaseIndices: without creaseLengths the points go in pairs, but there are 3");
 }
 
-TEST_CASE("cameras, directions and transforms that mean nothing") {
+TEST_CASE("cameras and directions and transforms that mean nothing") {
     check_all({
         {"/cameras/0/lookAt/at", "[0,1,4]",
          "/cameras/0/lookAt: eye and at are the same point: the camera looks nowhere"},

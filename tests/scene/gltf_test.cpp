@@ -79,7 +79,7 @@ std::string read_error(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("glTF triangles: lists, strips, fans, with and without indices") {
+TEST_CASE("glTF triangles: lists and strips and fans with and without indices") {
     const std::string folder = scratch_dir("scene_gltf_modes");
     Square square;
     const auto indices = [&](const std::string& primitive) {
@@ -122,7 +122,7 @@ TEST_CASE("glTF nodes: matrices and TRS through the hierarchy; mirrored ones kee
           ": /nodes/0: mesh 1 is out of range: there are 1");
 }
 
-TEST_CASE("glTF accessors: sparse, normalised, out of bounds") {
+TEST_CASE("glTF accessors: sparse or normalised or out of bounds") {
     const std::string folder = scratch_dir("scene_gltf_accessors");
     Square square;
     const std::string sparse =
@@ -256,7 +256,7 @@ TEST_CASE("the modes of Mesh_PrimitiveMode draw the same square") {
     CHECK(drawn >= 6);
 }
 
-TEST_CASE("every OBJ, glTF and GLB at hand loads or says why not") {
+TEST_CASE("every OBJ and glTF and GLB at hand loads or says why not") {
     if (!std::filesystem::exists(kModels)) TRILENS_SKIP("needs assimp's test models");
     int loaded = 0, refused = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(kModels)) {

@@ -57,7 +57,7 @@ TEST_CASE("the resolved scene is one line that loads as the same scene") {
     CHECK(again.meshes[0].cage.points == scene.meshes[0].cage.points);
 }
 
-TEST_CASE("comments, free keys and the smallest scene") {
+TEST_CASE("comments and free keys and the smallest scene") {
     const std::string small = R"({ "version": 1, // a comment
         /* another */ "x-tool": { "any": [1, {"thing": null}] }, "extras": 3,
         "cameras": [ { "lookAt": { "eye": [0,0,1], "at": [0,0,0], "x-why": 1 } } ] })";
@@ -94,7 +94,7 @@ TEST_CASE("what is doubtful is a warning with its place") {
                  "reflects and refracts"));
 }
 
-TEST_CASE("creases come in chains, pairs, and with one sharpness per chain or edge") {
+TEST_CASE("creases come in chains or pairs with one sharpness per chain or edge") {
     const Scene pairs = load_text(
         replaced(kRoom, R"("creaseIndices": [0,1,2], "creaseLengths": [3], "creaseSharpnesses": [2.5])",
                  R"("creaseIndices": [0,1,1,2], "creaseSharpnesses": [1,2])"));
@@ -103,7 +103,7 @@ TEST_CASE("creases come in chains, pairs, and with one sharpness per chain or ed
     CHECK(per_edge.meshes[0].cage.crease_sharpnesses == std::vector<double>{1, 2});
 }
 
-TEST_CASE("holes of an object are not drawn, and uvIndices pick uvs") {
+TEST_CASE("holes of an object are not drawn and uvIndices pick uvs") {
     const Scene scene =
         load_text(kRoom, {{"/meshes/2/points", "[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[2,0,0],[2,1,0]]"},
                           {"/meshes/2/faceVertexCounts", "[4,4]"},

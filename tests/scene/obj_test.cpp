@@ -66,7 +66,7 @@ TEST_CASE("an OBJ becomes a cage with its tags") {
     CHECK(obj.warnings.empty());
 }
 
-TEST_CASE("several edges in one crease tag are read as pairs, with a warning") {
+TEST_CASE("several edges in one crease tag are read as pairs with a warning") {
     const ObjFile obj = parse_obj(kQuad + "t crease 4/2/0 0 1 2 3 1 2\n", "cage.obj");
     CHECK(obj.mesh.cage.crease_indices == std::vector<int>{0, 1, 2, 3});
     CHECK(obj.mesh.cage.crease_sharpnesses == std::vector<double>{1, 2});
@@ -156,7 +156,7 @@ TEST_CASE("two readers agree on the cages and models") {
     CHECK(files == 19);
 }
 
-TEST_CASE("cages load as optics and as objects, and count the same") {
+TEST_CASE("cages load as optics and as objects and count the same") {
     TRILENS_NEEDS_DATA("cages/catmark_pawn.obj");
     const auto scene_with = [](const std::string& file, const std::string& role, const std::string& more) {
         return load_text(kRoom, {{"/meshes/0", R"({"role":")" + role + R"(","material":"chrome","file":")" +

@@ -16,7 +16,7 @@
 using namespace trilens;
 using namespace trilens_test;
 
-TEST_CASE("every example loads, without warnings that matter") {
+TEST_CASE("every example loads without warnings that matter") {
     CHECK(scene_examples().size() >= 3);
     for (const SceneExample& example : scene_examples()) {
         INFO(example.name);
@@ -85,7 +85,7 @@ TEST_CASE("the schema accepts the good and refuses the broken") {
     CHECK_FALSE(broken("/extras", {{"free", 1}}));
 }
 
-TEST_CASE("law: what loads is what the schema accepts, but for what a schema cannot say") {
+TEST_CASE("law: what loads is what the schema accepts but for what a schema cannot say") {
     Validator validator;
     std::vector<std::string> pointers;
     collect(parse(kRoom), "", pointers);
