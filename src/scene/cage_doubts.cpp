@@ -16,7 +16,9 @@ struct FaceEdge {
     bool ascending;
 
     bool joins_as(const FaceEdge& other) const { return low == other.low && high == other.high; }
-    bool operator<(const FaceEdge& other) const { return std::pair(low, high) < std::pair(other.low, other.high); }
+    bool operator<(const FaceEdge& other) const {
+        return std::pair(low, high) < std::pair(other.low, other.high);
+    }
 };
 
 std::vector<FaceEdge> sorted_edges(const Cage& cage) {
@@ -26,7 +28,8 @@ std::vector<FaceEdge> sorted_edges(const Cage& cage) {
     for (const int count : cage.face_vertex_counts) {
         const auto corners = static_cast<std::size_t>(count);
         for (std::size_t k = 0; k < corners; ++k) {
-            const int a = cage.face_vertex_indices[first + k], b = cage.face_vertex_indices[first + (k + 1) % corners];
+            const int a = cage.face_vertex_indices[first + k],
+                      b = cage.face_vertex_indices[first + (k + 1) % corners];
             edges.push_back({std::min(a, b), std::max(a, b), a < b});
         }
         first += corners;
@@ -40,7 +43,8 @@ void count_edges(const std::vector<FaceEdge>& edges, CageDoubts& doubts) {
         std::size_t end = i;
         while (end < edges.size() && edges[end].joins_as(edges[i])) ++end;
         if (end - i == 1) ++doubts.boundary_edges;
-        if (end - i > 2 || (end - i == 2 && edges[i].ascending == edges[i + 1].ascending)) ++doubts.non_manifold_edges;
+        if (end - i > 2 || (end - i == 2 && edges[i].ascending == edges[i + 1].ascending))
+            ++doubts.non_manifold_edges;
         i = end;
     }
 }
@@ -50,7 +54,8 @@ void count_creases(const Cage& cage, const std::vector<FaceEdge>& edges, CageDou
     for (const int chain : cage.crease_lengths) {
         for (std::size_t k = first; k + 1 < first + static_cast<std::size_t>(chain); ++k) {
             const int a = cage.crease_indices[k], b = cage.crease_indices[k + 1];
-            if (!std::binary_search(edges.begin(), edges.end(), FaceEdge{std::min(a, b), std::max(a, b), true}))
+            if (!std::binary_search(edges.begin(), edges.end(),
+                                    FaceEdge{std::min(a, b), std::max(a, b), true}))
                 ++doubts.unknown_creases;
         }
         first += static_cast<std::size_t>(chain);
@@ -64,7 +69,9 @@ bool is_flat(const Cage& cage, std::size_t first, std::size_t corners) {
     const Vec3& origin = cage.points[static_cast<std::size_t>(cage.face_vertex_indices[first])];
     for (std::size_t k = 0; k < corners; ++k) {
         const Vec3 a = cage.points[static_cast<std::size_t>(cage.face_vertex_indices[first + k])] - origin;
-        const Vec3 b = cage.points[static_cast<std::size_t>(cage.face_vertex_indices[first + (k + 1) % corners])] - origin;
+        const Vec3 b =
+            cage.points[static_cast<std::size_t>(cage.face_vertex_indices[first + (k + 1) % corners])] -
+            origin;
         twice_area += cross(a, b);
         longest = std::max(longest, length(b - a));
     }

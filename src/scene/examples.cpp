@@ -133,6 +133,8 @@ constexpr SceneExample kExamples[] = {
 
 }  // namespace
 
-std::span<const SceneExample> scene_examples() { return kExamples; }
+std::span<const SceneExample> scene_examples() {
+    return kExamples;
+}
 
 }  // namespace trilens

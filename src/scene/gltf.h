@@ -26,8 +26,8 @@ struct GltfImage {
 /// One primitive of a mesh with triangles, attributes per vertex.
 struct GltfPrimitive {
     std::vector<Vec3> positions;
-    std::vector<Vec3> normals;     // empty, or one per position
-    std::vector<Vec2> uvs;         // empty, or one per position; v downward as in glTF
+    std::vector<Vec3> normals;  // empty, or one per position
+    std::vector<Vec2> uvs;      // empty, or one per position; v downward as in glTF
     std::vector<IdTriple> triangles;
     int material = -1;
 };
@@ -48,14 +48,15 @@ struct GltfModel {
     std::vector<std::string> warnings;
 };
 
-/// Reads a .gltf or .glb file (tinygltf). Lists, strips and fans of triangles; indexed or not; sparse accessors; matrices
-/// and TRS; KHR_materials_unlit, KHR_mesh_quantization. What is left out (points, lines, skins, morph targets, animation,
-/// vertex colours, further extensions) is in `warnings`. Throws InputError(file, place in the glTF) for anything malformed
-/// and for required extensions that are not known (KHR_draco_mesh_compression among them).
+/// Reads a .gltf or .glb file (tinygltf). Lists, strips and fans of triangles; indexed or not; sparse
+/// accessors; matrices and TRS; KHR_materials_unlit, KHR_mesh_quantization. What is left out (points, lines,
+/// skins, morph targets, animation, vertex colours, further extensions) is in `warnings`. Throws
+/// InputError(file, place in the glTF) for anything malformed and for required extensions that are not known
+/// (KHR_draco_mesh_compression among them).
 GltfModel read_gltf(const std::string& file);
 
-/// The default scene as one mesh in the frame of the file: nodes depth first, each mesh's primitives in order, v turned
-/// upward; mirrored nodes keep their fronts. With `with_materials`, the pictures are decoded.
+/// The default scene as one mesh in the frame of the file: nodes depth first, each mesh's primitives in
+/// order, v turned upward; mirrored nodes keep their fronts. With `with_materials`, the pictures are decoded.
 /// Throws InputError(file) for nodes that form no tree, and where there is no triangle.
 PolygonMesh polygons_of_gltf(const GltfModel& model, const std::string& file, const TextureReader* textures);
 

@@ -33,8 +33,8 @@ struct Entries {
 };
 
 /// Bytes [offset, ...) of a buffer view that must hold `count` entries of `entry_size` bytes.
-Entries find_entries(const tinygltf::Model& model, int view_index, std::size_t offset, std::size_t count, std::size_t entry_size,
-                     const Place& place) {
+Entries find_entries(const tinygltf::Model& model, int view_index, std::size_t offset, std::size_t count,
+                     std::size_t entry_size, const Place& place) {
     if (view_index < 0 || static_cast<std::size_t>(view_index) >= model.bufferViews.size())
         place.fail("buffer view " + std::to_string(view_index) + " is out of range");
     const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(view_index)];
@@ -45,8 +45,10 @@ Entries find_entries(const tinygltf::Model& model, int view_index, std::size_t o
         place.fail("its buffer view reaches beyond its buffer");
 
     const std::size_t stride = view.byteStride == 0 ? entry_size : view.byteStride;
-    if (stride < entry_size || stride > 252 + entry_size) place.fail("its buffer view has an impossible stride");
-    if (offset > view.byteLength || (count > 0 && (count - 1) * stride + entry_size > view.byteLength - offset))
+    if (stride < entry_size || stride > 252 + entry_size)
+        place.fail("its buffer view has an impossible stride");
+    if (offset > view.byteLength ||
+        (count > 0 && (count - 1) * stride + entry_size > view.byteLength - offset))
         place.fail("reaches beyond its buffer view");
     return {bytes.data() + view.byteOffset + offset, stride};
 }
@@ -61,13 +63,20 @@ double component(const unsigned char* bytes, bool normalized) {
 
 double read_component(const unsigned char* bytes, int type, bool normalized, const Place& place) {
     switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return component<std::int8_t>(bytes, normalized);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return component<std::uint8_t>(bytes, normalized);
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return component<std::int16_t>(bytes, normalized);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return component<std::uint16_t>(bytes, normalized);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return component<std::uint32_t>(bytes, normalized);
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return component<float>(bytes, false);
-        default: place.fail("unknown component type " + std::to_string(type));
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            return component<std::int8_t>(bytes, normalized);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return component<std::uint8_t>(bytes, normalized);
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            return component<std::int16_t>(bytes, normalized);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return component<std::uint16_t>(bytes, normalized);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            return component<std::uint32_t>(bytes, normalized);
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+            return component<float>(bytes, false);
+        default:
+            place.fail("unknown component type " + std::to_string(type));
     }
 }
 
@@ -83,29 +92,35 @@ std::size_t non_negative(int value, const Place& place) {
     return static_cast<std::size_t>(value);
 }
 
-void fill_sparse(const tinygltf::Model& model, const tinygltf::Accessor& accessor, std::size_t components, const Place& place,
-                 std::vector<double>& numbers) {
+void fill_sparse(const tinygltf::Model& model, const tinygltf::Accessor& accessor, std::size_t components,
+                 const Place& place, std::vector<double>& numbers) {
     const auto& sparse = accessor.sparse;
     const std::size_t count = non_negative(sparse.count, place);
     if (count > accessor.count) place.fail("has more sparse entries than entries");
     const std::size_t size = component_size(accessor.componentType, place);
     const std::size_t index_size = component_size(sparse.indices.componentType, place);
-    const Entries indices = find_entries(model, sparse.indices.bufferView, non_negative(sparse.indices.byteOffset, place), count,
-                                         index_size, place);
-    const Entries values = find_entries(model, sparse.values.bufferView, non_negative(sparse.values.byteOffset, place), count,
-                                        size * components, place);
+    const Entries indices =
+        find_entries(model, sparse.indices.bufferView, non_negative(sparse.indices.byteOffset, place), count,
+                     index_size, place);
+    const Entries values =
+        find_entries(model, sparse.values.bufferView, non_negative(sparse.values.byteOffset, place), count,
+                     size * components, place);
     for (std::size_t i = 0; i < count; ++i) {
-        const double index = read_component(indices.first + i * indices.stride, sparse.indices.componentType, false, place);
-        if (!(index >= 0 && index < static_cast<double>(accessor.count))) place.fail("a sparse index is out of range");
+        const double index =
+            read_component(indices.first + i * indices.stride, sparse.indices.componentType, false, place);
+        if (!(index >= 0 && index < static_cast<double>(accessor.count)))
+            place.fail("a sparse index is out of range");
         for (std::size_t c = 0; c < components; ++c)
-            numbers[static_cast<std::size_t>(index) * components + c] = read_component(
-                values.first + i * values.stride + c * size, accessor.componentType, accessor.normalized, place);
+            numbers[static_cast<std::size_t>(index) * components + c] =
+                read_component(values.first + i * values.stride + c * size, accessor.componentType,
+                               accessor.normalized, place);
     }
 }
 
 }  // namespace
 
-std::vector<double> read_gltf_accessor(const tinygltf::Model& model, int index, int components, const std::string& file) {
+std::vector<double> read_gltf_accessor(const tinygltf::Model& model, int index, int components,
+                                       const std::string& file) {
     const Place place{file, index};
     if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size())
         place.fail("is out of range: there are " + std::to_string(model.accessors.size()) + " accessors");
@@ -121,17 +136,19 @@ std::vector<double> read_gltf_accessor(const tinygltf::Model& model, int index, 
         if (!accessor.sparse.isSparse) place.fail("has no buffer view (its data may be compressed)");
         numbers.assign(accessor.count * width, 0);
     } else {
-        const Entries entries = find_entries(model, accessor.bufferView, accessor.byteOffset, accessor.count, size * width, place);
+        const Entries entries = find_entries(model, accessor.bufferView, accessor.byteOffset, accessor.count,
+                                             size * width, place);
         numbers.reserve(accessor.count * width);
         for (std::size_t i = 0; i < accessor.count; ++i)
             for (std::size_t c = 0; c < width; ++c)
-                numbers.push_back(read_component(entries.first + i * entries.stride + c * size, accessor.componentType,
-                                                 accessor.normalized, place));
+                numbers.push_back(read_component(entries.first + i * entries.stride + c * size,
+                                                 accessor.componentType, accessor.normalized, place));
     }
     if (accessor.sparse.isSparse) fill_sparse(model, accessor, width, place, numbers);
     for (std::size_t i = 0; i < numbers.size(); ++i)
         if (!(std::abs(numbers[i]) <= kLargestCoordinate))
-            place.fail("entry " + std::to_string(i / width) + " holds a number that is not finite or beyond 1e30");
+            place.fail("entry " + std::to_string(i / width) +
+                       " holds a number that is not finite or beyond 1e30");
     return numbers;
 }
 

@@ -11,9 +11,11 @@ class Model;
 
 namespace trilens {
 
-/// The accessor's entries one after the other, `components` numbers each; normalised integers become 0..1 or -1..1;
-/// sparse ones are filled in. Throws InputError(file, "/accessors/n") where the accessor does not exist, has another
-/// number of components, reaches beyond its buffer, or holds a number that is not finite or beyond 1e30.
-std::vector<double> read_gltf_accessor(const tinygltf::Model& model, int accessor, int components, const std::string& file);
+/// The accessor's entries one after the other, `components` numbers each; normalised integers become 0..1 or
+/// -1..1; sparse ones are filled in. Throws InputError(file, "/accessors/n") where the accessor does not
+/// exist, has another number of components, reaches beyond its buffer, or holds a number that is not finite
+/// or beyond 1e30.
+std::vector<double> read_gltf_accessor(const tinygltf::Model& model, int accessor, int components,
+                                       const std::string& file);
 
 }  // namespace trilens

@@ -1,55 +1,21 @@
-// glTF and GLB files as plain data: THE door to tinygltf (with gltf_accessor.cpp).
+// A tinygltf model, checked, as plain data.
 #include <algorithm>
-#include <cctype>
-#include <cstdint>
-#include <exception>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <span>
+#include <utility>
 
 #include <tiny_gltf.h>
 
 #include "base/error.h"
-#include "scene/files.h"
 #include "scene/gltf.h"
 #include "scene/gltf_accessor.h"
+#include "scene/gltf_file.h"
 
 namespace trilens {
 namespace {
-
-/// Keeps the encoded bytes: the pictures are decoded by the caller's reader, and only where they are used.
-bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
-                  void*) {
-    image->as_is = true;
-    if (bytes && size > 0) image->image.assign(bytes, bytes + size);
-    return true;
-}
-
-std::string one_line(std::string text) {
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return text;
-}
-
-tinygltf::Model load_model(const std::string& file) {
-    const std::string bytes = read_required_file(file);
-    const std::string folder = std::filesystem::path(file).parent_path().string();
-    tinygltf::TinyGLTF reader;
-    reader.SetImageLoader(keep_encoded, nullptr);
-    tinygltf::Model model;
-    std::string errors, warnings;
-    bool done = false;
-    try {
-        const auto size = static_cast<unsigned int>(bytes.size());
-        done = bytes.rfind("glTF", 0) == 0
-                   ? reader.LoadBinaryFromMemory(&model, &errors, &warnings, reinterpret_cast<const unsigned char*>(bytes.data()),
-                                                 size, folder)
-                   : reader.LoadASCIIFromString(&model, &errors, &warnings, bytes.data(), size, folder);
-    } catch (const std::exception& error) {
-        throw InputError(file, "", "not a readable glTF file: " + one_line(error.what()));
-    }
-    if (!done) throw InputError(file, "", "not a readable glTF file: " + one_line(errors));
-    return model;
-}
 
 class Reader {
   public:
@@ -69,19 +35,23 @@ class Reader {
     }
 
   private:
-    [[noreturn]] void fail(const std::string& place, const std::string& message) const { throw InputError(file_, place, message); }
+    [[noreturn]] void fail(const std::string& place, const std::string& message) const {
+        throw InputError(file_, place, message);
+    }
     void warn(const std::string& message) { warned_.insert(message); }
 
     int checked(int index, std::size_t count, const std::string& place, const char* what) const {
         if (index < -1 || (index >= 0 && static_cast<std::size_t>(index) >= count))
-            fail(place, std::string(what) + " " + std::to_string(index) + " is out of range: there are " + std::to_string(count));
+            fail(place, std::string(what) + " " + std::to_string(index) + " is out of range: there are " +
+                            std::to_string(count));
         return index;
     }
 
     void check_extensions() {
         static const std::set<std::string> known = {"KHR_materials_unlit", "KHR_mesh_quantization"};
         for (const std::string& name : in_.extensionsRequired)
-            if (known.count(name) == 0) fail("/extensionsRequired", "the extension '" + name + "' is required but not supported");
+            if (known.count(name) == 0)
+                fail("/extensionsRequired", "the extension '" + name + "' is required but not supported");
         for (const std::string& name : in_.extensionsUsed)
             if (known.count(name) == 0) warn("the extension '" + name + "' is ignored");
     }
@@ -93,20 +63,10 @@ class Reader {
             GltfImage result;
             result.name = file_ + ": /images/" + std::to_string(i);
             result.encoded = image.image;
-            if (!image.uri.empty() && image.uri.rfind("data:", 0) != 0) result.file = (folder / decode_uri(image.uri)).string();
+            if (!image.uri.empty() && image.uri.rfind("data:", 0) != 0)
+                result.file = (folder / decode_gltf_uri(image.uri)).string();
             out_.images.push_back(std::move(result));
         }
-    }
-
-    static std::string decode_uri(const std::string& uri) {
-        std::string text;
-        for (std::size_t i = 0; i < uri.size(); ++i) {
-            const bool escaped = uri[i] == '%' && i + 2 < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[i + 1])) &&
-                                 std::isxdigit(static_cast<unsigned char>(uri[i + 2]));
-            text += escaped ? static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16)) : uri[i];
-            if (escaped) i += 2;
-        }
-        return text;
     }
 
     void read_material(std::size_t index) {
@@ -124,14 +84,16 @@ class Reader {
         result.material.unlit = material.extensions.count("KHR_materials_unlit") > 0;
         result.material.metallic_factor = factor(pbr.metallicFactor, place);
         result.material.roughness_factor = factor(pbr.roughnessFactor, place);
-        if (material.alphaMode != "OPAQUE") warn("alphaMode " + material.alphaMode + " is ignored: all is opaque");
+        if (material.alphaMode != "OPAQUE")
+            warn("alphaMode " + material.alphaMode + " is ignored: all is opaque");
         const int texture = checked(pbr.baseColorTexture.index, in_.textures.size(), place, "texture");
         if (texture >= 0) {
             result.image = checked(in_.textures[static_cast<std::size_t>(texture)].source, in_.images.size(),
                                    "/textures/" + std::to_string(texture), "image");
             if (result.image < 0) warn("a base colour texture without a picture is ignored");
             result.uv_set = pbr.baseColorTexture.texCoord;
-            if (pbr.baseColorTexture.extensions.count("KHR_texture_transform") > 0) warn("texture transforms are ignored");
+            if (pbr.baseColorTexture.extensions.count("KHR_texture_transform") > 0)
+                warn("texture transforms are ignored");
         }
         out_.materials.push_back(std::move(result));
     }
@@ -145,14 +107,19 @@ class Reader {
         out_.meshes.emplace_back();
         for (std::size_t i = 0; i < in_.meshes[index].primitives.size(); ++i)
             read_primitive(in_.meshes[index].primitives[i],
-                           "/meshes/" + std::to_string(index) + "/primitives/" + std::to_string(i), out_.meshes.back());
+                           "/meshes/" + std::to_string(index) + "/primitives/" + std::to_string(i),
+                           out_.meshes.back());
     }
 
-    void read_primitive(const tinygltf::Primitive& in, const std::string& place, std::vector<GltfPrimitive>& mesh) {
+    void read_primitive(const tinygltf::Primitive& in, const std::string& place,
+                        std::vector<GltfPrimitive>& mesh) {
         const int mode = in.mode == -1 ? TINYGLTF_MODE_TRIANGLES : in.mode;
-        if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN) fail(place, "unknown mode " + std::to_string(mode));
-        if (mode < TINYGLTF_MODE_TRIANGLES) return warn("points and lines are skipped: only triangles are drawn");
-        if (in.extensions.count("KHR_draco_mesh_compression") > 0) fail(place, "KHR_draco_mesh_compression is not supported");
+        if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN)
+            fail(place, "unknown mode " + std::to_string(mode));
+        if (mode < TINYGLTF_MODE_TRIANGLES)
+            return warn("points and lines are skipped: only triangles are drawn");
+        if (in.extensions.count("KHR_draco_mesh_compression") > 0)
+            fail(place, "KHR_draco_mesh_compression is not supported");
         if (!in.targets.empty()) warn("morph targets are ignored");
         if (in.attributes.count("COLOR_0") > 0) warn("vertex colours are ignored");
         if (in.attributes.count("POSITION") == 0) return warn("a primitive without POSITION is skipped");
@@ -161,7 +128,8 @@ class Reader {
         result.material = checked(in.material, in_.materials.size(), place, "material");
         result.positions = vec3s(in.attributes.at("POSITION"));
         if (in.attributes.count("NORMAL") > 0) result.normals = vec3s(in.attributes.at("NORMAL"));
-        const int set = result.material < 0 ? 0 : out_.materials[static_cast<std::size_t>(result.material)].uv_set;
+        const int set =
+            result.material < 0 ? 0 : out_.materials[static_cast<std::size_t>(result.material)].uv_set;
         const auto uvs = in.attributes.find("TEXCOORD_" + std::to_string(set));
         if (uvs != in.attributes.end()) result.uvs = vec2s(uvs->second);
         if ((!result.normals.empty() && result.normals.size() != result.positions.size()) ||
@@ -174,18 +142,22 @@ class Reader {
     std::vector<Vec3> vec3s(int accessor) const {
         const std::vector<double> numbers = read_gltf_accessor(in_, accessor, 3, file_);
         std::vector<Vec3> result;
-        for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) result.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+        for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
+            result.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
         return result;
     }
     std::vector<Vec2> vec2s(int accessor) const {
         const std::vector<double> numbers = read_gltf_accessor(in_, accessor, 2, file_);
         std::vector<Vec2> result;
-        for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) result.emplace_back(numbers[i], numbers[i + 1]);
+        for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
+            result.emplace_back(numbers[i], numbers[i + 1]);
         return result;
     }
 
-    /// Lists, strips and fans as triples of vertices; strips turn every second triangle (glTF 2.0, section 3.7.2.1).
-    std::vector<IdTriple> triangles(const tinygltf::Primitive& in, int mode, std::size_t vertices, const std::string& place) {
+    /// Lists, strips and fans as triples of vertices; strips turn every second triangle (glTF 2.0,
+    /// section 3.7.2.1).
+    std::vector<IdTriple> triangles(const tinygltf::Primitive& in, int mode, std::size_t vertices,
+                                    const std::string& place) {
         std::vector<Id> order;
         if (in.indices < 0) {
             for (std::size_t i = 0; i < vertices; ++i) order.push_back(static_cast<Id>(i));
@@ -193,19 +165,22 @@ class Reader {
             for (const double index : read_gltf_accessor(in_, in.indices, 1, file_)) {
                 if (!(index >= 0 && index < static_cast<double>(vertices)))
                     fail(place + "/indices", "index " + std::to_string(static_cast<long long>(index)) +
-                                                 " is out of range: there are " + std::to_string(vertices) + " vertices");
+                                                 " is out of range: there are " + std::to_string(vertices) +
+                                                 " vertices");
                 order.push_back(static_cast<Id>(index));
             }
         }
         std::vector<IdTriple> result;
         if (mode == TINYGLTF_MODE_TRIANGLES) {
             if (order.size() % 3 != 0) warn("a list of triangles ends with an incomplete one");
-            for (std::size_t i = 0; i + 2 < order.size(); i += 3) result.push_back({order[i], order[i + 1], order[i + 2]});
+            for (std::size_t i = 0; i + 2 < order.size(); i += 3)
+                result.push_back({order[i], order[i + 1], order[i + 2]});
         } else {
             for (std::size_t i = 0; i + 2 < order.size(); ++i) {
                 const std::size_t odd = i % 2;
-                result.push_back(mode == TINYGLTF_MODE_TRIANGLE_STRIP ? IdTriple{order[i], order[i + 1 + odd], order[i + 2 - odd]}
-                                                                     : IdTriple{order[0], order[i + 1], order[i + 2]});
+                result.push_back(mode == TINYGLTF_MODE_TRIANGLE_STRIP
+                                     ? IdTriple{order[i], order[i + 1 + odd], order[i + 2 - odd]}
+                                     : IdTriple{order[0], order[i + 1], order[i + 2]});
             }
         }
         return result;
@@ -226,16 +201,19 @@ class Reader {
 
     Transform node_transform(const tinygltf::Node& node, const std::string& place) const {
         const auto check = [&](const std::vector<double>& numbers, std::size_t count, const char* what) {
-            if (!numbers.empty() && numbers.size() != count) fail(place, std::string(what) + " must have " + std::to_string(count) + " numbers");
+            if (!numbers.empty() && numbers.size() != count)
+                fail(place, std::string(what) + " must have " + std::to_string(count) + " numbers");
             for (const double number : numbers)
-                if (!(std::abs(number) <= kLargestCoordinate)) fail(place, std::string(what) + " holds a number beyond 1e30");
+                if (!(std::abs(number) <= kLargestCoordinate))
+                    fail(place, std::string(what) + " holds a number beyond 1e30");
         };
         check(node.matrix, 16, "matrix");
         check(node.translation, 3, "translation");
         check(node.rotation, 4, "rotation");
         check(node.scale, 3, "scale");
         if (!node.matrix.empty()) {
-            const std::optional<Transform> t = make_transform(std::span<const double, 16>(node.matrix.data(), 16));
+            const std::optional<Transform> t =
+                make_transform(std::span<const double, 16>(node.matrix.data(), 16));
             if (!t) fail(place, "the last row of matrix must be 0 0 0 1");
             return *t;
         }
@@ -244,7 +222,8 @@ class Reader {
         const auto& s = node.scale;
         const Vec4 rotate = r.empty() ? Vec4(0, 0, 0, 1) : Vec4(r[0], r[1], r[2], r[3]);
         if (rotate == Vec4(0)) fail(place, "rotation must not be zero");
-        return make_transform(t.empty() ? Vec3(0) : Vec3(t[0], t[1], t[2]), rotate, s.empty() ? Vec3(1) : Vec3(s[0], s[1], s[2]));
+        return make_transform(t.empty() ? Vec3(0) : Vec3(t[0], t[1], t[2]), rotate,
+                              s.empty() ? Vec3(1) : Vec3(s[0], s[1], s[2]));
     }
 
     /// The default scene; else the first; else the nodes that are no node's children.
@@ -272,7 +251,7 @@ class Reader {
 }  // namespace
 
 GltfModel read_gltf(const std::string& file) {
-    const tinygltf::Model model = load_model(file);
+    const tinygltf::Model model = load_gltf_model(file);
     return Reader(model, file).read();
 }
 

@@ -37,7 +37,8 @@ Bounds primitive_bounds(const Primitive& p) {
         case Primitive::Type::kParaboloid:
             // Apex and rim; between them the surface lies in the box of the solid cylinder around it.
             grow_by_disk(bounds, p.center, p.axis, p.radius);
-            grow_by_disk(bounds, p.center + p.radius * p.radius / (4 * p.focal_length) * p.axis, p.axis, p.radius);
+            grow_by_disk(bounds, p.center + p.radius * p.radius / (4 * p.focal_length) * p.axis, p.axis,
+                         p.radius);
             break;
         case Primitive::Type::kCylinder:
             grow_by_disk(bounds, p.center - 0.5 * p.height * p.axis, p.axis, p.radius);
@@ -59,10 +60,14 @@ std::string shape_name(const Mesh& mesh) {
                : mesh.cage.scheme == SubdivisionScheme::kLoop       ? "loop"
                                                                     : "bilinear";
     switch (mesh.primitive->type) {
-        case Primitive::Type::kSphere: return "sphere";
-        case Primitive::Type::kParaboloid: return "paraboloid";
-        case Primitive::Type::kCylinder: return "cylinder";
-        case Primitive::Type::kPlane: return "plane";
+        case Primitive::Type::kSphere:
+            return "sphere";
+        case Primitive::Type::kParaboloid:
+            return "paraboloid";
+        case Primitive::Type::kCylinder:
+            return "cylinder";
+        case Primitive::Type::kPlane:
+            return "plane";
     }
     return "";
 }

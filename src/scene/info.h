@@ -18,21 +18,23 @@ struct Bounds {
 struct MeshInfo {
     std::string name;
     Role role = Role::kObject;
-    std::string shape;         // "polygons", "catmullClark", "loop", "bilinear", "sphere", "paraboloid", "cylinder", "plane"
-    std::string material;      // its name; "inherit" where the triangles carry their own
-    std::size_t points = 0;    // 0 for a primitive
-    std::size_t faces = 0;     // 0 for a primitive
-    std::size_t triangles = 0; // of an object
+    std::string
+        shape;  // "polygons", "catmullClark", "loop", "bilinear", "sphere", "paraboloid", "cylinder", "plane"
+    std::string material;       // its name; "inherit" where the triangles carry their own
+    std::size_t points = 0;     // 0 for a primitive
+    std::size_t faces = 0;      // 0 for a primitive
+    std::size_t triangles = 0;  // of an object
     std::size_t creases = 0, corners = 0, holes = 0;  // of a cage: crease edges, corner points, hole faces
-    int resolution = 0;        // of an optic
-    Bounds bounds;             // an optic's: of its cage, which holds its limit surface; of a primitive: exact or a little larger
+    int resolution = 0;                               // of an optic
+    Bounds bounds;  // an optic's: of its cage, which holds its limit surface; of a primitive: exact or a
+                    // little larger
 };
 
 struct MaterialInfo {
     std::string name;
-    std::string kind;         // "mirror", "glass", "unlit", "plain"
+    std::string kind;  // "mirror", "glass", "unlit", "plain"
     bool has_texture = false;
-    std::size_t meshes = 0;   // that name it or have a triangle of it
+    std::size_t meshes = 0;  // that name it or have a triangle of it
 };
 
 struct SceneInfo {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <unordered_set>
 #include <utility>
@@ -15,7 +16,8 @@ constexpr std::size_t kDeepest = 64;  // levels; the scene format itself needs 6
 
 std::string line_and_column(const std::string& text, std::size_t position) {
     const std::size_t at = position == 0 ? 0 : std::min(position, text.size() + 1) - 1;
-    const auto begin = text.begin(), end = text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size()));
+    const auto begin = text.begin(),
+               end = text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size()));
     const auto line = std::count(begin, end, '\n') + 1;
     const std::size_t newline = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
     const std::size_t column = newline == std::string::npos ? at + 1 : at - newline;
@@ -42,11 +44,12 @@ class Builder : public nlohmann::json_sax<Json> {
     bool key(string_t& key) override {
         levels_.back().key = key;
         if (!levels_.back().keys.insert(key).second)
-            throw InputError(file_, place(), "this key stands twice in its object");
+            fail_at(file_, place(), "this key stands twice in its object");
         return true;
     }
 
-    bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
+    bool parse_error(std::size_t position, const std::string&,
+                     const nlohmann::detail::exception& error) override {
         std::string message = error.what();
         for (const char* start : {"syntax error", "number overflow", "parse error"}) {
             const std::size_t found = message.find(start);
@@ -54,7 +57,7 @@ class Builder : public nlohmann::json_sax<Json> {
             message = message.substr(found);
             break;
         }
-        throw InputError(file_, line_and_column(text_, position), message);
+        fail_at(file_, line_and_column(text_, position), message);
     }
 
   private:
@@ -68,9 +71,11 @@ class Builder : public nlohmann::json_sax<Json> {
     std::string place() const {
         std::string pointer;
         for (const Level& level : levels_) {
-            const bool next_is_inside = &level != &levels_.back();  // then the entry stands in its array already
-            pointer += "/" + (level.value->is_object() ? escape_key(level.key)
-                                                       : std::to_string(level.value->size() - (next_is_inside ? 1 : 0)));
+            const bool next_is_inside =
+                &level != &levels_.back();  // then the entry stands in its array already
+            pointer += "/" + (level.value->is_object()
+                                  ? escape_key(level.key)
+                                  : std::to_string(level.value->size() - (next_is_inside ? 1 : 0)));
         }
         return pointer;
     }
@@ -87,7 +92,7 @@ class Builder : public nlohmann::json_sax<Json> {
     }
     bool open(Json&& value) {
         if (levels_.size() >= kDeepest)
-            throw InputError(file_, place(), "nested deeper than " + std::to_string(kDeepest) + " levels");
+            fail_at(file_, place(), "nested deeper than " + std::to_string(kDeepest) + " levels");
         levels_.push_back({insert(std::move(value)), {}, {}});
         return true;
     }
@@ -109,6 +114,16 @@ Json parse_json(const std::string& text, const std::string& file) {
     constexpr bool kWholeText = true, kIgnoreComments = true;
     Json::sax_parse(text, &builder, Json::input_format_t::json, kWholeText, kIgnoreComments);
     return builder.take();
+}
+
+std::string one_line(std::string text) {
+    for (char& letter : text)
+        if (std::iscntrl(static_cast<unsigned char>(letter))) letter = ' ';
+    return text;
+}
+
+void fail_at(const std::string& file, const std::string& place, const std::string& message) {
+    throw InputError(file, one_line(place), one_line(message));
 }
 
 std::string escape_key(std::string_view key) {
@@ -137,7 +152,8 @@ std::string describe(const Json& value) {
     if (value.is_number_float()) return "the number " + describe(value.get<double>());
     const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (value.is_number()) return "the number " + text;
-    if (value.is_string()) return "the string " + (text.size() <= kLongest ? text : text.substr(0, kLongest) + "...\"");
+    if (value.is_string())
+        return "the string " + (text.size() <= kLongest ? text : text.substr(0, kLongest) + "...\"");
     return text;
 }
 
@@ -145,7 +161,9 @@ Vec3 to_vec3(const Json& value) {
     return {value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>()};
 }
 
-Vec2 to_vec2(const Json& value) { return {value.at(0).get<double>(), value.at(1).get<double>()}; }
+Vec2 to_vec2(const Json& value) {
+    return {value.at(0).get<double>(), value.at(1).get<double>()};
+}
 
 Vec3 vec3_or(const Node& parent, const char* key, const Vec3& fallback) {
     return parent.has(key) ? to_vec3(parent.json.at(key)) : fallback;

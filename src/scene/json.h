@@ -26,17 +26,24 @@ std::string describe(const Json& value);
 /// The shortest decimal that reads back as the same number.
 std::string describe(double number);
 
+/// Throws InputError; control characters that place or message quote from the document become spaces, so that
+/// the message is one line.
+[[noreturn]] void fail_at(const std::string& file, const std::string& place, const std::string& message);
+std::string one_line(std::string text);
+
 /// A value of a checked document together with its place, so that every reader can say where it failed.
 struct Node {
     const Json& json;
     std::string place;        // JSON pointer
     const std::string& file;  // for messages
 
-    [[noreturn]] void fail(const std::string& message) const { throw InputError(file, place, message); }
+    [[noreturn]] void fail(const std::string& message) const { fail_at(file, place, message); }
     std::size_t size() const { return json.size(); }
     bool has(const char* key) const { return json.contains(key); }
     Node operator[](const char* key) const { return {json.at(key), place + "/" + escape_key(key), file}; }
-    Node operator[](std::size_t index) const { return {json.at(index), place + "/" + std::to_string(index), file}; }
+    Node operator[](std::size_t index) const {
+        return {json.at(index), place + "/" + std::to_string(index), file};
+    }
 };
 
 // Readers for values whose type and length the schema has checked already.

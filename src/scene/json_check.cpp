@@ -2,6 +2,7 @@
 #include "scene/json_check.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string_view>
 
@@ -12,7 +13,8 @@
 namespace trilens {
 namespace {
 
-constexpr const char* kFreeKeys = "^(x-|extras$)";  // the only patternProperties, so no regular expressions are needed
+constexpr const char* kFreeKeys =
+    "^(x-|extras$)";  // the only patternProperties, so no regular expressions are needed
 
 /// Steps from the root, chained on the stack; written out only for a problem.
 struct Path {
@@ -29,7 +31,9 @@ struct Path {
 
 using Found = std::optional<Problem>;
 
-Found problem(const Path& path, const std::string& message) { return Problem{path.pointer(), message}; }
+Found problem(const Path& path, const std::string& message) {
+    return Problem{path.pointer(), message};
+}
 
 std::string title(const Json& schema) {
     return schema.contains("title") ? schema.at("title").get<std::string>() : "this object";
@@ -66,7 +70,9 @@ class Checker {
     Found check(const Json& value, const Json& unresolved, const Path& path, const std::string& owner) const {
         const Json& schema = resolve_schema(unresolved, root_);
         if (schema.is_boolean())
-            return schema.get<bool>() ? Found() : problem(path, "'" + std::string(path.key) + "' is no key of " + owner);
+            return schema.get<bool>()
+                       ? Found()
+                       : problem(path, "'" + std::string(path.key) + "' is no key of " + owner);
         if (Found found = check_value(value, schema, path)) return found;
         if (value.is_number()) return check_number(value, schema, path);
         if (value.is_array()) return check_array(value, schema, path);
@@ -84,8 +90,10 @@ class Checker {
         if (schema.contains("type")) {
             const std::string type = schema.at("type").get<std::string>();
             if (!has_type(value, type))
-                return problem(path, "expected " + std::string(type[0] == 'o' || type[0] == 'a' || type[0] == 'i' ? "an " : "a ") +
-                                         type + ", found " + describe(value));
+                return problem(
+                    path, "expected " +
+                              std::string(type[0] == 'o' || type[0] == 'a' || type[0] == 'i' ? "an " : "a ") +
+                              type + ", found " + describe(value));
         }
         if (schema.contains("minLength") && value.is_string() && value.get_ref<const std::string&>().empty())
             return problem(path, "must not be empty");
@@ -94,16 +102,19 @@ class Checker {
 
     Found check_enum(const Json& value, const Json& choices, const Path& path) const {
         if (std::find(choices.begin(), choices.end(), value) != choices.end()) return {};
-        if (!value.is_string()) return problem(path, "expected " + quoted_list(choices, "or") + ", found " + describe(value));
+        if (!value.is_string())
+            return problem(path, "expected " + quoted_list(choices, "or") + ", found " + describe(value));
         const std::vector<std::string> known = choices.get<std::vector<std::string>>();
-        return problem(path, "unknown value '" + value.get<std::string>() + "'" + suggestion(value.get<std::string>(), known));
+        return problem(path, "unknown value '" + value.get<std::string>() + "'" +
+                                 suggestion(value.get<std::string>(), known));
     }
 
     Found check_number(const Json& value, const Json& schema, const Path& path) const {
         const double number = value.get<double>();
         const auto limit = [&](const char* keyword) { return schema.at(keyword).get<double>(); };
         const auto wrong = [&](const char* relation, const char* keyword) {
-            return problem(path, describe(number) + " is out of range: must be " + relation + " " + describe(limit(keyword)));
+            return problem(path, describe(number) + " is out of range: must be " + relation + " " +
+                                     describe(limit(keyword)));
         };
         if (schema.contains("minimum") && number < limit("minimum")) return wrong("at least", "minimum");
         if (schema.contains("maximum") && number > limit("maximum")) return wrong("at most", "maximum");
@@ -118,8 +129,11 @@ class Checker {
         const std::size_t least = schema.value("minItems", std::size_t{0});
         const std::size_t most = schema.value("maxItems", static_cast<std::size_t>(-1));
         if (value.size() < least || value.size() > most)
-            return problem(path, "has " + std::to_string(value.size()) + (value.size() == 1 ? " entry" : " entries") +
-                                     ", must have " + (least == most ? "" : value.size() < least ? "at least " : "at most ") +
+            return problem(path, "has " + std::to_string(value.size()) +
+                                     (value.size() == 1 ? " entry" : " entries") + ", must have " +
+                                     (least == most          ? ""
+                                      : value.size() < least ? "at least "
+                                                             : "at most ") +
                                      std::to_string(value.size() < least ? least : most));
         if (schema.contains("items")) {
             const Json& items = resolve_schema(schema.at("items"), root_);
@@ -142,7 +156,8 @@ class Checker {
         const Json& properties = schema.at("properties");
         for (const auto& [key, part] : value.items())
             if (properties.contains(key))
-                if (Found found = check(part, properties.at(key), Path{&path, key}, title(schema))) return found;
+                if (Found found = check(part, properties.at(key), Path{&path, key}, title(schema)))
+                    return found;
         return {};
     }
 
@@ -150,7 +165,8 @@ class Checker {
         if (schema.value("additionalProperties", true)) return {};
         for (const auto& [key, part] : value.items()) {
             if (is_free_key(key) || schema.at("properties").contains(key)) continue;
-            return problem(Path{&path, key}, "unknown key '" + key + "' of " + title(schema) + suggestion(key, known_keys(schema)));
+            return problem(Path{&path, key}, "unknown key '" + key + "' of " + title(schema) +
+                                                 suggestion(key, known_keys(schema)));
         }
         return {};
     }
@@ -164,7 +180,8 @@ class Checker {
             for (const auto& [key, needs] : schema.at("dependencies").items())
                 for (const Json& needed : needs)
                     if (value.contains(key) && !value.contains(needed.get<std::string>()))
-                        return problem(path, "'" + key + "' needs '" + needed.get<std::string>() + "' beside it");
+                        return problem(path,
+                                       "'" + key + "' needs '" + needed.get<std::string>() + "' beside it");
         return {};
     }
 
@@ -175,8 +192,11 @@ class Checker {
                 choices.push_back(branch.at("required").at(0));
                 if (matches(value, branch)) given.push_back(branch.at("required").at(0));
             }
-            if (given.empty()) return problem(path, title(schema) + " needs one of " + quoted_list(choices, "and"));
-            if (given.size() > 1) return problem(path, title(schema) + " has " + quoted_list(given, "and") + ": only one may be given");
+            if (given.empty())
+                return problem(path, title(schema) + " needs one of " + quoted_list(choices, "and"));
+            if (given.size() > 1)
+                return problem(
+                    path, title(schema) + " has " + quoted_list(given, "and") + ": only one may be given");
         }
         if (schema.contains("allOf"))
             for (const Json& part : schema.at("allOf"))
@@ -195,18 +215,45 @@ class Checker {
 
 /// Every keyword of the schema must be one that the checker obeys or may ignore.
 void check_keywords(const Json& schema) {
-    static const std::set<std::string> known = {
-        "$schema", "$id", "$ref", "title", "description", "default", "definitions", "type", "const", "enum", "minimum", "maximum",
-        "exclusiveMinimum", "exclusiveMaximum", "minLength", "minItems", "maxItems", "uniqueItems", "items", "properties",
-        "patternProperties", "additionalProperties", "required", "dependencies", "oneOf", "allOf", "if", "then", "else"};
+    static const std::set<std::string> known = {"$schema",
+                                                "$id",
+                                                "$ref",
+                                                "title",
+                                                "description",
+                                                "default",
+                                                "definitions",
+                                                "type",
+                                                "const",
+                                                "enum",
+                                                "minimum",
+                                                "maximum",
+                                                "exclusiveMinimum",
+                                                "exclusiveMaximum",
+                                                "minLength",
+                                                "minItems",
+                                                "maxItems",
+                                                "uniqueItems",
+                                                "items",
+                                                "properties",
+                                                "patternProperties",
+                                                "additionalProperties",
+                                                "required",
+                                                "dependencies",
+                                                "oneOf",
+                                                "allOf",
+                                                "if",
+                                                "then",
+                                                "else"};
     if (!schema.is_object()) return;
     for (const auto& [keyword, value] : schema.items()) {
         TRILENS_CHECK(known.count(keyword) == 1, "the schema uses a keyword that the checker does not know");
         if (keyword == "patternProperties")
-            TRILENS_CHECK(value.size() == 1 && value.contains(kFreeKeys), "the schema's only pattern is that of the free keys");
+            TRILENS_CHECK(value.size() == 1 && value.contains(kFreeKeys),
+                          "the schema's only pattern is that of the free keys");
         if (keyword == "properties" || keyword == "definitions" || keyword == "oneOf" || keyword == "allOf")
             for (const auto& part : value) check_keywords(part);
-        if (keyword == "items" || keyword == "if" || keyword == "then" || keyword == "else") check_keywords(value);
+        if (keyword == "items" || keyword == "if" || keyword == "then" || keyword == "else")
+            check_keywords(value);
     }
 }
 
@@ -239,7 +286,9 @@ std::vector<std::string> known_keys(const Json& object_schema) {
     return keys;
 }
 
-bool is_free_key(const std::string& key) { return key == "extras" || key.rfind("x-", 0) == 0; }
+bool is_free_key(const std::string& key) {
+    return key == "extras" || key.rfind("x-", 0) == 0;
+}
 
 const Json& scene_schema_json() {
     static const Json schema = [] {

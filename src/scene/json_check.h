@@ -14,12 +14,14 @@ struct Problem {
     std::string place, message;
 };
 
-/// The first problem in document order, or none. An object's type, unknown keys, missing keys and keys that exclude
-/// each other come before its parts. `schema` is the whole schema; a keyword that this does not know is a bug.
+/// The first problem in document order, or none. An object's type, unknown keys, missing keys and keys that
+/// exclude each other come before its parts. `schema` is the whole schema; a keyword that this does not know
+/// is a bug.
 std::optional<Problem> find_problem(const Json& value, const Json& schema);
 
-/// The schema of the part `key` of values that `schema` describes (`root`: the whole schema; `key`: an object's key, or
-/// anything for an array's entry). Null where the schema knows no such part or leaves it free.
+/// The schema of the part `key` of values that `schema` describes (`root`: the whole schema; `key`: an
+/// object's key, or anything for an array's entry). Null where the schema knows no such part or leaves it
+/// free.
 const Json* schema_of_part(const Json& schema, const std::string& key, const Json& root);
 
 /// Follows "$ref".

@@ -33,33 +33,36 @@ void read_materials(const Node& root, Reading& reading) {
         reading.scene.materials.push_back(read_material(materials[i], reading));
         check_unique(reading.scene.materials.back().name, materials[i], names);
     }
+    reading.named_materials = reading.scene.materials.size();
 }
 
 void read_meshes(const Node& root, Reading& reading) {
-    const std::size_t named_materials = reading.scene.materials.size();
     std::set<std::string> names;
     std::set<Id> used;
     if (root.has("meshes")) {
         const Node meshes = root["meshes"];
         for (std::size_t i = 0; i < meshes.size(); ++i) {
             const Mesh& mesh = reading.scene.meshes.emplace_back(read_mesh(meshes[i], i, reading));
-            if (!names.insert(mesh.name).second) reading.warn(meshes[i].place, "the name '" + mesh.name + "' is taken already");
+            if (!names.insert(mesh.name).second)
+                reading.warn(meshes[i].place, "the name '" + mesh.name + "' is taken already");
             used.insert(mesh.material);
         }
     }
     if (reading.scene.meshes.empty()) reading.warn("", "the scene has no meshes");
-    for (Id i = 0; i < named_materials; ++i)
+    for (Id i = 0; i < reading.named_materials; ++i)
         if (used.count(i) == 0)
-            reading.warn("/materials/" + std::to_string(i), "the material '" + reading.scene.materials[i].name + "' is not used");
+            reading.warn("/materials/" + std::to_string(i),
+                         "the material '" + reading.scene.materials[i].name + "' is not used");
 }
 
 }  // namespace
 
-Scene load_scene_text(const std::string& text, const std::string& file, std::span<const SceneOverride> overrides,
-                      const TextureReader& textures) {
+Scene load_scene_text(const std::string& text, const std::string& file,
+                      std::span<const SceneOverride> overrides, const TextureReader& textures) {
     Json json = parse_json(text, file);
     apply_overrides(json, overrides, file);
-    if (const auto found = find_problem(json, scene_schema_json())) throw InputError(file, found->place, found->message);
+    if (const auto found = find_problem(json, scene_schema_json()))
+        fail_at(file, found->place, found->message);
 
     Reading reading{file, textures, {}, {}};
     const Node root{json, "", file};
@@ -71,12 +74,14 @@ Scene load_scene_text(const std::string& text, const std::string& file, std::spa
     read_materials(root, reading);
     read_meshes(root, reading);
     if (root.has("lights"))
-        for (std::size_t i = 0; i < root["lights"].size(); ++i) reading.scene.lights.push_back(read_light(root["lights"][i]));
+        for (std::size_t i = 0; i < root["lights"].size(); ++i)
+            reading.scene.lights.push_back(read_light(root["lights"][i]));
     reading.scene.render = read_render(root, reading);
     return std::move(reading.scene);
 }
 
-Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides, const TextureReader& textures) {
+Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides,
+                 const TextureReader& textures) {
     return load_scene_text(read_required_file(file), file, overrides, textures);
 }
 

@@ -14,7 +14,9 @@ namespace trilens {
 /// an InputError that names the file. `encoded` overloads read a picture held in memory (GLB).
 struct TextureReader {
     std::function<std::shared_ptr<const Texture>(const std::string& file)> from_file;
-    std::function<std::shared_ptr<const Texture>(std::span<const unsigned char> encoded, const std::string& name)> from_memory;
+    std::function<std::shared_ptr<const Texture>(std::span<const unsigned char> encoded,
+                                                 const std::string& name)>
+        from_memory;
 };
 
 /// One `--set /json/pointer=VALUE`. VALUE is JSON; what does not parse as JSON is taken as a string.
@@ -23,16 +25,17 @@ struct SceneOverride {
     std::string value;
 };
 
-/// Reads, checks and resolves a scene file. `overrides` are applied to the JSON before it is checked; a pointer
-/// that names nothing is an error, but missing keys that the schema knows are added, with the objects on the way to the last.
-/// Throws InputError with the file and the place (JSON pointer, or line of an OBJ) of the first problem.
-/// What is legal but doubtful goes to Scene::warnings.
-Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides, const TextureReader& textures);
+/// Reads, checks and resolves a scene file. `overrides` are applied to the JSON before it is checked; a
+/// pointer that names nothing is an error, but missing keys that the schema knows are added, with the objects
+/// on the way to the last. Throws InputError with the file and the place (JSON pointer, or line of an OBJ) of
+/// the first problem. What is legal but doubtful goes to Scene::warnings.
+Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides,
+                 const TextureReader& textures);
 
-/// The same from text in memory, as an image's header holds it: `file` stands in messages, and its folder is where
-/// relative paths start; it need not exist.
-Scene load_scene_text(const std::string& text, const std::string& file, std::span<const SceneOverride> overrides,
-                      const TextureReader& textures);
+/// The same from text in memory, as an image's header holds it: `file` stands in messages, and its folder is
+/// where relative paths start; it need not exist.
+Scene load_scene_text(const std::string& text, const std::string& file,
+                      std::span<const SceneOverride> overrides, const TextureReader& textures);
 
 /// The JSON Schema (draft 7) of a scene file, as text.
 const char* scene_schema();

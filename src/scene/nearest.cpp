@@ -8,7 +8,7 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kLongestName = 64;   // longer ones are no typing mistakes
+constexpr std::size_t kLongestName = 64;  // longer ones are no typing mistakes
 constexpr std::size_t kMostListed = 24;
 
 std::string lower(std::string text) {
@@ -47,7 +47,8 @@ std::string suggestion(const std::string& unknown, std::span<const std::string> 
     }
     if (nearest) return "; did you mean '" + *nearest + "'?";
     std::string list = "; known: ";
-    for (std::size_t i = 0; i < std::min(known.size(), kMostListed); ++i) list += (i == 0 ? "" : ", ") + known[i];
+    for (std::size_t i = 0; i < std::min(known.size(), kMostListed); ++i)
+        list += (i == 0 ? "" : ", ") + known[i];
     return known.size() > kMostListed ? list + ", ..." : list;
 }
 

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "base/error.h"
+#include "scene/words.h"
 
 namespace trilens {
 namespace {
@@ -17,33 +18,16 @@ constexpr std::size_t kMostCorners = 255;  // OpenSubdiv's and tinyobjloader's l
 
 using Words = std::vector<std::string_view>;
 
-bool is_space(char letter) { return letter == ' ' || letter == '\t' || letter == '\r' || letter == '\v' || letter == '\f'; }
-
-/// The words of a line up to a word that begins with '#'.
-Words split(std::string_view line) {
-    Words words;
-    std::size_t i = 0;
-    while (i < line.size()) {
-        while (i < line.size() && is_space(line[i])) ++i;
-        const std::size_t begin = i;
-        while (i < line.size() && !is_space(line[i])) ++i;
-        if (i == begin || line[begin] == '#') break;
-        words.push_back(line.substr(begin, i - begin));
-    }
-    return words;
-}
-
-/// What follows the first word, without spaces at the ends.
-std::string rest_of(std::string_view line, std::string_view first_word) {
-    std::string_view rest = line.substr(static_cast<std::size_t>(first_word.data() + first_word.size() - line.data()));
-    while (!rest.empty() && is_space(rest.front())) rest.remove_prefix(1);
-    while (!rest.empty() && is_space(rest.back())) rest.remove_suffix(1);
-    return std::string(rest);
-}
-
 /// A face corner: indices into points, texture coordinates and normals; -1 where there is none.
 struct Corner {
     int point = -1, uv = -1, normal = -1;
+};
+
+/// One `t` line.
+struct Tag {
+    std::string name;
+    std::vector<int> integers;
+    std::vector<double> reals;
 };
 
 class ObjReader {
@@ -52,7 +36,7 @@ class ObjReader {
 
     void read_line(std::string_view line, std::size_t number) {
         line_ = number;
-        const Words words = split(line);
+        const Words words = split_words(line);
         if (words.empty()) return;
         const std::string_view keyword = words[0];
         if (keyword == "v")
@@ -64,11 +48,11 @@ class ObjReader {
         else if (keyword == "f")
             read_face(words);
         else if (keyword == "t")
-            read_tag(words);
+            apply_tag(read_tag(words));
         else if (keyword == "usemtl")
-            use_material(rest_of(line, keyword));
+            use_material(rest_of_line(line, keyword));
         else if (keyword == "mtllib")
-            result_.material_libraries.push_back(rest_of(line, keyword));
+            result_.material_libraries.push_back(rest_of_line(line, keyword));
         else if (keyword == "l" || keyword == "p")
             ++skipped_;
     }
@@ -80,31 +64,28 @@ class ObjReader {
         throw InputError(file_, "line " + std::to_string(line), message);
     }
     [[noreturn]] void fail(const std::string& message) const { fail(line_, message); }
+    void warn(const std::string& message) {
+        result_.warnings.push_back("line " + std::to_string(line_) + ": " + message);
+    }
 
     double read_number(std::string_view word) const {
-        if (!word.empty() && word[0] == '+') word.remove_prefix(1);
-        double value = 0;
-        const auto end = word.data() + word.size();
-        const auto [stop, error] = std::from_chars(word.data(), end, value);
-        // Too small for a double is 0; too large, infinity and NaN are refused.
-        const bool out_of_range = error == std::errc::result_out_of_range && stop == end;
-        if (out_of_range && word.find_first_of("eE") < word.rfind('-') && word.rfind('-') < word.size()) return 0;
-        if (out_of_range) fail("'" + std::string(word) + "' is beyond the limit of 1e30");
-        if (error != std::errc() || stop != end) fail("'" + std::string(word) + "' is no number");
-        if (!(std::abs(value) <= kLargestCoordinate)) fail("'" + std::string(word) + "' is beyond the limit of 1e30");
-        return value;
+        const std::optional<double> value = parse_number(word);
+        if (!value) fail("'" + std::string(word) + "' is no number");
+        if (!(std::abs(*value) <= kLargestCoordinate))
+            fail("'" + std::string(word) + "' is beyond the limit of 1e30");
+        return *value;
     }
 
     int read_integer(std::string_view word) const {
-        int value = 0;
-        const auto end = word.data() + word.size();
-        const auto [stop, error] = std::from_chars(word.data(), end, value);
-        if (error != std::errc() || stop != end) fail("'" + std::string(word) + "' is no integer");
-        return value;
+        const std::optional<int> value = parse_integer(word);
+        if (!value) fail("'" + std::string(word) + "' is no integer");
+        return *value;
     }
 
     Vec3 read_vec3(const Words& words) const {
-        if (words.size() < 4) fail("'" + std::string(words[0]) + "' needs 3 numbers, found " + std::to_string(words.size() - 1));
+        if (words.size() < 4)
+            fail("'" + std::string(words[0]) + "' needs 3 numbers, found " +
+                 std::to_string(words.size() - 1));
         return {read_number(words[1]), read_number(words[2]), read_number(words[3])};
     }
 
@@ -119,7 +100,8 @@ class ObjReader {
         if (index == 0) fail("index 0: indices count from 1");
         if (index > 0) return index - 1;
         if (static_cast<std::size_t>(-static_cast<long long>(index)) > so_far)
-            fail("index " + std::to_string(index) + " is out of range: there are " + std::to_string(so_far) + " so far");
+            fail("index " + std::to_string(index) + " is out of range: there are " + std::to_string(so_far) +
+                 " so far");
         return static_cast<int>(so_far) + index;
     }
 
@@ -140,7 +122,8 @@ class ObjReader {
         const std::size_t corners = words.size() - 1;
         if (corners < 3) fail("a face needs at least 3 corners, found " + std::to_string(corners));
         if (corners > kMostCorners)
-            fail("a face may have at most " + std::to_string(kMostCorners) + " corners, found " + std::to_string(corners));
+            fail("a face may have at most " + std::to_string(kMostCorners) + " corners, found " +
+                 std::to_string(corners));
         for (std::size_t k = 1; k < words.size(); ++k) corners_.push_back(read_corner(words[k]));
         result_.mesh.cage.face_vertex_counts.push_back(static_cast<int>(corners));
         result_.mesh.face_material.push_back(material_);
@@ -154,8 +137,9 @@ class ObjReader {
         if (found == names.end()) names.push_back(name);
     }
 
-    void read_tag(const Words& words);
-    void add_creases(const std::vector<int>& points, const std::vector<double>& sharpnesses);
+    Tag read_tag(const Words& words) const;
+    void apply_tag(const Tag& tag);
+    void set_boundary(int code);
     void check_faces() const;
     void check_tags() const;
     void resolve_corners();
@@ -177,65 +161,64 @@ class ObjReader {
     std::vector<TagIndex> tag_indices_;
 };
 
-void ObjReader::read_tag(const Words& words) {
+Tag ObjReader::read_tag(const Words& words) const {
     if (words.size() < 3) fail("a tag is 't NAME INTS/REALS/STRINGS values...'");
-    std::array<int, 3> sizes{};  // integers, reals, strings
+    std::array<std::size_t, 3> sizes{};
     std::string_view counts = words[2];
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t& size : sizes) {
         const std::size_t slash = counts.find('/');
-        sizes[k] = read_integer(counts.substr(0, slash));
-        if (sizes[k] < 0) fail("a tag's counts must not be negative");
+        const int count = read_integer(counts.substr(0, slash));
+        if (count < 0) fail("a tag's counts must not be negative");
+        size = static_cast<std::size_t>(count);
         if (slash == std::string_view::npos) break;
         counts.remove_prefix(slash + 1);
     }
-    const auto ints = static_cast<std::size_t>(sizes[0]), reals = static_cast<std::size_t>(sizes[1]);
-    if (words.size() != 3 + ints + reals + static_cast<std::size_t>(sizes[2]))
-        fail("the tag announces " + std::string(words[2]) + " values, found " + std::to_string(words.size() - 3));
-    std::vector<int> integers;
-    std::vector<double> numbers;
-    for (std::size_t k = 0; k < ints; ++k) integers.push_back(read_integer(words[3 + k]));
-    for (std::size_t k = 0; k < reals; ++k) numbers.push_back(read_number(words[3 + ints + k]));
-
-    Cage& cage = result_.mesh.cage;
-    const std::string name(words[1]);
-    const auto expect = [&](bool right) {
-        if (!right) fail("the tag '" + name + "' has the wrong number of values");
-    };
-    if (name == "crease") {
-        expect(ints >= 2 && ints % 2 == 0 && (reals == 1 || reals == ints / 2));
-        if (ints > 2) result_.warnings.push_back("line " + std::to_string(line_) + ": a crease tag of several points is read as pairs");
-        add_creases(integers, numbers);
-    } else if (name == "corner") {
-        expect(ints >= 1 && (reals == 1 || reals == ints));
-        for (std::size_t k = 0; k < ints; ++k) {
-            cage.corner_indices.push_back(integers[k]);
-            cage.corner_sharpnesses.push_back(numbers[reals == 1 ? 0 : k]);
-        }
-    } else if (name == "hole") {
-        cage.hole_indices.insert(cage.hole_indices.end(), integers.begin(), integers.end());
-    } else if (name == "interpolateboundary") {
-        expect(ints == 1);
-        if (integers[0] < 0 || integers[0] > 2) fail("interpolateboundary must be 0, 1 or 2");
-        cage.interpolate_boundary = integers[0] == 0   ? InterpolateBoundary::kNone
-                                    : integers[0] == 1 ? InterpolateBoundary::kEdgeAndCorner
-                                                       : InterpolateBoundary::kEdgeOnly;
-        return;
-    } else {
-        result_.warnings.push_back("line " + std::to_string(line_) + ": the tag '" + name + "' is ignored");
-        return;
-    }
-    for (const double sharpness : numbers)
-        if (sharpness < 0) fail("a sharpness must not be negative");
-    for (const int index : integers) tag_indices_.push_back({index, name == "hole", line_});
+    if (words.size() != 3 + sizes[0] + sizes[1] + sizes[2])
+        fail("the tag announces " + std::string(words[2]) + " values, found " +
+             std::to_string(words.size() - 3));
+    Tag tag;
+    tag.name = words[1];
+    for (std::size_t k = 0; k < sizes[0]; ++k) tag.integers.push_back(read_integer(words[3 + k]));
+    for (std::size_t k = 0; k < sizes[1]; ++k) tag.reals.push_back(read_number(words[3 + sizes[0] + k]));
+    return tag;
 }
 
-void ObjReader::add_creases(const std::vector<int>& points, const std::vector<double>& sharpnesses) {
+void ObjReader::apply_tag(const Tag& tag) {
     Cage& cage = result_.mesh.cage;
-    cage.crease_indices.insert(cage.crease_indices.end(), points.begin(), points.end());
-    for (std::size_t k = 0; k < points.size() / 2; ++k) {
-        cage.crease_lengths.push_back(2);
-        cage.crease_sharpnesses.push_back(sharpnesses[sharpnesses.size() == 1 ? 0 : k]);
+    const std::size_t integers = tag.integers.size(), reals = tag.reals.size();
+    const auto expect = [&](bool right) {
+        if (!right) fail("the tag '" + tag.name + "' has the wrong number of values");
+    };
+    const auto sharpness = [&](std::size_t k) { return tag.reals[reals == 1 ? 0 : k]; };
+    for (const double value : tag.reals)
+        if (value < 0) fail("a sharpness must not be negative");
+
+    if (tag.name == "crease") {
+        expect(integers >= 2 && integers % 2 == 0 && (reals == 1 || reals == integers / 2));
+        if (integers > 2) warn("a crease tag of several points is read as pairs");
+        cage.crease_indices.insert(cage.crease_indices.end(), tag.integers.begin(), tag.integers.end());
+        cage.crease_lengths.insert(cage.crease_lengths.end(), integers / 2, 2);
+        for (std::size_t k = 0; k < integers / 2; ++k) cage.crease_sharpnesses.push_back(sharpness(k));
+    } else if (tag.name == "corner") {
+        expect(integers >= 1 && (reals == 1 || reals == integers));
+        cage.corner_indices.insert(cage.corner_indices.end(), tag.integers.begin(), tag.integers.end());
+        for (std::size_t k = 0; k < integers; ++k) cage.corner_sharpnesses.push_back(sharpness(k));
+    } else if (tag.name == "hole") {
+        cage.hole_indices.insert(cage.hole_indices.end(), tag.integers.begin(), tag.integers.end());
+    } else if (tag.name == "interpolateboundary") {
+        expect(integers == 1);
+        return set_boundary(tag.integers[0]);
+    } else {
+        return warn("the tag '" + tag.name + "' is ignored");
     }
+    for (const int index : tag.integers) tag_indices_.push_back({index, tag.name == "hole", line_});
+}
+
+void ObjReader::set_boundary(int code) {
+    if (code < 0 || code > 2) fail("interpolateboundary must be 0, 1 or 2");
+    result_.mesh.cage.interpolate_boundary = code == 0   ? InterpolateBoundary::kNone
+                                             : code == 1 ? InterpolateBoundary::kEdgeAndCorner
+                                                         : InterpolateBoundary::kEdgeOnly;
 }
 
 void ObjReader::check_faces() const {
@@ -261,19 +244,24 @@ void ObjReader::check_tags() const {
     for (const TagIndex& tag : tag_indices_) {
         const std::size_t count = tag.is_face ? cage.face_vertex_counts.size() : cage.points.size();
         if (tag.index < 0 || static_cast<std::size_t>(tag.index) >= count)
-            fail(tag.line, "index " + std::to_string(tag.index) + " is out of range: there are " + std::to_string(count) +
-                               (tag.is_face ? " faces" : " points") + ", counted from 0 in tags");
+            fail(tag.line, "index " + std::to_string(tag.index) + " is out of range: there are " +
+                               std::to_string(count) + (tag.is_face ? " faces" : " points") +
+                               ", counted from 0 in tags");
     }
 }
 
 void ObjReader::resolve_corners() {
     PolygonMesh& mesh = result_.mesh;
-    const bool has_uvs = std::any_of(corners_.begin(), corners_.end(), [](const Corner& c) { return c.uv >= 0; });
-    const bool has_normals = std::any_of(corners_.begin(), corners_.end(), [](const Corner& c) { return c.normal >= 0; });
+    const bool has_uvs =
+        std::any_of(corners_.begin(), corners_.end(), [](const Corner& c) { return c.uv >= 0; });
+    const bool has_normals =
+        std::any_of(corners_.begin(), corners_.end(), [](const Corner& c) { return c.normal >= 0; });
     for (const Corner& corner : corners_) {
         mesh.cage.face_vertex_indices.push_back(corner.point);
         if (has_uvs) mesh.uvs.push_back(corner.uv < 0 ? Vec2(0) : uvs_[static_cast<std::size_t>(corner.uv)]);
-        if (has_normals) mesh.normals.push_back(corner.normal < 0 ? Vec3(0) : normals_[static_cast<std::size_t>(corner.normal)]);
+        if (has_normals)
+            mesh.normals.push_back(corner.normal < 0 ? Vec3(0)
+                                                     : normals_[static_cast<std::size_t>(corner.normal)]);
     }
 }
 
@@ -282,7 +270,9 @@ ObjFile ObjReader::finish() {
     check_faces();
     check_tags();
     resolve_corners();
-    if (skipped_ > 0) result_.warnings.push_back(std::to_string(skipped_) + " lines or points are skipped: only faces are drawn");
+    if (skipped_ > 0)
+        result_.warnings.push_back(std::to_string(skipped_) +
+                                   " lines or points are skipped: only faces are drawn");
     return std::move(result_);
 }
 

@@ -15,13 +15,14 @@ struct Target {
     const std::string& file;
 
     [[noreturn]] void fail(const std::string& message) const {
-        throw InputError(file, change.pointer, message + " (in --set)");
+        fail_at(file, change.pointer, message + " (in --set)");
     }
 };
 
 std::vector<std::string> split_pointer(const Target& target) {
     const std::string& pointer = target.change.pointer;
-    if (pointer.empty() || pointer[0] != '/') target.fail("'" + pointer + "' is no JSON pointer: it must begin with '/'");
+    if (pointer.empty() || pointer[0] != '/')
+        target.fail("'" + pointer + "' is no JSON pointer: it must begin with '/'");
     std::vector<std::string> keys;
     for (std::size_t i = 0; i < pointer.size(); ++i) {
         if (pointer[i] == '/') {
@@ -58,7 +59,8 @@ Json& step(Json& value, const std::string& key, const Json* schema, const Target
         return value[index];
     }
     if (!value.is_object()) target.fail("names nothing: " + describe(value) + " has no part '" + key + "'");
-    if (!value.contains(key) && schema && !is_free_key(key) && !schema_of_part(*schema, key, scene_schema_json()))
+    if (!value.contains(key) && schema && !is_free_key(key) &&
+        !schema_of_part(*schema, key, scene_schema_json()))
         target.fail("names nothing: unknown key '" + key + "'" + suggestion(key, known_keys(*schema)));
     return value[key];
 }
@@ -73,7 +75,8 @@ void apply(Json& scene, const Target& target) {
         schema = schema ? schema_of_part(*schema, key, root) : nullptr;
         const bool last = &key == &keys.back();
         if (!value->is_null() || last) continue;
-        if (schema && schema->value("type", "") != "object") target.fail("names nothing: there is no '" + key + "' yet");
+        if (schema && schema->value("type", "") != "object")
+            target.fail("names nothing: there is no '" + key + "' yet");
         *value = Json::object();
     }
     *value = parse_value(target);

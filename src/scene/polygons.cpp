@@ -10,7 +10,8 @@ namespace {
 
 bool in_range(const Vec3& p) {
     // Written so that NaN is out of range.
-    return std::abs(p.x) <= kLargestCoordinate && std::abs(p.y) <= kLargestCoordinate && std::abs(p.z) <= kLargestCoordinate;
+    return std::abs(p.x) <= kLargestCoordinate && std::abs(p.y) <= kLargestCoordinate &&
+           std::abs(p.z) <= kLargestCoordinate;
 }
 
 template <class Corner>
@@ -39,13 +40,15 @@ void add_triangle(const PolygonMesh& mesh, const std::array<std::size_t, 3>& cor
     IdTriple points;
     for (std::size_t k = 0; k < 3; ++k) points[k] = static_cast<Id>(mesh.cage.face_vertex_indices[corner[k]]);
     object.triangles.push_back(points);
-    if (!mesh.uvs.empty()) object.uvs.push_back({mesh.uvs[corner[0]], mesh.uvs[corner[1]], mesh.uvs[corner[2]]});
+    if (!mesh.uvs.empty())
+        object.uvs.push_back({mesh.uvs[corner[0]], mesh.uvs[corner[1]], mesh.uvs[corner[2]]});
     if (mesh.normals.empty()) return;
     std::array<Vec3, 3> normals;
     for (std::size_t k = 0; k < 3; ++k) {
         normals[k] = normalize_or_zero(mesh.normals[corner[k]]);
         if (normals[k] == Vec3(0))
-            normals[k] = triangle_normal(object.points[points[0]], object.points[points[1]], object.points[points[2]]);
+            normals[k] =
+                triangle_normal(object.points[points[0]], object.points[points[1]], object.points[points[2]]);
     }
     object.normals.push_back(normals);
 }
@@ -86,7 +89,8 @@ ObjectMesh triangulate(const PolygonMesh& mesh) {
 std::size_t count_without_area(const ObjectMesh& mesh) {
     std::size_t count = 0;
     for (const IdTriple& triangle : mesh.triangles) {
-        const Vec3 &a = mesh.points[triangle[0]], &b = mesh.points[triangle[1]], &c = mesh.points[triangle[2]];
+        const Vec3 &a = mesh.points[triangle[0]], &b = mesh.points[triangle[1]],
+                   &c = mesh.points[triangle[2]];
         const double longest = std::max({length(b - a), length(c - a), length(c - b)});
         if (!(length(cross(b - a, c - a)) > kNoArea * longest * longest)) ++count;
     }

@@ -1,4 +1,5 @@
-// A polygon mesh as files give it, in its own frame, and what becomes of it: a placed cage or an object's triangles.
+// A polygon mesh as files give it, in its own frame, and what becomes of it: a placed cage or an object's
+// triangles.
 #pragma once
 
 #include <cstddef>
@@ -19,18 +20,18 @@ inline constexpr double kLargestCoordinate = 1e30;
 struct PolygonMesh {
     Cage cage;
     // Per face corner, parallel to cage.face_vertex_indices; empty where the file has none.
-    std::vector<Vec2> uvs;                // v upward
-    std::vector<Vec3> normals;            // any length; zero: none, take the triangle's own
-    std::vector<Id> face_material;        // per face an index into `materials`, or kNone; empty: none at all
-    std::vector<Material> materials;      // the file's own
+    std::vector<Vec2> uvs;            // v upward
+    std::vector<Vec3> normals;        // any length; zero: none, take the triangle's own
+    std::vector<Id> face_material;    // per face an index into `materials`, or kNone; empty: none at all
+    std::vector<Material> materials;  // the file's own
 };
 
-/// Moves points and normals; a mirroring transform also reverses the corners of each face after the first, so that
-/// fronts stay fronts. Returns false where a point leaves the range of coordinates.
+/// Moves points and normals; a mirroring transform also reverses the corners of each face after the first, so
+/// that fronts stay fronts. Returns false where a point leaves the range of coordinates.
 bool place(PolygonMesh& mesh, const Transform& transform);
 
-/// Polygons as fans from their first corner, in face order, holes left out; degenerate triangles stay. `material` of
-/// the result holds indices of `mesh.materials` or kNone, one per triangle.
+/// Polygons as fans from their first corner, in face order, holes left out; degenerate triangles stay.
+/// `material` of the result holds indices of `mesh.materials` or kNone, one per triangle.
 ObjectMesh triangulate(const PolygonMesh& mesh);
 
 /// Per triangle: whether its area is zero (relative to its longest edge squared, kNoArea) .
@@ -39,11 +40,11 @@ inline constexpr double kNoArea = 1e-14;
 
 /// Doubtful spots of a cage's topology.
 struct CageDoubts {
-    std::size_t boundary_edges = 0;       // with one face
-    std::size_t non_manifold_edges = 0;   // with more than two faces, or two that disagree on its direction
-    std::size_t repeated_corners = 0;     // faces that visit a point twice
-    std::size_t unknown_creases = 0;      // crease pairs that are no edge
-    std::size_t flat_faces = 0;           // faces without area
+    std::size_t boundary_edges = 0;      // with one face
+    std::size_t non_manifold_edges = 0;  // with more than two faces, or two that disagree on its direction
+    std::size_t repeated_corners = 0;    // faces that visit a point twice
+    std::size_t unknown_creases = 0;     // crease pairs that are no edge
+    std::size_t flat_faces = 0;          // faces without area
 };
 CageDoubts find_doubts(const Cage& cage);
 

@@ -12,9 +12,10 @@
 namespace trilens {
 namespace {
 
-/// The materials of an OBJ's libraries by name. A library that is missing is a warning, as most viewers have it.
-std::map<std::string, MtlMaterial> read_libraries(const ObjFile& obj, const std::filesystem::path& folder, const std::string& place,
-                                                  Reading& reading) {
+/// The materials of an OBJ's libraries by name. A library that is missing is a warning, as most viewers have
+/// it.
+std::map<std::string, MtlMaterial> read_libraries(const ObjFile& obj, const std::filesystem::path& folder,
+                                                  const std::string& place, Reading& reading) {
     std::map<std::string, MtlMaterial> by_name;
     for (const std::string& library : obj.material_libraries) {
         const std::string path = (folder / library).string();
@@ -22,7 +23,8 @@ std::map<std::string, MtlMaterial> read_libraries(const ObjFile& obj, const std:
             reading.warn(place, "the material library '" + path + "' does not exist");
             continue;
         }
-        for (const MtlMaterial& material : parse_mtl(read_required_file(path), path)) by_name.emplace(material.name, material);
+        for (const MtlMaterial& material : parse_mtl(read_required_file(path), path))
+            by_name.emplace(material.name, material);
     }
     return by_name;
 }
@@ -42,7 +44,8 @@ Material make_material(const MtlMaterial& mtl, const std::filesystem::path& fold
 }
 
 /// Turns the OBJ's material names into materials, those that faces use only.
-void inherit_materials(ObjFile& obj, const std::filesystem::path& folder, const std::string& place, Reading& reading) {
+void inherit_materials(ObjFile& obj, const std::filesystem::path& folder, const std::string& place,
+                       Reading& reading) {
     const std::map<std::string, MtlMaterial> by_name = read_libraries(obj, folder, place, reading);
     std::vector<Id> index_of_name(obj.material_names.size(), kNone);
     for (std::size_t i = 0; i < obj.material_names.size(); ++i) {
@@ -50,7 +53,8 @@ void inherit_materials(ObjFile& obj, const std::filesystem::path& folder, const 
         if (std::find(used.begin(), used.end(), static_cast<Id>(i)) == used.end()) continue;
         const auto found = by_name.find(obj.material_names[i]);
         if (found == by_name.end()) {
-            reading.warn(place, "the material '" + obj.material_names[i] + "' is in no library: drawn in the default colour");
+            reading.warn(place, "the material '" + obj.material_names[i] +
+                                    "' is in no library: drawn in the default colour");
             continue;
         }
         index_of_name[i] = static_cast<Id>(obj.mesh.materials.size());
@@ -70,7 +74,8 @@ PolygonMesh read_obj_file(const std::string& path, bool inherit, const std::stri
     return std::move(obj.mesh);
 }
 
-PolygonMesh read_gltf_file(const std::string& path, bool inherit, const std::string& place, Reading& reading) {
+PolygonMesh read_gltf_file(const std::string& path, bool inherit, const std::string& place,
+                           Reading& reading) {
     const GltfModel model = read_gltf(path);
     for (const std::string& warning : model.warnings) reading.warn(place, path + ": " + warning);
     return polygons_of_gltf(model, path, inherit ? &reading.textures : nullptr);
@@ -82,13 +87,18 @@ PolygonMesh read_mesh_file(const Node& mesh, bool inherit, Reading& reading) {
     const Node node = mesh["file"];
     const std::string path = reading.resolve(node.json.get<std::string>());
     std::string extension = std::filesystem::path(path).extension().string();
-    for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    for (char& letter : extension)
+        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
-    if (!is_gltf && extension != ".obj") node.fail("'" + path + "' is of no known kind: known are .obj, .gltf and .glb");
+    if (!is_gltf && extension != ".obj")
+        node.fail("'" + path + "' is of no known kind: known are .obj, .gltf and .glb");
     if (is_gltf && mesh["role"].json == "optic")
-        node.fail("a glTF file holds triangles only, and so cannot hold the cage of an optic: give an OBJ of quads");
+        node.fail(
+            "a glTF file holds triangles only, and so cannot hold the cage of an optic: give an OBJ of "
+            "quads");
     try {
-        return is_gltf ? read_gltf_file(path, inherit, node.place, reading) : read_obj_file(path, inherit, node.place, reading);
+        return is_gltf ? read_gltf_file(path, inherit, node.place, reading)
+                       : read_obj_file(path, inherit, node.place, reading);
     } catch (const InputError& error) {
         node.fail(error.what());
     }

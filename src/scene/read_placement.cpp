@@ -1,4 +1,5 @@
 // Transforms and primitives out of checked JSON.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -40,7 +41,8 @@ Transform read_transform(const Node& mesh) {
     for (int k = 0; k < 3; ++k)
         if (scale[k] == 0) node["scale"][static_cast<std::size_t>(k)].fail("a scale of 0 flattens the mesh");
     Vec4 rotate(0, 0, 0, 1);
-    for (std::size_t k = 0; node.has("rotate") && k < 4; ++k) rotate[static_cast<int>(k)] = node["rotate"].json[k].get<double>();
+    for (std::size_t k = 0; node.has("rotate") && k < 4; ++k)
+        rotate[static_cast<int>(k)] = node["rotate"].json[k].get<double>();
     if (rotate == Vec4(0)) node["rotate"].fail("a quaternion must not be zero (0 0 0 1 turns nothing)");
     return make_transform(translate, rotate, scale);
 }
@@ -67,9 +69,10 @@ Primitive read_primitive(const Node& node, const Transform& transform, const Nod
     primitive.height = number_or(node, "height", 2) * *factor;
     if (node.has("size")) primitive.size = to_vec2(node["size"].json);
     primitive.size *= *factor;
-    const double extent = std::max({primitive.radius, primitive.focal_length, primitive.height, primitive.size.x, primitive.size.y,
-                                    length(primitive.center)});
-    if (!(extent <= kLargestCoordinate)) mesh.fail("its transform carries the primitive beyond coordinates of 1e30");
+    const double extent = std::max({primitive.radius, primitive.focal_length, primitive.height,
+                                    primitive.size.x, primitive.size.y, length(primitive.center)});
+    if (!(extent <= kLargestCoordinate))
+        mesh.fail("its transform carries the primitive beyond coordinates of 1e30");
     return primitive;
 }
 

@@ -1,6 +1,7 @@
 // Film, cameras, background, lights, materials and render settings out of checked JSON.
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <system_error>
 
 #include "base/check.h"
 #include "scene/reading.h"
@@ -10,8 +11,9 @@ namespace {
 
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
 constexpr long long kMostPixels = 1LL << 28;
-constexpr double kSamePoint = 1e-12;  // eye and at closer than this share of their distance from the origin: no direction
-constexpr double kParallel = 1e-9;    // sine of an angle that counts as none
+constexpr double kSamePoint =
+    1e-12;  // eye and at closer than this share of their distance from the origin: no direction
+constexpr double kParallel = 1e-9;  // sine of an angle that counts as none
 
 void read_look_at(const Node& look_at, CameraDescription& camera) {
     camera.eye = to_vec3(look_at["eye"].json);
@@ -32,7 +34,8 @@ void read_ray_mesh(const Node& node, CameraDescription& camera, Reading& reading
     const std::size_t corners = node["points"].size();
     for (const char* key : {"directions", "screen"})
         if (node[key].size() != corners)
-            node[key].fail("has " + std::to_string(node[key].size()) + " entries, but points has " + std::to_string(corners));
+            node[key].fail("has " + std::to_string(node[key].size()) + " entries, but points has " +
+                           std::to_string(corners));
     for (std::size_t i = 0; i < corners; ++i) {
         camera.points.push_back(to_vec3(node["points"].json[i]));
         camera.directions.push_back(to_vec3(node["directions"].json[i]));
@@ -45,15 +48,19 @@ void read_ray_mesh(const Node& node, CameraDescription& camera, Reading& reading
         for (std::size_t k = 0; k < 3; ++k) {
             triangle[k] = node["triangles"].json[i][k].get<Id>();
             if (triangle[k] >= corners)
-                node["triangles"][i][k].fail("index " + std::to_string(triangle[k]) + " is out of range: there are " +
-                                             std::to_string(corners) + " points");
+                node["triangles"][i][k].fail("index " + std::to_string(triangle[k]) +
+                                             " is out of range: there are " + std::to_string(corners) +
+                                             " points");
         }
         camera.triangles.push_back(triangle);
-        const Vec2 a = camera.screen[triangle[0]], ab = camera.screen[triangle[1]] - a, ac = camera.screen[triangle[2]] - a;
+        const Vec2 a = camera.screen[triangle[0]], ab = camera.screen[triangle[1]] - a,
+                   ac = camera.screen[triangle[2]] - a;
         if (ab.x * ac.y == ab.y * ac.x) ++without_area;
     }
     if (without_area > 0)
-        reading.warn(node["triangles"].place, std::to_string(without_area) + " triangles have no area on the screen: no pixel sees them");
+        reading.warn(
+            node["triangles"].place,
+            std::to_string(without_area) + " triangles have no area on the screen: no pixel sees them");
 }
 
 }  // namespace
@@ -68,7 +75,8 @@ std::shared_ptr<const Texture> read_picture(Reading& reading, const std::string&
 std::shared_ptr<const Texture> read_picture(Reading& reading, const Node& path) {
     const std::string resolved = reading.resolve(path.json.get<std::string>());
     std::error_code ignored;
-    if (!std::filesystem::exists(resolved, ignored)) path.fail("the picture '" + resolved + "' does not exist");
+    if (!std::filesystem::exists(resolved, ignored))
+        path.fail("the picture '" + resolved + "' does not exist");
     try {
         return read_picture(reading, resolved);
     } catch (const InputError& error) {
@@ -90,7 +98,8 @@ Film read_film(const Node& scene) {
     film.height = int_or(node, "height", film.height);
     film.spp = int_or(node, "spp", film.spp);
     if (static_cast<long long>(film.width) * film.height > kMostPixels)
-        node.fail(std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels are more than " + std::to_string(kMostPixels));
+        node.fail(std::to_string(film.width) + " x " + std::to_string(film.height) +
+                  " pixels are more than " + std::to_string(kMostPixels));
     return film;
 }
 
@@ -157,9 +166,11 @@ RenderSettings read_render(const Node& scene, Reading& reading) {
 Material read_material(const Node& node, Reading& reading) {
     Material material;
     material.name = node["name"].json.get<std::string>();
-    if (material.name == "inherit") node["name"].fail("'inherit' is taken: it stands for a file's own materials");
+    if (material.name == "inherit")
+        node["name"].fail("'inherit' is taken: it stands for a file's own materials");
     material.base_color_factor = vec3_or(node, "baseColorFactor", material.base_color_factor);
-    if (node.has("baseColorTexture")) material.base_color_texture = read_picture(reading, node["baseColorTexture"]);
+    if (node.has("baseColorTexture"))
+        material.base_color_texture = read_picture(reading, node["baseColorTexture"]);
     material.unlit = bool_or(node, "unlit", material.unlit);
     material.metallic_factor = number_or(node, "metallicFactor", material.metallic_factor);
     material.roughness_factor = number_or(node, "roughnessFactor", material.roughness_factor);
@@ -169,7 +180,8 @@ Material read_material(const Node& node, Reading& reading) {
     if (node.has("volume")) {
         const Node volume = node["volume"];
         material.attenuation_color = vec3_or(volume, "attenuationColor", material.attenuation_color);
-        material.attenuation_distance = number_or(volume, "attenuationDistance", material.attenuation_distance);
+        material.attenuation_distance =
+            number_or(volume, "attenuationDistance", material.attenuation_distance);
     }
     if (material.dispersion != 0) reading.warn(node["dispersion"].place, "dispersion is ignored so far");
     return material;

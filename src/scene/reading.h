@@ -1,6 +1,7 @@
 // What the readers of a scene file's parts share.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -18,11 +19,15 @@ struct Reading {
     const TextureReader& textures;
     Scene scene;
     std::map<std::string, std::shared_ptr<const Texture>> texture_of_path;
+    std::size_t named_materials =
+        0;  // the scene file's own come first in scene.materials; those of files follow
 
     /// A path as the scene file writes it, relative to that file.
-    std::string resolve(const std::string& path) const { return (std::filesystem::path(file).parent_path() / path).string(); }
+    std::string resolve(const std::string& path) const {
+        return (std::filesystem::path(file).parent_path() / path).string();
+    }
     void warn(const std::string& place, const std::string& message) {
-        scene.warnings.push_back(file + ": " + (place.empty() ? "" : place + ": ") + message);
+        scene.warnings.push_back(file + ": " + one_line((place.empty() ? "" : place + ": ") + message));
     }
 };
 
@@ -52,5 +57,7 @@ PolygonMesh read_inline_polygons(const Node& mesh);
 PolygonMesh read_mesh_file(const Node& mesh, bool inherit, Reading& reading);
 /// Scheme, boundary, creases, corners and holes that the JSON gives; they replace those of a file.
 void read_subdivision(const Node& mesh, Cage& cage);
+/// Throws InputError where an optic's scheme does not fit its faces.
+void check_scheme(const Node& mesh, const Cage& cage);
 
 }  // namespace trilens

@@ -49,7 +49,8 @@ struct ObjectMesh {
     std::vector<Vec3> points;
     std::vector<IdTriple> triangles;
     // Per triangle and corner; either empty or one entry per triangle.
-    std::vector<std::array<Vec2, 3>> uvs;      // v upward from the picture's bottom, as OBJ; glTF's is turned on reading
+    std::vector<std::array<Vec2, 3>>
+        uvs;  // v upward from the picture's bottom, as OBJ; glTF's is turned on reading
     std::vector<std::array<Vec3, 3>> normals;  // unit
     std::vector<Id> material;                  // per triangle: index into Scene::materials
 };
@@ -58,10 +59,10 @@ struct ObjectMesh {
 struct Mesh {
     std::string name;
     Role role = Role::kObject;
-    Id material = kNone;     // index into Scene::materials; kNone where the triangles carry their own
-    int resolution = 8;      // optic: N x N facets per quad face
+    Id material = kNone;         // index into Scene::materials; kNone where the triangles carry their own
+    int resolution = 8;          // optic: N x N facets per quad face
     std::size_t face_count = 0;  // polygons of the file, holes among them; 0 for a primitive
-    NormalOverride normals;  // optic
+    NormalOverride normals;      // optic
 
     // An object has `object`; an optic has either `primitive` or `cage` (world frame, transform applied).
     ObjectMesh object;

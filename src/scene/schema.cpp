@@ -1,4 +1,5 @@
-// The scene format as a JSON Schema (draft 7): the one table that the checks, --set and the documentation read.
+// The scene format as a JSON Schema (draft 7): the one table that the checks, --set and the documentation
+// read.
 #include "scene/load.h"
 
 namespace trilens {

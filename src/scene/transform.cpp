@@ -11,7 +11,8 @@ Transform compose(const Transform& outer, const Transform& inner) {
 }
 
 Transform make_transform(const Vec3& translate, const Vec4& rotate, const Vec3& scale) {
-    const double largest = std::max({std::abs(rotate.x), std::abs(rotate.y), std::abs(rotate.z), std::abs(rotate.w)});
+    const double largest =
+        std::max({std::abs(rotate.x), std::abs(rotate.y), std::abs(rotate.z), std::abs(rotate.w)});
     const Vec4 unit = glm::normalize(rotate / largest);
     const Mat3 rotation = glm::mat3_cast(Quat(unit.w, unit.x, unit.y, unit.z));
     return {Mat3(rotation[0] * scale.x, rotation[1] * scale.y, rotation[2] * scale.z), translate};
@@ -21,19 +22,22 @@ std::optional<Transform> make_transform(std::span<const double, 16> columns) {
     if (columns[3] != 0 || columns[7] != 0 || columns[11] != 0 || columns[15] != 1) return std::nullopt;
     Transform t;
     for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row) t.linear[column][row] = columns[static_cast<std::size_t>(4 * column + row)];
+        for (int row = 0; row < 3; ++row)
+            t.linear[column][row] = columns[static_cast<std::size_t>(4 * column + row)];
     t.translation = {columns[12], columns[13], columns[14]};
     return t;
 }
 
 bool flattens(const Transform& t) {
     // Unit columns first, so that tiny and huge scales count for nothing.
-    const Mat3 unit(normalize_or_zero(t.linear[0]), normalize_or_zero(t.linear[1]), normalize_or_zero(t.linear[2]));
+    const Mat3 unit(normalize_or_zero(t.linear[0]), normalize_or_zero(t.linear[1]),
+                    normalize_or_zero(t.linear[2]));
     return !(std::abs(glm::determinant(unit)) > kFlat);
 }
 
 bool mirrors(const Transform& t) {
-    return triple(normalize_or_zero(t.linear[0]), normalize_or_zero(t.linear[1]), normalize_or_zero(t.linear[2])) < 0;
+    return triple(normalize_or_zero(t.linear[0]), normalize_or_zero(t.linear[1]),
+                  normalize_or_zero(t.linear[2])) < 0;
 }
 
 Mat3 normal_map(const Transform& t) {
@@ -47,7 +51,8 @@ std::optional<double> similarity_factor(const Transform& t) {
     const double factor = length(t.linear[0]);
     for (int i = 0; i < 3; ++i) {
         const Vec3 column = t.linear[i] / factor, next = t.linear[(i + 1) % 3] / factor;
-        if (!(std::abs(dot(column, column) - 1) <= kSimilar) || !(std::abs(dot(column, next)) <= kSimilar)) return std::nullopt;
+        if (!(std::abs(dot(column, column) - 1) <= kSimilar) || !(std::abs(dot(column, next)) <= kSimilar))
+            return std::nullopt;
     }
     return factor;
 }

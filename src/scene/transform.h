@@ -15,7 +15,9 @@ struct Transform {
     Vec3 translation{0};
 };
 
-inline Vec3 map_point(const Transform& t, const Vec3& point) { return t.linear * point + t.translation; }
+inline Vec3 map_point(const Transform& t, const Vec3& point) {
+    return t.linear * point + t.translation;
+}
 
 /// First `inner`, then `outer`.
 Transform compose(const Transform& outer, const Transform& inner);
@@ -36,7 +38,8 @@ bool mirrors(const Transform& t);
 /// Normals go by the inverse transpose; unit, or zero where the normal is zero. `t` must not flatten.
 Mat3 normal_map(const Transform& t);
 
-/// The factor of a similarity (rotation or mirroring times a factor), none for other maps. Tolerance: kSimilar.
+/// The factor of a similarity (rotation or mirroring times a factor), none for other maps. Tolerance:
+/// kSimilar.
 std::optional<double> similarity_factor(const Transform& t);
 inline constexpr double kSimilar = 1e-9;  // relative; a matrix written with ten digits passes
 

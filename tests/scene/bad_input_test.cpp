@@ -23,9 +23,11 @@ void check_all(std::initializer_list<Bad> cases) {
 
 }  // namespace
 
-TEST_CASE("the room that the others break is good") { CHECK(error_of(kRoom) == ""); }
+TEST_CASE("the room that the others break is good") {
+    CHECK(error_of(kRoom) == "");
+}
 
-TEST_CASE("files that are missing, unreadable or no JSON") {
+TEST_CASE("files that are missing or unreadable or no JSON") {
     const std::string folder = scratch_dir("scene_bad_files");
     const auto error = [&](const std::string& file) {
         try {
@@ -39,13 +41,17 @@ TEST_CASE("files that are missing, unreadable or no JSON") {
     CHECK(error(folder) == folder + ": is a directory, not a file");
     std::ofstream(folder + "/empty.json").flush();
     CHECK(begins_with(error(folder + "/empty.json"), folder + "/empty.json: line 1, column 1: syntax error"));
-    std::ofstream(folder + "/binary.json") << std::string("\x7f" "ELF\0\1\2", 7);
-    CHECK(begins_with(error(folder + "/binary.json"), folder + "/binary.json: line 1, column 1: syntax error"));
+    std::ofstream(folder + "/binary.json") << std::string(
+        "\x7f"
+        "ELF\0\1\2",
+        7);
+    CHECK(
+        begins_with(error(folder + "/binary.json"), folder + "/binary.json: line 1, column 1: syntax error"));
     std::ofstream(folder + "/good.json") << kRoom;
     CHECK(error(folder + "/good.json") == "");
 }
 
-TEST_CASE("syntax errors come with line and column, in one line") {
+TEST_CASE("syntax errors come with line and column in one line") {
     const std::string trailing = error_of("{\n  \"version\": 1,\n  \"cameras\": [],\n}");
     CHECK(begins_with(trailing, "room.json: line 4, column 1: syntax error"));
     CHECK(trailing.find('\n') == std::string::npos);
@@ -60,7 +66,8 @@ TEST_CASE("syntax errors come with line and column, in one line") {
 }
 
 TEST_CASE("a key that stands twice is an error") {
-    CHECK(error_of(replaced(kRoom, "\"spp\": 2", "\"width\": 2")) == "room.json: /film/width: this key stands twice in its object");
+    CHECK(error_of(replaced(kRoom, "\"spp\": 2", "\"width\": 2")) ==
+          "room.json: /film/width: this key stands twice in its object");
     CHECK(error_of(replaced(kRoom, "\"ior\": 1.5", "\"ior\": 1.5, \"ior\": 1.5")) ==
           "room.json: /materials/1/ior: this key stands twice in its object");
 }
@@ -68,15 +75,25 @@ TEST_CASE("a key that stands twice is an error") {
 TEST_CASE("an unknown key is named with the nearest known one") {
     CHECK(error_of(replaced(kRoom, "\"materials\"", "\"meterials\"")) ==
           "room.json: /meterials: unknown key 'meterials' of a scene; did you mean 'materials'?");
-    CHECK(error_of(replaced(kRoom, "\"yfov\"", "\"yFov\"")) == "room.json: /cameras/0/yFov: unknown key 'yFov' of a camera; did you mean 'yfov'?");
+    CHECK(error_of(replaced(kRoom, "\"yfov\"", "\"yFov\"")) ==
+          "room.json: /cameras/0/yFov: unknown key 'yFov' of a camera; did you mean 'yfov'?");
     CHECK(error_of(replaced(kRoom, "\"attenuationColor\"", "\"attenuationColour\"")) ==
-          "room.json: /materials/1/volume/attenuationColour: unknown key 'attenuationColour' of a volume; did you mean 'attenuationColor'?");
+          "room.json: /materials/1/volume/attenuationColour: unknown key 'attenuationColour' of a volume; "
+          "did you mean 'attenuationColor'?");
     CHECK(error_of(replaced(kRoom, "\"spp\"", "\"a/b~c\"")) ==
           "room.json: /film/a~1b~0c: unknown key 'a/b~c' of a film; known: width, height, spp");
-    CHECK(error_of(replaced(kRoom, "\"radius\": 1", "\"height\": 1")) == "room.json: /meshes/1/primitive/height: 'height' is no key of a sphere");
+    CHECK(error_of(replaced(kRoom, "\"radius\": 1", "\"height\": 1")) ==
+          "room.json: /meshes/1/primitive/height: 'height' is no key of a sphere");
 }
 
-TEST_CASE("wrong types, ranges and lengths") {
+TEST_CASE("what a message quotes does not break its line") {
+    CHECK(error_of(replaced(kRoom, "\"spp\"", "\"s\\np\"")) ==
+          "room.json: /film/s p: unknown key 's p' of a film; did you mean 'spp'?");
+    CHECK(error_with("/meshes/2/material", "\"a\\nb\"") ==
+          "room.json: /meshes/2/material: unknown material 'a b'; known: chrome, glass, red");
+}
+
+TEST_CASE("wrong types and ranges and lengths") {
     check_all({
         {"/version", "2", "/version: the number 2 is not 1"},
         {"/film", "[1]", "/film: expected an object, found an array of 1"},
@@ -91,72 +108,106 @@ TEST_CASE("wrong types, ranges and lengths") {
         {"/cameras/0/yfov", "180", "/cameras/0/yfov: 180 is out of range: must be less than 180"},
         {"/cameras/0/yfov", "0", "/cameras/0/yfov: 0 is out of range: must be greater than 0"},
         {"/cameras/0/lookAt/eye", "[0,1]", "/cameras/0/lookAt/eye: has 2 entries, must have 3"},
-        {"/cameras/0/lookAt/eye", "[0,1,1e31]", "/cameras/0/lookAt/eye/2: 1e+31 is out of range: must be at most 1e+30"},
-        {"/cameras/0/lookAt/eye", "[0,1,\"nan\"]", "/cameras/0/lookAt/eye/2: expected a number, found the string \"nan\""},
-        {"/cameras/0/lookAt/eye/1", "1e999", "/cameras/0/lookAt/eye/1: expected a number, found the string \"1e999\""},
+        {"/cameras/0/lookAt/eye", "[0,1,1e31]",
+         "/cameras/0/lookAt/eye/2: 1e+31 is out of range: must be at most 1e+30"},
+        {"/cameras/0/lookAt/eye", "[0,1,\"nan\"]",
+         "/cameras/0/lookAt/eye/2: expected a number, found the string \"nan\""},
+        {"/cameras/0/lookAt/eye/1", "1e999",
+         "/cameras/0/lookAt/eye/1: expected a number, found the string \"1e999\""},
         {"/cameras/0/type", "ortho", "/cameras/0/type: unknown value 'ortho'; known: perspective, rayMesh"},
         {"/cameras/0/type", "raymesh", "/cameras/0/type: unknown value 'raymesh'; did you mean 'rayMesh'?"},
         {"/cameras/0/type", "rayMesh", "/cameras/0: a rayMesh camera needs 'points'"},
         {"/cameras/1/type", "perspective", "/cameras/1: a perspective camera needs 'lookAt'"},
-        {"/materials/0/baseColorFactor/1", "-0.1", "/materials/0/baseColorFactor/1: -0.1 is out of range: must be at least 0"},
+        {"/materials/0/baseColorFactor/1", "-0.1",
+         "/materials/0/baseColorFactor/1: -0.1 is out of range: must be at least 0"},
         {"/materials/1/ior", "0", "/materials/1/ior: 0 is out of range: must be greater than 0"},
         {"/materials/1/ior", "11", "/materials/1/ior: 11 is out of range: must be at most 10"},
         {"/materials/0/unlit", "1", "/materials/0/unlit: expected a boolean, found the number 1"},
         {"/meshes/0/resolution", "0", "/meshes/0/resolution: 0 is out of range: must be at least 1"},
         {"/meshes/0/resolution", "1025", "/meshes/0/resolution: 1025 is out of range: must be at most 1024"},
-        {"/meshes/0/faceVertexCounts/0", "2", "/meshes/0/faceVertexCounts/0: 2 is out of range: must be at least 3"},
-        {"/meshes/0/faceVertexCounts/0", "300", "/meshes/0/faceVertexCounts/0: 300 is out of range: must be at most 255"},
-        {"/meshes/0/creaseSharpnesses/0", "-1", "/meshes/0/creaseSharpnesses/0: -1 is out of range: must be at least 0"},
-        {"/meshes/1/primitive/radius", "0", "/meshes/1/primitive/radius: 0 is out of range: must be greater than 0"},
-        {"/meshes/1/primitive/type", "cone", "/meshes/1/primitive/type: unknown value 'cone'; known: sphere, paraboloid, cylinder, plane"},
+        {"/meshes/0/faceVertexCounts/0", "2",
+         "/meshes/0/faceVertexCounts/0: 2 is out of range: must be at least 3"},
+        {"/meshes/0/faceVertexCounts/0", "300",
+         "/meshes/0/faceVertexCounts/0: 300 is out of range: must be at most 255"},
+        {"/meshes/0/creaseSharpnesses/0", "-1",
+         "/meshes/0/creaseSharpnesses/0: -1 is out of range: must be at least 0"},
+        {"/meshes/1/primitive/radius", "0",
+         "/meshes/1/primitive/radius: 0 is out of range: must be greater than 0"},
+        {"/meshes/1/primitive/type", "cone",
+         "/meshes/1/primitive/type: unknown value 'cone'; known: sphere, paraboloid, cylinder, plane"},
         {"/meshes/2/role", "mirror", "/meshes/2/role: unknown value 'mirror'; known: object, optic"},
         {"/lights/1/position", "null", "/lights/1/position: expected an array, found null"},
         {"/lights/0/intensity", "-1", "/lights/0/intensity: -1 is out of range: must be at least 0"},
-        {"/render/paths", "[\"direct\",\"direct\"]", "/render/paths/1: the string \"direct\" stands there twice"},
+        {"/render/paths", "[\"direct\",\"direct\"]",
+         "/render/paths/1: the string \"direct\" stands there twice"},
         {"/render/paths", "[]", "/render/paths: has 0 entries, must have at least 1"},
     });
 }
 
 TEST_CASE("indices and lengths that do not fit each other") {
     check_all({
-        {"/meshes/2/faceVertexIndices/3", "12", "/meshes/2/faceVertexIndices/3: index 12 is out of range: there are 4 points"},
-        {"/meshes/2/faceVertexIndices/3", "-1", "/meshes/2/faceVertexIndices/3: -1 is out of range: must be at least 0"},
-        {"/meshes/2/faceVertexCounts", "[3]", "/meshes/2/faceVertexIndices: has 4 entries, must have 3: the sum of faceVertexCounts"},
-        {"/meshes/2/uvs", "[[0,0]]", "/meshes/2/uvs: has 1 entry, must have 4: without uvIndices one per entry of faceVertexIndices"},
-        {"/meshes/2/uvIndices", "[0,1,2,4]", "/meshes/2/uvIndices/3: index 4 is out of range: there are 4 uvs"},
-        {"/meshes/0/creaseIndices/0", "6", "/meshes/0/creaseIndices/0: index 6 is out of range: there are 6 points"},
-        {"/meshes/0/creaseLengths", "[2]", "/meshes/0/creaseLengths: the lengths sum to 2, but creaseIndices has 3 entries"},
-        {"/meshes/0/creaseSharpnesses", "[1,2,3]", "/meshes/0/creaseSharpnesses: has 3 entries, must have 1: one per chain, or one per edge (2)"},
-        {"/meshes/0/cornerIndices", "[9]", "/meshes/0/cornerIndices/0: index 9 is out of range: there are 6 points"},
-        {"/meshes/0/cornerSharpnesses", "[1,2]", "/meshes/0/cornerSharpnesses: has 2 entries, must have 1: one per entry of cornerIndices"},
-        {"/meshes/0/holeIndices", "[2]", "/meshes/0/holeIndices/0: index 2 is out of range: there are 2 faces"},
-        {"/meshes/0/subdivisionScheme", "loop", "/meshes/0/subdivisionScheme: loop needs triangles, but face 0 has 4 corners"},
-        {"/cameras/1/directions", "[[0,0,1],[0,0,1],[0,0,1],[0,0,1]]", "/cameras/1/directions: has 4 entries, but points has 3"},
-        {"/cameras/1/triangles/0/1", "3", "/cameras/1/triangles/0/1: index 3 is out of range: there are 3 points"},
+        {"/meshes/2/faceVertexIndices/3", "12",
+         "/meshes/2/faceVertexIndices/3: index 12 is out of range: there are 4 points"},
+        {"/meshes/2/faceVertexIndices/3", "-1",
+         "/meshes/2/faceVertexIndices/3: -1 is out of range: must be at least 0"},
+        {"/meshes/2/faceVertexCounts", "[3]",
+         "/meshes/2/faceVertexIndices: has 4 entries, must have 3: the sum of faceVertexCounts"},
+        {"/meshes/2/uvs", "[[0,0]]",
+         "/meshes/2/uvs: has 1 entry, must have 4: without uvIndices one per entry of faceVertexIndices"},
+        {"/meshes/2/uvIndices", "[0,1,2,4]",
+         "/meshes/2/uvIndices/3: index 4 is out of range: there are 4 uvs"},
+        {"/meshes/0/creaseIndices/0", "6",
+         "/meshes/0/creaseIndices/0: index 6 is out of range: there are 6 points"},
+        {"/meshes/0/creaseLengths", "[2]",
+         "/meshes/0/creaseLengths: the lengths sum to 2, but creaseIndices has 3 entries"},
+        {"/meshes/0/creaseSharpnesses", "[1,2,3]",
+         "/meshes/0/creaseSharpnesses: has 3 entries, must have 1: one per chain, or one per edge (2)"},
+        {"/meshes/0/cornerIndices", "[9]",
+         "/meshes/0/cornerIndices/0: index 9 is out of range: there are 6 points"},
+        {"/meshes/0/cornerSharpnesses", "[1,2]",
+         "/meshes/0/cornerSharpnesses: has 2 entries, must have 1: one per entry of cornerIndices"},
+        {"/meshes/0/holeIndices", "[2]",
+         "/meshes/0/holeIndices/0: index 2 is out of range: there are 2 faces"},
+        {"/meshes/0/subdivisionScheme", "loop",
+         "/meshes/0/subdivisionScheme: loop needs triangles, but face 0 has 4 corners"},
+        {"/cameras/1/directions", "[[0,0,1],[0,0,1],[0,0,1],[0,0,1]]",
+         "/cameras/1/directions: has 4 entries, but points has 3"},
+        {"/cameras/1/triangles/0/1", "3",
+         "/cameras/1/triangles/0/1: index 3 is out of range: there are 3 points"},
     });
-    CHECK(error_of(replaced(kRoom, "\"creaseLengths\": [3],", "")) ==
-          "room.json: /meshes/0/creaseIndices: without creaseLengths the points go in pairs, but there are 3");
+    CHECK(
+        error_of(replaced(kRoom, "\"creaseLengths\": [3],", "")) ==
+        "room.json: /meshes/0/creaseIndices: without creaseLengths the points go in pairs, but there are 3");
 }
 
-TEST_CASE("cameras, directions and transforms that mean nothing") {
+TEST_CASE("cameras and directions and transforms that mean nothing") {
     check_all({
-        {"/cameras/0/lookAt/at", "[0,1,4]", "/cameras/0/lookAt: eye and at are the same point: the camera looks nowhere"},
-        {"/cameras/0/lookAt/up", "[0,-0.5,-2]", "/cameras/0/lookAt/up: up is parallel to the view from eye to at"},
+        {"/cameras/0/lookAt/at", "[0,1,4]",
+         "/cameras/0/lookAt: eye and at are the same point: the camera looks nowhere"},
+        {"/cameras/0/lookAt/up", "[0,-0.5,-2]",
+         "/cameras/0/lookAt/up: up is parallel to the view from eye to at"},
         {"/cameras/0/lookAt/up", "[0,0,0]", "/cameras/0/lookAt/up: must not be zero"},
         {"/cameras/1/directions/2", "[0,0,0]", "/cameras/1/directions/2: a direction must not be zero"},
         {"/cameras/1/screen/1", "[640,0]", "/cameras/1/screen/1/0: 640 is out of range: must be at most 1"},
         {"/lights/0/direction", "[0,0,0]", "/lights/0/direction: a direction must not be zero"},
-        {"/meshes/0/transform/scale", "[1,0,1]", "/meshes/0/transform/scale/1: a scale of 0 flattens the mesh"},
-        {"/meshes/0/transform/scale", "[1e30,1e30,1e31]", "/meshes/0/transform/scale/2: 1e+31 is out of range: must be at most 1e+30"},
-        {"/meshes/0/transform/scale", "[1e30,1e30,1e30]", "/meshes/0: its transform carries points beyond coordinates of 1e30"},
-        {"/meshes/0/transform/rotate", "[0,0,0,0]", "/meshes/0/transform/rotate: a quaternion must not be zero (0 0 0 1 turns nothing)"},
+        {"/meshes/0/transform/scale", "[1,0,1]",
+         "/meshes/0/transform/scale/1: a scale of 0 flattens the mesh"},
+        {"/meshes/0/transform/scale", "[1e30,1e30,1e31]",
+         "/meshes/0/transform/scale/2: 1e+31 is out of range: must be at most 1e+30"},
+        {"/meshes/0/transform/scale", "[1e30,1e30,1e30]",
+         "/meshes/0: its transform carries points beyond coordinates of 1e30"},
+        {"/meshes/0/transform/rotate", "[0,0,0,0]",
+         "/meshes/0/transform/rotate: a quaternion must not be zero (0 0 0 1 turns nothing)"},
         {"/meshes/0/transform/matrix", "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]",
          "/meshes/0/transform/translate: 'translate' is no key of a transform with a matrix"},
         {"/meshes/0/transform", R"({"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]})",
          "/meshes/0/transform/matrix: its last row (entries 3, 7, 11, 15) must be 0 0 0 1"},
-        {"/meshes/0/transform", R"({"matrix":[1,0,0,0,0,1,0,0,1,1,0,0,0,0,0,1]})", "/meshes/0/transform/matrix: is singular: it flattens the mesh"},
-        {"/meshes/1/transform", R"({"scale":[1,2,1]})", "/meshes/1/transform: a primitive stays exact only under a uniform scale"},
-        {"/meshes/1/primitive", R"({"type":"plane","normal":[0,0,0]})", "/meshes/1/primitive/normal: a direction must not be zero"},
+        {"/meshes/0/transform", R"({"matrix":[1,0,0,0,0,1,0,0,1,1,0,0,0,0,0,1]})",
+         "/meshes/0/transform/matrix: is singular: it flattens the mesh"},
+        {"/meshes/1/transform", R"({"scale":[1,2,1]})",
+         "/meshes/1/transform: a primitive stays exact only under a uniform scale"},
+        {"/meshes/1/primitive", R"({"type":"plane","normal":[0,0,0]})",
+         "/meshes/1/primitive/normal: a direction must not be zero"},
         {"/meshes/1/primitive", R"({"type":"plane","normal":[0,0,2],"tangent":[0,0,-1]})",
          "/meshes/1/primitive/tangent: is parallel to the axis or normal"},
     });
@@ -165,14 +216,20 @@ TEST_CASE("cameras, directions and transforms that mean nothing") {
 TEST_CASE("materials that do not exist or do not fit") {
     check_all({
         {"/meshes/2/material", "read", "/meshes/2/material: unknown material 'read'; did you mean 'red'?"},
-        {"/meshes/2/material", "mahogany", "/meshes/2/material: unknown material 'mahogany'; known: chrome, glass, red"},
-        {"/meshes/2/material", "inherit", "/meshes/2/material: only a mesh with a file has materials to inherit"},
+        {"/meshes/2/material", "mahogany",
+         "/meshes/2/material: unknown material 'mahogany'; known: chrome, glass, red"},
+        {"/meshes/2/material", "inherit",
+         "/meshes/2/material: only a mesh with a file has materials to inherit"},
         {"/meshes/0/material", "red",
-         "/meshes/0/material: the material 'red' of an optic must be a mirror (metallicFactor 1) or glass (transmissionFactor 1)"},
-        {"/materials/0/roughnessFactor", "0.1", "/meshes/1/material: the material 'chrome' of an optic must have roughnessFactor 0"},
-        {"/materials/1/metallicFactor", "1", "/meshes/0/material: the material 'glass' of an optic cannot be mirror and glass at once"},
+         "/meshes/0/material: the material 'red' of an optic must be a mirror (metallicFactor 1) or glass "
+         "(transmissionFactor 1)"},
+        {"/materials/0/roughnessFactor", "0.1",
+         "/meshes/1/material: the material 'chrome' of an optic must have roughnessFactor 0"},
+        {"/materials/1/metallicFactor", "1",
+         "/meshes/0/material: the material 'glass' of an optic cannot be mirror and glass at once"},
         {"/materials/1/name", "red", "/materials/2/name: the name 'red' is taken already"},
-        {"/materials/1/name", "inherit", "/materials/1/name: 'inherit' is taken: it stands for a file's own materials"},
+        {"/materials/1/name", "inherit",
+         "/materials/1/name: 'inherit' is taken: it stands for a file's own materials"},
         {"/materials/1/name", "\"\"", "/materials/1/name: must not be empty"},
         {"/cameras/1/name", "main", "/cameras/1/name: the name 'main' is taken already"},
     });
@@ -180,11 +237,14 @@ TEST_CASE("materials that do not exist or do not fit") {
 
 TEST_CASE("keys that need or exclude each other") {
     check_all({
-        {"/meshes/1/points", "[[0,0,0],[1,0,0],[0,1,0]]", "/meshes/1: 'points' needs 'faceVertexCounts' beside it"},
+        {"/meshes/1/points", "[[0,0,0],[1,0,0],[0,1,0]]",
+         "/meshes/1: 'points' needs 'faceVertexCounts' beside it"},
         {"/meshes/1/file", "ball.obj", "/meshes/1: a mesh has 'file' and 'primitive': only one may be given"},
         {"/meshes/1/role", "object", "/meshes/1/primitive: 'primitive' is no key of an object"},
-        {"/meshes/2", R"({"role":"object"})", "/meshes/2: a mesh needs one of 'points', 'file' and 'primitive'"},
-        {"/meshes/1", R"({"role":"optic","primitive":{"type":"sphere"}})", "/meshes/1: an optic needs 'material'"},
+        {"/meshes/2", R"({"role":"object"})",
+         "/meshes/2: a mesh needs one of 'points', 'file' and 'primitive'"},
+        {"/meshes/1", R"({"role":"optic","primitive":{"type":"sphere"}})",
+         "/meshes/1: an optic needs 'material'"},
         {"/background/rotate", "30", "/background: 'rotate' needs 'file' beside it"},
         {"/background/file", "sky.exr", "/background/color: 'color' is no key of a background with a file"},
         {"/lights/0/position", "[1,2,3]", "/lights/0/position: 'position' is no key of a directional light"},
@@ -195,7 +255,9 @@ TEST_CASE("keys that need or exclude each other") {
 TEST_CASE("files that a scene names") {
     const std::string folder = scratch_dir("scene_bad_names");
     const std::string file = folder + "/room.json";
-    const auto error = [&](const std::string& pointer, const std::string& value) { return error_of(kRoom, {{pointer, value}}, file); };
+    const auto error = [&](const std::string& pointer, const std::string& value) {
+        return error_of(kRoom, {{pointer, value}}, file);
+    };
     CHECK(error("/materials/2/baseColorTexture", "brick.png") ==
           file + ": /materials/2/baseColorTexture: the picture '" + folder + "/brick.png' does not exist");
 
@@ -203,9 +265,12 @@ TEST_CASE("files that a scene names") {
     CHECK(error("/meshes/2", mesh("none.obj")) ==
           file + ": /meshes/2/file: " + folder + "/none.obj: cannot be opened: No such file or directory");
     CHECK(error("/meshes/2", mesh("pawn.stl")) ==
-          file + ": /meshes/2/file: '" + folder + "/pawn.stl' is of no known kind: known are .obj, .gltf and .glb");
+          file + ": /meshes/2/file: '" + folder +
+              "/pawn.stl' is of no known kind: known are .obj, .gltf and .glb");
     CHECK(error("/meshes/1", R"({"role":"optic","material":"chrome","file":"pawn.glb"})") ==
-          file + ": /meshes/1/file: a glTF file holds triangles only, and so cannot hold the cage of an optic: give an OBJ of quads");
+          file +
+              ": /meshes/1/file: a glTF file holds triangles only, and so cannot hold the cage of an optic: "
+              "give an OBJ of quads");
 
     std::ofstream obj(folder + "/round.obj");
     for (int i = 0; i < 300; ++i) obj << "v " << i << " 0 0\n";
@@ -213,14 +278,17 @@ TEST_CASE("files that a scene names") {
     for (int i = 1; i <= 300; ++i) obj << " " << i;
     obj.close();
     CHECK(error("/meshes/2", mesh("round.obj")) ==
-          file + ": /meshes/2/file: " + folder + "/round.obj: line 301: a face may have at most 255 corners, found 300");
+          file + ": /meshes/2/file: " + folder +
+              "/round.obj: line 301: a face may have at most 255 corners, found 300");
 }
 
 TEST_CASE("a picture that cannot be read is named with its place in the scene") {
     const std::string folder = scratch_dir("scene_bad_picture");
     std::ofstream(folder + "/brick.png") << "no picture";
     TextureReader reader;
-    reader.from_file = [](const std::string& file) -> std::shared_ptr<const Texture> { throw InputError(file, "", "is no picture"); };
+    reader.from_file = [](const std::string& file) -> std::shared_ptr<const Texture> {
+        throw InputError(file, "", "is no picture");
+    };
     const std::vector<SceneOverride> overrides = {{"/materials/2/baseColorTexture", "brick.png"}};
     try {
         load_scene_text(kRoom, folder + "/room.json", overrides, reader);
@@ -232,25 +300,32 @@ TEST_CASE("a picture that cannot be read is named with its place in the scene") 
 }
 
 TEST_CASE("overrides by JSON pointer") {
-    const Scene scene = load_text(kRoom, {{"/film/width", "100"},
-                                          {"/cameras/0/name", "front"},        // no JSON: a string
-                                          {"/meshes/1/normals/type", "smooth"},  // added with the object on the way
-                                          {"/extras/any/thing", "[1,2]"},
-                                          {"/film/width", "200"}});
+    const Scene scene =
+        load_text(kRoom, {{"/film/width", "100"},
+                          {"/cameras/0/name", "front"},          // no JSON: a string
+                          {"/meshes/1/normals/type", "smooth"},  // added with the object on the way
+                          {"/extras/any/thing", "[1,2]"},
+                          {"/film/width", "200"}});
     CHECK(scene.film.width == 200);
     CHECK(scene.cameras[0].name == "front");
     CHECK(contains(scene.resolved, R"("extras":{"any":{"thing":[1,2]}})"));
 
     check_all({
-        {"/film/widht", "3", "/film/widht: names nothing: unknown key 'widht'; did you mean 'width'? (in --set)"},
-        {"/fill/width", "3", "/fill/width: names nothing: unknown key 'fill'; did you mean 'film'? (in --set)"},
-        {"/meshes/3/role", "optic", "/meshes/3/role: no entry '3': the array has 3 entries, counted from 0 (in --set)"},
-        {"/meshes/01/role", "optic", "/meshes/01/role: no entry '01': the array has 3 entries, counted from 0 (in --set)"},
-        {"/meshes/-/role", "optic", "/meshes/-/role: no entry '-': the array has 3 entries, counted from 0 (in --set)"},
+        {"/film/widht", "3",
+         "/film/widht: names nothing: unknown key 'widht'; did you mean 'width'? (in --set)"},
+        {"/fill/width", "3",
+         "/fill/width: names nothing: unknown key 'fill'; did you mean 'film'? (in --set)"},
+        {"/meshes/3/role", "optic",
+         "/meshes/3/role: no entry '3': the array has 3 entries, counted from 0 (in --set)"},
+        {"/meshes/01/role", "optic",
+         "/meshes/01/role: no entry '01': the array has 3 entries, counted from 0 (in --set)"},
+        {"/meshes/-/role", "optic",
+         "/meshes/-/role: no entry '-': the array has 3 entries, counted from 0 (in --set)"},
         {"/film/width/0", "1", "/film/width/0: names nothing: the number 64 has no part '0' (in --set)"},
         {"film/width", "1", "film/width: 'film/width' is no JSON pointer: it must begin with '/' (in --set)"},
         {"/film~2", "1", "/film~2: '~' in a JSON pointer must be followed by 0 or 1 (in --set)"},
-        {"/film", R"({"width":1,"width":2})", "/film (in --set): /width: this key stands twice in its object"},
+        {"/film", R"({"width":1,"width":2})",
+         "/film (in --set): /width: this key stands twice in its object"},
     });
     CHECK(error_of(R"({"version":1,"cameras":[]})", {{"/materials/0/name", "red"}}) ==
           "room.json: /materials/0/name: names nothing: there is no 'materials' yet (in --set)");

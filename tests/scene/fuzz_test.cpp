@@ -1,6 +1,6 @@
 // Law: a scene with any part deleted or replaced either loads or fails with a message that names its file.
-#include <nlohmann/json.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "scene/examples.h"
@@ -14,26 +14,52 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json random_value(std::mt19937& random, int depth) {
-    static const std::vector<double> numbers = {0, 1, -1, 2, 0.5, 3, 255, 256, 1e-320, -1e-30, 1e30, 1e31, 1.7e308, 4294967295.0, 4294967296.0, -2147483649.0};
-    static const std::vector<std::string> strings = {"", "main", "red", "glass", "chrome", "inherit", "optic", "object", "sphere", "plane", "noise", "loop",
-                                                     "catmullClark", "none.obj", ".", "/", "..", "a.gltf", "\xc3\xa9", "/dev/null"};
+    static const std::vector<double> numbers = {0,
+                                                1,
+                                                -1,
+                                                2,
+                                                0.5,
+                                                3,
+                                                255,
+                                                256,
+                                                1e-320,
+                                                -1e-30,
+                                                1e30,
+                                                1e31,
+                                                1.7e308,
+                                                4294967295.0,
+                                                4294967296.0,
+                                                -2147483649.0};
+    static const std::vector<std::string> strings = {
+        "",       "main",   "red",   "glass",  "chrome",   "inherit",      "optic",
+        "object", "sphere", "plane", "noise",  "loop",     "catmullClark", "none.obj",
+        ".",      "/",      "..",    "a.gltf", "\xc3\xa9", "/dev/null"};
     switch (random() % (depth > 2 ? 6 : 9)) {
-        case 0: return nullptr;
-        case 1: return random() % 2 == 0;
-        case 2: return static_cast<int>(random() % 12) - 2;
-        case 3: return numbers[random() % numbers.size()];
-        case 4: return strings[random() % strings.size()];
-        case 5: return static_cast<std::int64_t>(random()) * static_cast<std::int64_t>(random());
+        case 0:
+            return nullptr;
+        case 1:
+            return random() % 2 == 0;
+        case 2:
+            return static_cast<int>(random() % 12) - 2;
+        case 3:
+            return numbers[random() % numbers.size()];
+        case 4:
+            return strings[random() % strings.size()];
+        case 5:
+            return static_cast<std::int64_t>(random()) * static_cast<std::int64_t>(random());
         case 6: {
             Json array = Json::array();
             for (unsigned i = random() % 6; i > 0; --i) array.push_back(random_value(random, depth + 1));
             return array;
         }
-        case 7: return Json::array({static_cast<int>(random() % 5), 0.5, -1});
+        case 7:
+            return Json::array({static_cast<int>(random() % 5), 0.5, -1});
         default: {
-            static const std::vector<std::string> keys = {"type", "name", "file", "x-any", "extras", "radius", "matrix", "points"};
+            static const std::vector<std::string> keys = {"type",   "name",   "file",   "x-any",
+                                                          "extras", "radius", "matrix", "points"};
             Json object = Json::object();
-            for (unsigned i = random() % 4; i > 0; --i) object[keys[random() % keys.size()]] = random_value(random, depth + 1);
+            for (unsigned i = random() % 4; i > 0; --i)
+                object[keys[random() % keys.size()]] = random_value(random, depth + 1);
             return object;
         }
     }
@@ -51,7 +77,9 @@ void break_something(Json& value, std::mt19937& random) {
             continue;
         }
         switch (random() % 4) {
-            case 0: at->erase(part); return;
+            case 0:
+                at->erase(part);
+                return;
             case 1:
                 if (at->is_array()) {
                     at->push_back(Json(*part));
@@ -60,7 +88,9 @@ void break_something(Json& value, std::mt19937& random) {
                     (*at)[part.key() + "s"] = copy;
                 }
                 return;
-            default: *part = random_value(random, 0); return;
+            default:
+                *part = random_value(random, 0);
+                return;
         }
     }
 }
@@ -69,7 +99,8 @@ void break_something(Json& value, std::mt19937& random) {
 
 TEST_CASE("law: a broken scene loads or says what is wrong in which file") {
     std::vector<Json> scenes = {Json::parse(kRoom)};
-    for (const SceneExample& example : scene_examples()) scenes.push_back(Json::parse(example.json, nullptr, true, true));
+    for (const SceneExample& example : scene_examples())
+        scenes.push_back(Json::parse(example.json, nullptr, true, true));
     std::mt19937 random(20);
     int loaded = 0, refused = 0;
     for (int i = 0; i < 6000; ++i) {
@@ -82,8 +113,10 @@ TEST_CASE("law: a broken scene loads or says what is wrong in which file") {
             // What loads is whole: indices in range, numbers finite.
             for (const Mesh& mesh : result.meshes) {
                 for (const Id material : mesh.object.material) REQUIRE(material < result.materials.size());
-                for (const int index : mesh.cage.face_vertex_indices) REQUIRE(static_cast<std::size_t>(index) < mesh.cage.points.size());
-                for (const Vec3& point : mesh.object.points) REQUIRE(std::isfinite(point.x + point.y + point.z));
+                for (const int index : mesh.cage.face_vertex_indices)
+                    REQUIRE(static_cast<std::size_t>(index) < mesh.cage.points.size());
+                for (const Vec3& point : mesh.object.points)
+                    REQUIRE(std::isfinite(point.x + point.y + point.z));
                 if (mesh.role == Role::kOptic) REQUIRE(mesh.material < result.materials.size());
             }
         } catch (const InputError& error) {
@@ -106,9 +139,15 @@ TEST_CASE("law: broken text loads or says what is wrong in which file") {
         for (unsigned k = 1 + random() % 3; k > 0; --k) {
             const std::size_t at = random() % text.size();
             switch (random() % 3) {
-                case 0: text.erase(at, 1 + random() % 5); break;
-                case 1: text[at] = letters[random() % letters.size()]; break;
-                default: text.resize(at); break;
+                case 0:
+                    text.erase(at, 1 + random() % 5);
+                    break;
+                case 1:
+                    text[at] = letters[random() % letters.size()];
+                    break;
+                default:
+                    text.resize(at);
+                    break;
             }
             if (text.empty()) break;
         }

@@ -25,8 +25,8 @@ void append(std::string& bytes, std::initializer_list<T> values) {
     }
 }
 
-/// Four corners of a unit square (bytes 0..47), indices as uint8 0 1 2 2 1 3 (48..53, padded to 56), a sparse index (uint16, 56..57, padded)
-/// and its value (60..71), uvs as normalised uint16 (72..87).
+/// Four corners of a unit square (bytes 0..47), indices as uint8 0 1 2 2 1 3 (48..53, padded to 56), a sparse
+/// index (uint16, 56..57, padded) and its value (60..71), uvs as normalised uint16 (72..87).
 std::string square_buffer() {
     std::string bytes;
     append<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
@@ -46,8 +46,9 @@ struct Square {
 };
 
 std::string gltf_text(const Square& square) {
-    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":)" + square.scene_nodes + R"(}],"nodes":)" + square.nodes +
-           R"(,"meshes":[{"primitives":[{)" + square.primitive + R"(}]}],"accessors":[)" + square.position_accessor +
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":)" + square.scene_nodes +
+           R"(}],"nodes":)" + square.nodes + R"(,"meshes":[{"primitives":[{)" + square.primitive +
+           R"(}]}],"accessors":[)" + square.position_accessor +
            R"(,{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"},{"bufferView":2,"componentType":5123,"normalized":true,"count":4,"type":"VEC2"}],
            "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":6},{"buffer":0,"byteOffset":72,"byteLength":16},
            {"buffer":0,"byteOffset":56,"byteLength":2},{"buffer":0,"byteOffset":60,"byteLength":12}],
@@ -78,7 +79,7 @@ std::string read_error(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("glTF triangles: lists, strips, fans, with and without indices") {
+TEST_CASE("glTF triangles: lists and strips and fans with and without indices") {
     const std::string folder = scratch_dir("scene_gltf_modes");
     Square square;
     const auto indices = [&](const std::string& primitive) {
@@ -90,14 +91,16 @@ TEST_CASE("glTF triangles: lists, strips, fans, with and without indices") {
     CHECK(indices(R"("attributes":{"POSITION":0},"mode":6)") == std::vector<int>{0, 1, 2, 0, 2, 3});
     CHECK(indices(R"("attributes":{"POSITION":0},"mode":4)") == std::vector<int>{0, 1, 2});
     square.primitive = R"("attributes":{"POSITION":0},"mode":1)";
-    CHECK(read_error(write_square(folder, gltf_text(square))) == ": no triangles in the default scene of this glTF");
+    CHECK(read_error(write_square(folder, gltf_text(square))) ==
+          ": no triangles in the default scene of this glTF");
 }
 
 TEST_CASE("glTF nodes: matrices and TRS through the hierarchy; mirrored ones keep their fronts") {
     const std::string folder = scratch_dir("scene_gltf_nodes");
     Square square;
     // Parent: a quarter turn about Z and a move along X. Child: scale 2 along X, move along Y.
-    square.nodes = R"([{"children":[1],"rotation":[0,0,0.7071067811865476,0.7071067811865476],"translation":[10,0,0]},
+    square.nodes =
+        R"([{"children":[1],"rotation":[0,0,0.7071067811865476,0.7071067811865476],"translation":[10,0,0]},
                        {"mesh":0,"matrix":[2,0,0,0, 0,1,0,0, 0,0,1,0, 0,3,0,1]}])";
     PolygonMesh mesh = read(write_square(folder, gltf_text(square)));
     // (1,1,0) -> child (2,4,0) -> turned (-4,2,0) -> moved (6,2,0)
@@ -110,30 +113,36 @@ TEST_CASE("glTF nodes: matrices and TRS through the hierarchy; mirrored ones kee
     CHECK(mesh.cage.face_vertex_indices == std::vector<int>{0, 2, 1, 2, 3, 1});
 
     square.nodes = R"([{"children":[1]},{"children":[0],"mesh":0}])";
-    CHECK(read_error(write_square(folder, gltf_text(square))) == ": /nodes/0: is reached twice: nodes must form a tree");
+    CHECK(read_error(write_square(folder, gltf_text(square))) ==
+          ": /nodes/0: is reached twice: nodes must form a tree");
     square.nodes = R"([{"mesh":0,"rotation":[0,0,0,0]}])";
     CHECK(read_error(write_square(folder, gltf_text(square))) == ": /nodes/0: rotation must not be zero");
     square.nodes = R"([{"mesh":1}])";
-    CHECK(read_error(write_square(folder, gltf_text(square))) == ": /nodes/0: mesh 1 is out of range: there are 1");
+    CHECK(read_error(write_square(folder, gltf_text(square))) ==
+          ": /nodes/0: mesh 1 is out of range: there are 1");
 }
 
-TEST_CASE("glTF accessors: sparse, normalised, out of bounds") {
+TEST_CASE("glTF accessors: sparse or normalised or out of bounds") {
     const std::string folder = scratch_dir("scene_gltf_accessors");
     Square square;
     const std::string sparse =
         R"("sparse":{"count":1,"indices":{"bufferView":3,"componentType":5123},"values":{"bufferView":4}})";
-    square.position_accessor = R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",)" + sparse + "}";
+    square.position_accessor =
+        R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",)" + sparse + "}";
     CHECK(read(write_square(folder, gltf_text(square))).cage.points[3] == Vec3(5, 6, 7));
     square.position_accessor = R"({"componentType":5126,"count":4,"type":"VEC3",)" + sparse + "}";
     const PolygonMesh zeros = read(write_square(folder, gltf_text(square)));
     CHECK(zeros.cage.points[1] == Vec3(0));
     CHECK(zeros.cage.points[3] == Vec3(5, 6, 7));
     square.position_accessor = R"({"componentType":5126,"count":4,"type":"VEC3"})";
-    CHECK(read_error(write_square(folder, gltf_text(square))) == ": /accessors/0: has no buffer view (its data may be compressed)");
+    CHECK(read_error(write_square(folder, gltf_text(square))) ==
+          ": /accessors/0: has no buffer view (its data may be compressed)");
     square.position_accessor = R"({"bufferView":0,"componentType":5126,"count":5,"type":"VEC3"})";
-    CHECK(read_error(write_square(folder, gltf_text(square))) == ": /accessors/0: reaches beyond its buffer view");
+    CHECK(read_error(write_square(folder, gltf_text(square))) ==
+          ": /accessors/0: reaches beyond its buffer view");
     square.position_accessor = R"({"bufferView":0,"componentType":5126,"count":6,"type":"VEC2"})";
-    CHECK(read_error(write_square(folder, gltf_text(square))) == ": /accessors/0: must have entries of 3 components");
+    CHECK(read_error(write_square(folder, gltf_text(square))) ==
+          ": /accessors/0: must have entries of 3 components");
     square.position_accessor = R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"})";
     CHECK(read_error(write_square(folder, gltf_text(square))) ==
           ": /meshes/0/primitives/0/indices: index 3 is out of range: there are 3 vertices");
@@ -149,13 +158,21 @@ TEST_CASE("glTF materials and their pictures") {
     const std::string folder = scratch_dir("scene_gltf_materials");
     Square square;
     square.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1,"material":0)";
-    square.more = R"(,"materials":[{"name":"paint","pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"metallicFactor":0,
+    square.more =
+        R"(,"materials":[{"name":"paint","pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"metallicFactor":0,
         "baseColorTexture":{"index":0}},"extensions":{"KHR_materials_unlit":{}}}],"textures":[{"source":0}],"images":[{"uri":"a%20b.png"}],
         "extensionsUsed":["KHR_materials_unlit"],"extensionsRequired":["KHR_materials_unlit"])";
     const std::string file = write_square(folder, gltf_text(square));
     const GltfModel model = read_gltf(file);
     REQUIRE(model.images.size() == 1);
     CHECK(model.images[0].file == folder + "/a b.png");
+
+    const auto read_all = [&] {
+        const TextureReader textures = white_textures();
+        return polygons_of_gltf(model, file, &textures);
+    };
+    CHECK_THROWS_AS(read_all(), InputError);  // the picture is missing
+    std::ofstream(folder + "/a b.png") << "stands for a picture";
 
     std::string asked;
     TextureReader textures = white_textures();
@@ -181,7 +198,8 @@ TEST_CASE("glTF materials and their pictures") {
     polygons_of_gltf(read_gltf(write_square(folder, gltf_text(square))), file, &textures);
     CHECK(bytes == 8);
 
-    square.more = R"(,"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"])";
+    square.more =
+        R"(,"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"])";
     CHECK(read_error(write_square(folder, gltf_text(square))) ==
           ": /extensionsRequired: the extension 'KHR_draco_mesh_compression' is required but not supported");
 }
@@ -189,8 +207,10 @@ TEST_CASE("glTF materials and their pictures") {
 TEST_CASE("known glTF models") {
     if (!std::filesystem::exists(kModels + "/glTF2")) TRILENS_SKIP("needs assimp's test models");
     const std::map<std::string, std::size_t> triangles = {
-        {"BoxTextured-glTF/BoxTextured.gltf", 12}, {"BoxTextured-glTF-Binary/BoxTextured.glb", 12},
-        {"BoxTextured-glTF-Embedded/BoxTextured.gltf", 12}, {"2CylinderEngine-glTF-Binary/2CylinderEngine.glb", 121496},
+        {"BoxTextured-glTF/BoxTextured.gltf", 12},
+        {"BoxTextured-glTF-Binary/BoxTextured.glb", 12},
+        {"BoxTextured-glTF-Embedded/BoxTextured.gltf", 12},
+        {"2CylinderEngine-glTF-Binary/2CylinderEngine.glb", 121496},
         {"glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf", 12}};
     for (const auto& [name, count] : triangles) {
         INFO(name);
@@ -225,7 +245,9 @@ TEST_CASE("the modes of Mesh_PrimitiveMode draw the same square") {
         CHECK(mesh.cage.face_vertex_counts.size() == 2);
         double area = 0;
         for (std::size_t i = 0; i < mesh.cage.face_vertex_indices.size(); i += 3) {
-            const auto corner = [&](std::size_t k) { return mesh.cage.points[static_cast<std::size_t>(mesh.cage.face_vertex_indices[i + k])]; };
+            const auto corner = [&](std::size_t k) {
+                return mesh.cage.points[static_cast<std::size_t>(mesh.cage.face_vertex_indices[i + k])];
+            };
             area += 0.5 * cross(corner(1) - corner(0), corner(2) - corner(0)).z;
         }
         CHECK(std::abs(area) == Approx(1).epsilon(1e-6));  // signed: both triangles turn the same way
@@ -234,7 +256,7 @@ TEST_CASE("the modes of Mesh_PrimitiveMode draw the same square") {
     CHECK(drawn >= 6);
 }
 
-TEST_CASE("every OBJ, glTF and GLB at hand loads or says why not") {
+TEST_CASE("every OBJ and glTF and GLB at hand loads or says why not") {
     if (!std::filesystem::exists(kModels)) TRILENS_SKIP("needs assimp's test models");
     int loaded = 0, refused = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(kModels)) {
@@ -256,14 +278,18 @@ TEST_CASE("law: a broken glTF loads or says why not") {
     const std::string folder = scratch_dir("scene_gltf_fuzz");
     Square square;
     square.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1,"material":0)";
-    square.nodes = R"([{"children":[1],"rotation":[0,0,0,1],"scale":[1,1,1]},{"mesh":0,"matrix":[2,0,0,0,0,1,0,0,0,0,1,0,0,3,0,1]}])";
+    square.nodes =
+        R"([{"children":[1],"rotation":[0,0,0,1],"scale":[1,1,1]},{"mesh":0,"matrix":[2,0,0,0,0,1,0,0,0,0,1,0,0,3,0,1]}])";
     square.position_accessor =
         R"({"bufferView":0,"byteOffset":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":3,"byteOffset":0,"componentType":5123},"values":{"bufferView":4,"byteOffset":0}}})";
-    square.more = R"(,"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,1],"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],
+    square.more =
+        R"(,"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,1],"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],
         "images":[{"uri":"data:image/png;base64,iVBORw0KGgo="}])";
     const std::string good = gltf_text(square);
     REQUIRE(read_error(write_square(folder, good)) == "");
-    const std::vector<std::string> tokens = {"-1", "0", "1", "4294967295", "4294967296", "-2147483648", "1e300", "0.5", "\"x\"", "null", "[]", "{}", "[0]", "5120", "999"};
+    const std::vector<std::string> tokens = {"-1",          "0",     "1",   "4294967295", "4294967296",
+                                             "-2147483648", "1e300", "0.5", "\"x\"",      "null",
+                                             "[]",          "{}",    "[0]", "5120",       "999"};
     std::mt19937 random(3);
     int loaded = 0;
     for (int i = 0; i < 1500; ++i) {

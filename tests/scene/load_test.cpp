@@ -57,7 +57,7 @@ TEST_CASE("the resolved scene is one line that loads as the same scene") {
     CHECK(again.meshes[0].cage.points == scene.meshes[0].cage.points);
 }
 
-TEST_CASE("comments, free keys and the smallest scene") {
+TEST_CASE("comments and free keys and the smallest scene") {
     const std::string small = R"({ "version": 1, // a comment
         /* another */ "x-tool": { "any": [1, {"thing": null}] }, "extras": 3,
         "cameras": [ { "lookAt": { "eye": [0,0,1], "at": [0,0,0], "x-why": 1 } } ] })";
@@ -77,33 +77,40 @@ TEST_CASE("what is doubtful is a warning with its place") {
         return false;
     };
     CHECK(warned({{"/render/maxDepth", "2"}}, "/render/maxDepth: first hits only are drawn so far"));
-    CHECK(warned({{"/materials/1/dispersion", "0.3"}}, "/materials/1/dispersion: dispersion is ignored so far"));
+    CHECK(warned({{"/materials/1/dispersion", "0.3"}},
+                 "/materials/1/dispersion: dispersion is ignored so far"));
     CHECK(warned({{"/meshes/0/material", "chrome"}}, "/materials/1: the material 'glass' is not used"));
-    CHECK(warned({}, "/meshes/0: 6 edges have one face only: this glass is one interface, or a body with holes"));
+    CHECK(warned({},
+                 "/meshes/0: 6 edges have one face only: this glass is one interface, or a body with holes"));
     CHECK(warned({{"/meshes/2/faceVertexIndices", "[0,1,1,3]"}}, "/meshes/2: 1 triangles have no area"));
-    CHECK(warned({{"/meshes/0/faceVertexIndices", "[0,1,2,3,1,2,5,4]"}},
-                 "/meshes/0: 1 edges are not manifold: more than two faces meet there, or their windings disagree"));
-    CHECK(warned({{"/meshes/0/creaseIndices", "[0,1,3]"}}, "/meshes/0: 1 creases lie where there is no edge"));
+    CHECK(warned(
+        {{"/meshes/0/faceVertexIndices", "[0,1,2,3,1,2,5,4]"}},
+        "/meshes/0: 1 edges are not manifold: more than two faces meet there, or their windings disagree"));
+    CHECK(
+        warned({{"/meshes/0/creaseIndices", "[0,1,3]"}}, "/meshes/0: 1 creases lie where there is no edge"));
     CHECK(warned({{"/meshes/1/name", "wall"}}, "/meshes/2: the name 'wall' is taken already"));
     CHECK(warned({{"/meshes/2/material", "glass"}},
-                 "/meshes/2/material: a mirror or glass on an object is drawn as a plain surface: an optic reflects and refracts"));
+                 "/meshes/2/material: a mirror or glass on an object is drawn as a plain surface: an optic "
+                 "reflects and refracts"));
 }
 
-TEST_CASE("creases come in chains, pairs, and with one sharpness per chain or edge") {
-    const Scene pairs = load_text(replaced(kRoom, R"("creaseIndices": [0,1,2], "creaseLengths": [3], "creaseSharpnesses": [2.5])",
-                                           R"("creaseIndices": [0,1,1,2], "creaseSharpnesses": [1,2])"));
+TEST_CASE("creases come in chains or pairs with one sharpness per chain or edge") {
+    const Scene pairs = load_text(
+        replaced(kRoom, R"("creaseIndices": [0,1,2], "creaseLengths": [3], "creaseSharpnesses": [2.5])",
+                 R"("creaseIndices": [0,1,1,2], "creaseSharpnesses": [1,2])"));
     CHECK(pairs.meshes[0].cage.crease_lengths == std::vector<int>{2, 2});
     const Scene per_edge = load_text(kRoom, {{"/meshes/0/creaseSharpnesses", "[1,2]"}});
     CHECK(per_edge.meshes[0].cage.crease_sharpnesses == std::vector<double>{1, 2});
 }
 
-TEST_CASE("holes of an object are not drawn, and uvIndices pick uvs") {
-    const Scene scene = load_text(kRoom, {{"/meshes/2/points", "[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[2,0,0],[2,1,0]]"},
-                                          {"/meshes/2/faceVertexCounts", "[4,4]"},
-                                          {"/meshes/2/faceVertexIndices", "[0,1,2,3,1,4,5,2]"},
-                                          {"/meshes/2/uvs", "[[0,0],[1,1]]"},
-                                          {"/meshes/2/uvIndices", "[0,0,0,0,1,1,1,0]"},
-                                          {"/meshes/2/holeIndices", "[0]"}});
+TEST_CASE("holes of an object are not drawn and uvIndices pick uvs") {
+    const Scene scene =
+        load_text(kRoom, {{"/meshes/2/points", "[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[2,0,0],[2,1,0]]"},
+                          {"/meshes/2/faceVertexCounts", "[4,4]"},
+                          {"/meshes/2/faceVertexIndices", "[0,1,2,3,1,4,5,2]"},
+                          {"/meshes/2/uvs", "[[0,0],[1,1]]"},
+                          {"/meshes/2/uvIndices", "[0,0,0,0,1,1,1,0]"},
+                          {"/meshes/2/holeIndices", "[0]"}});
     CHECK(scene.meshes[2].face_count == 2);
     CHECK(scene.meshes[2].object.triangles == std::vector<IdTriple>{{1, 4, 5}, {1, 5, 2}});
     CHECK(scene.meshes[2].object.uvs[1] == std::array<Vec2, 3>{Vec2(1, 1), Vec2(1, 1), Vec2(0, 0)});
@@ -112,10 +119,12 @@ TEST_CASE("holes of an object are not drawn, and uvIndices pick uvs") {
 TEST_CASE("a background picture turns about the Y axis") {
     const std::string folder = scratch_dir("scene_background");
     std::ofstream(folder + "/sky.exr") << "stands for a picture";
-    const std::string text = replaced(kRoom, R"({ "color": [0.2,0.3,0.5] })", R"({ "file": "sky.exr", "rotate": 390 })");
+    const std::string text =
+        replaced(kRoom, R"({ "color": [0.2,0.3,0.5] })", R"({ "file": "sky.exr", "rotate": 390 })");
     const Scene scene = load_text(text, {}, folder + "/room.json");
     CHECK(scene.background.environment);
     CHECK(scene.background.rotate_cos == Approx(std::sqrt(0.75)));
     CHECK(scene.background.rotate_sin == Approx(0.5));
-    CHECK(begins_with(error_of(text, {}, folder + "/elsewhere/room.json"), folder + "/elsewhere/room.json: /background/file: the picture '"));
+    CHECK(begins_with(error_of(text, {}, folder + "/elsewhere/room.json"),
+                      folder + "/elsewhere/room.json: /background/file: the picture '"));
 }

@@ -11,8 +11,12 @@ using namespace trilens_test;
 
 namespace {
 
-double uniform(std::mt19937& random) { return std::uniform_real_distribution<double>(-1, 1)(random); }
-Vec3 random_vec(std::mt19937& random) { return {uniform(random), uniform(random), uniform(random)}; }
+double uniform(std::mt19937& random) {
+    return std::uniform_real_distribution<double>(-1, 1)(random);
+}
+Vec3 random_vec(std::mt19937& random) {
+    return {uniform(random), uniform(random), uniform(random)};
+}
 
 /// Rotation, scale of either sign from 1e-4 to 1e4 and translation.
 Transform random_transform(std::mt19937& random) {
@@ -22,20 +26,22 @@ Transform random_transform(std::mt19937& random) {
 }
 
 std::string primitive_with(const std::string& primitive, const std::string& transform) {
-    return R"({"name":"ball","role":"optic","material":"chrome","primitive":)" + primitive + R"(,"transform":)" + transform + "}";
+    return R"({"name":"ball","role":"optic","material":"chrome","primitive":)" + primitive +
+           R"(,"transform":)" + transform + "}";
 }
 
 }  // namespace
 
-TEST_CASE("scale, then rotate, then translate") {
+TEST_CASE("scale before rotate before translate") {
     const double half = std::sqrt(0.5);
-    const Transform t = make_transform({10, 0, 0}, {0, 0, 3 * half, 3 * half}, {2, 1, 1});  // a quarter turn about Z, not unit
+    const Transform t = make_transform({10, 0, 0}, {0, 0, 3 * half, 3 * half},
+                                       {2, 1, 1});  // a quarter turn about Z, not unit
     CHECK(length(map_point(t, {1, 1, 0}) - Vec3(9, 2, 0)) < 1e-14);
     const std::array<double, 16> columns = {2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 3, 0, 1};
     CHECK(map_point(*make_transform(columns), {1, 1, 5}) == Vec3(2, 4, 5));
 }
 
-TEST_CASE("law: composition is one map after the other, and normals stay at right angles to what they were") {
+TEST_CASE("law: composition is one map after the other and normals stay at right angles to what they were") {
     std::mt19937 random(1);
     for (int i = 0; i < 300; ++i) {
         const Transform a = random_transform(random), b = random_transform(random);
@@ -46,7 +52,8 @@ TEST_CASE("law: composition is one map after the other, and normals stay at righ
         const Vec3 normal = normalize_or_zero(normal_map(a) * cross(u, v));
         CHECK(std::abs(dot(normal, normalize(a.linear * u))) < 1e-6);
         // The front stays the front: corners in the order that place() gives them have the mapped normal.
-        const Vec3 placed = mirrors(a) ? cross(a.linear * v, a.linear * u) : cross(a.linear * u, a.linear * v);
+        const Vec3 placed =
+            mirrors(a) ? cross(a.linear * v, a.linear * u) : cross(a.linear * u, a.linear * v);
         CHECK(dot(normalize(placed), normal) > 0.999);
         CHECK_FALSE(flattens(a));
     }
@@ -67,19 +74,20 @@ TEST_CASE("a mirroring transform reverses faces after their first corner") {
     CHECK(object.triangles == std::vector<IdTriple>{{0, 3, 2}, {0, 2, 1}});
 }
 
-TEST_CASE("similarities are known as such, and no other map") {
+TEST_CASE("similarities and no other maps are known as such") {
     std::mt19937 random(2);
     for (int i = 0; i < 200; ++i) {
         const double factor = std::pow(10, 4 * uniform(random));
         const Vec4 turn(random_vec(random), uniform(random));
-        const auto found = similarity_factor(make_transform(random_vec(random), turn, Vec3(factor, factor, -factor)));
+        const auto found =
+            similarity_factor(make_transform(random_vec(random), turn, Vec3(factor, factor, -factor)));
         REQUIRE(found);
         CHECK(*found == Approx(factor));
         CHECK_FALSE(similarity_factor(make_transform(Vec3(0), turn, Vec3(factor, factor, factor * 1.0001))));
     }
 }
 
-TEST_CASE("primitives move, turn and grow") {
+TEST_CASE("primitives move and turn and grow") {
     const auto load = [](const std::string& primitive, const std::string& transform) {
         return *load_text(kRoom, {{"/meshes/1", primitive_with(primitive, transform)}}).meshes[1].primitive;
     };
@@ -87,11 +95,13 @@ TEST_CASE("primitives move, turn and grow") {
     const Primitive sphere = load(R"({"type":"sphere","center":[1,0,0],"radius":3})", turn_x_to_y);
     CHECK(length(sphere.center - Vec3(1, 4, 3)) < 1e-14);
     CHECK(sphere.radius == Approx(6));
-    const Primitive plane = load(R"({"type":"plane","normal":[0,0,5],"tangent":[1,0,1],"size":[1,2]})", turn_x_to_y);
+    const Primitive plane =
+        load(R"({"type":"plane","normal":[0,0,5],"tangent":[1,0,1],"size":[1,2]})", turn_x_to_y);
     CHECK(length(plane.axis - Vec3(0, 0, 1)) < 1e-14);
     CHECK(length(plane.tangent - Vec3(0, 1, 0)) < 1e-14);
     CHECK(plane.size.y == Approx(4));
-    const Primitive dish = load(R"({"type":"paraboloid","axis":[1,0,0],"focalLength":0.5,"radius":2})", turn_x_to_y);
+    const Primitive dish =
+        load(R"({"type":"paraboloid","axis":[1,0,0],"focalLength":0.5,"radius":2})", turn_x_to_y);
     CHECK(length(dish.axis - Vec3(0, 1, 0)) < 1e-14);
     CHECK(dish.focal_length == Approx(1));
     CHECK(std::abs(dot(dish.axis, dish.tangent)) < 1e-14);
@@ -102,7 +112,7 @@ TEST_CASE("primitives move, turn and grow") {
     CHECK(tube.height == 3);
 }
 
-TEST_CASE("what a scene holds, counted") {
+TEST_CASE("what a scene holds is counted") {
     const SceneInfo info = make_scene_info(load_text(kRoom));
     CHECK(info.cameras == std::vector<std::string>{"main", "rays"});
     CHECK(info.objects == 1);

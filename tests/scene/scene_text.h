@@ -51,13 +51,15 @@ inline trilens::TextureReader white_textures() {
     return reader;
 }
 
-inline trilens::Scene load_text(const std::string& text, const std::vector<trilens::SceneOverride>& overrides = {},
+inline trilens::Scene load_text(const std::string& text,
+                                const std::vector<trilens::SceneOverride>& overrides = {},
                                 const std::string& file = "room.json") {
     return trilens::load_scene_text(text, file, overrides, white_textures());
 }
 
 /// The message of the InputError that loading ends in; "" where it loads.
-inline std::string error_of(const std::string& text, const std::vector<trilens::SceneOverride>& overrides = {},
+inline std::string error_of(const std::string& text,
+                            const std::vector<trilens::SceneOverride>& overrides = {},
                             const std::string& file = "room.json") {
     try {
         load_text(text, overrides, file);
@@ -68,10 +70,16 @@ inline std::string error_of(const std::string& text, const std::vector<trilens::
 }
 
 /// The room with one part set.
-inline std::string error_with(const std::string& pointer, const std::string& value) { return error_of(kRoom, {{pointer, value}}); }
+inline std::string error_with(const std::string& pointer, const std::string& value) {
+    return error_of(kRoom, {{pointer, value}});
+}
 
-inline bool begins_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+inline bool begins_with(const std::string& text, const std::string& start) {
+    return text.rfind(start, 0) == 0;
+}
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 /// `text` with the first `from` replaced.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {

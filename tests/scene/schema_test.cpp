@@ -16,13 +16,14 @@
 using namespace trilens;
 using namespace trilens_test;
 
-TEST_CASE("every example loads, without warnings that matter") {
+TEST_CASE("every example loads without warnings that matter") {
     CHECK(scene_examples().size() >= 3);
     for (const SceneExample& example : scene_examples()) {
         INFO(example.name);
         const Scene scene = load_text(example.json);
         CHECK(scene.meshes.size() >= 2);
-        for (const std::string& warning : scene.warnings) CHECK(contains(warning, "this glass is one interface"));
+        for (const std::string& warning : scene.warnings)
+            CHECK(contains(warning, "this glass is one interface"));
     }
 }
 
@@ -37,14 +38,17 @@ class Validator {
         parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(text), schema_);
     }
     bool accepts(const nlohmann::json& scene) {
-        return valijson::Validator().validate(schema_, valijson::adapters::NlohmannJsonAdapter(scene), nullptr);
+        return valijson::Validator().validate(schema_, valijson::adapters::NlohmannJsonAdapter(scene),
+                                              nullptr);
     }
 
   private:
     valijson::Schema schema_;
 };
 
-nlohmann::json parse(const char* text) { return nlohmann::json::parse(text, nullptr, true, true); }
+nlohmann::json parse(const char* text) {
+    return nlohmann::json::parse(text, nullptr, true, true);
+}
 
 /// Pointers to all parts of a document.
 void collect(const nlohmann::json& value, const std::string& pointer, std::vector<std::string>& all) {
@@ -52,7 +56,8 @@ void collect(const nlohmann::json& value, const std::string& pointer, std::vecto
     if (value.is_object())
         for (const auto& [key, part] : value.items()) collect(part, pointer + "/" + key, all);
     if (value.is_array())
-        for (std::size_t i = 0; i < value.size(); ++i) collect(value[i], pointer + "/" + std::to_string(i), all);
+        for (std::size_t i = 0; i < value.size(); ++i)
+            collect(value[i], pointer + "/" + std::to_string(i), all);
 }
 
 }  // namespace
@@ -80,23 +85,28 @@ TEST_CASE("the schema accepts the good and refuses the broken") {
     CHECK_FALSE(broken("/extras", {{"free", 1}}));
 }
 
-TEST_CASE("law: what loads is what the schema accepts, but for what a schema cannot say") {
+TEST_CASE("law: what loads is what the schema accepts but for what a schema cannot say") {
     Validator validator;
     std::vector<std::string> pointers;
     collect(parse(kRoom), "", pointers);
-    const std::vector<std::string> values = {"null", "true", "-1", "0", "0.5", "1", "2", "7", "1e31", "300", "\"sphere\"", "\"plane\"",
-                                             "\"rayMesh\"", "\"object\"", "[]", "[0,0]", "[1,2,3]", "[1,0,0,1]", "{}", "{\"type\":\"smooth\"}"};
+    const std::vector<std::string> values = {
+        "null",       "true",      "-1",          "0",          "0.5",
+        "1",          "2",         "7",           "1e31",       "300",
+        "\"sphere\"", "\"plane\"", "\"rayMesh\"", "\"object\"", "[]",
+        "[0,0]",      "[1,2,3]",   "[1,0,0,1]",   "{}",         "{\"type\":\"smooth\"}"};
     std::mt19937 random(5);
     int refused_by_both = 0, accepted_by_both = 0;
     for (int i = 0; i < 1500; ++i) {
         nlohmann::json scene = parse(kRoom);
         const std::string& pointer = pointers[random() % pointers.size()];
-        scene[nlohmann::json::json_pointer(pointer)] = nlohmann::json::parse(values[random() % values.size()]);
+        scene[nlohmann::json::json_pointer(pointer)] =
+            nlohmann::json::parse(values[random() % values.size()]);
         const bool accepted = validator.accepts(scene);
         const std::string error = error_of(scene.dump());
         INFO(pointer << " -> " << error << "\n" << scene.dump());
         if (error.empty()) CHECK(accepted);  // the loader is never laxer than the schema
-        // A loader's refusal of what the schema accepts is a semantic one: its message is not of the walker's kind.
+        // A loader's refusal of what the schema accepts is a semantic one: its message is not of the walker's
+        // kind.
         if (accepted && !error.empty()) {
             CHECK_FALSE(contains(error, "unknown key"));
             CHECK_FALSE(contains(error, "expected "));
@@ -109,5 +119,7 @@ TEST_CASE("law: what loads is what the schema accepts, but for what a schema can
     CHECK(accepted_by_both > 50);
 }
 #else
-TEST_CASE("the schema accepts the good and refuses the broken") { TRILENS_SKIP("needs valijson"); }
+TEST_CASE("the schema accepts the good and refuses the broken") {
+    TRILENS_SKIP("needs valijson");
+}
 #endif
