@@ -48,6 +48,9 @@ Picture draw_picture(const World& world, const PictureRequest& request, Console&
     header["trilens:engine"] = engine_name(request.engine);
     header["trilens:camera"] = world.scene.cameras[request.camera].name;
     header["trilens:resolution"] = resolution_text(world);
+    std::size_t facets = 0;
+    for (const Optic& optic : world.optics) facets += optic.facet_count();
+    header["trilens:facets"] = std::to_string(facets);
     header["trilens:scene"] = world.scene.resolved;
     tell(world, request, picture, console);
     return picture;

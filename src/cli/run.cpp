@@ -107,6 +107,13 @@ int fail(const std::string& command, const std::string& json, Console& console, 
     return code;
 }
 
+/// The long options of a command and of the commands below it.
+void collect_options(const CLI::App& command, std::vector<std::string>& known) {
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    for (const CLI::App* below : command.get_subcommands(nullptr)) collect_options(*below, known);
+}
+
 /// The usage error behind a CLI11 complaint, with the nearest known word where one was mistyped.
 UsageError usage_error(const CLI::App& app, const CLI::ParseError& complaint, const std::vector<std::string>& words) {
     std::vector<std::string> commands;
@@ -120,10 +127,8 @@ UsageError usage_error(const CLI::App& app, const CLI::ParseError& complaint, co
     const CLI::App* chosen = nullptr;
     for (const CLI::App* command : app.get_subcommands(nullptr))
         if (command->get_name() == words[0]) chosen = command;
-    for (const CLI::App* level = chosen; level; level = nullptr)
-        for (const CLI::Option* option : level->get_options())
-            for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-    if (complaint.get_name() == "ExtrasError") {
+    if (chosen) collect_options(*chosen, known);
+    if (dynamic_cast<const CLI::ExtrasError*>(&complaint)) {
         for (const std::string& word : words) {
             const std::string name = word.substr(0, word.find('='));
             if (word.rfind("--", 0) == 0 && std::find(known.begin(), known.end(), name) == known.end())

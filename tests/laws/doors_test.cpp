@@ -75,7 +75,7 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"oneapi/", {}},
     {"opensubdiv/", {"surfaces/"}},
     {"tiny_obj_loader.h", {"src/scene/"}},
-    {"tiny_gltf.h", {"src/scene/"}},
+    {"tiny_gltf.h", {"src/scene/gltf"}},
     {"nlohmann/", {"src/scene/json.h", "src/sweep/json.h", "src/cli/json.h"}},
     {"OpenImageIO/", {"src/image/"}},
     {"OpenEXR/", {"src/image/"}},
@@ -111,18 +111,19 @@ TEST_CASE("every outside library is included through its one door", "[laws]") {
     for (const char* used : {"glm/", "tbb/", "opensubdiv/", "nlohmann/", "OpenImageIO/", "embree", "CLI/", "tiny_gltf.h"})
         CHECK_FALSE(doors_used[used].empty());
     // One file each: whoever wants the library asks that file.
-    for (const char* single : {"glm/", "tbb/", "tiny_obj_loader.h", "tiny_gltf.h"}) CHECK(doors_used[single].size() == 1);
+    for (const char* single : {"glm/", "tbb/"}) CHECK(doors_used[single].size() == 1);
 }
 
 TEST_CASE("no header of ours brings an outside library with it, but for the vocabulary", "[laws]") {
-    const std::set<std::string> vocabulary{"src/base/vec.h", "src/scene/json.h", "src/sweep/json.h", "src/cli/json.h"};
+    const std::set<std::string> vocabulary{"src/base/vec.h", "src/scene/json.h", "src/sweep/json.h", "src/cli/json.h",
+                                           "src/truth/embree_device.h"};  // the last is the door's own, for that room's .cpp files
     for (const std::string& folder : kFolders) {
         for (const Include& include : includes_under(folder)) {
             if (include.file.size() < 2 || include.file.substr(include.file.size() - 2) != ".h") continue;
             for (const auto& [prefix, doors] : kDoors) {
                 if (include.target.rfind(prefix, 0) != 0) continue;
                 INFO(include.file << " includes " << include.target);
-                CHECK((vocabulary.count(include.file) == 1 || include.file.find("_internal.h") != std::string::npos));
+                CHECK(vocabulary.count(include.file) == 1);
             }
         }
     }
