@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "measure/comparable.h"
 #include "measure/image_finder.h"
+#include "measure/other_image.h"
 #include "measure/statistics.h"
 
 namespace trilens {
@@ -66,6 +67,7 @@ std::optional<Displacement> measure_displacement(const Image& reference, const I
             result.shift_y[i] = static_cast<float>(shift->y);
         }
     });
+    drop_other_images(result, test.data_width);
     collect_statistics(result);
     return result;
 }

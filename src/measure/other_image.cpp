@@ -1,0 +1,53 @@
+#include "measure/other_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/parallel.h"
+
+namespace trilens {
+namespace {
+
+constexpr int kReach = 3;  // of the 7 x 7 window
+
+/// Shifts below this are never another image: the bound of the test at a median of zero.
+constexpr double kLeast = kOtherImage * 0.5;
+
+bool is_jump(const Displacement& displacement, std::span<const double> size, int width, std::size_t pixel) {
+    const int height = static_cast<int>(size.size()) / width;
+    const int column = static_cast<int>(pixel) % width, row = static_cast<int>(pixel) / width;
+    std::vector<double> around;
+    for (int y = std::max(0, row - kReach); y <= std::min(height - 1, row + kReach); ++y) {
+        for (int x = std::max(0, column - kReach); x <= std::min(width - 1, column + kReach); ++x) {
+            const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+            if (i != pixel && displacement.state[i] == Shift::kFound) around.push_back(size[i]);
+        }
+    }
+    if (around.size() < kFewestNeighbours) return false;
+    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
+    std::nth_element(around.begin(), middle, around.end());
+    return size[pixel] > kOtherImage * (*middle + 0.5);
+}
+
+}  // namespace
+
+void drop_other_images(Displacement& displacement, int width) {
+    std::vector<double> size(displacement.state.size());
+    for (std::size_t i = 0; i < size.size(); ++i)
+        size[i] = std::hypot(displacement.shift_x[i], displacement.shift_y[i]);
+
+    // All are judged by the field as it was found, so the outcome does not depend on an order.
+    std::vector<std::uint8_t> jump(size.size(), 0);
+    parallel_for(size.size(), 4096, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            jump[i] = displacement.state[i] == Shift::kFound && size[i] > kLeast && is_jump(displacement, size, width, i);
+    });
+    for (std::size_t i = 0; i < size.size(); ++i) {
+        if (!jump[i]) continue;
+        displacement.state[i] = Shift::kLost;
+        displacement.shift_x[i] = displacement.shift_y[i] = 0;
+    }
+}
+
+}  // namespace trilens
