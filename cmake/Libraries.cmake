@@ -24,6 +24,16 @@ target_compile_definitions(trilens_embree INTERFACE TRILENS_EMBREE_MAJOR=${TRILE
 add_library(trilens_tinygltf INTERFACE)
 target_link_libraries(trilens_tinygltf INTERFACE TinyGLTF::TinyGLTF)
 
+# Debian 12's OpenImageIO names OpenCV's folder of headers, which its package neither has nor needs.
+get_target_property(directories OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+foreach(directory IN LISTS directories)
+  if(IS_ABSOLUTE "${directory}" AND NOT EXISTS "${directory}")
+    list(REMOVE_ITEM directories "${directory}")
+  endif()
+endforeach()
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES
+  INTERFACE_INCLUDE_DIRECTORIES "${directories}")
+
 # Their headers are not ours to warn about.
 foreach(library glm::glm OpenImageIO::OpenImageIO embree CLI11::CLI11 TinyGLTF::TinyGLTF
     tinyobjloader::tinyobjloader_double nlohmann_json::nlohmann_json)

@@ -8,11 +8,14 @@ namespace trilens {
 std::optional<Vec3> refracted(const Vec3& incoming, const Vec3& unit_normal, double eta) {
     const double size = length(incoming);
     if (!(size > 0)) return std::nullopt;
-    const double cos_incident = std::max(0.0, -dot(incoming, unit_normal) / size);
+    const Vec3 unit = incoming / size;
 
-    // The part along the surface, exact whether or not the cosine was clamped to grazing.
-    const Vec3 tangential = eta * (incoming / size + cos_incident * unit_normal);
-    const double sin2 = eta * eta * (1 - cos_incident * cos_incident);
+    // The part along the surface. A ray beyond grazing is laid into the surface first.
+    const double cosine = -dot(unit, unit_normal);
+    Vec3 along = unit + cosine * unit_normal;
+    if (cosine < 0) along /= length(along);
+    const Vec3 tangential = eta * along;
+    const double sin2 = dot(tangential, tangential);
     if (sin2 > 1) return std::nullopt;
     const Vec3 direction = tangential - std::sqrt(1 - sin2) * unit_normal;
     return direction * (size / length(direction));

@@ -10,21 +10,46 @@
 
 namespace trilens {
 
-/// The limit surface of a cage (OpenSubdiv Bfr, double precision): THE door to OpenSubdiv. A surface face is one quad
-/// face of the cage, one sub-face of an n-gon under Catmull-Clark or bilinear (n of them, in corner order), or one triangle
-/// under Loop; holes have none. `name` is used in messages. Faces that have no limit surface (as
-/// non-manifold spots may have) are left out and reported to `warn`.
-/// Throws InputError where the cage cannot be used at all: indices out of range, faces of fewer than 3 or more than
-/// 255 corners, non-finite points, Loop on faces that are not triangles.
+/// The limit surface of a cage (OpenSubdiv Bfr, double precision): THE door to OpenSubdiv. A surface face is
+/// one quad face of the cage, one sub-face of an n-gon under Catmull-Clark or bilinear (n of them, in corner
+/// order), or one triangle under Loop; holes have none. Front is where the face's corners run
+/// counter-clockwise.
+///
+/// `name` is used in messages. `warn` (may be empty) is told of what is repaired or left out: repeated
+/// corners, faces that are no simple polygons, creases along no edge, faces that have no limit surface (next
+/// to boundaries that are not interpolated).
+///
+/// Positions are those of infinite subdivision to rounding, but for the last 2^-10 of a face around
+/// extraordinary vertices (about 1e-6 of the face there). Where du x dv vanishes (collapsed edges, vertices
+/// of two faces), the normal is that of the place a share of 2^-20 (if need be 2^-12, 2^-6) towards the
+/// middle of the face.
+///
+/// Throws InputError where the cage cannot be used at all: no faces, indices out of range, arrays that do not
+/// fit together, faces of fewer than 3 or more than 255 corners, non-finite points, negative sharpness, Loop
+/// on faces that are not triangles.
 std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string& name, const Warn& warn);
 
-/// The surface of a primitive, exact. Faces: sphere 6 (a cube mapped onto it), cylinder 4 quarters, paraboloid 5
-/// (a square and four sides mapped onto its disk), plane 1.
+/// The surface of a primitive, exact, with intersect(). Faces: sphere 6 (a cube mapped onto it, equal
+/// angles), cylinder 4 quarters, paraboloid 5 (a square and four sides mapped onto its disk; no singular
+/// point), plane 1. Front is outside of sphere and cylinder, the focus side of the paraboloid, the axis side
+/// of the plane.
+///
+/// axis and tangent need not be exactly unit or at right angles; the sphere's faces follow them too.
+/// Throws InputError for sizes that are not positive and for axis and tangent that span no plane.
 std::unique_ptr<Surface> make_primitive_surface(const Primitive& primitive);
 
-/// n x n squares of two facets per square face, n^2 facets per triangular face. Points on shared edges of faces are
-/// one point each (bit for bit); a corner's normal is one where the faces around it agree, and per face
-/// along creases. n in 1..1024.
+/// Normals of faces that meet in a point count as one where they differ by at most this (radians): far above
+/// what the patches of one smooth surface differ by, far below a visible crease.
+inline constexpr double kSameNormal = 1e-3;
+
+/// n x n squares of two facets per square face, n^2 facets per triangular face; n in 1..1024. Facets run
+/// counter-clockwise seen from the front; a square is cut along its shorter diagonal.
+///
+/// Points on shared edges of faces are one point each, bit for bit; a corner's normal is one where the faces
+/// around it agree (kSameNormal), and per face along creases.
+///
+/// No cracks and no T-junctions: an edge between a quad and an n-gon has 2n segments (the n-gon brings two
+/// sub-faces to it), and the quad's n squares along it have a fifth corner and three facets.
 SurfaceGrid make_grid(const Surface& surface, int n);
 
 /// "OpenSubdiv 3.5.0": for `trilens info`.

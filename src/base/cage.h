@@ -11,7 +11,7 @@ namespace trilens {
 
 enum class SubdivisionScheme { kCatmullClark, kLoop, kBilinear };
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"  // GCC before 13 takes a scoped enumerator for a shadow of the Id kNone
+#pragma GCC diagnostic ignored "-Wshadow"  // GCC takes the scoped enumerator for a shadow of the Id kNone
 enum class InterpolateBoundary { kNone, kEdgeOnly, kEdgeAndCorner };
 #pragma GCC diagnostic pop
 

@@ -1,6 +1,7 @@
 // A curved surface as its users see it: faces with parameters, evaluated exactly.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,22 @@ struct SurfacePoint {
     Vec3 normal{0};  // unit, du x dv turned to the front of the surface; zero where there is none
 };
 
+/// One side of a face: the edge that it runs along. Sides with equal edges are one curve in the world.
+struct FaceSide {
+    enum class Part { kWhole, kFirstHalf, kSecondHalf };
+    Id edge = kNone;          // kNone: no other face has this side
+    Part part = Part::kWhole; // which part of the edge, in the edge's own direction
+    bool reversed = false;    // the side runs against the edge
+};
+
+/// How a face hangs together with its neighbours. Square: corners (0,0), (1,0), (1,1), (0,1); triangle: (0,0),
+/// (1,0), (0,1). Side k runs from corner k to the next. Equal corners are one point in the world; kNone: no other
+/// face has it.
+struct FaceBorder {
+    std::array<Id, 4> corners{kNone, kNone, kNone, kNone};
+    std::array<FaceSide, 4> sides{};
+};
+
 /// Where a ray meets a surface.
 struct SurfaceHit {
     Id face = kNone;
@@ -35,6 +52,9 @@ class Surface {
     virtual ~Surface() = default;
     virtual std::size_t face_count() const = 0;
     virtual FaceDomain domain(Id face) const = 0;
+
+    /// The corners and edges that the face shares with others; the default shares nothing.
+    virtual FaceBorder border(Id /*face*/) const { return {}; }
 
     /// Position and derivatives at (u, v) of a face; parameters outside the domain are clamped to it.
     virtual SurfacePoint eval(Id face, const Vec2& uv) const = 0;

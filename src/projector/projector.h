@@ -11,8 +11,9 @@
 
 namespace trilens {
 
-/// A scene made ready for drawing: triangles with their edges' canonical orientation, and a tree over them.
-/// Holds a reference to nothing: the scene is copied into structure-of-arrays form.
+/// A scene made ready for drawing: triangles in leaf order, and a tree over them.
+/// Holds a reference to nothing: the scene is copied into structure-of-arrays form. The scene's points are
+/// finite.
 class PreparedScene {
   public:
     explicit PreparedScene(const TriangleScene& scene);
@@ -27,14 +28,18 @@ class PreparedScene {
     std::unique_ptr<Data> data_;
 };
 
-/// The facets' samples by the top-left rule on the screen: a sample on an edge that two facets share belongs to
-/// one of them. For meshes that do not fold over on the screen (cameras); where they do, the facet with the
-/// smaller index wins.
+/// The facets' samples by the top-left rule on the screen: a sample on an edge or a corner that facets share
+/// belongs to exactly one of them, also where corners are duplicated and where some lie behind the camera (w
+/// <= 0). For meshes that do not fold over on the screen (cameras); where they do, the facet with the smaller
+/// index wins. Facets without rays or without area on the screen own nothing.
 FacetSamples rasterize_facets(const RayMesh& mesh, const SampleGrid& grid);
 
-/// For every sample that `owned` gives to a facet with rays: the first triangle along the facet's interpolated ray
-/// (t >= 0), written to hits[sample]; other entries of `hits` are left alone. hits.size() == grid.size().
-/// Coverage is exact (conic edge functions, mathematics section 2), watertight across triangles that share an edge.
+/// For every sample that `owned` gives to a facet with rays and an area on the screen: the first triangle
+/// along the facet's interpolated ray (t >= 0), written to hits[sample]; other entries of `hits` are left
+/// alone. hits.size() == grid.size(). A sample need not lie inside its facet: the weights are extrapolated.
+/// Coverage is exact (conic edge functions, mathematics section 2) and watertight across triangles that share
+/// an edge or a corner by its coordinates. Ties in depth go by kDepthTie, whatever the order of the scene's
+/// triangles. The same hits for any number of threads.
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
           std::span<Hit> hits);
 

@@ -12,7 +12,7 @@
 
 namespace trilens {
 
-std::string read_whole_file(const std::string& file) {
+std::string read_required_file(const std::string& file) {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
         throw InputError(file, "", "is a directory, not a file");

@@ -6,6 +6,6 @@
 namespace trilens {
 
 /// Throws InputError(file) that says why: missing, a directory, not readable.
-std::string read_whole_file(const std::string& file);
+std::string read_required_file(const std::string& file);
 
 }  // namespace trilens

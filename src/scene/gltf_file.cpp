@@ -41,7 +41,7 @@ std::string one_line(std::string text) {
 }  // namespace
 
 tinygltf::Model load_gltf_model(const std::string& file) {
-    const std::string bytes = read_whole_file(file);
+    const std::string bytes = read_required_file(file);
     if (bytes.size() > std::numeric_limits<unsigned int>::max())
         throw InputError(file, "", "is larger than 4 GiB");
     const auto size = static_cast<unsigned int>(bytes.size());

@@ -82,7 +82,7 @@ Scene load_scene_text(const std::string& text, const std::string& file,
 
 Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides,
                  const TextureReader& textures) {
-    return load_scene_text(read_whole_file(file), file, overrides, textures);
+    return load_scene_text(read_required_file(file), file, overrides, textures);
 }
 
 }  // namespace trilens

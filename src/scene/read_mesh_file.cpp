@@ -23,7 +23,7 @@ std::map<std::string, MtlMaterial> read_libraries(const ObjFile& obj, const std:
             reading.warn(place, "the material library '" + path + "' does not exist");
             continue;
         }
-        for (const MtlMaterial& material : parse_mtl(read_whole_file(path), path))
+        for (const MtlMaterial& material : parse_mtl(read_required_file(path), path))
             by_name.emplace(material.name, material);
     }
     return by_name;
@@ -65,7 +65,7 @@ void inherit_materials(ObjFile& obj, const std::filesystem::path& folder, const 
 }
 
 PolygonMesh read_obj_file(const std::string& path, bool inherit, const std::string& place, Reading& reading) {
-    ObjFile obj = parse_obj(read_whole_file(path), path);
+    ObjFile obj = parse_obj(read_required_file(path), path);
     for (const std::string& warning : obj.warnings) reading.warn(place, path + ": " + warning);
     if (inherit)
         inherit_materials(obj, std::filesystem::path(path).parent_path(), place, reading);

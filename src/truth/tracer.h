@@ -12,16 +12,23 @@
 
 namespace trilens {
 
-/// An Embree scene (ROBUST) over a copy of the triangles. Embree finds candidates in float; each is solved again in
-/// double on the original triangle, so t and barycentrics do not depend on the instruction set.
+/// A copy of the triangles in an Embree scene (ROBUST). Embree's tree finds the candidates in float, none too
+/// few; each is met in double on the original triangle (triangle_hit.h). So hits depend neither on the
+/// instruction set nor on the number of threads, and triangles that share an edge leave no gap. Triangles
+/// without area, or with coordinates that are not finite, are never seen. Promised for origins within 1e8
+/// radii of the scene. Thread-safe to read.
 class Tracer {
   public:
-    explicit Tracer(const TriangleScene& scene);
+    /// `isa`: Embree's instruction set ("sse2", "sse4.2", "avx", "avx2", "avx512"), or empty for the best of
+    /// this machine. Throws ComputationError where Embree fails.
+    explicit Tracer(const TriangleScene& scene, const std::string& isa = "");
     ~Tracer();
     Tracer(Tracer&&) noexcept;
     Tracer& operator=(Tracer&&) noexcept;
 
-    /// The first hit with t >= t_min (in units of the direction, which need not be unit), ties as kDepthTie says.
+    /// The first hit with t >= t_min (in units of the direction, which need not be unit). Among the hits
+    /// within kDepthTie of the smallest t, the one with the smallest (object, primitive). A ray that is not
+    /// finite, or has no direction, sees nothing.
     Hit first_hit(const Ray& ray, double t_min = 0) const;
 
     /// Whether anything lies on the ray with t_min < t < t_max.
@@ -32,15 +39,15 @@ class Tracer {
     std::unique_ptr<Data> data_;
 };
 
-/// Facets truth: for every sample that `owned` gives to a facet with rays, the first hit of the interpolated ray,
-/// written to hits[sample]; other entries are left alone. hits.size() == grid.size().
-void trace_facets(const Tracer& tracer, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
-                  std::span<Hit> hits);
+/// Facets truth: for every sample that `owned` gives to a facet with rays, the first hit (t >= 0) of the
+/// interpolated ray, written to hits[sample]; other entries are left alone. hits.size() == grid.size().
+void trace_facets(const Tracer& tracer, const RayMesh& mesh, const FacetSamples& owned,
+                  const SampleGrid& grid, std::span<Hit> hits);
 
 /// Sets Embree's thread count for scenes built from now on; 0 means all.
 void set_tracer_threads(int threads);
 
-/// "Embree 3.13.5": for `trilens info`.
+/// "Embree 3.13.5", the library that runs now: for `trilens info`.
 std::string tracer_library_version();
 
 }  // namespace trilens

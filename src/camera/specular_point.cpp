@@ -1,0 +1,266 @@
+// One image of a point on a curved surface: Levenberg-Marquardt on the law that Fermat's principle gives.
+#include "camera/specular_point.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+
+namespace trilens {
+namespace {
+
+constexpr int kMaxIterations = 100;
+constexpr double kFirstDamping = 1e-3;  // of the normal matrix's mean diagonal
+constexpr double kLastDamping = 1e12;   // steps are then shorter than rounding
+constexpr double kAngleTolerance =
+    1e-13;  // residual of a solution, per n1 + n2: some hundred rounding errors
+constexpr double kRoundingErrors =
+    64;  // coordinates carry this many units of rounding through the evaluation
+constexpr double kParameterTolerance =
+    1e-9;                           // a remaining step that counts as none: an image on the rim between two
+                                    // faces then belongs to both, and is one by distinct_images
+constexpr double kLastStep = 1e-6;  // in (u, v): Newton's error after it is below rounding
+constexpr double kDifferenceStep = 1e-5;  // cube root of the rounding unit, for central differences in (u, v)
+
+/// The light's path over one point of the surface.
+struct Path {
+    Vec3 from_eye{0}, from_point{0};              // unit: e and x
+    double eye_distance = 0, point_distance = 0;  // eye_distance infinite for parallel cameras
+    Vec3 bend{0};                                 // h = n1 e + n2 x
+};
+
+struct Indices {
+    double eye = 1, point = 1;
+};
+
+Indices indices(const SpecularQuery& query) {
+    if (query.event == SpecularEvent::kReflect) return {1, 1};
+    return {query.eye_index, query.point_index};
+}
+
+Path path_over(const SpecularQuery& query, const Vec3& position) {
+    Path path;
+    const Vec3 incident = incident_direction(query.camera, position), back = position - query.point;
+    path.from_eye = normalize_or_zero(incident);
+    path.from_point = normalize_or_zero(back);
+    path.eye_distance = query.camera.parallel ? std::numeric_limits<double>::infinity() : length(incident);
+    path.point_distance = length(back);
+    const Indices n = indices(query);
+    path.bend = n.eye * path.from_eye + n.point * path.from_point;
+    return path;
+}
+
+/// How the unit direction to P from a fixed point changes as P moves by `step`.
+Vec3 turn(const Vec3& direction, double distance, const Vec3& step) {
+    return (step - dot(direction, step) * direction) / distance;
+}
+
+/// The two tangents that the law is tested along.
+std::array<Vec3, 2> tangents(const SpecularQuery& query, const SurfacePoint& point) {
+    if (query.own_normals) return {point.du, point.dv};
+    const Vec3& n = point.normal;
+    return {point.du - dot(point.du, n) * n, point.dv - dot(point.dv, n) * n};
+}
+
+Vec2 gradient(const SpecularQuery& query, const SurfacePoint& point) {
+    const Path path = path_over(query, point.position);
+    const std::array<Vec3, 2> along = tangents(query, point);
+    return {dot(path.bend, along[0]), dot(path.bend, along[1])};
+}
+
+/// The Hessian of the optical path: the turning of e and x along the tangents, plus h along the surface's
+/// bending.
+Mat2 path_hessian(const SpecularQuery& query, const SurfacePoint& point) {
+    const Path path = path_over(query, point.position);
+    const Indices n = indices(query);
+    auto bend_change = [&](const Vec3& step) {
+        return n.eye * turn(path.from_eye, path.eye_distance, step) +
+               n.point * turn(path.from_point, path.point_distance, step);
+    };
+    const Vec3 change_u = bend_change(point.du), change_v = bend_change(point.dv);
+    const double uu = dot(change_u, point.du) + dot(path.bend, point.duu);
+    const double uv = dot(change_u, point.dv) + dot(path.bend, point.duv);
+    const double vv = dot(change_v, point.dv) + dot(path.bend, point.dvv);
+    return {Vec2(uu, uv), Vec2(uv, vv)};
+}
+
+Vec2 clamped(FaceDomain domain, Vec2 uv) {
+    uv = glm::clamp(uv, Vec2(0), Vec2(1));
+    const double beyond = uv.x + uv.y - 1;
+    if (domain == FaceDomain::kSquare || beyond <= 0) return uv;
+    // The nearest point of the long side u + v = 1.
+    const double u = std::clamp(uv.x - 0.5 * beyond, 0.0, 1.0);
+    return {u, 1 - u};
+}
+
+/// One iterate: the law's two equations and their Jacobian, in an orthonormal frame of the tangent plane.
+struct Iterate {
+    SurfaceParameter at;
+    SurfacePoint point;
+    bool regular = false;  // du and dv span the tangent plane
+    Mat2 metric_root{0};   // L, lower: L L^T = (du, dv)^T (du, dv)
+    Vec2 law{0};           // L^-1 gradient: h along the surface
+    double residual = std::numeric_limits<double>::infinity();
+};
+
+Iterate evaluate(const Surface& surface, const SurfaceParameter& at, const SpecularQuery& query) {
+    Iterate result{at, surface.eval(at.face, at.uv)};
+    const Vec3 &du = result.point.du, &dv = result.point.dv;
+
+    // Cholesky's root of the first fundamental form; the second pivot is the height of dv over du.
+    const double size_u = length(du);
+    if (!(size_u > 0)) return result;
+    const double shear = dot(du, dv) / size_u;
+    const double height = length(cross(du, dv)) / size_u;
+    if (!(height > 1e-12 * length(dv)) || result.point.normal == Vec3(0)) return result;
+    result.regular = true;
+    result.metric_root = Mat2(Vec2(size_u, shear), Vec2(0, height));
+
+    const Vec2 g = gradient(query, result.point);
+    const double first = g.x / size_u;
+    result.law = {first, (g.y - shear * first) / height};
+    const double residual = length(result.law);
+    if (std::isfinite(residual)) result.residual = residual;
+    return result;
+}
+
+/// The gradient's derivatives by central differences, one-sided at the domain's border.
+Mat2 difference_jacobian(const Surface& surface, const SurfaceParameter& at, const SpecularQuery& query) {
+    const FaceDomain domain = surface.domain(at.face);
+    Mat2 jacobian(0);
+    for (int k = 0; k < 2; ++k) {
+        Vec2 step(0);
+        step[k] = kDifferenceStep;
+        Vec2 low = clamped(domain, at.uv - step), high = at.uv + step;
+        if (clamped(domain, high) != high)
+            high = at.uv;  // at a triangle's long side clamping would move both parameters
+        const Vec2 change =
+            gradient(query, surface.eval(at.face, high)) - gradient(query, surface.eval(at.face, low));
+        jacobian[k] = change / (high[k] - low[k]);
+    }
+    return jacobian;
+}
+
+/// L^-1 J L^-T: the Jacobian per length along the surface.
+Mat2 metric_jacobian(const Surface& surface, const Iterate& iterate, const SpecularQuery& query) {
+    const Mat2 plain = query.own_normals ? path_hessian(query, iterate.point)
+                                         : difference_jacobian(surface, iterate.at, query);
+    const Mat2 inverse_root = glm::inverse(iterate.metric_root);
+    return inverse_root * plain * glm::transpose(inverse_root);
+}
+
+double squared_size(const Mat2& m) {
+    return dot(m[0], m[0]) + dot(m[1], m[1]);
+}
+
+/// The step in (u, v) that minimises |law + J s|^2 + damping |s|^2, s measured along the surface.
+Vec2 damped_step(const Iterate& iterate, const Mat2& jacobian, double damping) {
+    const Mat2 transposed = glm::transpose(jacobian);
+    Mat2 normal = transposed * jacobian;
+    normal[0][0] += damping;
+    normal[1][1] += damping;
+    const double determinant = glm::determinant(normal);
+    if (!(determinant > 0)) return Vec2(0);
+    const Vec2 right = -(transposed * iterate.law);
+    const Vec2 along(normal[1][1] * right.x - normal[1][0] * right.y,
+                     normal[0][0] * right.y - normal[0][1] * right.x);
+    return glm::transpose(glm::inverse(iterate.metric_root)) * (along / determinant);
+}
+
+/// The residual that rounding leaves: of the directions, and of coordinates that moved by their last bits.
+double rounding_floor(const Iterate& iterate, const Mat2& jacobian, const SpecularQuery& query) {
+    const Vec3 &p = iterate.point.position, &x = query.point;
+    const double coordinate = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), std::fabs(x.x),
+                                        std::fabs(x.y), std::fabs(x.z), length(query.camera.eye)});
+    const double moved = kRoundingErrors * std::numeric_limits<double>::epsilon() * coordinate;
+    const Indices n = indices(query);
+    return kAngleTolerance * (n.eye + n.point) + moved * std::sqrt(squared_size(jacobian));
+}
+
+/// Where the damped iteration comes to rest.
+struct Rest {
+    Iterate iterate;
+    bool solved = false;
+    int iterations = 0;
+};
+
+double largest(const Vec2& v) {
+    return std::max(std::fabs(v.x), std::fabs(v.y));
+}
+
+/// One last undamped step, which brings grazing images from the tolerance down to rounding. Longer steps than
+/// kLastStep come from a singular Jacobian (a point on a caustic) and are not taken.
+void polish(const Surface& surface, const SpecularQuery& query, const Mat2& jacobian, Iterate& iterate) {
+    const Vec2 step = damped_step(iterate, jacobian, 0);
+    if (largest(step) > kLastStep) return;
+    const Vec2 uv = clamped(surface.domain(iterate.at.face), iterate.at.uv + step);
+    const Iterate next = evaluate(surface, {iterate.at.face, uv}, query);
+    if (next.residual < iterate.residual) iterate = next;
+}
+
+Rest solve_law(const Surface& surface, const SurfaceParameter& start, const SpecularQuery& query) {
+    const FaceDomain domain = surface.domain(start.face);
+    Rest rest{evaluate(surface, {start.face, clamped(domain, start.uv)}, query)};
+    Iterate& now = rest.iterate;
+    double damping = kFirstDamping;
+    while (now.regular && std::isfinite(now.residual)) {
+        const Mat2 jacobian = metric_jacobian(surface, now, query);
+        const double scale = 0.5 * squared_size(jacobian);
+        rest.solved = now.residual <= rounding_floor(now, jacobian, query);
+        if (rest.solved) {
+            polish(surface, query, jacobian, now);
+            break;
+        }
+
+        // Shorten the step until the residual falls.
+        bool fell = false;
+        for (; rest.iterations < kMaxIterations && damping < kLastDamping && !fell; ++rest.iterations) {
+            const Vec2 step = damped_step(now, jacobian, damping * scale);
+            const Iterate next = evaluate(surface, {now.at.face, clamped(domain, now.at.uv + step)}, query);
+            fell = next.regular && next.residual < now.residual;
+            if (fell) now = next;
+            damping = fell ? 0.03 * damping : std::max(16 * damping, kFirstDamping);
+        }
+        if (fell) continue;
+
+        const Vec2 left = damped_step(now, jacobian, 0);
+        rest.solved = left != Vec2(0) && largest(left) <= kParameterTolerance;
+        break;
+    }
+    return rest;
+}
+
+/// Whether eye and point lie on the sides of the surface that the event asks for.
+bool sides_fit(const SpecularQuery& query, const Path& path, const Vec3& normal) {
+    const double sides = dot(path.from_eye, normal) * dot(path.from_point, normal);
+    return query.event == SpecularEvent::kReflect ? sides > 0 : sides < 0;
+}
+
+}  // namespace
+
+std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
+                                                   const SpecularQuery& query) {
+    TRILENS_CHECK(query.eye_index > 0 && query.point_index > 0, "a refractive index is positive");
+    const Rest rest = solve_law(surface, start, query);
+    if (!rest.solved) return std::nullopt;
+
+    const SurfacePoint& point = rest.iterate.point;
+    const Path path = path_over(query, point.position);
+    const Vec3 screen = screen_from_world(query.camera, point.position);
+    if (!sides_fit(query, path, point.normal) || !(screen.z > 0)) return std::nullopt;
+
+    SpecularPoint image;
+    image.at = rest.iterate.at;
+    image.position = point.position;
+    image.pixel = Vec2(screen.x, screen.y) / screen.z;
+    image.distance = path.point_distance;
+    image.t = path.point_distance / length(incident_direction(query.camera, point.position));
+    image.front = dot(path.from_eye, point.normal) < 0;
+    image.residual = rest.iterate.residual;
+    image.iterations = rest.iterations;
+    return image;
+}
+
+}  // namespace trilens

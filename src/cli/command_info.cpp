@@ -1,0 +1,63 @@
+// trilens info: the build, its libraries and the machine, for bug reports.
+#include <CLI/CLI.hpp>
+
+#include "base/parallel.h"
+#include "cli/command.h"
+#include "cli/version.h"
+#include "image/image_io.h"
+#include "surfaces/surfaces.h"
+#include "truth/tracer.h"
+
+namespace trilens {
+namespace {
+
+std::vector<std::string> instruction_sets() {
+    std::vector<std::string> sets;
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("sse4.2")) sets.push_back("sse4.2");
+    if (__builtin_cpu_supports("avx")) sets.push_back("avx");
+    if (__builtin_cpu_supports("avx2")) sets.push_back("avx2");
+    if (__builtin_cpu_supports("fma")) sets.push_back("fma");
+    if (__builtin_cpu_supports("avx512f")) sets.push_back("avx512f");
+#endif
+    return sets;
+}
+
+std::string compiler() {
+#if defined(__clang__)
+    return "clang " __clang_version__;
+#else
+    return "gcc " __VERSION__;
+#endif
+}
+
+std::string join(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
+Answer info() {
+    const std::vector<std::string> libraries{tracer_library_version(), surface_library_version(), image_library_version()};
+    Answer answer;
+    answer.fields["version"] = kVersion;
+    answer.fields["compiler"] = compiler();
+    answer.fields["build_type"] = TRILENS_BUILD_TYPE;
+    answer.fields["libraries"] = libraries;
+    answer.fields["instruction_sets"] = instruction_sets();
+    answer.fields["threads"] = thread_count();
+    answer.text = std::string("trilens ") + kVersion + "\ncompiler   " + compiler() + ", " + TRILENS_BUILD_TYPE;
+    for (const std::string& library : libraries) answer.text += "\nlibrary    " + library;
+    answer.text += "\nprocessor  " + join(instruction_sets()) + "\nthreads    " + std::to_string(thread_count());
+    return answer;
+}
+
+}  // namespace
+
+void register_info(const CommandRegistry& registry) {
+    CLI::App* command = registry.app->add_subcommand("info", "the build, its libraries and the machine");
+    registry.add(command, "info", [](Console&) { return info(); });
+}
+
+}  // namespace trilens

@@ -1,0 +1,134 @@
+// trilens project: where world points appear.
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+
+#include "cli/command.h"
+#include "cli/project.h"
+#include "cli/scene_options.h"
+
+namespace trilens {
+namespace {
+
+struct ProjectOptions {
+    SceneOptions scene;
+    std::vector<std::string> point;
+    std::string points;
+    std::string refine = "exact";
+    bool no_visibility = false;
+};
+
+/// Three finite numbers separated by commas and blanks, or none.
+std::optional<Vec3> parse_point(const std::string& text) {
+    Vec3 point(0);
+    const char *at = text.data(), *end = at + text.size();
+    const auto skip_blanks = [&] {
+        while (at < end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
+    };
+    for (int k = 0; k < 3; ++k) {
+        skip_blanks();
+        if (at < end && *at == '+') ++at;
+        const auto [next, error] = std::from_chars(at, end, point[k]);
+        if (error != std::errc() || !std::isfinite(point[k])) return std::nullopt;
+        at = next;
+        skip_blanks();
+        if (k < 2 && (at >= end || *at++ != ',')) return std::nullopt;
+    }
+    return at == end ? std::optional(point) : std::nullopt;
+}
+
+std::vector<Vec3> read_points(const std::string& file) {
+    std::ifstream in(file);
+    if (!in) throw InputError(file, "", "cannot be read");
+    std::vector<Vec3> points;
+    std::string line;
+    for (std::size_t number = 1; std::getline(in, line); ++number) {
+        if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
+        const std::optional<Vec3> point = parse_point(line);
+        if (point) points.push_back(*point);
+        else if (number > 1 || line.find_first_of("0123456789") == 0)
+            throw InputError(file, "line " + std::to_string(number), "needs x,y,z, not \"" + line + "\"");
+    }
+    if (in.bad()) throw InputError(file, "", "cannot be read");
+    if (points.empty()) throw InputError(file, "", "holds no points");
+    return points;
+}
+
+std::vector<Vec3> wanted_points(const ProjectOptions& options) {
+    if (options.point.empty() == options.points.empty()) throw UsageError("project needs either --point X,Y,Z or --points FILE.csv");
+    if (!options.points.empty()) return read_points(options.points);
+    std::vector<Vec3> points;
+    for (const std::string& text : options.point) {
+        const std::optional<Vec3> point = parse_point(text);
+        if (!point) throw UsageError("--point needs X,Y,Z, not \"" + text + "\"");
+        points.push_back(*point);
+    }
+    return points;
+}
+
+const char* path_name(LightPath path) {
+    return path == LightPath::kDirect ? "direct" : path == LightPath::kReflect ? "reflect" : "refract";
+}
+
+Json id_json(Id id) { return id == kNone ? Json(nullptr) : Json(id); }
+
+Json image_json(const World& world, const WorldImage& image) {
+    return {{"x", json_number(image.pixel.x)}, {"y", json_number(image.pixel.y)}, {"t", json_number(image.t)},
+            {"optic", image.optic == kNone ? Json(nullptr) : Json(world.names[world.optics[image.optic].mesh])},
+            {"facet", id_json(image.facet)}, {"inside", image.inside}, {"path", path_name(image.path)},
+            {"length", json_number(image.length)}, {"visible", image.visible}, {"refined", image.refined}};
+}
+
+std::string text_line(const World& world, std::size_t point, const WorldImage& image) {
+    char line[256];
+    std::snprintf(line, sizeof line, "%zu,%.9f,%.9f,%.12g,%s,%s,%s,%d,%d,%d\n", point, image.pixel.x, image.pixel.y, image.t,
+                  path_name(image.path), image.optic == kNone ? "" : world.names[world.optics[image.optic].mesh].c_str(),
+                  image.facet == kNone ? "" : std::to_string(image.facet).c_str(), image.inside, image.visible, image.refined);
+    return line;
+}
+
+Answer run(const ProjectOptions& options, Console& console) {
+    const std::vector<Vec3> points = wanted_points(options);
+    const std::unique_ptr<World> world = load_world(options.scene, console);
+    ProjectRequest request;
+    request.camera = chosen_camera(options.scene, world->scene);
+    request.refine = options.refine == "exact";
+    request.visibility = !options.no_visibility;
+    const auto start = std::chrono::steady_clock::now();
+    const auto images = project_points(*world, request, points);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+    Answer answer;
+    answer.fields["seconds"] = seconds;
+    answer.fields["points"] = Json::array();
+    answer.text = "point,x,y,t,path,optic,facet,inside,visible,refined\n";
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        Json entry{{"point", {points[p].x, points[p].y, points[p].z}}, {"images", Json::array()}};
+        for (const WorldImage& image : images[p]) {
+            entry["images"].push_back(image_json(*world, image));
+            answer.text += text_line(*world, p, image);
+        }
+        answer.fields["points"].push_back(std::move(entry));
+    }
+    console.note(std::to_string(points.size()) + " points in " + std::to_string(seconds) + " s");
+    return answer;
+}
+
+}  // namespace
+
+void register_project(const CommandRegistry& registry) {
+    auto options = std::make_shared<ProjectOptions>();
+    CLI::App* command = registry.app->add_subcommand("project", "where world points appear: all images, in pixels");
+    add_scene_options(*command, options->scene);
+    command->add_option("--point", options->point, "a world point; may be given several times")->type_name("X,Y,Z")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->expected(1)->take_all();
+    command->add_option("--points", options->points, "a file of x,y,z per line; a header line is allowed")->type_name("FILE.csv");
+    command->add_option("--refine", options->refine, "exact: on the exact surface by Newton; none: as the facets have it")
+        ->check(CLI::IsMember({"exact", "none"}));
+    command->add_flag("--no-visibility", options->no_visibility, "do not ask what hides the images");
+    registry.add(command, "project", [options](Console& console) { return run(*options, console); });
+}
+
+}  // namespace trilens

@@ -1,0 +1,114 @@
+// trilens render and trilens trace: one picture.
+#include <CLI/CLI.hpp>
+
+#include "cli/command.h"
+#include "cli/explain.h"
+#include "cli/picture.h"
+#include "cli/scene_options.h"
+#include "cli/check_output.h"
+#include "image/image_io.h"
+
+namespace trilens {
+namespace {
+
+struct RenderOptions {
+    SceneOptions scene;
+    std::string output;
+    std::string pixel;  // "x,y"
+    std::string engine = "exact";
+    std::string surface = "limit";
+};
+
+enum class OutputKind { kExr, kPng };
+
+OutputKind output_kind(const std::string& file) {
+    const auto ends_with = [&](const std::string& end) {
+        return file.size() > end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
+    };
+    if (ends_with(".exr")) return OutputKind::kExr;
+    if (ends_with(".png")) return OutputKind::kPng;
+    throw UsageError("the output \"" + file + "\" must end in .exr (all layers) or .png (the beauty, sRGB)");
+}
+
+void write_picture(const std::string& file, const Image& image) {
+    if (output_kind(file) == OutputKind::kExr) return write_exr(file, image);
+    const std::vector<float>*r = &image.find("R")->floats(), *g = &image.find("G")->floats(), *b = &image.find("B")->floats();
+    std::vector<float> rgb(3 * image.pixels());
+    for (std::size_t p = 0; p < image.pixels(); ++p) {
+        rgb[3 * p] = (*r)[p];
+        rgb[3 * p + 1] = (*g)[p];
+        rgb[3 * p + 2] = (*b)[p];
+    }
+    write_png(file, image.data_width, image.data_height, rgb);
+}
+
+Json picture_fields(const World& world, const Picture& picture) {
+    Json fields;
+    fields["width"] = picture.image.width;
+    fields["height"] = picture.image.height;
+    fields["triangles"] = world.objects.size();
+    std::size_t facets = 0;
+    for (const Optic& optic : world.optics) facets += optic.facet_count();
+    fields["facets"] = facets;
+    fields["optic_pixels"] = picture.statistics.optic_pixels;
+    fields["pixels_without_ray"] = picture.statistics.pixels_without_ray;
+    fields["prepare_seconds"] = picture.prepare_seconds;
+    fields["draw_seconds"] = picture.draw_seconds;
+    return fields;
+}
+
+Answer run(const RenderOptions& options, const std::string& command, Engine engine, Console& console) {
+    if (options.pixel.empty() && options.output.empty()) throw UsageError(command + " needs -o OUT.exr, or --pixel x,y");
+    if (!options.output.empty()) {
+        output_kind(options.output);
+        check_writable(options.output);
+    }
+    const std::unique_ptr<World> world = load_world(options.scene, console);
+    PictureRequest request;
+    request.camera = chosen_camera(options.scene, world->scene);
+    request.engine = engine;
+    request.command = command;
+    Answer answer;
+    if (!options.pixel.empty()) {
+        const std::vector<int> pixel = parse_integers(options.pixel, ',', 2, "--pixel");
+        answer.fields = explain_pixel(*world, request, pixel[0], pixel[1], console);
+        answer.text = answer.fields.dump(2);
+        if (options.output.empty()) return answer;
+    }
+    request.layers = layer_request(options.scene, world->scene.film);
+    const Picture picture = draw_picture(*world, request, console);
+    write_picture(options.output, picture.image);
+    answer.fields["output"] = options.output;
+    answer.fields["engine"] = engine_name(engine);
+    answer.fields.update(picture_fields(*world, picture));
+    if (answer.text.empty()) answer.text = options.output;
+    return answer;
+}
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+    add_scene_options(command, options.scene);
+    add_window_options(command, options.scene);
+    command.add_option("-o,--output", options.output, "image to write: .exr (all layers) or .png (beauty)")->type_name("OUT");
+    command.add_option("--pixel", options.pixel, "explain one pixel as JSON")->type_name("x,y");
+}
+
+}  // namespace
+
+void register_render(const CommandRegistry& registry) {
+    auto render = std::make_shared<RenderOptions>();
+    CLI::App* command = registry.app->add_subcommand("render", "draw the scene by projection");
+    add_render_options(*command, *render);
+    command->add_option("--engine", render->engine, "exact, or auto (which is exact for now)")->check(CLI::IsMember({"exact", "auto"}));
+    registry.add(command, "render", [render](Console& console) { return run(*render, "render", Engine::kExact, console); });
+
+    auto trace = std::make_shared<RenderOptions>();
+    command = registry.app->add_subcommand("trace", "draw the same scene by ray tracing: the truth");
+    add_render_options(*command, *trace);
+    command->add_option("--surface", trace->surface, "facets: the rays of render's facets; limit: the exact surface")
+        ->check(CLI::IsMember({"facets", "limit"}));
+    registry.add(command, "trace", [trace](Console& console) {
+        return run(*trace, "trace", trace->surface == "facets" ? Engine::kFacetsTruth : Engine::kLimitTruth, console);
+    });
+}
+
+}  // namespace trilens

@@ -1,0 +1,126 @@
+// trilens scene: validate, info, schema, example.
+#include <CLI/CLI.hpp>
+
+#include "cli/command.h"
+#include "cli/scene_options.h"
+#include "scene/examples.h"
+#include "scene/info.h"
+#include "scene/load.h"
+#include "scene/nearest.h"
+
+namespace trilens {
+namespace {
+
+Json box_json(const Bounds& bounds) {
+    if (bounds.empty) return nullptr;
+    return {{"low", {bounds.low.x, bounds.low.y, bounds.low.z}}, {"high", {bounds.high.x, bounds.high.y, bounds.high.z}}};
+}
+
+Json mesh_json(const MeshInfo& mesh) {
+    Json json{{"name", mesh.name}, {"role", mesh.role == Role::kOptic ? "optic" : "object"}, {"shape", mesh.shape},
+              {"material", mesh.material}, {"points", mesh.points}, {"faces", mesh.faces}};
+    if (mesh.role == Role::kObject) {
+        json["triangles"] = mesh.triangles;
+    } else {
+        json["resolution"] = mesh.resolution;
+        json["creases"] = mesh.creases;
+        json["corners"] = mesh.corners;
+        json["holes"] = mesh.holes;
+    }
+    json["bounds"] = box_json(mesh.bounds);
+    return json;
+}
+
+std::string mesh_line(const MeshInfo& mesh) {
+    std::string line = mesh.role == Role::kOptic ? "  optic   " : "  object  ";
+    line += mesh.name + ": " + mesh.shape;
+    if (mesh.faces > 0) line += ", " + std::to_string(mesh.faces) + " faces";
+    line += mesh.role == Role::kOptic ? ", resolution " + std::to_string(mesh.resolution) : ", " + std::to_string(mesh.triangles) + " triangles";
+    return line + ", material " + mesh.material + "\n";
+}
+
+Answer info(const SceneOptions& options, Console& console) {
+    const Scene scene = load_scene_with(options, console);
+    const SceneInfo found = make_scene_info(scene);
+    Answer answer;
+    Json& fields = answer.fields;
+    fields["film"] = {{"width", scene.film.width}, {"height", scene.film.height}, {"spp", scene.film.spp}};
+    fields["cameras"] = found.cameras;
+    fields["objects"] = found.objects;
+    fields["optics"] = found.optics;
+    fields["triangles"] = found.triangles;
+    fields["lights"] = found.lights;
+    fields["bounds"] = box_json(found.bounds);
+    fields["materials"] = Json::array();
+    for (const MaterialInfo& material : found.materials)
+        fields["materials"].push_back({{"name", material.name}, {"kind", material.kind}, {"texture", material.has_texture}, {"meshes", material.meshes}});
+    fields["meshes"] = Json::array();
+
+    answer.text = "film " + std::to_string(scene.film.width) + " x " + std::to_string(scene.film.height) + ", " +
+                  std::to_string(scene.film.spp) + " x " + std::to_string(scene.film.spp) + " samples\ncameras:";
+    for (const std::string& camera : found.cameras) answer.text += " " + camera;
+    answer.text += "\n" + std::to_string(found.optics) + " optics, " + std::to_string(found.objects) + " objects, " +
+                   std::to_string(found.triangles) + " triangles, " + std::to_string(found.lights) + " lights\n";
+    for (const MeshInfo& mesh : found.meshes) {
+        fields["meshes"].push_back(mesh_json(mesh));
+        answer.text += mesh_line(mesh);
+    }
+    return answer;
+}
+
+/// Loading is not all: a cage may have no limit surface.
+Answer validate(const SceneOptions& options, Console& console) {
+    const std::unique_ptr<World> world = load_world(options, console);
+    Answer answer;
+    answer.text = options.scene + ": valid, " + std::to_string(world->optics.size()) + " optics, " +
+                  std::to_string(world->objects.size()) + " triangles";
+    answer.fields["optics"] = world->optics.size();
+    answer.fields["triangles"] = world->objects.size();
+    return answer;
+}
+
+Answer example(const std::string& name) {
+    Answer answer;
+    answer.fields["examples"] = Json::array();
+    std::vector<std::string> names;
+    for (const SceneExample& one : scene_examples()) {
+        names.push_back(one.name);
+        if (name == one.name) {
+            answer.text = one.json;
+            answer.fields = {{"name", one.name}, {"scene", Json::parse(one.json, nullptr, true, true)}};
+            return answer;
+        }
+        answer.text += std::string(one.name) + ": " + one.summary + "\n";
+        answer.fields["examples"].push_back({{"name", one.name}, {"summary", one.summary}});
+    }
+    if (!name.empty() && name != "list") throw UsageError("there is no example \"" + name + "\"" + suggestion(name, names));
+    return answer;
+}
+
+}  // namespace
+
+void register_scene(const CommandRegistry& registry) {
+    CLI::App* scene = registry.app->add_subcommand("scene", "look at scene files");
+    scene->require_subcommand(1);
+    auto options = std::make_shared<SceneOptions>();
+
+    CLI::App* command = scene->add_subcommand("validate", "check a scene file and everything it names");
+    add_scene_options(*command, *options);
+    registry.add(command, "scene", [options](Console& console) { return validate(*options, console); });
+
+    command = scene->add_subcommand("info", "what a scene holds");
+    add_scene_options(*command, *options);
+    registry.add(command, "scene", [options](Console& console) { return info(*options, console); });
+
+    command = scene->add_subcommand("schema", "print the JSON Schema of scene files");
+    registry.add(command, "scene", [](Console&) {
+        return Answer{scene_schema(), {{"schema_document", Json::parse(scene_schema())}}, ExitCode::kDone};
+    });
+
+    auto name = std::make_shared<std::string>();
+    command = scene->add_subcommand("example", "print an example scene, or the list of them");
+    command->add_option("NAME", *name, "which example; without it, the list");
+    registry.add(command, "scene", [name](Console&) { return example(*name); });
+}
+
+}  // namespace trilens

@@ -1,0 +1,211 @@
+// trilens sweep: error against resolution, for one scene or for a gallery of scenes.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "cli/command.h"
+#include "cli/gallery.h"
+#include "cli/picture.h"
+#include "cli/scene_options.h"
+#include "cli/version.h"
+#include "image/image_io.h"
+#include "surfaces/surfaces.h"
+#include "sweep/sweep.h"
+#include "truth/tracer.h"
+
+namespace trilens {
+namespace {
+
+struct SweepOptions {
+    SceneOptions scene;
+    std::vector<std::string> scenes;
+    std::string over = "resolution=1..16:x2";
+    std::string output;
+    std::string truth = "limit";
+    std::string shard = "0/1";
+};
+
+std::string scene_name(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+/// The command line that makes a sweep again, without the parts that are defaults.
+std::string command_line(const SweepOptions& options, const std::string& scene) {
+    std::string line = "trilens sweep run " + scene + " --over " + options.over;
+    if (options.truth != "limit") line += " --truth " + options.truth;
+    if (!options.scene.camera.empty()) line += " --camera " + options.scene.camera;
+    if (!options.scene.size.empty()) line += " --size " + options.scene.size;
+    if (options.scene.spp > 0) line += " --spp " + std::to_string(options.scene.spp);
+    for (const std::string& set : options.scene.set) line += " --set '" + set + "'";
+    return line + " -o " + options.output;
+}
+
+SweepSubject subject_of(const SweepOptions& options, const World& world, std::size_t camera, const std::string& scene) {
+    SweepSubject subject;
+    subject.title = scene_name(scene);
+    subject.scene = scene;
+    subject.camera = world.scene.cameras[camera].name;
+    subject.method = engine_name(Engine::kExact);
+    subject.truth = options.truth;
+    subject.spp = world.scene.film.spp;
+    for (const Optic& optic : world.optics) {
+        subject.optics.push_back({optic.mesh, world.names[optic.mesh]});
+        subject.mesh += (subject.mesh.empty() ? "" : " ") + world.names[optic.mesh];
+    }
+    subject.commands = {command_line(options, scene)};
+    subject.versions = {{"trilens", kVersion}, {"ray tracing", tracer_library_version()},
+                        {"surfaces", surface_library_version()}, {"images", image_library_version()}};
+    return subject;
+}
+
+/// Everything one sweep needs, alive while it runs.
+struct SweepJob {
+    std::unique_ptr<World> world;
+    SweepParams params;
+    SweepCallbacks callbacks;
+};
+
+void set_resolution(World& world, int n) {
+    for (Optic& optic : world.optics) optic.resolution = n;
+}
+
+Image draw(const SweepJob& job, Engine engine, std::size_t camera, Console& console) {
+    const Film& film = job.world->scene.film;
+    PictureRequest request;
+    request.camera = camera;
+    request.engine = engine;
+    request.layers = {0, 0, film.width, film.height, {}};
+    request.command = engine == Engine::kExact ? "render" : "trace";
+    return draw_picture(*job.world, request, console).image;
+}
+
+std::unique_ptr<SweepJob> make_job(const SweepOptions& options, const std::string& scene, const std::string& folder, Console& console) {
+    auto job = std::make_unique<SweepJob>();
+    SceneOptions scene_options = options.scene;
+    scene_options.scene = scene;
+    job->world = load_world(scene_options, console);
+    if (job->world->optics.empty()) throw InputError(scene, "/meshes", "a sweep needs an optic whose resolution it can vary");
+    const std::size_t camera = chosen_camera(scene_options, job->world->scene);
+
+    job->params.folder = folder;
+    job->params.axis = parse_axis(options.over);
+    job->params.shard = parse_shard(options.shard, [](const char* name) { return std::getenv(name); });
+    job->params.subject = subject_of(options, *job->world, camera, scene);
+    job->params.progress = console.progress("sweep of " + job->params.subject.title);
+    SweepJob* raw = job.get();
+    const Engine truth = options.truth == "facets" ? Engine::kFacetsTruth : Engine::kLimitTruth;
+    job->callbacks.render = [raw, camera, &console](int n) {
+        set_resolution(*raw->world, n);
+        return draw(*raw, Engine::kExact, camera, console);
+    };
+    job->callbacks.trace = [raw, camera, truth, &console] { return draw(*raw, truth, camera, console); };
+    job->callbacks.job_key = std::string(kVersion) + "\n" + job->params.subject.camera + "\n" + job->world->scene.resolved;
+    job->callbacks.truth_key = job->callbacks.job_key + "\n" + options.truth;
+    return job;
+}
+
+Json optional_json(const std::optional<double>& value) { return value ? json_number(*value) : Json(nullptr); }
+
+Json fit_json(const SweepFit& fit) {
+    return {{"optic", fit.optic}, {"layer", fit.layer}, {"metric", fit.metric}, {"order", optional_json(fit.order)},
+            {"constant", optional_json(fit.constant)}, {"r2", optional_json(fit.r2)},
+            {"n_for_1px", optional_json(fit.n_for_1px)}, {"n_for_half_px", optional_json(fit.n_for_half_px)}};
+}
+
+Json summary_json(const SweepSummary& summary) {
+    Json json{{"folder", summary.folder}, {"runs", summary.runs.size()}, {"done", summary.count(RunState::kDone)},
+              {"failed", summary.count(RunState::kFailed)}, {"missing", summary.count(RunState::kMissing)}, {"fits", Json::array()}};
+    for (const SweepFit& fit : summary.fits) json["fits"].push_back(fit_json(fit));
+    return json;
+}
+
+std::string fit_line(const SweepFit& fit) {
+    char text[300];
+    std::snprintf(text, sizeof text, "  %-8s %-14s %-16s order %5.2f  constant %8.4g  r2 %.4f", fit.layer.c_str(), fit.optic.c_str(),
+                  fit.metric.c_str(), *fit.order, fit.constant.value_or(0), fit.r2.value_or(0));
+    std::string line = text;
+    if (fit.n_for_1px) line += "  1 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_1px)));
+    if (fit.n_for_half_px) line += "  0.5 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_half_px)));
+    return line + "\n";
+}
+
+std::string summary_text(const SweepSummary& summary) {
+    std::string text = summary.manifest.subject.title + ": " + std::to_string(summary.count(RunState::kDone)) + " of " +
+                       std::to_string(summary.runs.size()) + " runs done\n";
+    for (const SweepFit& fit : summary.fits)
+        if (fit.order && fit.metric.rfind("disp_mean", 0) == 0) text += fit_line(fit);
+    return text;
+}
+
+Answer answer_of(const std::vector<SweepSummary>& summaries, const std::string& report) {
+    Answer answer;
+    answer.fields["report"] = report;
+    answer.fields["sweeps"] = Json::array();
+    for (const SweepSummary& summary : summaries) {
+        answer.text += summary_text(summary);
+        answer.fields["sweeps"].push_back(summary_json(summary));
+        if (summary.count(RunState::kFailed) > 0) answer.code = ExitCode::kSomeJobsFailed;
+    }
+    if (summaries.size() == 1) answer.fields["fits"] = answer.fields["sweeps"][0]["fits"];
+    answer.text += report + "\n";
+    return answer;
+}
+
+/// The folder of one of the scenes: the sweep's own, or one below it where there are several.
+std::string folder_of(const SweepOptions& options, const std::string& scene) {
+    return options.scenes.size() == 1 ? options.output : options.output + "/" + scene_name(scene);
+}
+
+Answer run(const SweepOptions& options, Console& console) {
+    std::vector<SweepSummary> summaries;
+    for (const std::string& scene : options.scenes) {
+        const std::unique_ptr<SweepJob> job = make_job(options, scene, folder_of(options, scene), console);
+        summaries.push_back(run_sweep(job->params, job->callbacks));
+    }
+    std::string report = options.output + "/report.html";
+    if (summaries.size() > 1) write_sweep_gallery(options.output, summaries);
+    return answer_of(summaries, report);
+}
+
+Answer plan(const SweepOptions& options, Console& console) {
+    Answer answer;
+    for (const std::string& scene : options.scenes) {
+        const std::unique_ptr<SweepJob> job = make_job(options, scene, folder_of(options, scene), console);
+        plan_sweep(job->params, job->callbacks);
+        answer.text += job->params.folder + "/plan.jsonl\n";
+        answer.fields["plans"].push_back(job->params.folder + "/plan.jsonl");
+    }
+    return answer;
+}
+
+void add_sweep_options(CLI::App& command, SweepOptions& options) {
+    command.add_option("SCENES", options.scenes, "scene files; several make a gallery")->required();
+    command.add_option("-o,--output", options.output, "folder for the results")->required()->type_name("DIR");
+    command.add_option("--over", options.over, "what is varied: resolution=1,2,4 or resolution=1..64:x2")->type_name("AXIS");
+    command.add_option("--truth", options.truth, "limit or facets")->check(CLI::IsMember({"limit", "facets"}));
+    command.add_option("--shard", options.shard, "do part i of n only: i/n, or auto in a job array")->type_name("i/n");
+    add_scene_overrides(command, options.scene);
+}
+
+}  // namespace
+
+void register_sweep(const CommandRegistry& registry) {
+    CLI::App* sweep = registry.app->add_subcommand("sweep", "render, trace and compare over resolutions");
+    sweep->require_subcommand(1);
+    auto options = std::make_shared<SweepOptions>();
+    CLI::App* command = sweep->add_subcommand("run", "do what is not done yet, then report");
+    add_sweep_options(*command, *options);
+    registry.add(command, "sweep", [options](Console& console) { return run(*options, console); });
+
+    command = sweep->add_subcommand("plan", "write the plan, run nothing");
+    add_sweep_options(*command, *options);
+    registry.add(command, "sweep", [options](Console& console) { return plan(*options, console); });
+
+    auto folder = std::make_shared<std::string>();
+    command = sweep->add_subcommand("status", "what is done of a sweep");
+    command->add_option("DIR", *folder, "the sweep's folder")->required();
+    registry.add(command, "sweep", [folder](Console&) { return answer_of({load_sweep(*folder)}, *folder); });
+
+    command = sweep->add_subcommand("report", "sum up again: tables, fits, plots, page");
+    command->add_option("DIR", *folder, "the sweep's folder")->required();
+    registry.add(command, "sweep", [folder](Console&) { return answer_of({report_sweep(*folder)}, *folder + "/report.html"); });
+}
+
+}  // namespace trilens

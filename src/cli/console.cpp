@@ -1,0 +1,119 @@
+#include "cli/console.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+namespace trilens {
+namespace {
+
+std::atomic<bool> g_stop{false};
+std::atomic<int> g_signal{0};
+
+void handle_signal(int signal) {
+    if (g_stop.exchange(true)) _exit(128 + signal);
+    g_signal = signal;
+}
+
+/// A terminal that can redraw a line; build servers and files cannot.
+bool is_live_terminal() {
+    const char* term = std::getenv("TERM");
+    return isatty(STDERR_FILENO) && !std::getenv("CI") && term && std::string(term) != "dumb";
+}
+
+}  // namespace
+
+void install_signal_handlers() {
+    std::signal(SIGINT, handle_signal);
+    std::signal(SIGTERM, handle_signal);
+}
+
+const std::atomic<bool>& stop_requested() { return g_stop; }
+
+int stop_exit_code() { return g_signal == SIGTERM ? 143 : 130; }
+
+Console::Console(const ConsoleOptions& options) : options_(options) {
+    if (options_.progress == ProgressStyle::kAuto)
+        options_.progress = is_live_terminal() ? ProgressStyle::kBar : ProgressStyle::kPlain;
+    if (options_.quiet) options_.progress = ProgressStyle::kSilent;
+    colour_ = options_.colour == ColourStyle::kAlways ||
+              (options_.colour == ColourStyle::kAuto && is_live_terminal() && !std::getenv("NO_COLOR"));
+}
+
+Console::~Console() { clear_bar(); }
+
+void Console::clear_bar() {
+    if (!bar_shown_) return;
+    std::fputs("\r\033[K", stderr);
+    bar_shown_ = false;
+}
+
+void Console::write_line(const char* label, const char* colour, const std::string& message) {
+    clear_bar();
+    if (colour_) {
+        std::fprintf(stderr, "trilens: \033[%sm%s\033[0m%s\n", colour, label, message.c_str());
+    } else {
+        std::fprintf(stderr, "trilens: %s%s\n", label, message.c_str());
+    }
+}
+
+void Console::warn(const std::string& message) {
+    const std::lock_guard lock(mutex_);
+    if (std::find(warnings_.begin(), warnings_.end(), message) != warnings_.end()) return;
+    warnings_.push_back(message);
+    if (!options_.quiet) write_line("warning: ", "33", message);
+}
+
+void Console::error(const std::string& message) {
+    const std::lock_guard lock(mutex_);
+    write_line("error: ", "31", message);
+}
+
+void Console::note(const std::string& message) {
+    const std::lock_guard lock(mutex_);
+    if (options_.verbose > 0 && !options_.quiet) write_line("", "0", message);
+}
+
+Progress Console::progress(const std::string& job) {
+    last_done_ = -1;
+    started_ = last_time_ = std::chrono::steady_clock::now();
+    Progress progress;
+    progress.cancel = &stop_requested();
+    if (options_.progress != ProgressStyle::kSilent)
+        progress.report = [this, job](double done) { draw(job, done); };
+    return progress;
+}
+
+void Console::draw(const std::string& job, double done) {
+    const std::lock_guard lock(mutex_);
+    const auto now = std::chrono::steady_clock::now();
+    const double elapsed = std::chrono::duration<double>(now - started_).count();
+    const double silent = std::chrono::duration<double>(now - last_time_).count();
+    const double eta = done > 0 ? elapsed * (1 - done) / done : 0;
+    const double step = options_.progress == ProgressStyle::kBar ? 0.01 : 0.1;
+
+    // Short jobs finish without a word: a plain or JSON line is worth it after two seconds.
+    if (options_.progress != ProgressStyle::kBar && elapsed < 2) return;
+    if (done < 1 && done - last_done_ < step && silent < 30) return;
+    last_done_ = done;
+    last_time_ = now;
+    const int percent = static_cast<int>(100 * done);
+    if (options_.progress == ProgressStyle::kJson) {
+        std::fprintf(stderr, "{\"t\":%.1f,\"job\":\"%s\",\"done\":%.3f,\"eta_s\":%.0f}\n", elapsed, job.c_str(), done, eta);
+    } else if (options_.progress == ProgressStyle::kPlain) {
+        std::fprintf(stderr, "trilens: %s %d %%, %.0f s left\n", job.c_str(), percent, eta);
+    } else if (done >= 1) {
+        clear_bar();
+    } else {
+        const int filled = static_cast<int>(30 * done);
+        std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %% %.0f s left", job.c_str(), std::string(static_cast<std::size_t>(filled), '#').c_str(),
+                     std::string(static_cast<std::size_t>(30 - filled), ' ').c_str(), percent, eta);
+        std::fflush(stderr);
+        bar_shown_ = true;
+    }
+}
+
+}  // namespace trilens

@@ -1,0 +1,184 @@
+#include "cli/facet_viewer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "projector/projector.h"
+#include "reflect/reflection.h"
+#include "refract/refraction.h"
+#include "surfaces/surfaces.h"
+#include "truth/tracer.h"
+
+namespace trilens {
+namespace {
+
+/// More facets than this over all optics are refused: they would not fit in memory.
+constexpr std::size_t kMaxFacets = 100'000'000;
+
+/// One optic as facets: its grid, and the RayMeshes that look away from it.
+struct OpticMeshes {
+    SurfaceGrid grid;
+    RayMesh reflect, refract;  // facets parallel to grid.facets; empty where the optic has no such path
+    Id first_triangle = 0;     // of its facets in the visible scene
+};
+
+/// The engine's work on one RayMesh: nearest triangles of the objects, or of all that the camera can see.
+using DrawMesh = std::function<void(const RayMesh&, const FacetSamples&, const SampleGrid&, std::span<Hit>)>;
+
+/// Both facet engines: the exact projector and Embree on the same rays.
+struct FacetViewer {
+    const World* world = nullptr;
+    CameraRays camera;
+    std::vector<OpticMeshes> optics;
+    DrawMesh draw_visible, draw_objects;
+
+    void operator()(const SampleGrid& grid, std::span<SampleView> views) const;
+
+  private:
+    void view_optic(std::size_t index, const SampleGrid& grid, std::span<const Hit> first, std::span<SampleView> views) const;
+    void view_path(const RayMesh& mesh, const SampleGrid& grid, std::span<const Id> owner, std::span<SampleView> views,
+                   SecondaryView SampleView::*path) const;
+    void describe_optic(std::size_t index, const Hit& hit, SampleView& view) const;
+};
+
+Vec3 corner_weights(const Hit& hit) {
+    return {1 - hit.barycentric.x - hit.barycentric.y, hit.barycentric.x, hit.barycentric.y};
+}
+
+void FacetViewer::describe_optic(std::size_t index, const Hit& hit, SampleView& view) const {
+    const OpticMeshes& meshes = optics[index];
+    view.optic = static_cast<Id>(index);
+    view.facet = hit.triangle - meshes.first_triangle;
+    const Vec3 weights = corner_weights(hit);
+    const IdTriple& corner = meshes.grid.facets[view.facet];
+    Vec3 normal(0);
+    for (int k = 0; k < 3; ++k) {
+        const std::size_t c = static_cast<std::size_t>(k);
+        normal += weights[k] * meshes.grid.corner_normal[corner[c]];
+        view.uv += weights[k] * meshes.grid.facet_uv[view.facet][c];
+    }
+
+    // The side is the facet's own; the angle that of the interpolated normal, grazing where it turned away.
+    const auto point = [&](std::size_t c) { return meshes.grid.points[meshes.grid.corner_point[corner[c]]]; };
+    const Vec3 chord = cross(point(1) - point(0), point(2) - point(0));
+    view.front = dot(chord, view.ray.direction) <= 0;
+    const Vec3 unit = normalize_or_zero(normal) * (view.front ? 1.0 : -1.0);
+    view.cos_incident = std::clamp(-dot(normalize_or_zero(view.ray.direction), unit), 0.0, 1.0);
+}
+
+void FacetViewer::view_path(const RayMesh& mesh, const SampleGrid& grid, std::span<const Id> owner,
+                            std::span<SampleView> views, SecondaryView SampleView::*path) const {
+    if (mesh.facets.empty()) return;
+    const FacetSamples owned = group_by_facet(owner, mesh.facets.size());
+    std::vector<Hit> hits(grid.size());
+    draw_objects(mesh, owned, grid, hits);
+    parallel_for(mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
+        for (std::size_t f = from; f < to; ++f) {
+            if (!mesh.has_rays(f) || owned.of(f).empty()) continue;
+            const FacetWeights weights = facet_weights(mesh, f);
+            if (weights.edge_on) continue;
+            for (const Id s : owned.of(f)) {
+                const Vec2 at = grid.position(s);
+                const Vec3 e = weights.unnormalised(at.x, at.y);
+                SecondaryView& secondary = views[s].*path;
+                secondary.has_ray = true;
+                secondary.ray = interpolated_ray(mesh, f, e / (e.x + e.y + e.z));
+                secondary.hit = hits[s];
+            }
+        }
+    });
+}
+
+void FacetViewer::view_optic(std::size_t index, const SampleGrid& grid, std::span<const Hit> first,
+                             std::span<SampleView> views) const {
+    const OpticMeshes& meshes = optics[index];
+    const Id begin = meshes.first_triangle, end = begin + static_cast<Id>(meshes.grid.facets.size());
+    std::vector<Id> owner(grid.size(), kNone);
+    bool any = false;
+    for (std::size_t s = 0; s < grid.size(); ++s) {
+        const Id triangle = first[s].triangle;
+        if (triangle == kNone || triangle < begin || triangle >= end) continue;
+        owner[s] = triangle - begin;
+        views[s].hit = {};
+        describe_optic(index, first[s], views[s]);
+        any = true;
+    }
+    if (!any) return;
+    view_path(meshes.reflect, grid, owner, views, &SampleView::reflect);
+    view_path(meshes.refract, grid, owner, views, &SampleView::refract);
+}
+
+void FacetViewer::operator()(const SampleGrid& grid, std::span<SampleView> views) const {
+    const FacetSamples owned = rasterize_facets(camera.mesh, grid);
+    std::vector<Hit> first(grid.size());
+    draw_visible(camera.mesh, owned, grid, first);
+    set_camera_rays(camera.mesh, owned, grid, views);
+    for (std::size_t s = 0; s < grid.size(); ++s) {
+        views[s].hit = first[s];
+        if (first[s].seen()) views[s].depth = first[s].t;
+    }
+    for (std::size_t i = 0; i < optics.size(); ++i) view_optic(i, grid, first, views);
+}
+
+void append_facets(TriangleScene& visible, const SurfaceGrid& grid, Id object) {
+    const Id first = static_cast<Id>(visible.points.size());
+    visible.points.insert(visible.points.end(), grid.points.begin(), grid.points.end());
+    for (std::size_t f = 0; f < grid.facets.size(); ++f) {
+        IdTriple corner;
+        for (std::size_t k = 0; k < 3; ++k) corner[k] = first + grid.corner_point[grid.facets[f][k]];
+        visible.triangles.push_back(corner);
+        visible.object.push_back(object);
+        visible.primitive.push_back(static_cast<Id>(f));
+    }
+}
+
+void check_facet_count(const World& world) {
+    std::size_t total = 0;
+    for (const Optic& optic : world.optics) total += optic.facet_count();
+    if (total > kMaxFacets)
+        throw InputError(world.scene.file, "/meshes", "the optics have " + std::to_string(total) + " facets, more than " +
+                                                          std::to_string(kMaxFacets) + "; lower their resolution");
+}
+
+}  // namespace
+
+Viewer make_facet_viewer(const World& world, CameraRays camera, Engine engine, const Warn& warn) {
+    check_facet_count(world);
+    FacetViewer viewer;
+    viewer.world = &world;
+    TriangleScene visible = world.objects;
+    for (const Optic& optic : world.optics) {
+        OpticMeshes meshes;
+        meshes.grid = make_grid(*optic.surface, optic.resolution);
+        meshes.first_triangle = static_cast<Id>(visible.size());
+        append_facets(visible, meshes.grid, optic.mesh);
+        if (world.scene.render.reflect) meshes.reflect = make_reflection(meshes.grid, *camera.linear);
+        if (world.scene.render.refract && !optic.mirror)
+            meshes.refract = make_refraction(meshes.grid, *camera.linear, world.scene.materials[optic.material].ior);
+        const auto bad = std::count(meshes.grid.corner_normal.begin(), meshes.grid.corner_normal.end(), Vec3(0));
+        if (bad > 0)
+            warn(world.names[optic.mesh] + ": " + std::to_string(bad) + " grid corners have no normal; the facets there show nothing");
+        viewer.optics.push_back(std::move(meshes));
+    }
+    viewer.camera = std::move(camera);
+    if (engine == Engine::kExact) {
+        auto all = std::make_shared<PreparedScene>(visible), objects = std::make_shared<PreparedScene>(world.objects);
+        viewer.draw_visible = [all](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                                    std::span<Hit> hits) { draw(*all, mesh, owned, grid, hits); };
+        viewer.draw_objects = [objects](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                                        std::span<Hit> hits) { draw(*objects, mesh, owned, grid, hits); };
+    } else {
+        auto all = std::make_shared<Tracer>(visible), objects = std::make_shared<Tracer>(world.objects);
+        viewer.draw_visible = [all](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                                    std::span<Hit> hits) { trace_facets(*all, mesh, owned, grid, hits); };
+        viewer.draw_objects = [objects](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                                        std::span<Hit> hits) { trace_facets(*objects, mesh, owned, grid, hits); };
+    }
+    return [shared = std::make_shared<FacetViewer>(std::move(viewer))](const SampleGrid& grid, std::span<SampleView> views) {
+        (*shared)(grid, views);
+    };
+}
+
+}  // namespace trilens

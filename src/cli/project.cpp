@@ -1,0 +1,236 @@
+#include "cli/project.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+
+#include "base/parallel.h"
+#include "camera/specular_point.h"
+#include "cli/camera_rays.h"
+#include "reflect/reflection.h"
+#include "refract/refraction.h"
+#include "surfaces/surfaces.h"
+#include "trilinear/mesh_point_images.h"
+#include "truth/tracer.h"
+
+namespace trilens {
+namespace {
+
+/// A segment is free if what it meets lies within this share of its ends.
+constexpr double kFreeShare = 1e-6;
+
+/// A refined image further than this from its facet's image belongs to another one, in multiples of the facet's
+/// size on the screen.
+constexpr double kRefineReach = 2;
+
+struct PathMesh {
+    LightPath path;
+    Id optic = kNone;
+    RayMesh mesh;
+    std::unique_ptr<MeshPointImages> images;
+};
+
+/// What projecting points through one optic needs besides the RayMeshes.
+struct OpticGrid {
+    SurfaceGrid grid;
+    std::unique_ptr<Tracer> own;          // the optic's facets alone
+    std::vector<std::vector<Id>> around;  // facets at each grid corner's point
+};
+
+class PointProjector {
+  public:
+    PointProjector(const World& world, const ProjectRequest& request);
+    std::vector<WorldImage> images(const Vec3& point) const;
+
+  private:
+    void add_optic(Id index);
+    void add_direct(const Vec3& point, std::vector<WorldImage>& images) const;
+    void add_through(const PathMesh& path, const Vec3& point, std::vector<WorldImage>& images) const;
+    bool own_optic_hides(const PathMesh& path, const MeshPointImage& image) const;
+    std::optional<SpecularPoint> refined(const PathMesh& path, const MeshPointImage& image, const Vec3& point) const;
+    bool on_film(const Vec2& pixel) const;
+    bool is_free(const Vec3& from, const Vec3& to) const;
+
+    const World& world_;
+    ProjectRequest request_;
+    CameraRays camera_;
+    std::vector<OpticGrid> grids_;
+    std::vector<PathMesh> paths_;
+    std::unique_ptr<Tracer> objects_;
+};
+
+std::unique_ptr<Tracer> facet_tracer(const SurfaceGrid& grid) {
+    TriangleScene scene;
+    scene.points = grid.points;
+    for (std::size_t f = 0; f < grid.facets.size(); ++f) {
+        IdTriple corner;
+        for (std::size_t k = 0; k < 3; ++k) corner[k] = grid.corner_point[grid.facets[f][k]];
+        scene.triangles.push_back(corner);
+        scene.object.push_back(0);
+        scene.primitive.push_back(static_cast<Id>(f));
+    }
+    return std::make_unique<Tracer>(scene);
+}
+
+PointProjector::PointProjector(const World& world, const ProjectRequest& request)
+    : world_(world), request_(request), camera_(make_camera_rays(world.scene, request.camera)),
+      objects_(std::make_unique<Tracer>(world.objects)) {
+    if (!camera_.linear) {
+        paths_.push_back({LightPath::kDirect, kNone, camera_.mesh, std::make_unique<MeshPointImages>(camera_.mesh)});
+        return;
+    }
+    for (Id i = 0; i < world.optics.size(); ++i) add_optic(i);
+}
+
+void PointProjector::add_optic(Id index) {
+    const Optic& optic = world_.optics[index];
+    OpticGrid optic_grid{make_grid(*optic.surface, optic.resolution), nullptr, {}};
+    optic_grid.own = facet_tracer(optic_grid.grid);
+    const SurfaceGrid& grid = optic_grid.grid;
+    optic_grid.around.resize(grid.points.size());
+    for (Id f = 0; f < grid.facets.size(); ++f)
+        for (const Id corner : grid.facets[f]) optic_grid.around[grid.corner_point[corner]].push_back(f);
+
+    const auto add = [&](LightPath path, RayMesh mesh) {
+        auto images = std::make_unique<MeshPointImages>(mesh);
+        paths_.push_back({path, index, std::move(mesh), std::move(images)});
+    };
+    if (world_.scene.render.reflect) add(LightPath::kReflect, make_reflection(grid, *camera_.linear));
+    if (world_.scene.render.refract && !optic.mirror)
+        add(LightPath::kRefract, make_refraction(grid, *camera_.linear, world_.scene.materials[optic.material].ior));
+    grids_.push_back(std::move(optic_grid));
+}
+
+bool PointProjector::on_film(const Vec2& pixel) const {
+    return pixel.x >= 0 && pixel.y >= 0 && pixel.x <= world_.scene.film.width && pixel.y <= world_.scene.film.height;
+}
+
+bool PointProjector::is_free(const Vec3& from, const Vec3& to) const {
+    return !objects_->occluded({from, to - from}, kFreeShare, 1 - kFreeShare);
+}
+
+void PointProjector::add_direct(const Vec3& point, std::vector<WorldImage>& images) const {
+    const Vec3 screen = screen_from_world(*camera_.linear, point);
+    if (!(screen.z > 0)) return;
+    WorldImage image;
+    image.pixel = Vec2(screen.x, screen.y) / screen.z;
+    image.t = screen.z;
+    image.length = length(point - camera_.linear->eye);
+    image.inside = on_film(image.pixel);
+    image.refined = true;
+    if (request_.visibility) {
+        image.visible = image.inside && is_free(camera_.linear->eye, point);
+        for (const OpticGrid& optic : grids_)
+            if (optic.own->occluded({camera_.linear->eye, point - camera_.linear->eye}, kFreeShare, 1 - kFreeShare)) image.visible = false;
+    }
+    images.push_back(image);
+}
+
+bool PointProjector::own_optic_hides(const PathMesh& path, const MeshPointImage& image) const {
+    const OpticGrid& optic = grids_[path.optic];
+    const IdTriple& corner = optic.grid.facets[image.facet];
+    Vec3 on_facet(0);
+    for (int k = 0; k < 3; ++k)
+        on_facet += image.weights[k] * optic.grid.points[optic.grid.corner_point[corner[static_cast<std::size_t>(k)]]];
+    const Ray sight{camera_.linear->eye, on_facet - camera_.linear->eye};
+    return optic.own->occluded(sight, kFreeShare, 1 - kFreeShare);
+}
+
+std::optional<SpecularPoint> PointProjector::refined(const PathMesh& path, const MeshPointImage& image, const Vec3& point) const {
+    const Optic& optic = world_.optics[path.optic];
+    const SurfaceGrid& grid = grids_[path.optic].grid;
+    const IdTriple& corner = grid.facets[image.facet];
+    Vec2 uv(0), low(std::numeric_limits<double>::max()), high(-low);
+    for (int k = 0; k < 3; ++k) {
+        const std::size_t c = static_cast<std::size_t>(k);
+        uv += image.weights[k] * grid.facet_uv[image.facet][c];
+        const Vec3 s = path.mesh.screen[path.mesh.facets[image.facet][c]];
+        low = glm::min(low, Vec2(s.x, s.y) / s.z);
+        high = glm::max(high, Vec2(s.x, s.y) / s.z);
+    }
+
+    SpecularQuery query;
+    query.camera = *camera_.linear;
+    query.point = point;
+    query.event = path.path == LightPath::kReflect ? SpecularEvent::kReflect : SpecularEvent::kRefract;
+    query.own_normals = world_.scene.meshes[optic.mesh].normals.type == NormalOverride::Type::kSmooth;
+    if (query.event == SpecularEvent::kRefract) {
+        const auto at = [&](std::size_t c) { return grid.points[grid.corner_point[corner[c]]]; };
+        const bool front = dot(cross(at(1) - at(0), at(2) - at(0)), incident_direction(query.camera, at(0))) <= 0;
+        const double ior = world_.scene.materials[optic.material].ior;
+        query.eye_index = front ? 1 : ior;
+        query.point_index = front ? ior : 1;
+    }
+
+    // From the facet's own image; else from the facets around it, since the exact image may lie on a neighbouring face.
+    const double reach = kRefineReach * std::max(length(high - low), 1.0);
+    const auto near = [&](const std::optional<SpecularPoint>& found) { return found && length(found->pixel - image.screen) <= reach; };
+    std::optional<SpecularPoint> best = refine_specular_point(*optic.surface, {grid.facet_face[image.facet], uv}, query);
+    if (near(best)) return best;
+    best.reset();
+    for (const Id c : corner) {
+        for (const Id f : grids_[path.optic].around[grid.corner_point[c]]) {
+            const auto& uvs = grid.facet_uv[f];
+            const auto found = refine_specular_point(*optic.surface, {grid.facet_face[f], (uvs[0] + uvs[1] + uvs[2]) / 3.0}, query);
+            if (near(found) && (!best || length(found->pixel - image.screen) < length(best->pixel - image.screen))) best = found;
+        }
+    }
+    return best;
+}
+
+void PointProjector::add_through(const PathMesh& path, const Vec3& point, std::vector<WorldImage>& images) const {
+    std::vector<SpecularPoint> taken;
+    for (const MeshPointImage& found : path.images->images(point)) {
+        WorldImage image;
+        image.path = path.path;
+        image.optic = path.optic;
+        image.facet = found.facet;
+        image.pixel = found.screen;
+        image.t = found.t;
+        const Ray ray = interpolated_ray(path.mesh, found.facet, found.weights);
+        image.length = found.t * length(ray.direction);
+        Vec3 from = ray.origin;
+        if (path.optic != kNone) {
+            if (own_optic_hides(path, found)) continue;
+            if (const auto exact = request_.refine ? refined(path, found, point) : std::nullopt) {
+                // Two facets may lead to one exact image.
+                taken.push_back(*exact);
+                if (distinct_images(taken).size() < taken.size()) {
+                    taken.pop_back();
+                    continue;
+                }
+                image.pixel = exact->pixel;
+                image.t = exact->t;
+                image.length = exact->distance;
+                image.refined = true;
+                from = exact->position;
+            }
+        }
+        image.inside = on_film(image.pixel);
+        if (request_.visibility)
+            image.visible = image.inside && is_free(from, point) && (path.optic == kNone || is_free(camera_.linear->eye, from));
+        images.push_back(image);
+    }
+}
+
+std::vector<WorldImage> PointProjector::images(const Vec3& point) const {
+    std::vector<WorldImage> images;
+    if (camera_.linear && world_.scene.render.direct) add_direct(point, images);
+    for (const PathMesh& path : paths_) add_through(path, point, images);
+    return images;
+}
+
+}  // namespace
+
+std::vector<std::vector<WorldImage>> project_points(const World& world, const ProjectRequest& request, std::span<const Vec3> points) {
+    const PointProjector projector(world, request);
+    std::vector<std::vector<WorldImage>> result(points.size());
+    parallel_for(points.size(), 64, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) result[i] = projector.images(points[i]);
+    });
+    return result;
+}
+
+}  // namespace trilens

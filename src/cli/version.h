@@ -1,0 +1,8 @@
+// The program's version.
+#pragma once
+
+namespace trilens {
+
+inline constexpr const char* kVersion = TRILENS_VERSION;
+
+}  // namespace trilens

@@ -1,0 +1,76 @@
+#include "image/file_bytes.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "base/error.h"
+
+namespace trilens {
+namespace {
+
+std::string reason(int error_number) {
+    return std::generic_category().message(error_number);
+}
+
+/// A name that no other process or thread of this machine uses at the same time.
+std::string temporary_name(const std::string& file) {
+    static std::atomic<unsigned> counter{0};
+    return file + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".part";
+}
+
+/// Zero, or the errno of the first step that failed. fclose is a step: a full disk may speak only there.
+int write_all(const std::string& file, std::span<const unsigned char> bytes) {
+    std::FILE* out = std::fopen(file.c_str(), "wbx");
+    if (!out) return errno;
+    int failed = 0;
+    if (std::fwrite(bytes.data(), 1, bytes.size(), out) != bytes.size()) failed = errno ? errno : EIO;
+    if (std::fclose(out) != 0 && !failed) failed = errno;
+    return failed;
+}
+
+}  // namespace
+
+void replace_file(const std::string& file, std::span<const unsigned char> bytes) {
+    const std::string temporary = temporary_name(file);
+    const int write_error = write_all(temporary, bytes);
+    std::error_code rename_error;
+    if (!write_error) {
+        std::filesystem::rename(temporary, file, rename_error);
+        if (!rename_error) return;
+    }
+
+    std::error_code nothing_more_to_do;
+    std::filesystem::remove(temporary, nothing_more_to_do);
+    throw OutputError(file,
+                      "cannot be written: " + (write_error ? reason(write_error) : rename_error.message()));
+}
+
+std::size_t readable_size(const std::string& file) {
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error)) throw InputError(file, "", "is a folder, not a file");
+    std::FILE* in = std::fopen(file.c_str(), "rb");
+    if (!in) throw InputError(file, "", "cannot be read: " + reason(errno));
+    std::fclose(in);
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (error) throw InputError(file, "", "cannot be read: " + error.message());
+    return static_cast<std::size_t>(size);
+}
+
+std::string one_line(const std::string& report) {
+    std::string line;
+    for (const char c : report) {
+        if (c != '\n' && c != '\r')
+            line += c;
+        else if (!line.empty() && line.back() != ' ')
+            line += ' ';
+    }
+    while (!line.empty() && (line.back() == ' ' || line.back() == '.')) line.pop_back();
+    return line.empty() ? "unknown reason" : line;
+}
+
+}  // namespace trilens

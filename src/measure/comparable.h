@@ -1,0 +1,30 @@
+// When two images may be compared at all, and which of their pixels are.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/ids.h"
+#include "image/image.h"
+
+namespace trilens {
+
+/// Throws InputError that names the first difference where the images differ in size, data window, channel
+/// names or channel types (float, id). The order of channels is free.
+void require_comparable(const Image& reference, const Image& test);
+
+/// Per pixel of the data window 1 where it takes part, else 0. Without `mask_object` all do; with it those
+/// whose optic.object is that id in either image, so that a silhouette that moved is not masked away. Throws
+/// InputError where there is no optic.object, or no such pixel: a comparison of nothing must not pass.
+std::vector<std::uint8_t> compared_pixels(const Image& reference, const Image& test,
+                                          std::optional<Id> mask_object);
+
+/// The channel `name`, which must hold floats (ids). Throws InputError.
+const std::vector<float>& float_channel(const Image& image, const std::string& name);
+const std::vector<Id>& id_channel(const Image& image, const std::string& name);
+
+/// "R" of layer "" is the beauty's R, of layer "reflect" it is "reflect.R".
+std::string channel_of(const std::string& layer, const std::string& name);
+
+}  // namespace trilens

@@ -1,0 +1,223 @@
+#include "measure/compare.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "base/error.h"
+#include "measure/comparable.h"
+#include "measure/ssim.h"
+#include "measure/statistics.h"
+
+namespace trilens {
+namespace {
+
+using Mask = std::vector<std::uint8_t>;
+
+constexpr double kRelativeEpsilon = 0.01;
+
+struct ChannelPair {
+    std::string name;
+    const std::vector<float>&reference, &test;
+
+    double difference(std::size_t i) const {
+        return std::abs(static_cast<double>(test[i]) - static_cast<double>(reference[i]));
+    }
+    double mean_magnitude(std::size_t i) const {
+        return 0.5 * (std::abs(static_cast<double>(test[i])) + std::abs(static_cast<double>(reference[i])));
+    }
+};
+
+ChannelPair pair_of(const Image& reference, const Image& test, const std::string& name) {
+    return {name, float_channel(reference, name), float_channel(test, name)};
+}
+
+/// R, G, B, then the beauty's A where it has one.
+std::vector<ChannelPair> channels_of(const Image& reference, const Image& test, const std::string& layer) {
+    std::vector<ChannelPair> channels;
+    for (const char* name : {"R", "G", "B"})
+        channels.push_back(pair_of(reference, test, channel_of(layer, name)));
+    if (layer.empty() && reference.find("A")) channels.push_back(pair_of(reference, test, "A"));
+    return channels;
+}
+
+// --- Values that are not finite
+// ----------------------------------------------------------------------------------
+
+constexpr std::uint8_t kNan = 1, kInf = 2;
+
+/// Per pixel which kinds of non-finite value any float channel holds.
+std::vector<std::uint8_t> non_finite(const Image& image) {
+    std::vector<std::uint8_t> kinds(image.pixels(), 0);
+    for (const Channel& channel : image.channels) {
+        if (channel.is_id()) continue;
+        const std::vector<float>& values = channel.floats();
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (std::isnan(values[i]))
+                kinds[i] |= kNan;
+            else if (std::isinf(values[i]))
+                kinds[i] |= kInf;
+        }
+    }
+    return kinds;
+}
+
+std::size_t count_kind(const std::vector<std::uint8_t>& kinds, const Mask& mask, std::uint8_t kind) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < kinds.size(); ++i) count += mask[i] && (kinds[i] & kind);
+    return count;
+}
+
+// --- Metrics
+// -----------------------------------------------------------------------------------------------------
+
+double luminance(double r, double g, double b) {
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
+
+double ssim_of(const Image& image, const std::vector<ChannelPair>& rgb, const Mask& mask) {
+    std::vector<double> reference(image.pixels()), test(image.pixels());
+    for (std::size_t i = 0; i < image.pixels(); ++i) {
+        reference[i] = luminance(rgb[0].reference[i], rgb[1].reference[i], rgb[2].reference[i]);
+        test[i] = luminance(rgb[0].test[i], rgb[1].test[i], rgb[2].test[i]);
+    }
+    return structural_similarity({image.data_width, image.data_height, reference},
+                                 {image.data_width, image.data_height, test}, mask);
+}
+
+Metrics metrics_of(const Image& image, const std::vector<ChannelPair>& channels, const Mask& mask) {
+    double sum = 0, squares = 0, relative = 0;
+    std::vector<double> largest;
+    for (std::size_t i = 0; i < image.pixels(); ++i) {
+        if (!mask[i]) continue;
+        std::array<double, 3> d{};
+        for (std::size_t c = 0; c < 3; ++c) d[c] = channels[c].difference(i);
+        if (!std::isfinite(d[0] + d[1] + d[2])) continue;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double r = channels[c].reference[i];
+            sum += d[c];
+            squares += d[c] * d[c];
+            relative += d[c] * d[c] / (r * r + kRelativeEpsilon);
+        }
+        largest.push_back(std::max({d[0], d[1], d[2]}));
+    }
+
+    Metrics metrics;
+    const double count = std::max(1.0, 3 * static_cast<double>(largest.size()));
+    metrics.mae = sum / count;
+    metrics.rmse = std::sqrt(squares / count);
+    metrics.relmse = relative / count;
+    metrics.psnr_db =
+        squares > 0 ? -10 * std::log10(squares / count) : std::numeric_limits<double>::infinity();
+    metrics.ssim = ssim_of(image, channels, mask);
+    const Summary summary = summarize(std::move(largest));
+    metrics.max = summary.max;
+    metrics.p50 = summary.p50;
+    metrics.p95 = summary.p95;
+    metrics.p99 = summary.p99;
+    return metrics;
+}
+
+// --- Verdict
+// -----------------------------------------------------------------------------------------------------
+
+/// What one pixel's channels say together.
+struct PixelFlags {
+    bool fail = false, warn = false, hard = false;
+};
+
+PixelFlags flags_of(const std::vector<ChannelPair>& channels, std::size_t i, const CompareOptions& options) {
+    PixelFlags flags;
+    for (const ChannelPair& channel : channels) {
+        const double d = channel.difference(i);
+        if (d > options.hardfail) flags.hard = true;
+        if (d > options.fail && d > options.failrelative * channel.mean_magnitude(i)) flags.fail = true;
+        if (d > options.warn) flags.warn = true;
+    }
+    flags.fail = flags.fail || flags.hard;
+    return flags;
+}
+
+void count_flags(const Image& image, const std::vector<ChannelPair>& channels, const Mask& mask,
+                 const CompareOptions& options, Comparison& result) {
+    double largest = 0;
+    for (std::size_t i = 0; i < image.pixels(); ++i) {
+        if (!mask[i]) {
+            ++result.counts.masked;
+            continue;
+        }
+        ++result.counts.pixels;
+        const PixelFlags flags = flags_of(channels, i, options);
+        result.counts.fail += flags.fail;
+        result.counts.warn += flags.warn;
+        result.counts.hard += flags.hard;
+        for (const ChannelPair& channel : channels) {
+            const double d = channel.difference(i);
+            if (!std::isfinite(d) || d <= largest) continue;
+            largest = d;
+            const int column = static_cast<int>(i % static_cast<std::size_t>(image.data_width));
+            const int row = static_cast<int>(i / static_cast<std::size_t>(image.data_width));
+            result.worst = {image.x0 + column, image.y0 + row, channel.name, channel.reference[i],
+                            channel.test[i]};
+        }
+    }
+}
+
+template <typename... Parts>
+std::string sentence(const Parts&... parts) {
+    std::ostringstream text;
+    (text << ... << parts);
+    return text.str();
+}
+
+double percent_of(std::size_t part, std::size_t whole) {
+    return whole > 0 ? 100 * static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+void judge(const CompareOptions& options, Comparison& result) {
+    const CompareCounts& n = result.counts;
+    const auto complain = [&](std::size_t count, const char* what, const char* where) {
+        if (count > 0) result.reasons.push_back(sentence(count, " pixels hold ", what, " in the ", where));
+    };
+    complain(n.nan_ref, "NaN", "reference");
+    complain(n.nan_test, "NaN", "test");
+    complain(n.inf_ref, "an infinity", "reference");
+    complain(n.inf_test, "an infinity", "test");
+    if (n.hard > options.allowfailures)
+        result.reasons.push_back(sentence(n.hard, " pixels differ by more than hardfail ", options.hardfail));
+    if (n.fail > options.allowfailures && percent_of(n.fail, n.pixels) > options.failpercent) {
+        result.reasons.push_back(sentence(n.fail, " pixels (", percent_of(n.fail, n.pixels),
+                                          " %) differ by more than fail ", options.fail, ", allowed are ",
+                                          options.failpercent, " %"));
+    }
+    if (!result.reasons.empty()) {
+        result.verdict = Verdict::kFailure;
+    } else if (percent_of(n.warn, n.pixels) > options.warnpercent) {
+        result.verdict = Verdict::kWarning;
+        result.reasons.push_back(sentence(n.warn, " pixels (", percent_of(n.warn, n.pixels),
+                                          " %) differ by more than warn ", options.warn));
+    }
+}
+
+}  // namespace
+
+Comparison compare(const Image& reference, const Image& test, const CompareOptions& options) {
+    require_comparable(reference, test);
+    const Mask mask = compared_pixels(reference, test, options.mask_object);
+    const std::vector<ChannelPair> channels = channels_of(reference, test, options.layer);
+
+    Comparison result;
+    count_flags(reference, channels, mask, options, result);
+    const std::vector<std::uint8_t> odd_reference = non_finite(reference), odd_test = non_finite(test);
+    result.counts.nan_ref = count_kind(odd_reference, mask, kNan);
+    result.counts.nan_test = count_kind(odd_test, mask, kNan);
+    result.counts.inf_ref = count_kind(odd_reference, mask, kInf);
+    result.counts.inf_test = count_kind(odd_test, mask, kInf);
+    result.metrics = metrics_of(reference, channels, mask);
+    judge(options, result);
+    return result;
+}
+
+}  // namespace trilens

@@ -1,0 +1,52 @@
+#include "measure/difference.h"
+
+#include <cmath>
+#include <utility>
+
+#include "base/check.h"
+#include "measure/comparable.h"
+
+namespace trilens {
+namespace {
+
+void add_channel(Image& image, const std::string& name, std::vector<float> values) {
+    image.channels.push_back({name, std::move(values)});
+}
+
+void add_shift(Image& image, const Displacement& displacement) {
+    TRILENS_CHECK(displacement.state.size() == image.pixels(), "a displacement of the same images");
+    std::vector<float> state;
+    for (const Shift shift : displacement.state)
+        state.push_back(shift == Shift::kFound ? 1.0f : shift == Shift::kLost ? -1.0f : 0.0f);
+    add_channel(image, "shift.X", displacement.shift_x);
+    add_channel(image, "shift.Y", displacement.shift_y);
+    add_channel(image, "shift.M", std::move(state));
+}
+
+}  // namespace
+
+Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options) {
+    require_comparable(reference, test);
+    const std::vector<std::uint8_t> mask = compared_pixels(reference, test, options.mask_object);
+
+    Image image = reference;
+    image.channels.clear();
+    image.metadata = {{"trilens:kind", "difference"}};
+    for (const char* name : {"R", "G", "B"}) {
+        const std::vector<float>& a = float_channel(reference, channel_of(options.layer, name));
+        const std::vector<float>& b = float_channel(test, channel_of(options.layer, name));
+        std::vector<float> signed_values(a.size(), 0), magnitudes(a.size(), 0);
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            if (!mask[i]) continue;
+            signed_values[i] = b[i] - a[i];
+            magnitudes[i] = std::abs(signed_values[i]);
+        }
+        add_channel(image, name, std::move(signed_values));
+        add_channel(image, std::string("abs.") + name, std::move(magnitudes));
+    }
+    add_channel(image, "mask.M", std::vector<float>(mask.begin(), mask.end()));
+    if (options.displacement) add_shift(image, *options.displacement);
+    return image;
+}
+
+}  // namespace trilens

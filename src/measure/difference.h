@@ -1,0 +1,28 @@
+// The difference of two images as an image to look at.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/ids.h"
+#include "image/image.h"
+#include "measure/displacement.h"
+
+namespace trilens {
+
+struct DifferenceOptions {
+    std::string layer;                           // "": the beauty; as in CompareOptions
+    std::optional<Id> mask_object;               // as in CompareOptions
+    const Displacement* displacement = nullptr;  // of the same two images; null: no shift channels
+};
+
+/// An image with the window of the two and float channels
+///   R G B        test - reference of the layer's R, G, B; zero outside the mask
+///   abs.R G B    its magnitude
+///   mask.M       1 where the pixel is compared, else 0
+///   shift.X Y    Displacement::shift_x, shift_y, in pixels        (only with a displacement)
+///   shift.M      1 found, -1 lost, 0 nothing seen                 (only with a displacement)
+/// Throws InputError where compare() would.
+Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options = {});
+
+}  // namespace trilens

@@ -1,0 +1,52 @@
+// Displacement: how many pixels a seen point lies from where the reference shows it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/ids.h"
+#include "image/image.h"
+
+namespace trilens {
+
+struct DisplacementOptions {
+    double radius = 64;             // pixels; what is seen farther away counts as lost
+    std::optional<Id> mask_object;  // as in CompareOptions
+};
+
+enum class Shift : std::uint8_t {
+    kNothing,  // the test sees nothing here, or the pixel is masked
+    kFound,
+    kLost,  // the reference does not show the point within the radius, or only on pieces too thin to have a
+            // slope
+};
+
+/// Statistics over the pixels that are kFound, all zero where there are none; and the vectors themselves, per
+/// pixel of the data window.
+struct Displacement {
+    double mean = 0, p50 = 0, p95 = 0, p99 = 0, max = 0;  // pixels
+    std::size_t pixels = 0;                               // found
+    std::size_t lost = 0;
+    std::vector<Shift> state;
+    std::vector<float> shift_x, shift_y;  // from the test's pixel to the place in the reference, x right and
+                                          // y down; zero where not found
+};
+
+/// For every pixel of `test` that sees, in `layer` ("reflect", "refract"), a point q of an object: the vector
+/// to the nearest place where `reference` shows q, on the same object and through the same optic (of two
+/// places within a quarter of a pixel either may be taken). Between the reference's pixel centres positions
+/// are interpolated: cubically where 4 x 4 neighbours are smooth, on q's own triangle where the images name
+/// triangles. Beyond a border of what the reference sees they are continued by up to one pixel, guided by the
+/// test where that sees on. Exactly zero where both images agree to the last bit. For small displacements of
+/// smooth fields the error is a small share of the displacement, plus the rounding of float positions over
+/// their change from pixel to pixel; where a pixel holds much of the scene (the rim of a sphere) and the
+/// displacement is not small, it may reach some pixels. Nothing where the images have no such layer with X,
+/// Y, Z. Throws InputError where they cannot be compared.
+std::optional<Displacement> measure_displacement(const Image& reference, const Image& test,
+                                                 const std::string& layer,
+                                                 const DisplacementOptions& options = {});
+
+}  // namespace trilens

@@ -1,0 +1,63 @@
+// Finds where a reference image shows a world point, nearest to a given pixel.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "base/vec.h"
+#include "measure/patch.h"
+#include "measure/seen_field.h"
+
+namespace trilens {
+
+/// What is looked for: a point of an object, through an optic, and from which pixel.
+struct SeenPoint {
+    Vec3 point{0};
+    Id object = kNone, optic = 0, primitive = 0;
+    int column = 0, row = 0;  // of the data window
+};
+
+/// A reference field with a pyramid of bounding boxes over its cells. Holds the fields' views, not their
+/// images.
+class ImageFinder {
+  public:
+    /// `test`: the field that points are looked for from, of the same size; it guides the reference beyond
+    /// its borders.
+    ImageFinder(SeenField reference, SeenField test);
+
+    const SeenField& test() const { return test_; }
+
+    /// The screen vector from the pixel to the nearest place, at most `radius` pixels away, where the
+    /// reference shows the point; nothing where there is none. Pixels of the point's own triangle are
+    /// preferred to others of its object.
+    std::optional<Vec2> find(const SeenPoint& wanted, double radius) const;
+
+  private:
+    struct Box {
+        std::array<float, 3> low, high;  // empty: low > high
+    };
+    struct Level {
+        int columns = 0, rows = 0;
+        std::vector<Box> boxes;
+    };
+    struct Best {
+        double score = 0;  // pixels; distance and penalties
+        std::optional<Vec2> shift;
+    };
+
+    Box cell_box(int column, int row) const;
+    void build_pyramid();
+    const Box& box_at(int level, int column, int row) const;
+    std::array<int, 2> likely_side(const SeenPoint& wanted) const;
+    void try_cell(const SeenPoint& wanted, int column, int row, Best& best) const;
+    bool try_pieces(const SeenPoint& wanted, int column, int row, bool same_primitive, Best& best) const;
+    void search(const SeenPoint& wanted, Best& best) const;
+
+    SeenField field_, test_;
+    std::vector<Level>
+        levels_;  // the first has one box per cell; cell (column, row) is entry (column + 1, row + 1)
+};
+
+}  // namespace trilens

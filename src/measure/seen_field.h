@@ -1,0 +1,68 @@
+// What an image sees through its optics as a field on the screen: a world point per pixel, in connected
+// pieces.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/ids.h"
+#include "base/vec.h"
+#include "image/image.h"
+
+namespace trilens {
+
+/// What belongs together: an object seen through an optic, or only one triangle of it.
+struct Piece {
+    Id object = kNone, optic = 0;
+    std::optional<Id> primitive;
+};
+
+/// Views into an image's channels (the image must outlive it) and which neighbours belong to one piece of
+/// surface.
+struct SeenField {
+    int width = 0, height = 0;                                         // the data window
+    const std::vector<float>*x = nullptr, *y = nullptr, *z = nullptr;  // seen points, world frame
+    const std::vector<Id>* object = nullptr;
+    const std::vector<Id>* optic = nullptr;      // null: the image does not say which optic a pixel shows
+    const std::vector<Id>* primitive = nullptr;  // null: the image does not say which triangle is seen
+    std::vector<std::uint8_t> links;             // per pixel kRight | kDown: linked with the neighbour there
+
+    static constexpr std::uint8_t kRight = 1, kDown = 2;
+
+    bool contains(int column, int row) const {
+        return column >= 0 && row >= 0 && column < width && row < height;
+    }
+    std::size_t index(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(column);
+    }
+    Vec3 point(std::size_t i) const { return {(*x)[i], (*y)[i], (*z)[i]}; }
+    Id optic_of(std::size_t i) const { return optic ? (*optic)[i] : 0; }
+    Id primitive_of(std::size_t i) const { return primitive ? (*primitive)[i] : 0; }
+
+    /// Whether the pixel sees an object at a finite place.
+    bool sees(std::size_t i) const;
+    /// Whether the pixel sees that piece at a finite place.
+    bool shows(std::size_t i, const Piece& piece) const {
+        return (*object)[i] == piece.object && optic_of(i) == piece.optic &&
+               (!piece.primitive || primitive_of(i) == *piece.primitive) && sees(i);
+    }
+};
+
+/// The field of `layer` ("reflect", "refract") without links; nothing where the image lacks `layer`.object or
+/// `layer`.X, Y, Z.
+std::optional<SeenField> make_seen_field(const Image& image, const std::string& layer);
+
+/// Fills `links`: two neighbours are linked where they see the same object in the same optic, and the step
+/// between their points is no jump: not more than kJump times the longer of the steps before and after it on
+/// its line (where there is one, and it is not zero).
+void link_neighbours(SeenField& field);
+
+/// Along a smooth field steps change slowly; even next to a horizon, where points recede like 1 / distance,
+/// the first two differ by less than 8 for three pixels in four. A longer step means that two pieces of the
+/// object meet by occlusion.
+inline constexpr double kJump = 8;
+
+}  // namespace trilens

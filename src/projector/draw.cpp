@@ -1,0 +1,137 @@
+// The exact engine: for each block of a facet's samples, the scene's tree is walked with the block's beam.
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "projector/beam.h"
+#include "projector/block_rays.h"
+#include "projector/draw_options.h"
+#include "projector/first_hits.h"
+#include "projector/prepared_scene.h"
+#include "projector/sample_blocks.h"
+#include "projector/triangle_in_block.h"
+
+namespace trilens {
+namespace {
+
+/// A node of the tree that waits, and the smallest t at which a ray of the block can meet it.
+struct Waiting {
+    Id node = 0;
+    double nearest = 0;
+};
+
+class BlockDrawing {
+  public:
+    BlockDrawing(const PreparedScene::Data& scene, const BlockRays& block)
+        : scene_(scene), block_(block), beam_(block), hits_(block.count) {}
+
+    void draw_all() {
+        const auto pass = [&] { draw_range(0, scene_.size()); };
+        pass();
+        if (hits_.order_mattered()) hits_.begin_second_pass(), pass();
+    }
+
+    void draw_culled(std::vector<Waiting>& stack) {
+        walk(stack);
+        if (hits_.order_mattered()) hits_.begin_second_pass(), walk(stack);
+    }
+
+    Hit hit(std::size_t s) const;
+
+  private:
+    void draw_range(std::size_t first, std::size_t last);
+    void push_if_reached(Id node, std::vector<Waiting>& stack) const;
+    void walk(std::vector<Waiting>& stack);
+
+    const PreparedScene::Data& scene_;
+    const BlockRays& block_;
+    Beam beam_;
+    FirstHits hits_;
+};
+
+void BlockDrawing::draw_range(std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+        const LocalTriangle triangle{{scene_.corner(0, i, block_.centre), scene_.corner(1, i, block_.centre),
+                                      scene_.corner(2, i, block_.centre)},
+                                     static_cast<Id>(i),
+                                     scene_.rank[i]};
+        draw_triangle(block_, triangle, hits_);
+    }
+}
+
+void BlockDrawing::push_if_reached(Id node, std::vector<Waiting>& stack) const {
+    const Box& world = scene_.bvh.nodes[node].box;
+    const Box box{world.lo - block_.centre, world.hi - block_.centre};
+    if (!beam_.misses(box)) stack.push_back({node, beam_.nearest(box)});
+}
+
+void BlockDrawing::walk(std::vector<Waiting>& stack) {
+    stack.clear();
+    if (!scene_.bvh.nodes.empty()) push_if_reached(0, stack);
+    while (!stack.empty()) {
+        const Waiting next = stack.back();
+        stack.pop_back();
+        if (next.nearest > hits_.farthest()) continue;
+        const BvhNode& node = scene_.bvh.nodes[next.node];
+        if (node.count > 0) {
+            draw_range(node.first, node.first + node.count);
+            continue;
+        }
+        // The nearer child is put on top, so that what it hides need not be looked at.
+        const std::size_t before = stack.size();
+        push_if_reached(node.first, stack);
+        push_if_reached(node.first + 1, stack);
+        if (stack.size() == before + 2 && stack[before].nearest < stack[before + 1].nearest) {
+            std::swap(stack[before], stack[before + 1]);
+        }
+    }
+}
+
+/// The hit in the terms of the scene's own triangle.
+Hit BlockDrawing::hit(std::size_t s) const {
+    const Id winner = hits_.winner(s);
+    if (winner == kNone) return {};
+    const LineHit& line_hit = hits_.hit(s);
+    const Vec2 b = line_hit.barycentric;
+    const std::array<double, 3> sorted{std::max(0.0, 1 - b.x - b.y), b.x, b.y};
+    std::array<double, 3> weight{};
+    for (std::size_t k = 0; k < 3; ++k) weight[scene_.was_corner[winner][k]] = sorted[k];
+    return {scene_.triangle[winner], line_hit.t, {weight[1], weight[2]}};
+}
+
+}  // namespace
+
+void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+          std::span<Hit> hits, const DrawOptions& options) {
+    TRILENS_CHECK(hits.size() == grid.size(), "one hit per sample of the grid");
+    TRILENS_CHECK(owned.first.size() == mesh.facets.size() + 1,
+                  "the samples must be grouped by the mesh's facets");
+    const std::vector<Strip> strips = make_strips(owned, grid);
+    parallel_for(strips.size(), 1, [&](std::size_t first, std::size_t last) {
+        std::vector<Waiting> stack;
+        for (std::size_t i = first; i < last; ++i) {
+            const Strip& strip = strips[i];
+            if (!mesh.has_rays(strip.facet)) continue;
+            const FacetOnScreen facet{mesh, strip.facet, facet_weights(mesh, strip.facet)};
+            if (facet.weights.edge_on) continue;
+            const std::span<const Id> samples(owned.sample.data() + strip.first, strip.last - strip.first);
+            for_each_block(samples, grid, [&](std::span<const Id> block) {
+                const BlockRays rays = make_block_rays(facet, grid, block);
+                BlockDrawing drawing(scene.data(), rays);
+                if (options.cull) drawing.draw_culled(stack);
+                if (!options.cull) drawing.draw_all();
+                for (std::size_t s = 0; s < block.size(); ++s) hits[block[s]] = drawing.hit(s);
+            });
+        }
+    });
+}
+
+void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+          std::span<Hit> hits) {
+    draw(scene, mesh, owned, grid, hits, DrawOptions{});
+}
+
+}  // namespace trilens

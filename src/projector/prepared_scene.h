@@ -1,0 +1,31 @@
+// A scene made ready for drawing: triangles in the order of a tree's leaves, as a structure of arrays.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "projector/bvh.h"
+#include "projector/projector.h"
+
+namespace trilens {
+
+/// One entry per triangle, in leaf order. A triangle's corners are sorted by their coordinates, so that
+/// triangles with the same corners give the same bits whatever their winding: coincident triangles tie
+/// exactly.
+struct PreparedScene::Data {
+    Bvh bvh;                                     // `order` is emptied: leaves index the arrays below
+    std::array<std::vector<double>, 3> x, y, z;  // by sorted corner
+    std::vector<std::array<std::uint8_t, 3>>
+        was_corner;            // which corner of the scene's triangle a sorted one is
+    std::vector<Id> triangle;  // index into the scene
+    std::vector<Id> rank;      // its place in the order of (object, primitive, index)
+
+    std::size_t size() const { return triangle.size(); }
+    /// The sorted corner k of triangle i, from `centre`.
+    Vec3 corner(std::size_t k, std::size_t i, const Vec3& centre) const {
+        return {x[k][i] - centre.x, y[k][i] - centre.y, z[k][i] - centre.z};
+    }
+};
+
+}  // namespace trilens

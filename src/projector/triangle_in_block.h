@@ -1,0 +1,22 @@
+// Which samples of a block see a triangle: the heart of the exact engine (mathematics, section 2).
+#pragma once
+
+#include <array>
+
+#include "projector/block_rays.h"
+#include "projector/first_hits.h"
+
+namespace trilens {
+
+/// A triangle as a block sees it.
+struct LocalTriangle {
+    std::array<Vec3, 3> corner{};  // from the block's centre
+    Id index = 0;                  // into PreparedScene::Data
+    Id rank = 0;
+};
+
+/// Offers the triangle to every sample whose ray's line meets it. Coverage is that of the corners as they
+/// round on the ray's own screen: exact signs, so that triangles around an edge or a corner leave no gap.
+void draw_triangle(const BlockRays& block, const LocalTriangle& triangle, FirstHits& hits);
+
+}  // namespace trilens

@@ -1,0 +1,106 @@
+#include "shade/shade.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/ray.h"
+#include "shade/texture.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kInversePi = 0.31830988618379067154;
+
+/// How far along its normal a shadow ray starts, as a share of the scene's size: above float rounding of a
+/// ray tracer that works near the scene's centre, below what can be seen.
+constexpr double kShadowOffset = 1e-5;
+
+struct Frame {
+    Vec3 position, geometric_normal, normal;  // unit, both on the viewer's side
+    Vec3 weights;
+};
+
+Frame frame_at(const ShadeScene& scene, const Hit& hit, const Vec3& toward_surface) {
+    const IdTriple& corner = scene.triangles->triangles[hit.triangle];
+    const Vec3 &a = scene.triangles->points[corner[0]], &b = scene.triangles->points[corner[1]],
+               &c = scene.triangles->points[corner[2]];
+    Frame frame;
+    frame.position = position(*scene.triangles, hit);
+    frame.weights = Vec3(1 - hit.barycentric.x - hit.barycentric.y, hit.barycentric.x, hit.barycentric.y);
+    frame.geometric_normal = normalize_or_zero(cross(b - a, c - a));
+    if (dot(frame.geometric_normal, toward_surface) > 0) frame.geometric_normal = -frame.geometric_normal;
+
+    // Smooth normals where the mesh has them, turned to the side that is looked at.
+    frame.normal = frame.geometric_normal;
+    if (hit.triangle < scene.normals.size()) {
+        const auto& n = scene.normals[hit.triangle];
+        const Vec3 smooth = normalize_or_zero(frame.weights.x * n[0] + frame.weights.y * n[1] + frame.weights.z * n[2]);
+        if (smooth != Vec3(0)) frame.normal = dot(smooth, frame.geometric_normal) < 0 ? -smooth : smooth;
+    }
+    return frame;
+}
+
+/// Irradiance over pi of one light, or the ambient radiance.
+Vec3 light_arriving(const ShadeScene& scene, const Light& light, const Frame& frame) {
+    if (light.type == Light::Type::kAmbient) return light.intensity * light.color;
+    Vec3 toward_light = -light.direction, target = frame.position + 2 * scene.size * toward_light;
+    double irradiance = light.intensity;
+    if (light.type == Light::Type::kPoint) {
+        const Vec3 step = light.position - frame.position;
+        const double distance2 = dot(step, step);
+        if (!(distance2 > 0)) return Vec3(0);
+        toward_light = normalize_or_zero(step);
+        target = light.position;
+        irradiance /= distance2;
+    }
+    const double cosine = dot(frame.normal, toward_light);
+    if (cosine <= 0) return Vec3(0);
+    if (light.shadows && scene.occluded) {
+        // Light that arrives from behind the flat triangle is in the triangle's own shadow.
+        if (dot(frame.geometric_normal, toward_light) <= 0) return Vec3(0);
+        if (scene.occluded(frame.position + kShadowOffset * scene.size * frame.geometric_normal, target)) return Vec3(0);
+    }
+    return kInversePi * irradiance * cosine * light.color;
+}
+
+}  // namespace
+
+Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
+    const Material& material = scene.materials[scene.material[hit.triangle]];
+    const Frame frame = frame_at(scene, hit, ray.direction);
+
+    Vec3 base = material.base_color_factor;
+    if (material.base_color_texture) {
+        Vec2 uv(0);
+        if (hit.triangle < scene.uvs.size())
+            for (int k = 0; k < 3; ++k) uv += frame.weights[k] * scene.uvs[hit.triangle][static_cast<std::size_t>(k)];
+        base *= lookup_repeat(*material.base_color_texture, uv);
+    }
+    if (material.unlit) return base;
+
+    Vec3 arriving(0);
+    for (const Light& light : scene.lights) arriving += light_arriving(scene, light, frame);
+    return base * arriving;
+}
+
+Vec3 shade_background(const Background& background, const Vec3& direction) {
+    if (!background.environment) return background.color;
+    const double c = background.rotate_cos, s = background.rotate_sin;
+    return lookup_latitude_longitude(*background.environment,
+                                     Vec3(c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z));
+}
+
+Vec3 metal_reflectance(const Vec3& f0, double cos_incident) {
+    const double grazing = 1 - std::clamp(cos_incident, 0.0, 1.0);
+    const double power = grazing * grazing * grazing * grazing * grazing;
+    return f0 + (Vec3(1) - f0) * power;
+}
+
+Vec3 volume_transmittance(const Material& material, double distance) {
+    if (!(material.attenuation_distance > 0)) return Vec3(1);
+    const double exponent = distance / material.attenuation_distance;
+    return {std::pow(material.attenuation_color.x, exponent), std::pow(material.attenuation_color.y, exponent),
+            std::pow(material.attenuation_color.z, exponent)};
+}
+
+}  // namespace trilens

@@ -1,0 +1,52 @@
+// What colour a seen point has: one function for projector and truth.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/appearance.h"
+#include "base/ray.h"
+#include "base/triangle_scene.h"
+
+namespace trilens {
+
+/// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle.
+struct ShadeScene {
+    const TriangleScene* triangles = nullptr;
+    std::vector<Id> material;                   // index into materials
+    std::vector<std::array<Vec2, 3>> uvs;       // v upward from the picture's bottom; unset triangles hold zeros
+    std::vector<std::array<Vec3, 3>> normals;   // unit per corner; all zero: the triangle is flat
+    std::vector<Material> materials;
+    std::vector<Light> lights;
+    Background background;
+    double size = 1;  // diagonal of the scene's bounding box, the unit of shadow offsets
+
+    /// Whether the open segment from `from` to `to` (world) meets anything that casts a shadow; only asked for lights
+    /// with shadows.
+    std::function<bool(const Vec3& from, const Vec3& to)> occluded;
+};
+
+/// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided and
+/// diffuse (radiance = base colour times irradiance over pi, plus ambient), or show their base colour if unlit.
+Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray);
+
+/// Radiance of the background along `direction` (any length, world).
+Vec3 shade_background(const Background& background, const Vec3& direction);
+
+/// What one ray shows: the hit's shade, or the background.
+inline Vec3 shade_ray(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
+    return hit.seen() ? shade_hit(scene, hit, ray) : shade_background(scene.background, ray.direction);
+}
+
+/// Reflectance of a polished metal by Schlick's approximation, as glTF has it:
+/// f0 + (1 - f0) (1 - cos)^5, cos the cosine of incidence in 0..1.
+/// Source: Schlick, An Inexpensive BRDF Model for Physically-based Rendering, 1994.
+Vec3 metal_reflectance(const Vec3& f0, double cos_incident);
+
+/// Share of light left after `distance` in an absorbing medium (Beer's law in KHR_materials_volume's terms):
+/// attenuation_color ^ (distance / attenuation_distance); 1 where the material does not absorb.
+Vec3 volume_transmittance(const Material& material, double distance);
+
+}  // namespace trilens

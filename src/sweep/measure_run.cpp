@@ -1,0 +1,133 @@
+// One run's image against the truth, as the columns of a sweep.
+#include "sweep/measure_run.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+#include "measure/compare.h"
+#include "measure/difference.h"
+#include "measure/displacement.h"
+#include "measure/seen.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::array<const char*, 2> kLayers = {"reflect", "refract"};
+
+MetricValues colour_values(const Comparison& comparison) {
+    const Metrics& rgb = comparison.metrics;
+    const CompareCounts& counts = comparison.counts;
+    return {{"rgb_mae", rgb.mae},
+            {"rgb_rmse", rgb.rmse},
+            {"rgb_relmse", rgb.relmse},
+            {"rgb_psnr_db", rgb.psnr_db},
+            {"rgb_ssim", rgb.ssim},
+            {"rgb_max", rgb.max},
+            {"rgb_p95", rgb.p95},
+            {"rgb_p99", rgb.p99},
+            {"nonfinite", static_cast<double>(counts.nan_test + counts.inf_test)},
+            {"failed_px", static_cast<double>(counts.fail)}};
+}
+
+/// Without a pixel found there is no mean: only the counts.
+MetricValues displacement_values(const Displacement& displacement) {
+    MetricValues values = {{"disp_pixels", static_cast<double>(displacement.pixels)},
+                           {"disp_lost", static_cast<double>(displacement.lost)}};
+    if (displacement.pixels == 0) return values;
+    values["disp_mean_px"] = displacement.mean;
+    values["disp_p50_px"] = displacement.p50;
+    values["disp_p95_px"] = displacement.p95;
+    values["disp_p99_px"] = displacement.p99;
+    values["disp_max_px"] = displacement.max;
+    return values;
+}
+
+bool sees_something(const Displacement& displacement) {
+    return displacement.pixels + displacement.lost > 0;
+}
+
+/// Each optic by itself; one that is on no pixel of either image is left out with a warning.
+void measure_optics(const Image& test, const Image& truth, const std::string& layer,
+                    const std::vector<SweptOptic>& optics, MeasuredRun& run) {
+    for (const SweptOptic& optic : optics) {
+        DisplacementOptions options;
+        options.mask_object = optic.object;
+        try {
+            const auto displacement = measure_displacement(truth, test, layer, options);
+            if (displacement && sees_something(*displacement))
+                run.displacement.push_back({layer, optic.name, displacement_values(*displacement)});
+        } catch (const InputError& error) {
+            run.warnings.push_back(layer + ", " + optic.name + ": " + error.what());
+        }
+    }
+}
+
+void append_shift(const std::string& layer, const Displacement& displacement, Image& diff) {
+    std::vector<float> mask;
+    for (const Shift state : displacement.state)
+        mask.push_back(state == Shift::kFound ? 1.0f : state == Shift::kLost ? -1.0f : 0.0f);
+    diff.channels.push_back({layer + ".shift.X", displacement.shift_x});
+    diff.channels.push_back({layer + ".shift.Y", displacement.shift_y});
+    diff.channels.push_back({layer + ".shift.M", std::move(mask)});
+}
+
+void add_mismatches(const Image& test, const Image& truth, const std::string& layer, MetricValues& metrics) {
+    const std::optional<SeenMismatch> seen = compare_seen(truth, test, layer);
+    if (!seen) return;
+    metrics["coverage_mismatch"] += static_cast<double>(seen->coverage_mismatch);
+    metrics["object_mismatch"] += static_cast<double>(seen->object_mismatch);
+    metrics["primitive_mismatch"] += static_cast<double>(seen->primitive_mismatch);
+}
+
+void take_worse(const MetricValues& layer, MetricValues& metrics) {
+    for (const char* name : {"disp_mean_px", "disp_p95_px", "disp_max_px"}) {
+        const auto value = layer.find(name);
+        if (value != layer.end()) metrics[name] = std::max(metrics[name], value->second);
+    }
+}
+
+}  // namespace
+
+MeasuredRun measure_run(const Image& test, const Image& truth, const std::vector<SweptOptic>& optics) {
+    MeasuredRun run;
+    run.metrics = colour_values(compare(truth, test));
+    run.diff = make_difference(truth, test);
+    for (const char* layer : kLayers) {
+        add_mismatches(test, truth, layer, run.metrics);
+        const std::optional<Displacement> displacement = measure_displacement(truth, test, layer);
+        if (!displacement || !sees_something(*displacement)) continue;
+        const MetricValues values = displacement_values(*displacement);
+        take_worse(values, run.metrics);
+        run.displacement.push_back({layer, "all", values});
+        append_shift(layer, *displacement, run.diff);
+        // A single optic is all optics.
+        if (optics.size() == 1)
+            run.displacement.push_back({layer, optics[0].name, values});
+        else
+            measure_optics(test, truth, layer, optics, run);
+    }
+    return run;
+}
+
+std::vector<DisplacementMap> displacement_maps(const Image& diff) {
+    std::vector<DisplacementMap> maps;
+    for (const std::string layer : kLayers) {
+        const Channel *const x = diff.find(layer + ".shift.X"), *const y = diff.find(layer + ".shift.Y"),
+                             *const mask = diff.find(layer + ".shift.M");
+        if (!x || !y || !mask) continue;
+        DisplacementMap map{layer, std::vector<float>(diff.pixels(), NAN)};
+        for (std::size_t i = 0; i < map.pixels.size(); ++i) {
+            if (mask->floats()[i] > 0) map.pixels[i] = std::hypot(x->floats()[i], y->floats()[i]);
+            if (mask->floats()[i] < 0) map.pixels[i] = INFINITY;
+        }
+        maps.push_back(std::move(map));
+    }
+    return maps;
+}
+
+}  // namespace trilens

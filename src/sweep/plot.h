@@ -1,0 +1,46 @@
+// Line plots as SVG text that stands alone: measurements over a swept value, with their fits.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace trilens {
+
+/// The line y = constant * x^-order.
+struct PlotFit {
+    double order = 0, constant = 0;
+};
+
+struct PlotSeries {
+    std::string name;
+    std::vector<Vec2> points;    // joined in the order given
+    std::optional<PlotFit> fit;  // drawn on log-log plots
+};
+
+/// A horizontal line that the eye should compare with, such as y = 1 px.
+struct PlotLevel {
+    double y = 0;
+    std::string label;
+};
+
+struct PlotParams {
+    std::string title, x_label, y_label;  // labels with units: "mean displacement [px]"
+    std::vector<PlotLevel> levels;
+    bool reference_orders = true;  // faint lines of order 1 and 2, on log-log plots
+    int width = 640, height = 420;
+};
+
+/// An SVG document with both axes logarithmic. Points that are not finite or not positive are left out, and a
+/// note in the picture says how many. Eight series differ in colour and marker; from the ninth on they
+/// repeat. The text depends on the arguments alone.
+std::string log_log_plot(const PlotParams& params, std::span<const PlotSeries> series);
+
+/// The same with both axes linear: only points that are not finite are left out; no fits and reference
+/// orders.
+std::string linear_plot(const PlotParams& params, std::span<const PlotSeries> series);
+
+}  // namespace trilens

@@ -1,0 +1,122 @@
+// What a sweep's folder says, as plain data: the manifest, one record per run, the fits.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/ids.h"
+#include "sweep/axis.h"
+#include "sweep/page.h"
+
+namespace trilens {
+
+/// Values by their column name in runs.csv ("rgb_rmse", "disp_mean_px"); absent means not computed, NaN means
+/// computed and not a number.
+using MetricValues = std::map<std::string, double>;
+
+/// The value of a column; none where it was not computed.
+inline std::optional<double> find_value(const MetricValues& metrics, const std::string& name) {
+    const auto found = metrics.find(name);
+    return found == metrics.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// An optic whose displacement is measured by itself.
+struct SweptOptic {
+    Id object = kNone;  // as in optic.object
+    std::string name;
+};
+
+/// What is swept, in words and names: goes into every result and changes no number.
+struct SweepSubject {
+    std::string title;                        // of the report
+    std::string scene;                        // file
+    std::string camera, mesh, method, truth;  // CSV columns: "main", "pawn", "exact", "limit"
+    int spp = 1, threads = 0;
+    std::string isa;
+    std::vector<SweptOptic> optics;
+    std::vector<std::string> commands;  // lines that make the results again
+    Facts versions;
+};
+
+struct SweepManifest {
+    SweepSubject subject;
+    Axis axis;
+    std::string truth_hash;
+};
+
+/// One line of plan.jsonl.
+struct PlannedRun {
+    std::string id;  // "n0008": the folder's name under runs/
+    int n = 0;
+    std::string hash;  // of everything that the run's result depends on
+};
+
+/// How far what one layer of one optic shows lies from where the truth shows it.
+struct OpticDisplacement {
+    std::string layer;  // "reflect", "refract"
+    std::string optic;  // its name, or "all"
+    MetricValues
+        metrics;  // disp_mean_px, disp_p50_px, disp_p95_px, disp_p99_px, disp_max_px, disp_pixels, disp_lost
+};
+
+enum class RunState { kMissing, kDone, kFailed };
+
+/// "done", "failed", "missing": as in runs.csv.
+inline const char* state_name(RunState state) {
+    return state == RunState::kDone ? "done" : state == RunState::kFailed ? "failed" : "missing";
+}
+
+/// A run as its folder tells it.
+struct RunRecord {
+    PlannedRun plan;
+    RunState state = RunState::kMissing;
+    MetricValues metrics;
+    std::vector<OpticDisplacement> displacement;
+    std::vector<std::string> warnings;
+    std::string error;  // of a failed run
+    int exit_code = 0;  // of a failed run
+    std::string image_hash;
+};
+
+/// One measurement of a fit.
+struct SweepPoint {
+    int n = 0;
+    double value = 0;
+    bool used = false;  // took part in the fit
+};
+
+/// error = constant * n^-order over the runs of one sweep.
+struct SweepFit {
+    std::string layer, optic;                        // layer is empty for metrics of the whole picture
+    std::string metric;                              // column name
+    std::vector<SweepPoint> points;                  // every finished run that has the metric
+    std::optional<double> order, constant, r2;       // none: fewer than two usable points
+    std::optional<double> n_for_1px, n_for_half_px;  // metrics in pixels only
+};
+
+struct SweepSummary {
+    std::string folder;
+    SweepManifest manifest;
+    std::vector<RunRecord> runs;
+    std::vector<SweepFit> fits;
+
+    std::size_t count(RunState state) const {
+        std::size_t found = 0;
+        for (const RunRecord& run : runs) found += run.state == state;
+        return found;
+    }
+};
+
+/// Where a sweep keeps what, under its folder.
+inline std::string truth_file(const std::string& folder, const std::string& hash) {
+    return folder + "/truth/" + hash + ".exr";
+}
+inline std::string run_folder(const std::string& folder, const std::string& id) {
+    return folder + "/runs/" + id;
+}
+
+}  // namespace trilens

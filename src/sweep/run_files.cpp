@@ -1,0 +1,77 @@
+// The files of one run: what makes it finished, and what it then says.
+#include "sweep/run_files.h"
+
+#include <array>
+#include <optional>
+
+#include "base/error.h"
+#include "image/image_io.h"
+#include "sweep/files.h"
+#include "sweep/hash.h"
+#include "sweep/results_json.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::array<const char*, 3> kFiles = {"image.exr", "diff.exr", "metrics.json"};
+
+std::optional<std::string> file_hash(const std::string& file) {
+    const std::optional<std::string> bytes = read_whole_file(file);
+    if (!bytes) return std::nullopt;
+    return hash_text(*bytes);
+}
+
+/// The text of DONE: the run's hash, then each file with its own; none where a file is missing.
+std::optional<std::string> done_text(const std::string& folder, const PlannedRun& plan) {
+    std::string text = plan.hash + "\n";
+    for (const char* name : kFiles) {
+        const std::optional<std::string> hash = file_hash(run_folder(folder, plan.id) + "/" + name);
+        if (!hash) return std::nullopt;
+        text += *hash + " " + name + "\n";
+    }
+    return text;
+}
+
+}  // namespace
+
+RunRecord load_run(const std::string& folder, const PlannedRun& plan) {
+    const std::string home = run_folder(folder, plan.id);
+    RunRecord missing;
+    missing.plan = plan;
+    const std::optional<std::string> done = read_whole_file(home + "/DONE");
+    if (done && done == done_text(folder, plan)) {
+        std::optional<RunRecord> run = parse_run(read_whole_file(home + "/metrics.json").value_or(""), plan);
+        if (!run || run->state != RunState::kDone) return missing;
+        run->image_hash = file_hash(home + "/image.exr").value_or("");
+        return *run;
+    }
+    const std::optional<RunRecord> failed =
+        parse_run(read_whole_file(home + "/error.json").value_or(""), plan);
+    return failed && failed->state == RunState::kFailed ? *failed : missing;
+}
+
+void clear_run(const std::string& folder, const PlannedRun& plan) {
+    const std::string home = run_folder(folder, plan.id);
+    make_folder(home);
+    remove_file(home + "/DONE");
+    remove_file(home + "/error.json");
+}
+
+RunRecord store_run(const std::string& folder, RunRecord run, const Image& image, const Image& diff) {
+    const std::string home = run_folder(folder, run.plan.id);
+    write_exr(home + "/image.exr", image);
+    write_exr(home + "/diff.exr", diff);
+    run.state = RunState::kDone;
+    replace_text_file(home + "/metrics.json", run_text(run));
+    const std::optional<std::string> done = done_text(folder, run.plan);
+    if (!done) throw OutputError(home, "what was written cannot be read back");
+    replace_text_file(home + "/DONE", *done);
+    run.image_hash = file_hash(home + "/image.exr").value_or("");
+    return run;
+}
+
+void store_failure(const std::string& folder, const RunRecord& run) {
+    replace_text_file(run_folder(folder, run.plan.id) + "/error.json", run_text(run));
+}
+
+}  // namespace trilens

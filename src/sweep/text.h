@@ -1,0 +1,28 @@
+// Numbers and text as they stand in reports: the same in every locale, safe inside markup.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trilens {
+
+/// The shortest decimal text that reads back as the same double; "nan", "inf", "-inf".
+std::string shortest_text(double value);
+
+/// `value` with `decimals` digits after the point; never "-0.00". Not finite: as shortest_text.
+std::string fixed_text(double value, int decimals);
+
+/// `value` rounded to `digits` significant digits, without trailing zeros; with an exponent below 1e-4 and
+/// from 1e6 on. Not finite: as shortest_text.
+std::string rounded_text(double value, int digits);
+
+/// `text` for XML and HTML, in elements and in quoted attributes: the five special characters become
+/// entities; bytes that are no UTF-8, and control characters that XML forbids, become U+FFFD.
+std::string escape_markup(std::string_view text);
+
+/// RFC 4648 base64, padded, on one line.
+std::string base64_text(std::span<const unsigned char> bytes);
+
+}  // namespace trilens

@@ -1,0 +1,76 @@
+// What this room's doors to Embree share: one spelling for Embree 3 and 4, and a device that throws its
+// errors. Internal: only .cpp files of this room include it.
+#pragma once
+
+#if TRILENS_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <mutex>
+#include <string>
+
+namespace trilens {
+
+/// An Embree device that keeps the first message of its errors.
+class EmbreeDevice {
+  public:
+    /// `isa`: "sse2", "sse4.2", "avx", "avx2", "avx512", or empty for the best of this machine.
+    /// Throws UsageError on other names, ComputationError where Embree makes no device.
+    explicit EmbreeDevice(const std::string& isa);
+    ~EmbreeDevice();
+    EmbreeDevice(const EmbreeDevice&) = delete;
+    EmbreeDevice& operator=(const EmbreeDevice&) = delete;
+
+    RTCDevice get() const { return device_; }
+
+    /// Throws ComputationError with Embree's message where something failed since the last check.
+    void check(const std::string& doing);
+
+  private:
+    RTCDevice device_ = nullptr;
+    std::mutex mutex_;     // Embree may report from any thread of a build
+    std::string message_;  // empty: no error
+
+    static void on_error(void* self, RTCError code, const char* message);
+};
+
+/// What a query carries to its callbacks: derive from it and hand it to intersect_one.
+#if TRILENS_EMBREE_MAJOR >= 4
+using EmbreeContext = RTCRayQueryContext;
+inline void init_context(EmbreeContext* context) {
+    rtcInitRayQueryContext(context);
+}
+inline void intersect_one(RTCScene scene, EmbreeContext* context, RTCRayHit* ray) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = context;
+    rtcIntersect1(scene, ray, &arguments);
+}
+#else
+using EmbreeContext = RTCIntersectContext;
+inline void init_context(EmbreeContext* context) {
+    rtcInitIntersectContext(context);
+}
+inline void intersect_one(RTCScene scene, EmbreeContext* context, RTCRayHit* ray) {
+    rtcIntersect1(scene, context, ray);
+}
+#endif
+
+/// rtcIntersect16 for rays that travel together.
+inline void intersect_coherent_16(const int* valid, RTCScene scene, RTCRayHit16* rays) {
+#if TRILENS_EMBREE_MAJOR >= 4
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, rays, &arguments);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &context, rays);
+#endif
+}
+
+}  // namespace trilens

@@ -1,0 +1,44 @@
+// The limit surface of a cage as patches that OpenSubdiv evaluates; behind this header lies THE door to
+// OpenSubdiv.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/surface.h"
+#include "surfaces/checked_cage.h"
+
+namespace trilens {
+
+/// Limit patches of every face of a cage, ready for evaluation from any thread.
+///
+/// Exactness: patches are exact (bicubic, or quartic for Loop) outside a region of 2^-10 of a face around
+/// each extraordinary vertex and along creases of a sharpness near 10; inside it OpenSubdiv fits Gregory
+/// patches to the limit.
+class LimitPatches {
+  public:
+    /// Throws InputError(name, ...) where OpenSubdiv refuses the topology.
+    LimitPatches(const CheckedCage& cage, const std::string& name);
+    ~LimitPatches();
+
+    /// Whether all of the face has a limit surface: false for holes, and near boundaries that are not
+    /// interpolated.
+    bool has_limit(int face) const;
+
+    /// Position and derivatives, without a normal, and how far the control points around spread (0: they
+    /// coincide).
+    struct Point {
+        SurfacePoint point;
+        double extent = 0;
+    };
+    /// At (u, v) inside the domain. Faces with four corners, and triangles under Loop: sub_face -1, corners
+    /// as in FaceBorder. Other faces: sub_face k is the quad from corner k over the middle of edge k and the
+    /// centre to the middle of edge k - 1.
+    Point eval(int face, int sub_face, const Vec2& uv) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace trilens

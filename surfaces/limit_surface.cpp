@@ -1,0 +1,170 @@
+// The limit surface of a cage: its faces, how they hang together, and normals where derivatives vanish.
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "surfaces/checked_cage.h"
+#include "surfaces/edge_numbers.h"
+#include "surfaces/limit_patches.h"
+#include "surfaces/surfaces.h"
+
+namespace trilens {
+namespace {
+
+/// A cross product of derivatives below this share of (extent * derivative) is rounding, not a direction:
+/// derivatives carry errors of about 1e-16 of the extent, so a normal above it is good to 1e-4.
+constexpr double kNormalNoise = 1e-12;
+
+/// Where the normal vanishes (collapsed edges, folded neighbourhoods) it is taken this share of the way
+/// towards the middle of the face; the later ones serve derivatives that vanish to higher order.
+constexpr std::array<double, 3> kStepsInward = {0x1p-20, 0x1p-12, 0x1p-6};
+
+struct SurfaceFace {
+    int cage_face;
+    int sub_face;  // -1: the whole face
+    FaceBorder border;
+};
+
+/// The half of an edge, given as a side of its face, that begins or ends at the side's first or second end.
+FaceSide half_of(FaceSide side, bool first_half) {
+    if (side.edge == kNone) return side;
+    side.part = first_half != side.reversed ? FaceSide::Part::kFirstHalf : FaceSide::Part::kSecondHalf;
+    return side;
+}
+
+/// Numbers corners and edges of all surface faces. Corners: cage vertices, then middles of cage edges, then
+/// centres of cage faces. Edges: those of the cage, then those from the middle of an edge to the centre of a
+/// face.
+class FaceList {
+  public:
+    explicit FaceList(const CheckedCage& cage) : cage_(cage) {
+        for (int f = 0; f < cage.face_count(); ++f)
+            for (int k = 0; k < cage.face_size(f); ++k) side(f, k);
+    }
+
+    void add(int face, std::vector<SurfaceFace>& faces) {
+        const int size = cage_.face_size(face);
+        const bool whole = size == (cage_.scheme == SubdivisionScheme::kLoop ? 3 : 4);
+        if (whole) {
+            faces.push_back({face, -1, whole_border(face)});
+        } else {
+            for (int k = 0; k < size; ++k) faces.push_back({face, k, sub_face_border(face, k)});
+        }
+    }
+
+  private:
+    Id vertex(int face, int k) const {
+        const int size = cage_.face_size(face);
+        return static_cast<Id>(cage_.vertices[cage_.first[face] + (k + size) % size]);
+    }
+    FaceSide side(int face, int k) { return edges_.side(vertex(face, k), vertex(face, k + 1)); }
+    Id middle(const FaceSide& side) const { return static_cast<Id>(cage_.points.size()) + side.edge; }
+    Id centre(int face) const {
+        return static_cast<Id>(cage_.points.size()) + edges_.size() + static_cast<Id>(face);
+    }
+    /// The edge from the middle of edge k to the centre; (face, corner) numbers it among all such edges.
+    Id spoke(int face, int k) const {
+        const int size = cage_.face_size(face);
+        return edges_.size() + static_cast<Id>(cage_.first[face] + (k + size) % size);
+    }
+
+    FaceBorder whole_border(int face) {
+        FaceBorder border;
+        for (int k = 0; k < cage_.face_size(face); ++k) {
+            border.corners[k] = vertex(face, k);
+            border.sides[k] = side(face, k);
+        }
+        return border;
+    }
+
+    FaceBorder sub_face_border(int face, int k) {
+        const FaceSide ahead = side(face, k), behind = side(face, k - 1);
+        FaceBorder border;
+        border.corners = {vertex(face, k), middle(ahead), centre(face), middle(behind)};
+        border.sides = {half_of(ahead, true), FaceSide{spoke(face, k), FaceSide::Part::kWhole, false},
+                        FaceSide{spoke(face, k - 1), FaceSide::Part::kWhole, true}, half_of(behind, false)};
+        return border;
+    }
+
+    const CheckedCage& cage_;
+    EdgeNumbers edges_;
+};
+
+/// Into the face's domain; not-a-number becomes 0.
+Vec2 clamp_to_domain(FaceDomain domain, const Vec2& uv) {
+    const auto clamp = [](double x) { return x > 0 ? std::fmin(x, 1.0) : 0.0; };
+    Vec2 inside(clamp(uv.x), clamp(uv.y));
+    const double sum = inside.x + inside.y;
+    if (domain == FaceDomain::kTriangle && sum > 1) inside /= sum;
+    return inside;
+}
+
+class LimitSurface final : public Surface {
+  public:
+    LimitSurface(const CheckedCage& cage, const std::string& name, const Warn& warn)
+        : domain_(cage.scheme == SubdivisionScheme::kLoop ? FaceDomain::kTriangle : FaceDomain::kSquare),
+          patches_(cage, name) {
+        std::vector<bool> is_hole(static_cast<std::size_t>(cage.face_count()), false);
+        for (int hole : cage.holes) is_hole[static_cast<std::size_t>(hole)] = true;
+
+        FaceList list(cage);
+        int left_out = 0;
+        for (int face = 0; face < cage.face_count(); ++face) {
+            if (is_hole[static_cast<std::size_t>(face)]) continue;
+            if (patches_.has_limit(face)) {
+                list.add(face, faces_);
+            } else {
+                ++left_out;
+            }
+        }
+        if (left_out > 0 && warn)
+            warn(name + ": " + std::to_string(left_out) + " faces have no limit surface and are left out");
+    }
+
+    std::size_t face_count() const override { return faces_.size(); }
+    FaceDomain domain(Id) const override { return domain_; }
+    FaceBorder border(Id face) const override { return faces_[face].border; }
+
+    SurfacePoint eval(Id face, const Vec2& uv) const override {
+        const Vec2 inside = clamp_to_domain(domain_, uv);
+        LimitPatches::Point here = eval_patch(face, inside);
+        here.point.normal = normal_of(here);
+        if (here.point.normal == Vec3(0)) here.point.normal = normal_near(face, inside);
+        return here.point;
+    }
+
+  private:
+    LimitPatches::Point eval_patch(Id face, const Vec2& uv) const {
+        return patches_.eval(faces_[face].cage_face, faces_[face].sub_face, uv);
+    }
+
+    static Vec3 normal_of(const LimitPatches::Point& at) {
+        if (!(at.extent > 0)) return Vec3(0);
+        const Vec3 du = at.point.du / at.extent, dv = at.point.dv / at.extent;
+        const Vec3 across = cross(du, dv);
+        const bool is_noise = !(length(across) > kNormalNoise * (length(du) + length(dv)));
+        return is_noise ? Vec3(0) : normalize_or_zero(across);
+    }
+
+    Vec3 normal_near(Id face, const Vec2& uv) const {
+        const Vec2 middle = domain_ == FaceDomain::kSquare ? Vec2(0.5) : Vec2(1.0 / 3);
+        for (double step : kStepsInward) {
+            const Vec3 normal = normal_of(eval_patch(face, uv + step * (middle - uv)));
+            if (normal != Vec3(0)) return normal;
+        }
+        return Vec3(0);
+    }
+
+    FaceDomain domain_;
+    LimitPatches patches_;
+    std::vector<SurfaceFace> faces_;
+};
+
+}  // namespace
+
+std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string& name, const Warn& warn) {
+    return std::make_unique<LimitSurface>(check_cage(cage, name, warn), name, warn);
+}
+
+}  // namespace trilens

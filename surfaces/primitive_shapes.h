@@ -1,0 +1,37 @@
+// The four primitive shapes in their own frame: z along the axis, x along the tangent, the origin at the
+// centre.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "base/cage.h"
+#include "base/surface.h"
+
+namespace trilens {
+
+/// A shape given by one equation of degree 1 or 2 and cut off by its faces' domains.
+class PrimitiveShape {
+  public:
+    virtual ~PrimitiveShape() = default;
+    virtual std::size_t face_count() const = 0;
+    virtual FaceBorder border(Id face) const = 0;
+
+    /// The point with derivatives and unit normal, at (u, v) inside the domain.
+    virtual SurfacePoint eval(Id face, const Vec2& uv) const = 0;
+
+    /// The equation along a ray: c[0] + 2 c[1] t + c[2] t^2 is zero where the ray meets the uncut shape.
+    virtual std::array<double, 3> equation(const Ray& ray) const = 0;
+
+    /// The face and (u, v) of a point of the uncut shape; face kNone where it is cut off.
+    struct Place {
+        Id face = kNone;
+        Vec2 uv{0};
+    };
+    virtual Place place(const Vec3& point) const = 0;
+};
+
+/// The shape of a checked primitive.
+std::unique_ptr<PrimitiveShape> make_primitive_shape(const Primitive& primitive);
+
+}  // namespace trilens

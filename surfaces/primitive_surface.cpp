@@ -1,0 +1,118 @@
+// Primitive surfaces in the world: a shape in its own frame, and rays against it in closed form.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "surfaces/primitive_shapes.h"
+#include "surfaces/surfaces.h"
+
+namespace trilens {
+namespace {
+
+/// a b - c d with one rounding error of the result instead of one of the products (Kahan; Jeannerod et al.
+/// 2013).
+double difference_of_products(double a, double b, double c, double d) {
+    const double cd = c * d;
+    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
+/// The real t with c[0] + 2 c[1] t + c[2] t^2 = 0, ascending; infinite where there are fewer.
+std::array<double, 2> solve(const std::array<double, 3>& c) {
+    constexpr double kNever = HUGE_VAL;
+    const double discriminant = difference_of_products(c[1], c[1], c[0], c[2]);
+    if (!(discriminant >= 0)) return {kNever, kNever};
+
+    // Both roots from the sum that does not cancel: one is q / c2, their product c0 / c2.
+    const double q = -(c[1] + std::copysign(std::sqrt(discriminant), c[1]));
+    if (q == 0) return {c[2] != 0 ? 0 : kNever, kNever};
+    const double near_zero = c[0] / q, other = c[2] != 0 ? q / c[2] : kNever;
+    return {std::min(near_zero, other), std::max(near_zero, other)};
+}
+
+class PrimitiveSurface final : public Surface {
+  public:
+    PrimitiveSurface(const Primitive& primitive, const Mat3& world_from_local)
+        : shape_(make_primitive_shape(primitive)),
+          center_(primitive.center),
+          world_from_local_(world_from_local) {}
+
+    std::size_t face_count() const override { return shape_->face_count(); }
+    FaceDomain domain(Id) const override { return FaceDomain::kSquare; }
+    FaceBorder border(Id face) const override { return shape_->border(face); }
+    bool has_closed_form() const override { return true; }
+
+    SurfacePoint eval(Id face, const Vec2& uv) const override {
+        const auto clamp = [](double x) { return x > 0 ? std::min(x, 1.0) : 0.0; };
+        SurfacePoint point = shape_->eval(face, {clamp(uv.x), clamp(uv.y)});
+        for (Vec3* vector :
+             {&point.position, &point.du, &point.dv, &point.duu, &point.duv, &point.dvv, &point.normal})
+            *vector = world_from_local_ * *vector;
+        point.position += center_;
+        return point;
+    }
+
+    std::optional<SurfaceHit> intersect(const Ray& ray, double t_min) const override {
+        // Start from the ray's point nearest to the centre: the equation then has numbers of the shape's own
+        // size.
+        const Mat3 local_from_world = glm::transpose(world_from_local_);
+        const Vec3 direction = local_from_world * ray.direction;
+        Vec3 origin = local_from_world * (ray.origin - center_);
+        const double squared = dot(direction, direction);
+        if (!(squared > 0)) return std::nullopt;
+        const double start = -dot(origin, direction) / squared;
+        origin += start * direction;
+
+        for (double root : solve(shape_->equation({origin, direction}))) {
+            const double t = start + root;
+            if (!std::isfinite(t) || !(t > t_min)) continue;
+            const PrimitiveShape::Place place = shape_->place(origin + root * direction);
+            if (place.face == kNone) continue;
+            return SurfaceHit{place.face, place.uv, t, eval(place.face, place.uv)};
+        }
+        return std::nullopt;
+    }
+
+  private:
+    std::unique_ptr<PrimitiveShape> shape_;
+    Vec3 center_;
+    Mat3 world_from_local_;  // columns: tangent, axis x tangent, axis
+};
+
+void check_positive(double value, const char* what) {
+    if (!(value > 0) || !std::isfinite(value))
+        throw InputError("", "primitive", std::string(what) + " must be a positive number");
+}
+
+void check_sizes(const Primitive& primitive) {
+    using Type = Primitive::Type;
+    if (primitive.type == Type::kPlane) {
+        check_positive(primitive.size.x, "size");
+        check_positive(primitive.size.y, "size");
+    } else {
+        check_positive(primitive.radius, "radius");
+    }
+    if (primitive.type == Type::kParaboloid) check_positive(primitive.focal_length, "focal length");
+    if (primitive.type == Type::kCylinder) check_positive(primitive.height, "height");
+    const Vec3& c = primitive.center;
+    if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z))
+        throw InputError("", "primitive", "center must be finite");
+}
+
+Mat3 frame_of(const Primitive& primitive) {
+    const Vec3 axis = normalize_or_zero(primitive.axis);
+    const Vec3 side = normalize_or_zero(cross(axis, normalize_or_zero(primitive.tangent)));
+    if (side == Vec3(0))
+        throw InputError("", "primitive", "axis and tangent must be two different directions");
+    return Mat3(cross(side, axis), side, axis);
+}
+
+}  // namespace
+
+std::unique_ptr<Surface> make_primitive_surface(const Primitive& primitive) {
+    check_sizes(primitive);
+    return std::make_unique<PrimitiveSurface>(primitive, frame_of(primitive));
+}
+
+}  // namespace trilens

@@ -1,0 +1,119 @@
+// Surfaces whose every derivative is plain in a few lines, so that tests need no other room.
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "base/surface.h"
+
+namespace trilens_test {
+
+using namespace trilens;
+
+/// The point's normal from its derivatives, turned to the side of `front`.
+inline void set_normal(SurfacePoint& point, const Vec3& front) {
+    const Vec3 normal = normalize_or_zero(cross(point.du, point.dv));
+    point.normal = dot(normal, front) < 0 ? -normal : normal;
+}
+
+/// A sphere from a cube: face f is (u, v) in [-1, 1]^2 on one side of the cube, pushed out to the sphere.
+struct CubeSphere : Surface {
+    Vec3 center{0};
+    double radius = 1;
+
+    CubeSphere(const Vec3& c, double r) : center(c), radius(r) {}
+    std::size_t face_count() const override { return 6; }
+    FaceDomain domain(Id) const override { return FaceDomain::kSquare; }
+    SurfacePoint eval(Id face, const Vec2& given) const override {
+        const Vec2 uv = glm::clamp(given, Vec2(0), Vec2(1));
+        const int axis = static_cast<int>(face / 2);
+        Vec3 w(0), wu(0), wv(0);
+        w[axis] = face % 2 ? -1 : 1;
+        w[(axis + 1) % 3] = 2 * uv.x - 1;
+        w[(axis + 2) % 3] = 2 * uv.y - 1;
+        wu[(axis + 1) % 3] = wv[(axis + 2) % 3] = 2;
+
+        // Derivatives of n = w / |w|, w linear in (u, v).
+        const double size = length(w);
+        const Vec3 n = w / size;
+        auto first = [&](const Vec3& step) { return (step - n * dot(n, step)) / size; };
+        auto second = [&](const Vec3& a, const Vec3& b) {
+            const Vec3 na = first(a), nb = first(b);
+            return -(nb * dot(n, a) + n * dot(nb, a) + na * dot(n, b)) / size;
+        };
+        SurfacePoint point;
+        point.position = center + radius * n;
+        point.du = radius * first(wu);
+        point.dv = radius * first(wv);
+        point.duu = radius * second(wu, wu);
+        point.duv = radius * second(wu, wv);
+        point.dvv = radius * second(wv, wv);
+        set_normal(point, n);
+        return point;
+    }
+};
+
+/// One face z = bend (x^2 + y^2) over a square of the plane z = 0 around `center`: a plane, or a paraboloid
+/// with focus at height 1 / (4 bend).
+struct Patch : Surface {
+    Vec3 center{0};
+    double half_side = 1, bend = 0;
+
+    Patch(const Vec3& c, double half, double curvature) : center(c), half_side(half), bend(curvature) {}
+    std::size_t face_count() const override { return 1; }
+    FaceDomain domain(Id) const override { return FaceDomain::kSquare; }
+    SurfacePoint eval(Id, const Vec2& given) const override {
+        const Vec2 uv = glm::clamp(given, Vec2(0), Vec2(1));
+        const double x = half_side * (2 * uv.x - 1), y = half_side * (2 * uv.y - 1), scale = 2 * half_side;
+        SurfacePoint point;
+        point.position = center + Vec3(x, y, bend * (x * x + y * y));
+        point.du = scale * Vec3(1, 0, 2 * bend * x);
+        point.dv = scale * Vec3(0, 1, 2 * bend * y);
+        point.duu = point.dvv = Vec3(0, 0, 2 * bend * scale * scale);
+        set_normal(point, Vec3(0, 0, 1));
+        return point;
+    }
+};
+
+/// n x n squares of two facets on every face, corners shared inside a face.
+inline SurfaceGrid regular_grid(const Surface& surface, int n) {
+    SurfaceGrid grid;
+    for (Id face = 0; face < surface.face_count(); ++face) {
+        const Id base = static_cast<Id>(grid.points.size());
+        auto uv_of = [&](int i, int j) { return Vec2(i, j) / static_cast<double>(n); };
+        auto corner_of = [&](int i, int j) { return base + static_cast<Id>(j * (n + 1) + i); };
+        for (int j = 0; j <= n; ++j) {
+            for (int i = 0; i <= n; ++i) {
+                const SurfacePoint point = surface.eval(face, uv_of(i, j));
+                grid.corner_point.push_back(static_cast<Id>(grid.points.size()));
+                grid.points.push_back(point.position);
+                grid.corner_normal.push_back(point.normal);
+            }
+        }
+        for (int j = 0; j < n; ++j) {
+            for (int i = 0; i < n; ++i) {
+                const bool flipped = [&] {
+                    const SurfacePoint p = surface.eval(face, uv_of(i, j));
+                    return dot(cross(p.du, p.dv), p.normal) < 0;
+                }();
+                auto add = [&](std::array<std::array<int, 2>, 3> at) {
+                    if (flipped) std::swap(at[1], at[2]);
+                    IdTriple facet{};
+                    std::array<Vec2, 3> uv{};
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        facet[k] = corner_of(at[k][0], at[k][1]);
+                        uv[k] = uv_of(at[k][0], at[k][1]);
+                    }
+                    grid.facets.push_back(facet);
+                    grid.facet_face.push_back(face);
+                    grid.facet_uv.push_back(uv);
+                };
+                add({{{i, j}, {i + 1, j}, {i + 1, j + 1}}});
+                add({{{i, j}, {i + 1, j + 1}, {i, j + 1}}});
+            }
+        }
+    }
+    return grid;
+}
+
+}  // namespace trilens_test

@@ -1,0 +1,262 @@
+// OpenEXR files keep every bit, or say why not.
+#include <sys/resource.h>
+
+#include <bit>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <random>
+
+#include "base/error.h"
+#include "image/file_bytes.h"
+#include "image/image_io.h"
+#include "support/test.h"
+
+using namespace trilens;
+
+namespace {
+
+/// Random bits in every value: all kinds of NaN, infinities and denormals are among them.
+Image random_image(unsigned seed, int data_width, int data_height) {
+    std::mt19937 random(seed);
+    Image image;
+    image.width = data_width + 11;
+    image.height = data_height + 7;
+    image.x0 = 4;
+    image.y0 = 3;
+    image.data_width = data_width;
+    image.data_height = data_height;
+    for (const char* name : {"R", "reflect.object", "G", "B", "Z", "reflect.X", "optic.facet"}) {
+        Channel channel;
+        channel.name = name;
+        const bool id = std::string(name) == "reflect.object" || std::string(name) == "optic.facet";
+        if (id)
+            channel.values = std::vector<Id>(image.pixels());
+        else
+            channel.values = std::vector<float>(image.pixels());
+        for (std::size_t i = 0; i < image.pixels(); ++i) {
+            if (id)
+                channel.ids()[i] = static_cast<Id>(random());
+            else
+                channel.floats()[i] = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+        }
+        image.channels.push_back(std::move(channel));
+    }
+    image.channels[1].ids()[0] = kNone;
+    image.channels[1].ids()[1] = (1u << 24) + 1;
+    image.channels[0].floats()[0] = std::numeric_limits<float>::quiet_NaN();
+    image.channels[0].floats()[1] = -std::numeric_limits<float>::infinity();
+    image.metadata["trilens:scene"] = "{\"version\":1,\n \"x\":\"\xc3\xa9\"}";
+    image.metadata["trilens:command"] = std::string(5000, 'x');
+    return image;
+}
+
+bool same_bits(const Channel& a, const Channel& b) {
+    if (a.is_id() != b.is_id()) return false;
+    if (a.is_id()) return a.ids() == b.ids();
+    return a.floats().size() == b.floats().size() &&
+           std::memcmp(a.floats().data(), b.floats().data(), 4 * a.floats().size()) == 0;
+}
+
+void check_same(const Image& a, const Image& b) {
+    CHECK(a.width == b.width);
+    CHECK(a.height == b.height);
+    CHECK(a.x0 == b.x0);
+    CHECK(a.y0 == b.y0);
+    CHECK(a.data_width == b.data_width);
+    CHECK(a.data_height == b.data_height);
+    CHECK(a.metadata == b.metadata);
+    REQUIRE(a.channels.size() == b.channels.size());
+    for (const Channel& channel : a.channels) {
+        const Channel* other = b.find(channel.name);
+        REQUIRE(other);
+        CHECK(same_bits(channel, *other));
+    }
+}
+
+void put_bytes(const std::string& file, const unsigned char* bytes, std::size_t size) {
+    std::ofstream out(file, std::ios::binary | std::ios::trunc);
+    out.write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+}
+
+std::size_t files_in(const std::string& folder) {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+/// The message of the InputError that reading must throw; empty where it throws none.
+std::string reading_error(const std::string& file) {
+    try {
+        read_exr(file);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("an EXR keeps every bit, the windows and the texts", "[image]") {
+    const std::string folder = trilens_test::scratch_dir("exr_round_trip");
+    const int width = GENERATE(1, 2, 33), height = GENERATE(1, 17, 600);
+    const Image image = random_image(static_cast<unsigned>(width * 1000 + height), width + 1, height);
+    write_exr(folder + "/a.exr", image);
+    check_same(image, read_exr(folder + "/a.exr"));
+    CHECK(files_in(folder) == 1);
+}
+
+TEST_CASE("a data window may reach beyond the film", "[image]") {
+    const std::string folder = trilens_test::scratch_dir("exr_overscan");
+    Image image = random_image(5, 20, 10);
+    image.width = 12;
+    image.height = 6;
+    image.x0 = -4;
+    image.y0 = -2;
+    write_exr(folder + "/a.exr", image);
+    check_same(image, read_exr(folder + "/a.exr"));
+}
+
+TEST_CASE("an EXR's bytes depend on the image alone", "[image]") {
+    const Image image = random_image(1, 64, 300);
+    set_image_threads(1);
+    const auto one = encode_exr("one", image);
+    set_image_threads(7);
+    const auto seven = encode_exr("seven", image);
+    set_image_threads(0);
+    CHECK(one == seven);
+
+    REQUIRE(::setenv("SOURCE_DATE_EPOCH", "1700000000", 1) == 0);
+    const auto dated = encode_exr("dated", image);
+    REQUIRE(::setenv("SOURCE_DATE_EPOCH", "yesterday", 1) == 0);
+    CHECK_THROWS_AS(encode_exr("dated", image), OutputError);
+    ::unsetenv("SOURCE_DATE_EPOCH");
+    const std::string text(dated.begin(), dated.end()), fixed(one.begin(), one.end());
+    CHECK(text.find("2023:11:14 22:13:20") != std::string::npos);
+    CHECK(fixed.find("1970:01:01 00:00:00") != std::string::npos);
+}
+
+TEST_CASE("a truncated EXR is an InputError at every length", "[image]") {
+    const std::string folder = trilens_test::scratch_dir("exr_truncated");
+    const Image image = random_image(2, 19, 40);
+    const auto bytes = encode_exr("whole", image);
+    const std::string file = folder + "/cut.exr";
+    for (std::size_t length = 0; length < bytes.size(); length += length < 1500 ? 1 : 37) {
+        put_bytes(file, bytes.data(), length);
+        INFO("length " << length << " of " << bytes.size());
+        CHECK(reading_error(file).find("cut.exr") != std::string::npos);
+    }
+    put_bytes(file, bytes.data(), bytes.size() - 1);
+    CHECK(reading_error(file) != "");
+    put_bytes(file, bytes.data(), bytes.size());
+    check_same(image, read_exr(file));
+}
+
+TEST_CASE("an EXR whose writer died before the offset table is never read as half an image", "[image]") {
+    const std::string folder = trilens_test::scratch_dir("exr_offsets");
+    const Image image = random_image(3, 30, 64);  // four blocks of sixteen rows
+    const auto bytes = encode_exr("whole", image);
+
+    // The table's first entry points at the first block, which starts right behind the table.
+    std::size_t table = 0;
+    for (std::size_t i = 8; i + 8 <= bytes.size() && !table; ++i) {
+        std::uint64_t offset = 0;
+        std::memcpy(&offset, &bytes[i], 8);
+        if (offset == i + 4 * 8) table = i;
+    }
+    REQUIRE(table > 0);
+    for (std::size_t entry = 0; entry < 4; ++entry) {
+        for (const bool cut : {false, true}) {
+            auto damaged = bytes;
+            std::memset(&damaged[table + 8 * entry], 0, 8);
+            if (cut) damaged.resize(damaged.size() - 100);
+            put_bytes(folder + "/a.exr", damaged.data(), damaged.size());
+            // The library may find the block again; then the image must be whole.
+            const std::string error = reading_error(folder + "/a.exr");
+            if (error.empty()) check_same(image, read_exr(folder + "/a.exr"));
+            if (cut) CHECK(error != "");
+        }
+    }
+}
+
+TEST_CASE("a damaged EXR is an error or an image, never a crash", "[image]") {
+    const std::string folder = trilens_test::scratch_dir("exr_damaged");
+    const auto bytes = encode_exr("whole", random_image(4, 19, 40));
+    std::mt19937 random(99);
+    int errors = 0;
+    for (int round = 0; round < 400; ++round) {
+        auto damaged = bytes;
+        const std::size_t reach = round % 2 ? damaged.size() : 900;  // every other time the header alone
+        for (unsigned hit = 0; hit < 1 + random() % 4; ++hit)
+            damaged[random() % reach] = static_cast<unsigned char>(random());
+        put_bytes(folder + "/a.exr", damaged.data(), damaged.size());
+        if (!reading_error(folder + "/a.exr").empty()) ++errors;
+    }
+    CHECK(errors > 50);
+}
+
+TEST_CASE("what cannot be read is named with its reason", "[image]") {
+    const std::string folder = trilens_test::scratch_dir("exr_unreadable");
+    CHECK(reading_error(folder + "/missing.exr").find("No such file") != std::string::npos);
+    CHECK(reading_error(folder).find("is a folder") != std::string::npos);
+    put_bytes(folder + "/text.exr", reinterpret_cast<const unsigned char*>("hello"), 5);
+    CHECK(reading_error(folder + "/text.exr").find("no OpenEXR") != std::string::npos);
+    put_bytes(folder + "/empty.exr", nullptr, 0);
+    CHECK(reading_error(folder + "/empty.exr") != "");
+    const std::vector<float> grey(12, 0.5f);
+    write_png(folder + "/picture.exr", 2, 2, grey);
+    CHECK(reading_error(folder + "/picture.exr") != "");
+}
+
+TEST_CASE("what cannot be written is named with its reason and leaves nothing behind", "[image]") {
+    const std::string folder = trilens_test::scratch_dir("exr_unwritable");
+    const Image image = random_image(6, 64, 64);
+    const auto writing_error = [&](const std::string& file) -> std::string {
+        try {
+            write_exr(file, image);
+        } catch (const OutputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    CHECK(writing_error(folder + "/no/such/a.exr").find("No such file") != std::string::npos);
+    std::filesystem::create_directories(folder + "/folder.exr");
+    CHECK(writing_error(folder + "/folder.exr").find("directory") != std::string::npos);
+    CHECK(files_in(folder) == 1);
+
+    // A full disk, as a limit on the size of files: the old file must survive.
+    const Image old = random_image(7, 2, 2);
+    write_exr(folder + "/a.exr", old);
+    rlimit before{};
+    REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{20000, before.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
+    const std::string full = writing_error(folder + "/a.exr");
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    CHECK(full.find("too large") != std::string::npos);
+    check_same(old, read_exr(folder + "/a.exr"));
+    CHECK(files_in(folder) == 2);
+}
+
+TEST_CASE("files of other programs: half channels, tiles, parts", "[image]") {
+    if (std::system("command -v oiiotool > /dev/null 2>&1") != 0) TRILENS_SKIP("needs oiiotool");
+    const std::string folder = trilens_test::scratch_dir("exr_others");
+    const auto make = [&](const std::string& arguments) {
+        const std::string line = "cd '" + folder + "' && oiiotool " + arguments + " > log.txt 2>&1";
+        REQUIRE(std::system(line.c_str()) == 0);
+    };
+    make("--pattern constant:color=0.5,0.25,2 70x90 3 -d half --tile 32 16 -o tiled.exr");
+    const Image tiled = read_exr(folder + "/tiled.exr");
+    REQUIRE(tiled.pixels() == 70 * 90);
+    for (const auto& [name, value] : {std::pair{"R", 0.5f}, {"G", 0.25f}, {"B", 2.0f}})
+        CHECK(tiled.find(name)->floats() == std::vector<float>(tiled.pixels(), value));
+
+    make("--create 8x8 3 --create 8x8 3 --siappend -o parts.exr");
+    CHECK(reading_error(folder + "/parts.exr").find("more than one part") != std::string::npos);
+    make("--create 8x8 3 --fullsize 8x8+1+1 -o moved.exr");
+    CHECK(reading_error(folder + "/moved.exr").find("display window") != std::string::npos);
+}

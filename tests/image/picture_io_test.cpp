@@ -1,0 +1,184 @@
+// Textures come out linear, PNGs come out sRGB.
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "base/error.h"
+#include "image/image_io.h"
+#include "support/test.h"
+
+using namespace trilens;
+
+/// libpng jumps out of OpenImageIO past a string of its own when a PNG is cut; no fault of ours to find.
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:ImageInput::geterror\n";
+}
+
+namespace {
+
+double linear_from_srgb(double v) {
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+bool have_oiiotool() {
+    return std::system("command -v oiiotool > /dev/null 2>&1") == 0;
+}
+
+void oiiotool(const std::string& folder, const std::string& arguments) {
+    const std::string line = "cd '" + folder + "' && oiiotool " + arguments + " > log.txt 2>&1";
+    REQUIRE(std::system(line.c_str()) == 0);
+}
+
+std::vector<unsigned char> file_bytes(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void check_constant(const Texture& texture, std::array<double, 3> rgb, double tolerance) {
+    REQUIRE(texture.rgb.size() ==
+            3 * static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height));
+    for (std::size_t i = 0; i < texture.rgb.size(); ++i)
+        REQUIRE(static_cast<double>(texture.rgb[i]) == Approx(rgb[i % 3]).margin(tolerance));
+}
+
+}  // namespace
+
+TEST_CASE("a PNG read back is the linear picture to half a step", "[image]") {
+    const std::string folder = trilens_test::scratch_dir("png");
+    std::vector<float> rgb;
+    for (int i = 0; i < 1024; ++i)
+        for (const double power : {1.0, 2.0, 3.0})
+            rgb.push_back(static_cast<float>(std::pow(i / 1023.0, power)));
+    write_png(folder + "/a.png", 32, 32, rgb);
+    const auto texture = read_texture(folder + "/a.png");
+    REQUIRE(texture->width == 32);
+    REQUIRE(texture->height == 32);
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+        // Half a step of 1/255 in sRGB, as a difference of linear values: at most half a step times the
+        // slope 2.3.
+        CHECK(static_cast<double>(texture->rgb[i]) ==
+              Approx(static_cast<double>(rgb[i])).margin(0.5 / 255 * 2.3));
+    }
+    const auto decoded = decode_texture(encode_png(32, 32, rgb), "memory");
+    CHECK(decoded->rgb == texture->rgb);
+    CHECK(file_bytes(folder + "/a.png") == encode_png(32, 32, rgb));
+}
+
+TEST_CASE("every 8-bit value survives reading and writing", "[image]") {
+    std::vector<float> rgb;
+    for (int i = 0; i < 256; ++i)
+        for (int c = 0; c < 3; ++c) rgb.push_back(static_cast<float>(linear_from_srgb(i / 255.0)));
+    const auto first = decode_texture(encode_png(16, 16, rgb), "first");
+    for (std::size_t i = 0; i < rgb.size(); ++i) CHECK(first->rgb[i] == Approx(rgb[i]).epsilon(1e-6));
+    CHECK(encode_png(16, 16, first->rgb) == encode_png(16, 16, rgb));
+}
+
+TEST_CASE("values outside 0..1 and NaN have a defined colour", "[image]") {
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
+    const std::vector<float> odd = {-1, 7, nan, infinity, -infinity, 0.5f};
+    const std::vector<float> plain = {0, 1, 0, 1, 0, 0.5f};
+    CHECK(encode_png(2, 1, odd) == encode_png(2, 1, plain));
+}
+
+TEST_CASE("pictures of every kind become linear", "[image]") {
+    if (!have_oiiotool()) TRILENS_SKIP("needs oiiotool");
+    const std::string folder = trilens_test::scratch_dir("textures");
+    const std::array<double, 3> stored = {0.8, 0.4, 0.2};
+    std::array<double, 3> linear{};
+    for (std::size_t c = 0; c < 3; ++c) linear[c] = linear_from_srgb(stored[c]);
+    const std::string colour = "--pattern constant:color=0.8,0.4,0.2 24x17 3 ";
+
+    SECTION("integers are sRGB") {
+        oiiotool(folder, colour + "-d uint8 -o a.png");
+        check_constant(*read_texture(folder + "/a.png"), linear, 1e-6);
+        oiiotool(folder, colour + "-d uint16 -o a16.png");
+        check_constant(*read_texture(folder + "/a16.png"), linear, 3e-5);
+        oiiotool(folder, colour + "-d uint8 --compression jpeg:98 -o a.jpg");
+        check_constant(*read_texture(folder + "/a.jpg"), linear, 0.01);
+        oiiotool(folder, colour + "-d uint8 -o a.tif");
+        check_constant(*read_texture(folder + "/a.tif"), linear, 1e-6);
+    }
+    SECTION("floats are linear") {
+        oiiotool(folder, colour + "-d float -o a.exr");
+        check_constant(*read_texture(folder + "/a.exr"), stored, 1e-6);
+        oiiotool(folder, colour + "-d half -o half.exr");
+        check_constant(*read_texture(folder + "/half.exr"), stored, 1e-3);
+        oiiotool(folder, colour + "-o a.hdr");
+        check_constant(*read_texture(folder + "/a.hdr"), stored, 0.01);
+    }
+    SECTION("integers that say so are linear") {
+        oiiotool(folder,
+                 colour + "-d uint8 --attrib oiio:ColorSpace Linear --attrib oiio:Gamma 1.0 -o linear.png");
+        check_constant(*read_texture(folder + "/linear.png"), stored, 1e-6);
+    }
+    SECTION("one channel is grey, with alpha or without; alpha does not darken") {
+        oiiotool(folder, "--pattern constant:color=0.4 9x9 1 -d uint8 -o grey.png");
+        check_constant(*read_texture(folder + "/grey.png"), {linear[1], linear[1], linear[1]}, 1e-6);
+        oiiotool(folder,
+                 "--pattern constant:color=0.4,0.4 9x9 2 --chnames Y,A -d uint8 "
+                 "--attrib oiio:UnassociatedAlpha 1 -o grey_alpha.png");
+        check_constant(*read_texture(folder + "/grey_alpha.png"), {linear[1], linear[1], linear[1]}, 1e-6);
+        oiiotool(folder,
+                 "--pattern constant:color=0.8,0.4,0.2,0.4 9x9 4 -d uint8 "
+                 "--attrib oiio:UnassociatedAlpha 1 -o alpha.png");
+        check_constant(*read_texture(folder + "/alpha.png"), linear, 1e-6);
+    }
+    SECTION("a data window is placed in its display window") {
+        oiiotool(folder,
+                 "--pattern constant:color=1,1,1 4x3 3 --origin +2+1 --fullsize 8x6+0+0 -o window.exr");
+        const auto texture = read_texture(folder + "/window.exr");
+        REQUIRE(texture->width == 8);
+        REQUIRE(texture->height == 6);
+        for (std::size_t y = 0; y < 6; ++y) {
+            for (std::size_t x = 0; x < 8; ++x) {
+                const bool inside = x >= 2 && x < 6 && y >= 1 && y < 4;
+                CHECK(texture->rgb[3 * (y * 8 + x)] == (inside ? 1.0f : 0.0f));
+            }
+        }
+    }
+    SECTION("files in memory are the files") {
+        for (const std::string name : {"m.png", "m.jpg", "m.exr", "m.hdr"}) {
+            oiiotool(
+                folder,
+                "--pattern fill:topleft=1,0,0:topright=0,1,0:bottomleft=0,0,1:bottomright=1,1,1 33x21 3 -o " +
+                    name);
+            const auto from_file = read_texture(folder + "/" + name);
+            const auto bytes = file_bytes(folder + "/" + name);
+            const auto from_memory = decode_texture(bytes, name);
+            CHECK(from_memory->width == 33);
+            CHECK(from_memory->rgb == from_file->rgb);
+        }
+    }
+    SECTION("a truncated PNG is an error") {
+        oiiotool(folder, "--pattern noise 40x40 3 -d uint8 -o noise.png");
+        const auto bytes = file_bytes(folder + "/noise.png");
+        for (std::size_t length = 0; length + 60 < bytes.size(); length += 611) {
+            INFO("length " << length << " of " << bytes.size());
+            CHECK_THROWS_AS(decode_texture(std::span(bytes).first(length), "cut"), InputError);
+        }
+    }
+}
+
+TEST_CASE("what is no picture is an InputError that names it", "[image]") {
+    const std::string folder = trilens_test::scratch_dir("no_texture");
+    std::ofstream(folder + "/a.png") << "not a picture at all";
+    CHECK_THROWS_AS(read_texture(folder + "/a.png"), InputError);
+    CHECK_THROWS_AS(read_texture(folder + "/missing.png"), InputError);
+    CHECK_THROWS_AS(read_texture(folder), InputError);
+    const std::vector<unsigned char> noise(100, 7), none;
+    CHECK_THROWS_AS(decode_texture(noise, "noise"), InputError);
+    CHECK_THROWS_AS(decode_texture(none, "none"), InputError);
+    try {
+        decode_texture(noise, "truck.glb image 2");
+    } catch (const InputError& error) {
+        CHECK(std::string(error.what()).find("truck.glb image 2") == 0);
+    }
+    CHECK_THROWS_AS(write_png(folder + "/no/such.png", 1, 1, std::vector<float>(3)), OutputError);
+}
+
+TEST_CASE("the library says which it is", "[image]") {
+    CHECK(image_library_version().find("OpenImageIO 2.") == 0);
+}

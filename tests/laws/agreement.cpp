@@ -1,0 +1,105 @@
+#include "laws/agreement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "cli/facet_viewer.h"
+
+using namespace trilens;
+
+namespace trilens_test {
+namespace {
+
+/// What a pixel shows, in ids.
+struct Seen {
+    Id direct, optic, facet, reflect, refract;
+    bool operator==(const Seen&) const = default;
+};
+
+Seen seen(const SampleView& view) {
+    return {view.hit.triangle, view.optic, view.facet, view.reflect.has_ray ? view.reflect.hit.triangle : kNone,
+            view.refract.has_ray ? view.refract.hit.triangle : kNone};
+}
+
+bool covers_same(const Seen& a, const Seen& b) {
+    const auto same = [](Id x, Id y) { return (x == kNone) == (y == kNone); };
+    return same(a.direct, b.direct) && same(a.optic, b.optic) && same(a.reflect, b.reflect) && same(a.refract, b.refract);
+}
+
+CameraRays shifted(CameraRays camera, const Vec2& by) {
+    if (camera.linear) {
+        camera.linear->screen_x += by.x * camera.linear->screen_w;
+        camera.linear->screen_y += by.y * camera.linear->screen_w;
+    }
+    for (Vec3& s : camera.mesh.screen) s += Vec3(by.x * s.z, by.y * s.z, 0);
+    return camera;
+}
+
+void ignore(const std::string&) {}
+
+double relative_t(const Hit& a, const Hit& b) {
+    if (!a.seen() || !b.seen()) return 0;
+    return std::fabs(a.t - b.t) / std::max({std::fabs(a.t), std::fabs(b.t), 1e-300});
+}
+
+struct Differing {
+    int x, y;
+    Seen projected, traced;
+};
+
+/// Leaves those of `open` for which no shifted view shows the other engine's answer.
+void close_edge_ties(const World& world, std::vector<Differing>& open) {
+    const double d = kEdgeDistance, c = kEdgeDistance * 0.70710678;
+    for (const Vec2& by : {Vec2(d, 0), Vec2(-d, 0), Vec2(0, d), Vec2(0, -d), Vec2(c, c), Vec2(-c, c), Vec2(c, -c), Vec2(-c, -c)}) {
+        if (open.empty()) return;
+        const CameraRays camera = shifted(make_camera_rays(world.scene, 0), by);
+        const Viewer project = make_facet_viewer(world, camera, Engine::kExact, ignore);
+        const Viewer trace = make_facet_viewer(world, camera, Engine::kFacetsTruth, ignore);
+        std::erase_if(open, [&](const Differing& pixel) {
+            std::vector<SampleView> a(1), b(1);
+            project({pixel.x, pixel.y, pixel.x + 1, pixel.y + 1, 1}, a);
+            trace({pixel.x, pixel.y, pixel.x + 1, pixel.y + 1, 1}, b);
+            return seen(a[0]) == pixel.traced || seen(b[0]) == pixel.projected;
+        });
+    }
+}
+
+}  // namespace
+
+Agreement compare_engines(const World& world) {
+    const Film& film = world.scene.film;
+    const SampleGrid grid{0, 0, film.width, film.height, 1};
+    std::vector<SampleView> projected(grid.size()), traced(grid.size());
+    make_viewer(world, 0, Engine::kExact, ignore)(grid, projected);
+    make_viewer(world, 0, Engine::kFacetsTruth, ignore)(grid, traced);
+
+    Agreement result;
+    result.pixels = grid.size();
+    std::vector<Differing> open;
+    for (std::size_t p = 0; p < grid.size(); ++p) {
+        const Seen a = seen(projected[p]), b = seen(traced[p]);
+        result.optic_pixels += a.optic != kNone;
+        if (a == b) {
+            result.worst_t = std::max({result.worst_t, relative_t(projected[p].hit, traced[p].hit),
+                                       relative_t(projected[p].reflect.hit, traced[p].reflect.hit),
+                                       relative_t(projected[p].refract.hit, traced[p].refract.hit)});
+            continue;
+        }
+        ++(covers_same(a, b) ? result.seen : result.coverage);
+        open.push_back({static_cast<int>(p) % film.width, static_cast<int>(p) / film.width, a, b});
+    }
+    close_edge_ties(world, open);
+    result.off_edge = open.size();
+    if (!open.empty()) {
+        const Differing& d = open.front();
+        const auto text = [](const Seen& s) {
+            return std::to_string(s.direct) + "/" + std::to_string(s.optic) + "/" + std::to_string(s.facet) + "/" +
+                   std::to_string(s.reflect) + "/" + std::to_string(s.refract);
+        };
+        result.first_off_edge = "pixel " + std::to_string(d.x) + "," + std::to_string(d.y) + ": projector " + text(d.projected) + ", Embree " + text(d.traced);
+    }
+    return result;
+}
+
+}  // namespace trilens_test

@@ -1,0 +1,167 @@
+// The shape of the program: every library has one door, and rooms see only what CMakeLists.txt says they see.
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "support/test.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Include {
+    std::string file;  // relative to the project
+    std::string target;
+    bool angled = false;
+};
+
+bool is_source(const fs::path& path) {
+    const std::string end = path.extension().string();
+    return end == ".h" || end == ".cpp";
+}
+
+std::vector<Include> includes_under(const std::string& folder) {
+    static const std::regex kLine(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
+    std::vector<Include> found;
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(trilens_test::source_dir()) / folder)) {
+        if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+        std::ifstream in(entry.path());
+        std::string line;
+        std::smatch match;
+        while (std::getline(in, line)) {
+            if (!std::regex_search(line, match, kLine)) continue;
+            found.push_back({fs::relative(entry.path(), trilens_test::source_dir()).string(), match[2], match[1] == "<"});
+        }
+    }
+    return found;
+}
+
+struct Room {
+    std::string folder;
+    std::set<std::string> sees;
+};
+
+/// The rooms and arrows as CMakeLists.txt states them.
+std::map<std::string, Room> rooms() {
+    std::ifstream in(trilens_test::source_dir() + "/CMakeLists.txt");
+    std::stringstream text;
+    text << in.rdbuf();
+    const std::string all = text.str();
+    static const std::regex kRoom(R"(trilens_room\(\s*(\w+)\s+([\w/]+)([^)]*)\))");
+    std::map<std::string, Room> result;
+    for (std::sregex_iterator it(all.begin(), all.end(), kRoom), end; it != end; ++it) {
+        Room room;
+        room.folder = (*it)[2];
+        room.sees.insert((*it)[1]);
+        std::stringstream words((*it)[3].str());
+        std::string word, section;
+        while (words >> word) {
+            if (word == "SEES" || word == "DOORS") section = word;
+            else if (section == "SEES") room.sees.insert(word);
+        }
+        result[(*it)[1]] = room;
+    }
+    return result;
+}
+
+/// Prefix of an outside header -> the files that may include it.
+const std::map<std::string, std::set<std::string>> kDoors{
+    {"glm/", {"src/base/vec.h"}},
+    {"tbb/", {"src/base/parallel.cpp"}},
+    {"oneapi/", {}},
+    {"opensubdiv/", {"surfaces/"}},
+    {"tiny_obj_loader.h", {"src/scene/"}},
+    {"tiny_gltf.h", {"src/scene/gltf"}},
+    {"nlohmann/", {"src/scene/json.h", "src/sweep/json.h", "src/cli/json.h"}},
+    {"OpenImageIO/", {"src/image/"}},
+    {"OpenEXR/", {"src/image/"}},
+    {"embree", {"src/truth/"}},
+    {"CLI/", {"src/cli/"}},
+    {"fmt/", {}},
+    {"Imath/", {"src/image/"}},
+};
+
+bool allowed(const std::set<std::string>& doors, const std::string& file) {
+    for (const std::string& door : doors)
+        if (file.rfind(door, 0) == 0) return true;
+    return false;
+}
+
+const std::vector<std::string> kFolders{"src", "reflect", "refract", "surfaces"};
+
+}  // namespace
+
+TEST_CASE("every outside library is included through its one door", "[laws]") {
+    std::map<std::string, std::set<std::string>> doors_used;
+    for (const std::string& folder : kFolders) {
+        for (const Include& include : includes_under(folder)) {
+            for (const auto& [prefix, doors] : kDoors) {
+                if (include.target.rfind(prefix, 0) != 0) continue;
+                INFO(include.file << " includes " << include.target);
+                CHECK(allowed(doors, include.file));
+                doors_used[prefix].insert(include.file);
+            }
+        }
+    }
+    // The table would be worth nothing if it matched nothing.
+    for (const char* used : {"glm/", "tbb/", "opensubdiv/", "nlohmann/", "OpenImageIO/", "embree", "CLI/", "tiny_gltf.h"})
+        CHECK_FALSE(doors_used[used].empty());
+    // One file each: whoever wants the library asks that file.
+    for (const char* single : {"glm/", "tbb/"}) CHECK(doors_used[single].size() == 1);
+}
+
+TEST_CASE("no header of ours brings an outside library with it, but for the vocabulary", "[laws]") {
+    const std::set<std::string> vocabulary{"src/base/vec.h", "src/scene/json.h", "src/sweep/json.h", "src/cli/json.h",
+                                           "src/truth/embree_device.h"};  // the last is the door's own, for that room's .cpp files
+    for (const std::string& folder : kFolders) {
+        for (const Include& include : includes_under(folder)) {
+            if (include.file.size() < 2 || include.file.substr(include.file.size() - 2) != ".h") continue;
+            for (const auto& [prefix, doors] : kDoors) {
+                if (include.target.rfind(prefix, 0) != 0) continue;
+                INFO(include.file << " includes " << include.target);
+                CHECK(vocabulary.count(include.file) == 1);
+            }
+        }
+    }
+}
+
+TEST_CASE("rooms include only rooms that they may see", "[laws]") {
+    const std::map<std::string, Room> all = rooms();
+    REQUIRE(all.size() >= 14);
+    std::size_t checked = 0;
+    for (const auto& [name, room] : all) {
+        for (const Include& include : includes_under(room.folder)) {
+            if (include.angled) continue;
+            const std::size_t slash = include.target.find('/');
+            INFO(include.file << " includes " << include.target);
+            REQUIRE(slash != std::string::npos);
+            CHECK(room.sees.count(include.target.substr(0, slash)) == 1);
+            ++checked;
+        }
+    }
+    CHECK(checked > 100);
+}
+
+TEST_CASE("the arrows between rooms have no way back", "[laws]") {
+    const std::map<std::string, Room> all = rooms();
+    for (const auto& [name, room] : all) {
+        // Everything reachable from what the room sees; itself must not be among it.
+        std::set<std::string> reached;
+        std::vector<std::string> open;
+        for (const std::string& next : room.sees)
+            if (next != name) open.push_back(next);
+        while (!open.empty()) {
+            const std::string next = open.back();
+            open.pop_back();
+            if (!reached.insert(next).second) continue;
+            for (const std::string& further : all.at(next).sees)
+                if (further != next) open.push_back(further);
+        }
+        INFO(name);
+        CHECK(reached.count(name) == 0);
+    }
+}

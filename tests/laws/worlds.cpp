@@ -1,0 +1,128 @@
+#include "laws/worlds.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.h"
+#include "image/image_io.h"
+#include "support/test.h"
+
+using namespace trilens;
+namespace fs = std::filesystem;
+
+namespace trilens_test {
+namespace {
+
+void ignore(const std::string&) {}
+
+std::unique_ptr<World> finish(Scene scene, int n) {
+    for (Mesh& mesh : scene.meshes)
+        if (mesh.role == Role::kOptic) mesh.resolution = n;
+    return make_world(std::move(scene), ignore);
+}
+
+struct Box {
+    Vec3 low{1e300}, high{-1e300};
+};
+
+/// Bounds of an OBJ's vertices.
+Box obj_bounds(const std::string& file) {
+    std::ifstream in(file);
+    Box box;
+    std::string word;
+    while (in >> word) {
+        if (word == "v") {
+            Vec3 p;
+            in >> p.x >> p.y >> p.z;
+            box.low = glm::min(box.low, p);
+            box.high = glm::max(box.high, p);
+        }
+        in.ignore(1 << 20, '\n');
+    }
+    return box;
+}
+
+std::string number(double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return text;
+}
+
+/// The transform that brings a box to `size` around `centre`, as JSON.
+std::string fit(const Box& box, double size, const Vec3& centre) {
+    const Vec3 extent = box.high - box.low;
+    const double scale = size / std::max({extent.x, extent.y, extent.z});
+    const Vec3 move = centre - scale * 0.5 * (box.low + box.high);
+    return "{\"translate\":[" + number(move.x) + "," + number(move.y) + "," + number(move.z) + "],\"scale\":[" + number(scale) + "," +
+           number(scale) + "," + number(scale) + "]}";
+}
+
+std::string wall(const std::string& name, const std::string& points) {
+    return "{\"name\":\"" + name + "\",\"role\":\"object\",\"material\":\"" + name + "\",\"points\":" + points +
+           ",\"faceVertexCounts\":[4],\"faceVertexIndices\":[0,1,2,3]}";
+}
+
+}  // namespace
+
+const std::vector<std::string>& shipped_scenes() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> found;
+        for (const auto& entry : fs::directory_iterator(source_dir() + "/scenes"))
+            if (entry.path().extension() == ".json") found.push_back(entry.path().stem().string());
+        std::sort(found.begin(), found.end());
+        return found;
+    }();
+    return names;
+}
+
+std::unique_ptr<World> shipped_world(const std::string& name, int n, int width, int height, std::string* missing) {
+    const std::vector<SceneOverride> film{{"/film/width", std::to_string(width)}, {"/film/height", std::to_string(height)}};
+    try {
+        return finish(load_scene(source_dir() + "/scenes/" + name + ".json", film, {read_texture, decode_texture}), n);
+    } catch (const InputError& error) {
+        // Only a model that Debian packages and this machine lacks may be missing.
+        if (!missing || fs::exists("/usr/share/assimp/models") || std::string(error.what()).find("/usr/share/assimp") == std::string::npos)
+            throw;
+        *missing = error.what();
+        return nullptr;
+    }
+}
+
+std::vector<std::string> data_cages() {
+    std::vector<std::string> found;
+    if (data_missing("cages")) return found;
+    for (const auto& entry : fs::directory_iterator(data_dir() + "/cages"))
+        if (entry.path().extension() == ".obj") found.push_back(entry.path().filename().string());
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+std::unique_ptr<World> world_from(const std::string& name, const std::string& json, int n) {
+    const std::string file = scratch_dir("worlds_" + name) + "/" + name + ".json";
+    std::ofstream(file) << json;
+    return finish(load_scene(file, {}, {read_texture, decode_texture}), n);
+}
+
+std::unique_ptr<World> cage_world(const std::string& cage, int n, int width, int height) {
+    const std::string cage_file = data_dir() + "/cages/" + cage, model_file = data_dir() + "/models/spot.obj";
+    const std::string scheme = cage.rfind("loop_", 0) == 0 ? "loop" : "catmullClark";
+    const std::string json =
+        "{\"version\":1,\"film\":{\"width\":" + std::to_string(width) + ",\"height\":" + std::to_string(height) +
+        "},\"cameras\":[{\"name\":\"main\",\"type\":\"perspective\",\"yfov\":40,\"lookAt\":{\"eye\":[0.4,0.9,4.4],\"at\":[0,0,0],\"up\":[0,1,0]}}],"
+        "\"materials\":[{\"name\":\"chrome\",\"metallicFactor\":1,\"roughnessFactor\":0},{\"name\":\"floor\"},{\"name\":\"back\"},{\"name\":\"left\"},"
+        "{\"name\":\"right\"},{\"name\":\"ceiling\"},{\"name\":\"front\"},{\"name\":\"spot\"}],\"meshes\":["
+        "{\"name\":\"cage\",\"role\":\"optic\",\"material\":\"chrome\",\"file\":\"" + cage_file + "\",\"subdivisionScheme\":\"" + scheme +
+        "\",\"transform\":" + fit(obj_bounds(cage_file), 2.2, Vec3(0)) + "},"
+        "{\"name\":\"spot\",\"role\":\"object\",\"material\":\"spot\",\"file\":\"" + model_file + "\",\"transform\":" +
+        fit(obj_bounds(model_file), 1.6, Vec3(1.7, -0.6, 1.2)) + "}," +
+        wall("floor", "[[-3,-1.5,5],[3,-1.5,5],[3,-1.5,-3],[-3,-1.5,-3]]") + "," +
+        wall("back", "[[-3,-1.5,-3],[3,-1.5,-3],[3,2.8,-3],[-3,2.8,-3]]") + "," +
+        wall("left", "[[-3,-1.5,5],[-3,-1.5,-3],[-3,2.8,-3],[-3,2.8,5]]") + "," +
+        wall("right", "[[3,-1.5,-3],[3,-1.5,5],[3,2.8,5],[3,2.8,-3]]") + "," +
+        wall("ceiling", "[[-3,2.8,-3],[3,2.8,-3],[3,2.8,5],[-3,2.8,5]]") + "," +
+        wall("front", "[[3,-1.5,5],[-3,-1.5,5],[-3,2.8,5],[3,2.8,5]]") + "],\"lights\":[{\"type\":\"ambient\"}]}";
+    return world_from("cage_" + cage, json, n);
+}
+
+}  // namespace trilens_test

@@ -1,0 +1,30 @@
+// Worlds for laws that hold across rooms: shipped scenes, and cages as mirrors in a room.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/console.h"
+#include "cli/world.h"
+#include "scene/load.h"
+
+namespace trilens_test {
+
+/// The names of the scenes that ship, without folder and ".json".
+const std::vector<std::string>& shipped_scenes();
+
+/// A shipped scene on a film of width x height, its optics at resolution n. Empty where a file that the scene
+/// needs is not installed (`missing` then says which).
+std::unique_ptr<trilens::World> shipped_world(const std::string& name, int n, int width, int height, std::string* missing = nullptr);
+
+/// A cage of the outside data as a mirror in a coloured room with a model in it; both scaled to fit.
+std::unique_ptr<trilens::World> cage_world(const std::string& cage, int n, int width, int height);
+
+/// The outside data's cages, "catmark_cube.obj" and so on; empty where the data are missing.
+std::vector<std::string> data_cages();
+
+/// A world from JSON text.
+std::unique_ptr<trilens::World> world_from(const std::string& name, const std::string& json, int n);
+
+}  // namespace trilens_test

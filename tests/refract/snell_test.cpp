@@ -1,0 +1,150 @@
+// Snell's law and the Fresnel equations for one ray: textbook values, reversibility, limits.
+#include "refract/snell.h"
+
+#include <cmath>
+#include <random>
+
+#include "support/test.h"
+
+using namespace trilens;
+
+namespace {
+
+struct Draw {
+    std::mt19937_64 engine{32};
+    double uniform(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(engine);
+    }
+    double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
+    Vec3 unit() { return normalize(Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) + Vec3(0, 0, 1e-9)); }
+};
+
+/// A ray that arrives at `angle` on the plane y = 0 from above.
+Vec3 arriving(double angle) {
+    return {std::sin(angle), -std::cos(angle), 0};
+}
+const Vec3 kUp{0, 1, 0};
+
+// Intensities by Fresnel's sine and tangent formulas: a second way to write the equations, good away from 0
+// and pi/2.
+double reflected_perpendicular(double in, double out) {
+    return std::pow(std::sin(in - out) / std::sin(in + out), 2);
+}
+double reflected_parallel(double in, double out) {
+    return std::pow(std::tan(in - out) / std::tan(in + out), 2);
+}
+
+}  // namespace
+
+TEST_CASE("refraction keeps the plane and the length, and the sines have the ratio of the indices") {
+    Draw draw;
+    int refracted_count = 0, reflected_count = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const double eta = draw.log_uniform(1 / 3.0, 3);
+        const Vec3 normal = draw.unit();
+        Vec3 incoming = draw.log_uniform(1e-4, 1e4) * draw.unit();
+        if (dot(incoming, normal) > 0) incoming = -incoming;
+        const double size = length(incoming), sin_in = length(cross(incoming, normal)) / size;
+        const auto outgoing = refracted(incoming, normal, eta);
+        if (std::fabs(eta * sin_in - 1) < 1e-12) continue;
+        REQUIRE(outgoing.has_value() == (eta * sin_in < 1));
+        if (!outgoing) {
+            ++reflected_count;
+            continue;
+        }
+        ++refracted_count;
+        CHECK(length(*outgoing) == Approx(size).epsilon(1e-14));
+        CHECK(dot(*outgoing, normal) <= 0);
+        CHECK(std::fabs(triple(incoming, normal, *outgoing)) <= 1e-13 * size * size);
+        CHECK(length(cross(*outgoing, normal)) / size == Approx(eta * sin_in).epsilon(1e-12).margin(1e-14));
+        CHECK(dot(cross(*outgoing, normal), cross(incoming, normal)) >= 0);
+    }
+    CHECK(refracted_count > 3000);
+    CHECK(reflected_count > 500);
+}
+
+TEST_CASE("light takes the same way back") {
+    Draw draw;
+    for (int i = 0; i < 2000; ++i) {
+        const double eta = draw.log_uniform(1 / 3.0, 3);
+        const Vec3 incoming = arriving(draw.uniform(0, 1.5));
+        const auto outgoing = refracted(incoming, kUp, eta);
+        if (!outgoing || -outgoing->y < 1e-3) continue;
+        const auto back = refracted(-*outgoing, -kUp, 1 / eta);
+        REQUIRE(back.has_value());
+        CHECK(length(*back + incoming) < 1e-12 / -incoming.y);
+        CHECK(fresnel_reflectance(-incoming.y, eta) ==
+              Approx(fresnel_reflectance(-outgoing->y, 1 / eta)).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("known refractions: straight through, equal media, glass at 30 degrees") {
+    CHECK(length(*refracted({0, -2, 0}, kUp, 1 / 1.5) - Vec3(0, -2, 0)) < 1e-15);
+    CHECK(length(*refracted(arriving(1.2), kUp, 1) - arriving(1.2)) < 1e-15);
+    const double inside = std::asin(0.5 / 1.5);  // 19.4712 degrees
+    CHECK(inside * 180 / M_PI == Approx(19.4712206));
+    CHECK(length(*refracted(arriving(M_PI / 6), kUp, 1 / 1.5) - arriving(inside)) < 1e-15);
+}
+
+TEST_CASE("total internal reflection begins at the critical angle") {
+    for (const double ior : {1.1, 1.33, 1.5, 2.4}) {
+        const double critical = std::asin(1 / ior);
+        CHECK(refracted(arriving(critical - 1e-9), kUp, ior).has_value());
+        CHECK_FALSE(refracted(arriving(critical + 1e-9), kUp, ior).has_value());
+        CHECK(fresnel_reflectance(std::cos(critical + 1e-9), ior) == 1);
+        CHECK(fresnel_reflectance(std::cos(critical - 1e-12), ior) == Approx(1).margin(1e-4));
+    }
+}
+
+TEST_CASE("normals turned past grazing count as grazing; rays without direction refract to nothing") {
+    const auto grazing = refracted({1, 0, 0}, kUp, 1 / 1.5);
+    const auto beyond = refracted(normalize(Vec3(1, 1e-6, 0)), kUp, 1 / 1.5);
+    REQUIRE(grazing.has_value());
+    REQUIRE(beyond.has_value());
+    CHECK(length(*grazing - *beyond) < 3e-6);
+    CHECK(grazing->x == Approx(1 / 1.5));
+    CHECK_FALSE(refracted({0, 0, 0}, kUp, 1 / 1.5).has_value());
+}
+
+TEST_CASE("reflectance: 4 percent for glass head on, all at grazing, sums of tangents and sines between") {
+    CHECK(fresnel_reflectance(1, 1 / 1.5) == Approx(0.04).epsilon(1e-14));
+    CHECK(fresnel_reflectance(1, 1.5) == Approx(0.04).epsilon(1e-14));
+    CHECK(fresnel_reflectance(1, 1 / 1.33) == Approx(std::pow(0.33 / 2.33, 2)).epsilon(1e-13));
+    CHECK(fresnel_reflectance(0, 1 / 1.5) == 1);
+    CHECK(fresnel_reflectance(0.3, 1) == Approx(0).margin(1e-30));
+
+    Draw draw;
+    for (int i = 0; i < 2000; ++i) {
+        const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0.01, 1.5);
+        if (eta * std::sin(in) >= 0.999 || std::fabs(eta - 1) < 1e-3) continue;
+        const double out = std::asin(eta * std::sin(in));
+        const double expected = 0.5 * (reflected_perpendicular(in, out) + reflected_parallel(in, out));
+        const double reflectance = fresnel_reflectance(std::cos(in), eta);
+        CHECK(reflectance == Approx(expected).epsilon(1e-8).margin(1e-14));
+        CHECK(reflectance >= 0);
+        CHECK(reflectance <= 1);
+    }
+}
+
+TEST_CASE("at Brewster's angle the part parallel to the plane of incidence is not reflected") {
+    for (const double ior : {1.1, 1.33, 1.5, 2.4}) {
+        const double brewster = std::atan(ior), out = M_PI / 2 - brewster;
+        const double perpendicular = reflected_perpendicular(brewster, out);
+        CHECK(fresnel_reflectance(std::cos(brewster), 1 / ior) == Approx(0.5 * perpendicular).epsilon(1e-12));
+        CHECK(perpendicular == Approx(std::pow((ior * ior - 1) / (ior * ior + 1), 2)).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy") {
+    // Transmitted intensity from the amplitudes of transmission, weighted by index and cosine.
+    Draw draw;
+    for (int i = 0; i < 2000; ++i) {
+        const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0, 1.55);
+        const double sin_out = eta * std::sin(in);
+        if (sin_out >= 1) continue;
+        const double ci = std::cos(in), co = std::sqrt(1 - sin_out * sin_out);
+        const double ts = 2 * eta * ci / (eta * ci + co), tp = 2 * eta * ci / (ci + eta * co);
+        const double transmitted = co / (eta * ci) * 0.5 * (ts * ts + tp * tp);
+        CHECK(fresnel_reflectance(ci, eta) + transmitted == Approx(1).epsilon(1e-10));
+    }
+}

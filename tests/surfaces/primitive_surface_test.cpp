@@ -1,0 +1,300 @@
+// Laws of primitives: their points satisfy their equations, their hits are the first, and both agree.
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "base/error.h"
+#include "support/test.h"
+#include "surfaces/surfaces.h"
+
+using namespace trilens;
+
+namespace {
+
+using Type = Primitive::Type;
+constexpr Type kTypes[] = {Type::kSphere, Type::kParaboloid, Type::kCylinder, Type::kPlane};
+
+/// A primitive somewhere in space, of a size around `scale`.
+Primitive random_primitive(Type type, double scale, std::mt19937& random) {
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> size(0.5, 2);
+    const auto direction = [&] { return normalize(Vec3(normal(random), normal(random), normal(random))); };
+    Primitive primitive;
+    primitive.type = type;
+    primitive.center = scale * 3.0 * direction();
+    primitive.axis = direction();
+    primitive.tangent = normalize(cross(primitive.axis, direction()));
+    primitive.radius = scale * size(random);
+    primitive.focal_length = scale * size(random);
+    primitive.height = scale * size(random);
+    primitive.size = scale * Vec2(size(random), size(random));
+    return primitive;
+}
+
+struct Local {
+    double x, y, z;
+};
+Local to_local(const Primitive& p, const Vec3& world) {
+    const Vec3 offset = world - p.center;
+    return {dot(offset, p.tangent), dot(offset, cross(p.axis, p.tangent)), dot(offset, p.axis)};
+}
+
+/// How far a point is from satisfying the shape's equation, about in units of length.
+double residual(const Primitive& p, const Vec3& world) {
+    const Local q = to_local(p, world);
+    switch (p.type) {
+        case Type::kSphere:
+            return std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z) - p.radius;
+        case Type::kParaboloid:
+            return (q.x * q.x + q.y * q.y) / (4 * p.focal_length) - q.z;
+        case Type::kCylinder:
+            return std::hypot(q.x, q.y) - p.radius;
+        case Type::kPlane:
+            break;
+    }
+    return q.z;
+}
+
+bool is_inside_bounds(const Primitive& p, const Vec3& world, double slack) {
+    const Local q = to_local(p, world);
+    switch (p.type) {
+        case Type::kSphere:
+            return true;
+        case Type::kParaboloid:
+            return std::hypot(q.x, q.y) <= p.radius + slack;
+        case Type::kCylinder:
+            return std::abs(q.z) <= p.height / 2 + slack;
+        case Type::kPlane:
+            break;
+    }
+    return std::abs(q.x) <= p.size.x / 2 + slack && std::abs(q.y) <= p.size.y / 2 + slack;
+}
+
+/// The unit normal of the equation on the side that is the front.
+Vec3 front(const Primitive& p, const Vec3& world) {
+    const Local q = to_local(p, world);
+    const Vec3 side = cross(p.axis, p.tangent);
+    switch (p.type) {
+        case Type::kSphere:
+            return normalize(world - p.center);
+        case Type::kParaboloid:
+            return normalize(2 * p.focal_length * p.axis - q.x * p.tangent - q.y * side);
+        case Type::kCylinder:
+            return normalize(q.x * p.tangent + q.y * side);
+        case Type::kPlane:
+            break;
+    }
+    return p.axis;
+}
+
+Vec2 random_uv(std::mt19937& random) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    std::uniform_int_distribution<int> kind(0, 5);
+    const auto one = [&] {
+        const int k = kind(random);
+        return k == 0 ? 0.0 : k == 1 ? 1.0 : unit(random);
+    };
+    return {one(), one()};
+}
+
+}  // namespace
+
+TEST_CASE("Points of primitives satisfy the equation, with its normal and derivatives", "[surfaces]") {
+    std::mt19937 random(3);
+    for (Type type : kTypes)
+        for (double scale : {1e-4, 1e-2, 1.0, 1e2, 1e4}) {
+            CAPTURE(static_cast<int>(type), scale);
+            const Primitive primitive = random_primitive(type, scale, random);
+            const auto surface = make_primitive_surface(primitive);
+            double area = 0;
+            for (int i = 0; i < 200; ++i) {
+                const Id face = static_cast<Id>(random() % surface->face_count());
+                const Vec2 uv = random_uv(random);
+                const SurfacePoint point = surface->eval(face, uv);
+                CHECK(std::abs(residual(primitive, point.position)) < 1e-14 * scale * 10);
+                CHECK(is_inside_bounds(primitive, point.position, 1e-14 * scale * 10));
+                CHECK(length(point.normal - front(primitive, point.position)) < 1e-13);
+                CHECK(length(point.normal - normalize(cross(point.du, point.dv))) < 1e-12);
+                area += length(cross(point.du, point.dv)) / (scale * scale);
+
+                const Vec2 inside = glm::clamp(uv, 0.01, 0.99);
+                constexpr double kStep = 1e-5;
+                const auto at = [&](double u, double v) { return surface->eval(face, inside + Vec2(u, v)); };
+                const SurfacePoint here = at(0, 0), r = at(kStep, 0), l = at(-kStep, 0), t = at(0, kStep),
+                                   b = at(0, -kStep);
+                const double tolerance = 1e-8 * scale * 2 * kStep * 10;
+                CHECK(length(r.position - l.position - 2 * kStep * here.du) < tolerance);
+                CHECK(length(t.position - b.position - 2 * kStep * here.dv) < tolerance);
+                CHECK(length(r.du - l.du - 2 * kStep * here.duu) < tolerance);
+                CHECK(length(t.du - b.du - 2 * kStep * here.duv) < tolerance);
+                CHECK(length(r.dv - l.dv - 2 * kStep * here.duv) < tolerance);
+                CHECK(length(t.dv - b.dv - 2 * kStep * here.dvv) < tolerance);
+            }
+            CHECK(area > 0);
+        }
+}
+
+TEST_CASE("The faces of a primitive cover it once", "[surfaces]") {
+    std::mt19937 random(4);
+    for (Type type : kTypes) {
+        CAPTURE(static_cast<int>(type));
+        const Primitive p = random_primitive(type, 1, random);
+        const auto surface = make_primitive_surface(p);
+        // The integral of |du x dv| over all faces against the area in closed form.
+        double area = 0;
+        constexpr int kSteps = 200;
+        for (Id face = 0; face < surface->face_count(); ++face)
+            for (int i = 0; i < kSteps; ++i)
+                for (int j = 0; j < kSteps; ++j) {
+                    const SurfacePoint point = surface->eval(face, {(i + 0.5) / kSteps, (j + 0.5) / kSteps});
+                    area += length(cross(point.du, point.dv)) / (kSteps * kSteps);
+                }
+        const double pi = 3.14159265358979323846, f = p.focal_length, r = p.radius;
+        const double expected = type == Type::kSphere ? 4 * pi * r * r
+                                : type == Type::kParaboloid
+                                    ? 8 * pi * f * f / 3 * (std::pow(1 + r * r / (4 * f * f), 1.5) - 1)
+                                : type == Type::kCylinder ? 2 * pi * r * p.height
+                                                          : p.size.x * p.size.y;
+        CHECK(area == Approx(expected).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("A hit lies on the ray and on the surface, and is the first", "[surfaces]") {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> exponent(-3, 3);
+    for (Type type : kTypes)
+        for (double scale : {1e-4, 1.0, 1e4}) {
+            CAPTURE(static_cast<int>(type), scale);
+            const Primitive primitive = random_primitive(type, scale, random);
+            const auto surface = make_primitive_surface(primitive);
+            CHECK(surface->has_closed_form());
+            int hits = 0, misses = 0;
+            for (int i = 0; i < 300; ++i) {
+                // Towards a point of the surface or beside it, from near or far, with a direction of any
+                // length.
+                const Vec3 target =
+                    surface->eval(static_cast<Id>(random() % surface->face_count()), random_uv(random))
+                        .position +
+                    (i % 3 == 0 ? scale * Vec3(normal(random), normal(random), normal(random)) : Vec3(0));
+                const double far = scale * std::pow(10, exponent(random));
+                Ray ray{target + far * normalize(Vec3(normal(random), normal(random), normal(random))), {}};
+                ray.direction = (target - ray.origin) * std::pow(10, exponent(random));
+                const auto hit = surface->intersect(ray, 0);
+                // What a ray says is known to the rounding of its origin, its direction and the equation.
+                const double tolerance = 1e-14 * (far + 10 * scale) * 4;
+
+                // Brute force: signs of the equation along the ray, from behind the origin to past the shape.
+                const double reach =
+                    (length(ray.origin - primitive.center) + 10 * scale) / length(ray.direction);
+                const double t0 = std::max(
+                    0.0, (length(ray.origin - primitive.center) - 10 * scale) / length(ray.direction));
+                std::optional<double> first;
+                constexpr int kSteps = 4000;
+                for (int k = 0; k < kSteps && !first; ++k) {
+                    double a = t0 + (reach - t0) * k / kSteps, b = t0 + (reach - t0) * (k + 1) / kSteps;
+                    const auto value = [&](double t) {
+                        return residual(primitive, ray.origin + t * ray.direction);
+                    };
+                    if ((value(a) > 0) == (value(b) > 0)) continue;
+                    for (int step = 0; step < 60; ++step)
+                        ((value(a) > 0) == (value((a + b) / 2) > 0) ? a : b) = (a + b) / 2;
+                    if (is_inside_bounds(primitive, ray.origin + b * ray.direction, -100 * tolerance))
+                        first = b;
+                }
+                if (first) {
+                    ++hits;
+                    REQUIRE(hit);
+                    // The surface may be hit once more between two steps, so the hit may be earlier, never
+                    // later.
+                    CHECK((hit->t - *first) * length(ray.direction) < 1e-6 * (far + scale));
+                } else {
+                    ++misses;
+                }
+                if (!hit) continue;
+                CHECK(hit->t > 0);
+                const Vec3 on_ray = ray.origin + hit->t * ray.direction;
+                const SurfacePoint again = surface->eval(hit->face, hit->uv);
+                CHECK(again.position == hit->point.position);
+                CHECK(again.normal == hit->point.normal);
+                CHECK(length(on_ray - again.position) < 100 * tolerance);
+            }
+            CHECK(hits > 50);
+            CHECK(misses > 10);
+        }
+}
+
+TEST_CASE("t_min leaves earlier hits out", "[surfaces]") {
+    const auto sphere = make_primitive_surface(Primitive{});
+    const Ray ray{{0, 0, 5}, {0, 0, -2}};
+    CHECK(sphere->intersect(ray, 0)->t == Approx(2));
+    CHECK(sphere->intersect(ray, 2.5)->t == Approx(3));
+    CHECK_FALSE(sphere->intersect(ray, 3.5));
+    CHECK_FALSE(sphere->intersect({{0, 0, 5}, {0, 0, 2}}, 0));
+    CHECK_FALSE(sphere->intersect({{0, 0, 5}, {0, 0, 0}}, 0));
+    CHECK_FALSE(sphere->intersect({{0, 0, 5}, {0, std::nan(""), -1}}, 0));
+    CHECK_FALSE(sphere->intersect({{0, 2, 5}, {0, 0, -1}}, 0));
+}
+
+TEST_CASE("Rays along the axis, through the rim's plane and along the surface", "[surfaces]") {
+    Primitive dish;
+    dish.type = Type::kParaboloid;
+    dish.axis = {0, 0, 1};
+    dish.radius = 2;
+    dish.focal_length = 0.5;
+    const auto paraboloid = make_primitive_surface(dish);
+    const auto down = paraboloid->intersect({{1, 0.5, 10}, {0, 0, -1}}, 0);
+    REQUIRE(down);
+    CHECK(length(down->point.position - Vec3(1, 0.5, 0.625)) < 1e-15);
+    // The law of the parabola: axis-parallel rays reflect through the focus.
+    const Vec3 reflected =
+        Vec3(0, 0, -1) - 2.0 * dot(Vec3(0, 0, -1), down->point.normal) * down->point.normal;
+    CHECK(length(cross(reflected, Vec3(0, 0, 0.5) - down->point.position)) < 1e-15);
+
+    Primitive tube;
+    tube.type = Type::kCylinder;
+    tube.axis = {0, 0, 1};
+    const auto cylinder = make_primitive_surface(tube);
+    CHECK_FALSE(cylinder->intersect({{0.5, 0, 10}, {0, 0, -1}}, 0));
+    CHECK(cylinder->intersect({{0, 0, 0.9}, {1, 0, 0}}, 0)->t == Approx(1));
+    CHECK_FALSE(cylinder->intersect({{0, 0, 1.1}, {1, 0, 0}}, 0));
+
+    Primitive square;
+    square.type = Type::kPlane;
+    const auto plane = make_primitive_surface(square);
+    CHECK_FALSE(plane->intersect({{-5, 0, 0}, {1, 0, 0}}, 0));
+    CHECK(plane->intersect({{0.5, 1, -0.5}, {0, -1, 0}}, 0)->point.normal == Vec3(0, 1, 0));
+}
+
+TEST_CASE("Grids of primitives close, and their points satisfy the equation", "[surfaces]") {
+    std::mt19937 random(6);
+    for (int n : {1, 4, 9}) {
+        CHECK(
+            make_grid(*make_primitive_surface(random_primitive(Type::kSphere, 1, random)), n).points.size() ==
+            static_cast<std::size_t>(6 * n * n + 2));
+        CHECK(make_grid(*make_primitive_surface(random_primitive(Type::kCylinder, 1, random)), n)
+                  .points.size() == static_cast<std::size_t>(4 * n * (n + 1)));
+        CHECK(make_grid(*make_primitive_surface(random_primitive(Type::kParaboloid, 1, random)), n)
+                  .points.size() == static_cast<std::size_t>((n + 1) * (n + 1) + 4 * n * n));
+        CHECK(
+            make_grid(*make_primitive_surface(random_primitive(Type::kPlane, 1, random)), n).points.size() ==
+            static_cast<std::size_t>((n + 1) * (n + 1)));
+    }
+}
+
+TEST_CASE("Primitives without a size or a frame are refused", "[surfaces]") {
+    Primitive bad;
+    bad.radius = 0;
+    CHECK_THROWS_AS(make_primitive_surface(bad), InputError);
+    bad.radius = std::numeric_limits<double>::infinity();
+    CHECK_THROWS_AS(make_primitive_surface(bad), InputError);
+    bad = Primitive{};
+    bad.tangent = 2.0 * bad.axis;
+    CHECK_THROWS_AS(make_primitive_surface(bad), InputError);
+    bad = Primitive{};
+    bad.type = Type::kParaboloid;
+    bad.focal_length = -1;
+    CHECK_THROWS_AS(make_primitive_surface(bad), InputError);
+}
