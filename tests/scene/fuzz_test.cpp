@@ -1,5 +1,6 @@
 // Law: a scene with any part deleted or replaced either loads or fails with a message that names its file.
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -46,7 +47,7 @@ Json random_value(std::mt19937& random, int depth) {
         case 4:
             return strings[random() % strings.size()];
         case 5:
-            return static_cast<std::int64_t>(random()) * static_cast<std::int64_t>(random());
+            return static_cast<std::int64_t>(random()) * static_cast<std::int64_t>(random() % 100) - 7;
         case 6: {
             Json array = Json::array();
             for (unsigned i = random() % 6; i > 0; --i) array.push_back(random_value(random, depth + 1));
