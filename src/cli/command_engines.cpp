@@ -123,7 +123,7 @@ std::string table_text(const std::vector<StudyRow>& rows) {
 /// Share of differing pixels over K, all rows together.
 std::string share_plot(const std::string& title, const std::vector<StudyRow>& rows) {
     PlotParams params;
-    params.title = "Classic against exact engine: " + title;
+    params.title = "Classic against exact engine: " + title + ", n = " + rows.front().resolution;
     params.x_label = "K [slices a stretch; K × K triangles]";
     params.y_label = "pixels that differ [%]";
     const auto percent = [&](Curves curves, int pieces) {
@@ -216,6 +216,9 @@ void register_sweep_engines(const CommandRegistry& registry, CLI::App& sweep) {
     CLI::App* command = sweep.add_subcommand("engines", "the classic engine against the exact one: curves and clipping");
     command->add_option("SCENES", options->scenes, "scene files")->required();
     command->add_option("-o,--output", options->output, "folder for the tables and plots")->required()->type_name("DIR");
+    options->scene.resolution = 2;
+    command->add_option("-n,--resolution", options->scene.resolution, "resolution of the optics while K varies: coarse facets bend edges most")
+        ->check(CLI::Range(1, 1 << 14))->capture_default_str()->type_name("N");
     add_scene_overrides(*command, options->scene);
     registry.add(command, "sweep", [options](Console& console) { return run(*options, console); });
 }
