@@ -218,7 +218,7 @@ void register_sweep_engines(const CommandRegistry& registry, CLI::App& sweep) {
     command->add_option("-o,--output", options->output, "folder for the tables and plots")->required()->type_name("DIR");
     options->scene.resolution = 2;
     command->add_option("-n,--resolution", options->scene.resolution, "resolution of the optics while K varies: coarse facets bend edges most")
-        ->check(CLI::Range(1, 1 << 14))->capture_default_str()->type_name("N");
+        ->check(CLI::Range(1, 1024))->capture_default_str()->type_name("N");
     add_scene_overrides(*command, options->scene);
     registry.add(command, "sweep", [options](Console& console) { return run(*options, console); });
 }
