@@ -1,5 +1,6 @@
 // Makes the scenes of the thesis' chapters 4 and 5: one facet and one triangle for each configuration of
 // shapes.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -14,12 +15,12 @@ using namespace trilens;
 
 struct Figure {
     std::string number;  // of the thesis
-    Configuration configuration;
+    Configuration configuration;  // in the thesis' order
     std::uint64_t seed = 0;
 };
 
-const Figure kFigures[] = {{"4.1", {2, 2, 2, 3}, 41}, {"4.2", {3, 3, 3}, 42}, {"4.3", {2, 3, 4}, 43},
-                           {"4.4", {4, 5}, 44},       {"4.5", {3, 6}, 45},    {"4.6", {2, 7}, 46},
+const Figure kFigures[] = {{"4.1", {2, 2, 2, 3}, 41}, {"4.2", {3, 3, 3}, 42}, {"4.3", {4, 2, 3}, 43},
+                           {"4.4", {4, 5}, 44},       {"4.5", {6, 3}, 45},    {"4.6", {2, 7}, 46},
                            {"4.7", {9}, 47}};
 
 std::string file_name(const std::string& folder, const Figure& figure) {
@@ -30,14 +31,16 @@ std::string file_name(const std::string& folder, const Figure& figure) {
 }
 
 bool make_configuration(const std::string& folder, const Figure& figure) {
-    const Found found = search(figure.configuration, figure.seed);
+    Configuration wanted = figure.configuration;
+    std::sort(wanted.begin(), wanted.end());
+    const Found found = search(wanted, figure.seed);
     if (found.framed.score == 0) {
         std::fprintf(stderr, "%s: not found in %ld draws\n", figure.number.c_str(), found.draws);
         return false;
     }
     const FacetScene scene = rounded(found.framed.scene);
     const std::vector<double> areas = visible_areas(scene);
-    if (configuration_of(scene) != figure.configuration || areas.size() != figure.configuration.size()) {
+    if (configuration_of(scene) != wanted || areas.size() != wanted.size()) {
         std::fprintf(stderr, "%s: rounding changed the configuration\n", figure.number.c_str());
         return false;
     }
