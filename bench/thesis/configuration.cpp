@@ -10,9 +10,9 @@
 namespace trilens {
 namespace {
 
-constexpr int kPerSection = 12;   // points on a piece of an edge's image
-constexpr int kTurns = 24;        // rotations of the enclosing triangle that are tried
-constexpr double kMargin = 0.04;  // of the frame's side, free on each side
+constexpr int kPerSection = 20;  // points on a piece of an edge's image
+constexpr int kTurns = 24;       // rotations of the film that are tried
+constexpr double kMargin = 0.04;  // of the film's side, free on each side
 
 using Polygon = std::vector<Vec2>;  // in the plane of weights: second and third weight
 
@@ -67,37 +67,27 @@ Rounding rounding_of(const std::vector<Polygon>& shapes) {
     return round;
 }
 
+/// The film, a unit square, from the rounded plane: film = to_film * p + shift.
 struct Frame {
-    std::array<Vec2, 3> corner{};  // in the rounded plane
-    double side = 0;
+    Mat2 to_film{1};
+    Vec2 shift{0};
+    double area = 0;  // of the film in the rounded plane; 0: no frame
 };
 
-/// The smallest equilateral triangle around the points, over kTurns rotations.
-Frame enclosing_triangle(const std::vector<Polygon>& shapes) {
+/// The smallest rectangle around the points, over kTurns rotations, with kMargin around.
+Frame enclosing_frame(const std::vector<Polygon>& shapes) {
     Frame best;
     for (int turn = 0; turn < kTurns; ++turn) {
-        std::array<Vec2, 3> normal;
-        std::array<double, 3> reach;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double angle =
-                2 * std::numbers::pi / 3 * (static_cast<double>(k) + static_cast<double>(turn) / kTurns);
-            normal[k] = {std::cos(angle), std::sin(angle)};
-            reach[k] = -std::numeric_limits<double>::infinity();
-            for (const Polygon& shape : shapes)
-                for (const Vec2& p : shape) reach[k] = std::max(reach[k], dot(normal[k], p));
-        }
-        double height = reach[0] + reach[1] + reach[2];  // the normals sum to zero
-        for (double& r : reach) r += kMargin * height;
-        height *= 1 + 3 * kMargin;
-        const double side = height * 2 / std::numbers::sqrt3;
-        if (best.side > 0 && side >= best.side) continue;
-        best.side = side;
-        for (std::size_t k = 0; k < 3; ++k) {
-            // Corner k lies where the lines of the other two normals meet.
-            const Vec2 &a = normal[(k + 1) % 3], &b = normal[(k + 2) % 3];
-            const double ra = reach[(k + 1) % 3], rb = reach[(k + 2) % 3], det = a.x * b.y - a.y * b.x;
-            best.corner[k] = {(ra * b.y - rb * a.y) / det, (a.x * rb - b.x * ra) / det};
-        }
+        const double angle = std::numbers::pi / 2 * turn / kTurns;
+        const Mat2 turned(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
+        Vec2 low(std::numeric_limits<double>::infinity()), high(-low);
+        for (const Polygon& shape : shapes)
+            for (const Vec2& p : shape) low = glm::min(low, turned * p), high = glm::max(high, turned * p);
+        const Vec2 size = (high - low) / (1 - 2 * kMargin);
+        if (!(size.x * size.y > 0) || (best.area > 0 && size.x * size.y >= best.area)) continue;
+        best.area = size.x * size.y;
+        best.to_film = Mat2(1 / size.x, 0, 0, 1 / size.y) * turned;
+        best.shift = -low / size + Vec2(kMargin);
     }
     return best;
 }
@@ -113,10 +103,19 @@ double width(const Polygon& shape) {
     return around > 0 ? 2 * std::fabs(area) / around : 0;
 }
 
+/// The least distance of a vertex of one from an edge of the other.
 double gap(const Polygon& a, const Polygon& b) {
     double least = std::numeric_limits<double>::infinity();
-    for (const Vec2& p : a)
-        for (const Vec2& q : b) least = std::min(least, dot(p - q, p - q));
+    const auto from_vertices = [&](const Polygon& points, const Polygon& edges) {
+        for (const Vec2& p : points)
+            for (std::size_t i = 0; i < edges.size(); ++i) {
+                const Vec2 q = edges[i], way = edges[(i + 1) % edges.size()] - q;
+                const double square = dot(way, way), share = square > 0 ? std::clamp(dot(p - q, way) / square, 0.0, 1.0) : 0.0;
+                const Vec2 apart = p - q - share * way;
+                least = std::min(least, dot(apart, apart));
+            }
+    };
+    from_vertices(a, b), from_vertices(b, a);
     return std::sqrt(least);
 }
 
@@ -136,11 +135,13 @@ double score_of(const FacetScene& scene) {
     if (round.flat) return 0;
     for (Polygon& shape : shapes)
         for (Vec2& p : shape) p = round.inverse * (p - round.centre);
-    const double side = enclosing_triangle(shapes).side;
+    const Frame frame = enclosing_frame(shapes);
+    for (Polygon& shape : shapes)
+        for (Vec2& p : shape) p = frame.to_film * p + frame.shift;
     double score = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        score = std::min(score, width(shapes[i]) / side);
-        for (std::size_t j = 0; j < i; ++j) score = std::min(score, 2 * gap(shapes[i], shapes[j]) / side);
+        score = std::min(score, width(shapes[i]));
+        for (std::size_t j = 0; j < i; ++j) score = std::min(score, 2 * gap(shapes[i], shapes[j]));
     }
     return std::isfinite(score) ? score : 0;
 }
@@ -150,14 +151,15 @@ FramedScene framed(const FacetScene& scene) {
     const Rounding round = rounding_of(outlines.shapes);
     for (Polygon& shape : outlines.shapes)
         for (Vec2& p : shape) p = round.inverse * (p - round.centre);
-    const Frame frame = enclosing_triangle(outlines.shapes);
+    const Frame frame = enclosing_frame(outlines.shapes);
+    const Mat2 from_film = glm::inverse(frame.to_film);
 
     // New corner rays are rays of the facet's plane; t starts before the first shape and is 1 at about the
     // last.
     FramedScene result{scene, score_of(scene)};
     const double unit = (outlines.t1 - outlines.t0) / 0.7, start = outlines.t0 - 0.2 * unit;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vec2 at = round.root * frame.corner[k] + round.centre;
+        const Vec2 at = round.root * (from_film * (kFacetOnFilm[k] - frame.shift)) + round.centre;
         const Vec3 weights(1 - at.x - at.y, at.x, at.y);
         result.scene.facet.corner[k] = {scene.facet.point(weights, start),
                                         unit * scene.facet.direction(weights)};

@@ -1,6 +1,7 @@
 // A facet and a scene triangle whose shapes form a wanted configuration, and how well a picture shows them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -17,10 +18,13 @@ struct FacetScene {
     SceneTriangle triangle;
 };
 
-/// A facet scene recut so that its facet encloses all shapes, with t > 0; world scaled to the triangle.
+/// Where the facet's corners lie on the film, 0..1 from its top left: the facet holds the whole film.
+inline constexpr std::array<Vec2, 3> kFacetOnFilm{Vec2(-0.5, 1), Vec2(1.5, 1), Vec2(0.5, -1)};
+
+/// A facet scene recut so that a film inside its facet shows all shapes, with t > 0; world scaled to the triangle.
 struct FramedScene {
     FacetScene scene;
-    double score = 0;  // the smallest shape's width or twice the smallest gap, as a share of the facet's side
+    double score = 0;  // the smallest shape's width or twice the smallest gap, as a share of the film's side
 };
 
 /// The configuration over the whole plane of weights and all t.

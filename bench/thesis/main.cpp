@@ -51,11 +51,14 @@ bool make_configuration(const std::string& folder, const Figure& figure) {
     return true;
 }
 
-/// A (4,5) whose rays begin inside its largest shape.
+constexpr double kBegin = 0.45;  // of the stretch that holds all shapes: about 0.2 to 0.9
+
+/// A (4,5) as a whole, and the same when its rays begin inside a shape.
 void make_behind(const std::string& folder) {
     const std::uint64_t seed = 411;
     FacetScene scene = search({4, 5}, seed).framed.scene;
-    scene.facet = begun_at(scene.facet, 0.45);
+    write_facet_scene(folder + "/fig_4_11_before.json", {"4.11", seed, {4, 5}}, rounded(scene));
+    scene.facet = begun_at(scene.facet, kBegin);
     const Figure figure{"4.11", {}, seed};
     write_facet_scene(file_name(folder, figure), {figure.number, seed, {}}, rounded(scene));
 }

@@ -59,7 +59,7 @@ std::string triangle_mesh(const SceneTriangle& triangle) {
 }
 
 struct SceneText {
-    std::string film, camera, meshes, materials;
+    std::string film, camera, meshes, materials, lights;
 };
 
 const std::string kPanel =
@@ -71,7 +71,7 @@ void write_scene(const std::string& file, const Origin& origin, const SceneText&
         << scene.camera
         << "\n  ],\n  \"background\": {\"color\": [0.02, 0.025, 0.035]},\n  \"materials\": [\n"
         << scene.materials << "\n  ],\n  \"meshes\": [\n"
-        << scene.meshes << "\n  ],\n  \"extras\": " << extras(origin) << "\n}\n";
+        << scene.meshes << "\n  ],\n  \"lights\": [" << scene.lights << "],\n  \"extras\": " << extras(origin) << "\n}\n";
     out.close();
     if (!out) throw std::runtime_error("cannot write " + file);
 }
@@ -117,9 +117,9 @@ FacetScene rounded(const FacetScene& scene) {
 void write_facet_scene(const std::string& file, const Origin& origin, const FacetScene& scene) {
     const std::vector<Ray> rays(scene.facet.corner.begin(), scene.facet.corner.end());
     write_scene(file, origin,
-                {"{\"width\": 520, \"height\": 450, \"spp\": 2}",
-                 ray_mesh_camera(rays, "[[0, 1], [1, 1], [0.5, 0]]", "[[0, 1, 2]]"),
-                 triangle_mesh(scene.triangle), kPanel});
+                {"{\"width\": 480, \"height\": 480, \"spp\": 2}",
+                 ray_mesh_camera(rays, "[[-0.5, 1], [1.5, 1], [0.5, -1]]", "[[0, 1, 2]]"),
+                 triangle_mesh(scene.triangle), kPanel, ""});
 }
 
 void write_two_facets(const std::string& file, const Origin& origin, const TwoFacets& two) {
@@ -127,7 +127,7 @@ void write_two_facets(const std::string& file, const Origin& origin, const TwoFa
     write_scene(file, origin,
                 {"{\"width\": 480, \"height\": 480, \"spp\": 2}",
                  ray_mesh_camera(rays, "[[0, 0], [1, 0], [1, 1], [0, 1]]", "[[0, 1, 2], [0, 2, 3]]"),
-                 triangle_mesh(two.triangle), kPanel});
+                 triangle_mesh(two.triangle), kPanel, ""});
 }
 
 void write_swept_edge(const std::string& file, const Origin& origin, const TwoFacets& two) {
@@ -144,7 +144,9 @@ void write_swept_edge(const std::string& file, const Origin& origin, const TwoFa
         {"{\"width\": 640, \"height\": 480, \"spp\": 2}", camera,
          triangle_mesh(two.triangle) + ",\n" + swept_mesh(two.corner[0], two.corner[2], 1.8) + ",\n" + facets,
          kPanel + ",\n    {\"name\": \"sheet\", \"baseColorFactor\": [0.75, 0.3, 0.12]},\n"
-                  "    {\"name\": \"facets\", \"baseColorFactor\": [0.3, 0.35, 0.42]}"});
+                  "    {\"name\": \"facets\", \"baseColorFactor\": [0.3, 0.35, 0.42]}",
+         "{\"type\": \"directional\", \"direction\": [-1, -2, -0.6], \"intensity\": 2.2}, {\"type\": \"ambient\", \"color\": [0.3, 0.3, "
+         "0.3]}"});
 }
 
 }  // namespace trilens

@@ -9,7 +9,7 @@
 namespace trilens {
 namespace {
 
-constexpr int kDraws = 4000, kSteps = 4000;
+constexpr int kDraws = 20000, kSteps = 8000;
 constexpr double kWantedGap = 0.12;  // of the shared edge
 
 /// A triangle's part of one facet: its share of the facet, and where it lies on the edge from corner 0 to
@@ -30,6 +30,7 @@ Part part_of(const FacetScene& scene, std::array<int, 2> shared) {
     const int opposite = 3 - shared[0] - shared[1];
     for (std::size_t i = 0; i < v.size(); ++i) {
         const Vec3 &p = v[i].weights, &q = v[(i + 1) % v.size()].weights;
+        if (p[opposite] != 0 && std::min(p[shared[0]], p[shared[1]]) == 0) return {};  // beyond the film
         part.area += p.y * q.z - p.z * q.y;
         if (p[opposite] != 0) continue;
         part.low = std::min(part.low, p[shared[1]]), part.high = std::max(part.high, p[shared[1]]);
