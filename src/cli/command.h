@@ -33,6 +33,7 @@ struct CommandRegistry {
 void register_render(const CommandRegistry& registry);  // render and trace
 void register_compare(const CommandRegistry& registry);
 void register_sweep(const CommandRegistry& registry);
+void register_sweep_engines(const CommandRegistry& registry, CLI::App& sweep);
 void register_project(const CommandRegistry& registry);
 void register_scene(const CommandRegistry& registry);
 void register_info(const CommandRegistry& registry);

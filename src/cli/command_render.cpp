@@ -1,5 +1,6 @@
 // trilens render and trilens trace: one picture.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "cli/command.h"
 #include "cli/explain.h"
@@ -18,6 +19,8 @@ struct RenderOptions {
     std::string output;
     std::string pixel;  // "x,y"
     std::string engine = "exact";
+    std::string clip = "scene";
+    int slices = 0, tessellate = 0;  // 0: not asked for
     std::string surface = "limit";
     std::string format;  // empty: by the output's ending
     bool wire = false;
@@ -85,13 +88,15 @@ Answer run_vector(const RenderOptions& options, const World& world, Console& con
     return answer;
 }
 
-Answer run(const RenderOptions& options, const std::string& command, Engine engine, Console& console) {
+Answer run(const RenderOptions& options, const std::string& command, const EngineChoice& engine, Console& console) {
     if (options.pixel.empty() && options.output.empty()) throw UsageError(command + " needs -o OUT.exr, or --pixel x,y");
     OutputKind kind = OutputKind::kExr;
     if (!options.output.empty()) {
         kind = output_kind(options, command);
         check_writable(options.output);
     }
+    if (kind == OutputKind::kSvg && engine.engine == Engine::kClassic)
+        throw UsageError("an .svg is drawn by the exact engine; leave out --engine classic");
     if (options.wire && kind != OutputKind::kSvg) throw UsageError("--wire is for .svg outputs");
     const std::unique_ptr<World> world = load_world(options.scene, console);
     PictureRequest request;
@@ -110,7 +115,8 @@ Answer run(const RenderOptions& options, const std::string& command, Engine engi
     const Picture picture = draw_picture(*world, request, console);
     write_picture(options.output, picture.image, kind);
     answer.fields["output"] = options.output;
-    answer.fields["engine"] = engine_name(engine);
+    answer.fields["engine"] = engine_name(engine.engine);
+    if (engine.engine == Engine::kClassic) answer.fields["classic"] = classic_name(engine.classic);
     answer.fields.update(picture_fields(*world, picture));
     if (answer.text.empty()) answer.text = options.output;
     return answer;
@@ -123,16 +129,40 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     command.add_option("--pixel", options.pixel, "explain one pixel as JSON")->type_name("x,y");
 }
 
+void add_engine_options(CLI::App& command, RenderOptions& options) {
+    command.add_option("--engine", options.engine, "exact; classic: by the outlines of projected triangles; auto (which is exact for now)")
+        ->check(CLI::IsMember({"exact", "classic", "auto"}));
+    CLI::Option* slices = command.add_option("--slices", options.slices, "classic: curved edges by K slices a stretch, not arcs")
+                              ->check(CLI::Range(1, 1024))->type_name("K");
+    command.add_option("--tessellate", options.tessellate, "classic: curved edges by K x K smaller triangles, not arcs")
+        ->check(CLI::Range(1, 1024))->type_name("K")->excludes(slices);
+    command.add_option("--clip", options.clip, "classic: where outlines are cut at a facet's border: in the scene, on the screen, or not (none)")
+        ->check(CLI::IsMember({"scene", "screen", "none"}));
+}
+
+EngineChoice chosen_engine(const RenderOptions& options) {
+    if (options.engine != "classic") {
+        if (options.slices > 0 || options.tessellate > 0 || options.clip != "scene")
+            throw UsageError("--slices, --tessellate and --clip are the classic engine's; add --engine classic");
+        return Engine::kExact;
+    }
+    ClassicParams params;
+    params.clip = options.clip == "scene" ? Clip::kScene : options.clip == "screen" ? Clip::kScreen : Clip::kUnclipped;
+    params.curves = options.slices > 0 ? Curves::kSlices : options.tessellate > 0 ? Curves::kTessellate : Curves::kArcs;
+    if (params.curves != Curves::kArcs) params.pieces = std::max(options.slices, options.tessellate);
+    return params;
+}
+
 }  // namespace
 
 void register_render(const CommandRegistry& registry) {
     auto render = std::make_shared<RenderOptions>();
     CLI::App* command = registry.app->add_subcommand("render", "draw the scene by projection");
     add_render_options(*command, *render);
-    command->add_option("--engine", render->engine, "exact, or auto (which is exact for now)")->check(CLI::IsMember({"exact", "auto"}));
+    add_engine_options(*command, *render);
     command->add_option("--format", render->format, "exr, png or svg; default: by the output's ending")->check(CLI::IsMember({"exr", "png", "svg"}));
     command->add_flag("--wire", render->wire, "svg: hidden edges too");
-    registry.add(command, "render", [render](Console& console) { return run(*render, "render", Engine::kExact, console); });
+    registry.add(command, "render", [render](Console& console) { return run(*render, "render", chosen_engine(*render), console); });
 
     auto trace = std::make_shared<RenderOptions>();
     command = registry.app->add_subcommand("trace", "draw the same scene by ray tracing: the truth");

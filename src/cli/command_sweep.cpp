@@ -198,6 +198,8 @@ void register_sweep(const CommandRegistry& registry) {
     add_sweep_options(*command, *options);
     registry.add(command, "sweep", [options](Console& console) { return plan(*options, console); });
 
+    register_sweep_engines(registry, *sweep);
+
     auto folder = std::make_shared<std::string>();
     command = sweep->add_subcommand("status", "what is done of a sweep");
     command->add_option("DIR", *folder, "the sweep's folder")->required();

@@ -37,7 +37,7 @@ Json explain_pixel(const World& world, const PictureRequest& request, int x, int
     const SampleColour colour = shade_view(world, view);
     Json fields;
     fields["pixel"] = {x, y};
-    fields["engine"] = engine_name(request.engine);
+    fields["engine"] = engine_name(request.engine.engine);
     fields["ray"] = ray_json(view.ray);
     fields["depth"] = json_number(view.depth);
     fields["sees"] = hit_json(world, view.hit);

@@ -27,16 +27,18 @@ struct OpticMeshes {
 /// The engine's work on one RayMesh: nearest triangles of the objects, or of all that the camera can see.
 using DrawMesh = std::function<void(const RayMesh&, const FacetSamples&, const SampleGrid&, std::span<Hit>)>;
 
-/// Both facet engines: the exact projector and Embree on the same rays.
+/// All facet engines: the projectors and Embree on the same rays.
 struct FacetViewer {
     const World* world = nullptr;
     CameraRays camera;
     std::vector<OpticMeshes> optics;
     DrawMesh draw_visible, draw_objects;
+    bool redraw_direct = false;  // the camera's own view of the objects is draw_objects', not draw_visible's
 
     void operator()(const SampleGrid& grid, std::span<SampleView> views) const;
 
   private:
+    void draw_direct(const FacetSamples& owned, const SampleGrid& grid, std::span<Hit> first) const;
     void view_optic(std::size_t index, const SampleGrid& grid, std::span<const Hit> first, std::span<SampleView> views) const;
     void view_path(const RayMesh& mesh, const SampleGrid& grid, std::span<const Id> owner, std::span<SampleView> views,
                    SecondaryView SampleView::*path) const;
@@ -110,10 +112,19 @@ void FacetViewer::view_optic(std::size_t index, const SampleGrid& grid, std::spa
     view_path(meshes.refract, grid, owner, views, &SampleView::refract);
 }
 
+/// Where no optic is first, what the objects alone show.
+void FacetViewer::draw_direct(const FacetSamples& owned, const SampleGrid& grid, std::span<Hit> first) const {
+    std::vector<Hit> objects(grid.size());
+    draw_objects(camera.mesh, owned, grid, objects);
+    for (std::size_t s = 0; s < first.size(); ++s)
+        if (!first[s].seen() || first[s].triangle < world->objects.size()) first[s] = objects[s];
+}
+
 void FacetViewer::operator()(const SampleGrid& grid, std::span<SampleView> views) const {
     const FacetSamples owned = rasterize_facets(camera.mesh, grid);
     std::vector<Hit> first(grid.size());
     draw_visible(camera.mesh, owned, grid, first);
+    if (redraw_direct) draw_direct(owned, grid, first);
     set_camera_rays(camera.mesh, owned, grid, views);
     for (std::size_t s = 0; s < grid.size(); ++s) {
         views[s].hit = first[s];
@@ -144,7 +155,7 @@ void check_facet_count(const World& world) {
 
 }  // namespace
 
-Viewer make_facet_viewer(const World& world, CameraRays camera, Engine engine, const Warn& warn) {
+Viewer make_facet_viewer(const World& world, CameraRays camera, const EngineChoice& engine, const Warn& warn) {
     check_facet_count(world);
     FacetViewer viewer;
     viewer.world = &world;
@@ -163,12 +174,17 @@ Viewer make_facet_viewer(const World& world, CameraRays camera, Engine engine, c
         viewer.optics.push_back(std::move(meshes));
     }
     viewer.camera = std::move(camera);
-    if (engine == Engine::kExact) {
+    if (engine.engine != Engine::kFacetsTruth) {
         auto all = std::make_shared<PreparedScene>(visible), objects = std::make_shared<PreparedScene>(world.objects);
         viewer.draw_visible = [all](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                                     std::span<Hit> hits) { draw(*all, mesh, owned, grid, hits); };
         viewer.draw_objects = [objects](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                                         std::span<Hit> hits) { draw(*objects, mesh, owned, grid, hits); };
+        if (engine.engine == Engine::kClassic) {
+            viewer.redraw_direct = true;
+            viewer.draw_objects = [objects, params = engine.classic](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                                                                     std::span<Hit> hits) { draw_classic(*objects, mesh, owned, grid, hits, params); };
+        }
     } else {
         auto all = std::make_shared<Tracer>(visible), objects = std::make_shared<Tracer>(world.objects);
         viewer.draw_visible = [all](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,

@@ -45,7 +45,8 @@ Picture draw_picture(const World& world, const PictureRequest& request, Console&
     auto& header = picture.image.metadata;
     header["trilens:version"] = kVersion;
     header["trilens:command"] = request.command;
-    header["trilens:engine"] = engine_name(request.engine);
+    header["trilens:engine"] = engine_name(request.engine.engine);
+    if (request.engine.engine == Engine::kClassic) header["trilens:classic"] = classic_name(request.engine.classic);
     header["trilens:camera"] = world.scene.cameras[request.camera].name;
     header["trilens:resolution"] = resolution_text(world);
     header["trilens:scene"] = world.scene.resolved;

@@ -9,7 +9,7 @@ namespace trilens {
 
 struct PictureRequest {
     std::size_t camera = 0;
-    Engine engine = Engine::kExact;
+    EngineChoice engine;
     LayerRequest layers;
     std::string command;  // for the header: "render" or "trace"
 };

@@ -10,6 +10,7 @@
 #include "base/sample_grid.h"
 #include "base/triangle_scene.h"
 #include "cli/world.h"
+#include "projector/classic.h"
 
 namespace trilens {
 
@@ -37,13 +38,26 @@ struct SampleView {
 /// Fills views[s] for every sample s of the grid; views.size() == grid.size().
 using Viewer = std::function<void(const SampleGrid& grid, std::span<SampleView> views)>;
 
-enum class Engine { kExact, kFacetsTruth, kLimitTruth };
+enum class Engine { kExact, kClassic, kFacetsTruth, kLimitTruth };
+
+/// An engine with its settings.
+struct EngineChoice {
+    Engine engine = Engine::kExact;
+    ClassicParams classic;  // of kClassic
+
+    EngineChoice() = default;
+    EngineChoice(Engine chosen) : engine(chosen) {}
+    EngineChoice(const ClassicParams& params) : engine(Engine::kClassic), classic(params) {}
+};
 
 /// A viewer of `world` from one of its cameras. The world must outlive it. Throws InputError where the camera
 /// cannot show what the scene has.
-Viewer make_viewer(const World& world, std::size_t camera, Engine engine, const Warn& warn);
+Viewer make_viewer(const World& world, std::size_t camera, const EngineChoice& engine, const Warn& warn);
 
-/// "exact", "facets", "limit".
+/// "exact", "classic", "facets", "limit".
 std::string engine_name(Engine engine);
+
+/// How the classic engine draws: "arcs", "slices 4, clip screen".
+std::string classic_name(const ClassicParams& params);
 
 }  // namespace trilens

@@ -90,16 +90,9 @@ void BlockDrawing::walk(std::vector<Waiting>& stack) {
     }
 }
 
-/// The hit in the terms of the scene's own triangle.
 Hit BlockDrawing::hit(std::size_t s) const {
     const Id winner = hits_.winner(s);
-    if (winner == kNone) return {};
-    const LineHit& line_hit = hits_.hit(s);
-    const Vec2 b = line_hit.barycentric;
-    const std::array<double, 3> sorted{std::max(0.0, 1 - b.x - b.y), b.x, b.y};
-    std::array<double, 3> weight{};
-    for (std::size_t k = 0; k < 3; ++k) weight[scene_.was_corner[winner][k]] = sorted[k];
-    return {scene_.triangle[winner], line_hit.t, {weight[1], weight[2]}};
+    return winner == kNone ? Hit{} : scene_hit(scene_, winner, hits_.hit(s));
 }
 
 }  // namespace

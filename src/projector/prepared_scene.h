@@ -1,11 +1,13 @@
 // A scene made ready for drawing: triangles in the order of a tree's leaves, as a structure of arrays.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "projector/bvh.h"
+#include "projector/first_hits.h"
 #include "projector/projector.h"
 
 namespace trilens {
@@ -27,5 +29,14 @@ struct PreparedScene::Data {
         return {x[k][i] - centre.x, y[k][i] - centre.y, z[k][i] - centre.z};
     }
 };
+
+/// A line's hit of triangle `index` of the data, in the terms of the scene's own triangle.
+inline Hit scene_hit(const PreparedScene::Data& data, Id index, const LineHit& hit) {
+    const Vec2 b = hit.barycentric;
+    const std::array<double, 3> sorted{std::max(0.0, 1 - b.x - b.y), b.x, b.y};
+    std::array<double, 3> weight{};
+    for (std::size_t k = 0; k < 3; ++k) weight[data.was_corner[index][k]] = sorted[k];
+    return {data.triangle[index], hit.t, {weight[1], weight[2]}};
+}
 
 }  // namespace trilens

@@ -150,6 +150,7 @@ std::vector<Outline> project_triangle(const TrilinearFacet& facet, const SceneTr
     straight.curves = Curves::kStraight;
     std::vector<Outline> outlines;
     for (const TrianglePiece& piece : tessellate(triangle, params.pieces)) {
+        if (params.clip != Clip::kUnclipped && !may_image(facet, piece.triangle)) continue;
         for (Outline& outline : project_curved({facet, cubic, piece.triangle}, straight)) {
             for (ImageVertex& v : outline.vertex) {
                 const Vec3 in_piece = v.barycentric;
