@@ -10,8 +10,9 @@
 namespace trilens {
 namespace {
 
-constexpr int kPerSection = 20;  // points on a piece of an edge's image
-constexpr int kTurns = 24;       // rotations of the film that are tried
+constexpr int kPerSection = 20;   // points on a piece of an edge's image
+constexpr int kTurns = 24;        // rotations of the film that are tried
+constexpr double kSpacing = 0.7;  // what a distance of vertices counts beside a width
 constexpr double kMargin = 0.04;  // of the film's side, free on each side
 
 using Polygon = std::vector<Vec2>;  // in the plane of weights: second and third weight
@@ -110,13 +111,22 @@ double gap(const Polygon& a, const Polygon& b) {
         for (const Vec2& p : points)
             for (std::size_t i = 0; i < edges.size(); ++i) {
                 const Vec2 q = edges[i], way = edges[(i + 1) % edges.size()] - q;
-                const double square = dot(way, way), share = square > 0 ? std::clamp(dot(p - q, way) / square, 0.0, 1.0) : 0.0;
+                const double square = dot(way, way),
+                             share = square > 0 ? std::clamp(dot(p - q, way) / square, 0.0, 1.0) : 0.0;
                 const Vec2 apart = p - q - share * way;
                 least = std::min(least, dot(apart, apart));
             }
     };
     from_vertices(a, b), from_vertices(b, a);
     return std::sqrt(least);
+}
+
+/// Between neighbouring vertices of a shape, which begin its polygon's sections.
+double least_spacing(const Polygon& shape) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < shape.size(); i += kPerSection)
+        least = std::min(least, length(shape[(i + kPerSection) % shape.size()] - shape[i]));
+    return least;
 }
 
 }  // namespace
@@ -140,7 +150,7 @@ double score_of(const FacetScene& scene) {
         for (Vec2& p : shape) p = frame.to_film * p + frame.shift;
     double score = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        score = std::min(score, width(shapes[i]));
+        score = std::min({score, width(shapes[i]), kSpacing * least_spacing(shapes[i])});
         for (std::size_t j = 0; j < i; ++j) score = std::min(score, 2 * gap(shapes[i], shapes[j]));
     }
     return std::isfinite(score) ? score : 0;

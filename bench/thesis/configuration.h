@@ -21,10 +21,12 @@ struct FacetScene {
 /// Where the facet's corners lie on the film, 0..1 from its top left: the facet holds the whole film.
 inline constexpr std::array<Vec2, 3> kFacetOnFilm{Vec2(-0.5, 1), Vec2(1.5, 1), Vec2(0.5, -1)};
 
-/// A facet scene recut so that a film inside its facet shows all shapes, with t > 0; world scaled to the triangle.
+/// A facet scene recut so that a film inside its facet shows all shapes, with t > 0; world scaled to the
+/// triangle.
 struct FramedScene {
     FacetScene scene;
-    double score = 0;  // the smallest shape's width or twice the smallest gap, as a share of the film's side
+    double score = 0;  // the least of the shapes' widths, their gaps and their vertices' distances, as
+                       // weighted by score_of, in film sides
 };
 
 /// The configuration over the whole plane of weights and all t.

@@ -14,7 +14,7 @@ namespace {
 using namespace trilens;
 
 struct Figure {
-    std::string number;  // of the thesis
+    std::string number;           // of the thesis
     Configuration configuration;  // in the thesis' order
     std::uint64_t seed = 0;
 };
@@ -51,7 +51,7 @@ bool make_configuration(const std::string& folder, const Figure& figure) {
     return true;
 }
 
-constexpr double kBegin = 0.45;  // of the stretch that holds all shapes: about 0.2 to 0.9
+constexpr double kBegin = 0.4;  // of the stretch that holds all shapes: about 0.2 to 0.9
 
 /// A (4,5) as a whole, and the same when its rays begin inside a shape.
 void make_behind(const std::string& folder) {

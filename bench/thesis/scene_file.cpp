@@ -52,7 +52,8 @@ std::string ray_mesh_camera(const std::vector<Ray>& rays, const std::string& scr
 }
 
 std::string triangle_mesh(const SceneTriangle& triangle) {
-    return "    {\n      \"name\": \"triangle\",\n      \"role\": \"object\",\n      \"material\": \"panel\",\n      \"points\": " +
+    return "    {\n      \"name\": \"triangle\",\n      \"role\": \"object\",\n      \"material\": "
+           "\"panel\",\n      \"points\": " +
            points_text({triangle.corner.begin(), triangle.corner.end()}) +
            ",\n      \"faceVertexCounts\": [3],\n      \"faceVertexIndices\": [0, 1, 2],\n"
            "      \"uvs\": [[0, 0], [1, 0], [0.5, 1]]\n    }";
@@ -71,7 +72,8 @@ void write_scene(const std::string& file, const Origin& origin, const SceneText&
         << scene.camera
         << "\n  ],\n  \"background\": {\"color\": [0.02, 0.025, 0.035]},\n  \"materials\": [\n"
         << scene.materials << "\n  ],\n  \"meshes\": [\n"
-        << scene.meshes << "\n  ],\n  \"lights\": [" << scene.lights << "],\n  \"extras\": " << extras(origin) << "\n}\n";
+        << scene.meshes << "\n  ],\n  \"lights\": [" << scene.lights << "],\n  \"extras\": " << extras(origin)
+        << "\n}\n";
     out.close();
     if (!out) throw std::runtime_error("cannot write " + file);
 }
@@ -99,7 +101,8 @@ std::string swept_mesh(const Ray& first, const Ray& second, double far) {
         }
     const std::string counts =
         joined(std::vector<int>(kSweepPieces * kSweepPieces, 4), [](int n) { return std::to_string(n); });
-    return "    {\n      \"name\": \"swept edge\",\n      \"role\": \"object\",\n      \"material\": \"sheet\",\n      \"points\": " +
+    return "    {\n      \"name\": \"swept edge\",\n      \"role\": \"object\",\n      \"material\": "
+           "\"sheet\",\n      \"points\": " +
            points_text(points) + ",\n      \"faceVertexCounts\": " + counts +
            ",\n      \"faceVertexIndices\": " + joined(indices, [](const std::string& s) { return s; }) +
            "\n    }";
@@ -135,7 +138,8 @@ void write_swept_edge(const std::string& file, const Origin& origin, const TwoFa
         "    {\n      \"name\": \"main\",\n      \"type\": \"perspective\",\n      \"yfov\": 36,\n"
         "      \"lookAt\": {\"eye\": [4.2, 2.6, 3.2], \"at\": [0, -0.1, -1.5], \"up\": [0, 1, 0]}\n    }";
     const std::string facets =
-        "    {\n      \"name\": \"facets\",\n      \"role\": \"object\",\n      \"material\": \"facets\",\n      \"points\": " +
+        "    {\n      \"name\": \"facets\",\n      \"role\": \"object\",\n      \"material\": \"facets\",\n  "
+        "    \"points\": " +
         points_text(
             {two.corner[0].origin, two.corner[1].origin, two.corner[2].origin, two.corner[3].origin}) +
         ",\n      \"faceVertexCounts\": [3, 3],\n      \"faceVertexIndices\": [0, 1, 2, 0, 2, 3]\n    }";
@@ -145,7 +149,8 @@ void write_swept_edge(const std::string& file, const Origin& origin, const TwoFa
          triangle_mesh(two.triangle) + ",\n" + swept_mesh(two.corner[0], two.corner[2], 1.8) + ",\n" + facets,
          kPanel + ",\n    {\"name\": \"sheet\", \"baseColorFactor\": [0.75, 0.3, 0.12]},\n"
                   "    {\"name\": \"facets\", \"baseColorFactor\": [0.3, 0.35, 0.42]}",
-         "{\"type\": \"directional\", \"direction\": [-1, -2, -0.6], \"intensity\": 2.2}, {\"type\": \"ambient\", \"color\": [0.3, 0.3, "
+         "{\"type\": \"directional\", \"direction\": [-1, -2, -0.6], \"intensity\": 2.2}, {\"type\": "
+         "\"ambient\", \"color\": [0.3, 0.3, "
          "0.3]}"});
 }
 

@@ -17,9 +17,9 @@ constexpr int kBandRows = 32;  // of pixels that are viewed at once
 
 /// What each sample shows, by index.
 struct SampleIds {
-    std::vector<Id> camera_facet, visible;      // the camera's facet; the triangle of objects and optics
-    std::vector<Id> optic, optic_facet;         // index into World::optics
-    std::vector<Id> reflected, refracted;       // triangles of the objects
+    std::vector<Id> camera_facet, visible;  // the camera's facet; the triangle of objects and optics
+    std::vector<Id> optic, optic_facet;     // index into World::optics
+    std::vector<Id> reflected, refracted;   // triangles of the objects
 };
 
 std::vector<Id> camera_facets(const RayMesh& mesh, const SampleGrid& grid) {
@@ -75,7 +75,8 @@ std::vector<Id> facets_of(const SampleIds& ids, Id optic) {
 
 }  // namespace
 
-std::unique_ptr<Drawing> make_drawing(const World& world, std::size_t camera_index, bool wire, const Warn& warn) {
+std::unique_ptr<Drawing> make_drawing(const World& world, std::size_t camera_index, bool wire,
+                                      const Warn& warn) {
     auto drawing = std::make_unique<Drawing>();
     drawing->width = world.scene.film.width, drawing->height = world.scene.film.height, drawing->wire = wire;
     const CameraRays camera = make_camera_rays(world.scene, camera_index);
@@ -102,7 +103,8 @@ std::unique_ptr<Drawing> make_drawing(const World& world, std::size_t camera_ind
     };
     if (world.scene.render.direct) {
         const DrawnEdges edges = drawn_edges(drawing->visible, {material, world.objects.size()});
-        add("direct", kNone, {drawing->visible, edges, camera.mesh, grid, ids.camera_facet, ids.visible, wire});
+        add("direct", kNone,
+            {drawing->visible, edges, camera.mesh, grid, ids.camera_facet, ids.visible, wire});
     }
     const DrawnEdges edges = drawn_edges(world.objects, {material, world.objects.size()});
     for (Id i = 0; i < world.optics.size(); ++i) {
@@ -113,7 +115,8 @@ std::unique_ptr<Drawing> make_drawing(const World& world, std::size_t camera_ind
             add("reflect", optic.mesh, {world.objects, edges, mesh, grid, facet, ids.reflected, wire});
         }
         if (world.scene.render.refract && !optic.mirror) {
-            const RayMesh mesh = make_refraction(grids[i], *camera.linear, world.scene.materials[optic.material].ior);
+            const RayMesh mesh =
+                make_refraction(grids[i], *camera.linear, world.scene.materials[optic.material].ior);
             add("refract", optic.mesh, {world.objects, edges, mesh, grid, facet, ids.refracted, wire});
         }
     }

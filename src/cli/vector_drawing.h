@@ -12,8 +12,8 @@ namespace trilens {
 
 /// The curves of one path of light.
 struct DrawingLayer {
-    std::string path;   // "direct", "reflect", "refract"
-    Id optic = kNone;   // object id of the optic that shows them; kNone for "direct"
+    std::string path;                      // "direct", "reflect", "refract"
+    Id optic = kNone;                      // object id of the optic that shows them; kNone for "direct"
     const TriangleScene* scene = nullptr;  // of the curves' triangles
     std::vector<EdgeCurve> curves;
 };
@@ -31,9 +31,9 @@ std::unique_ptr<Drawing> make_drawing(const World& world, std::size_t camera, bo
 /// How far, in pixels, the Bezier curves of the SVG may leave the exact conics.
 inline constexpr double kSvgTolerance = 0.01;
 
-/// The drawing as an SVG document: one path per curve, its cubic Bezier curves within kSvgTolerance of the conics. The
-/// exact arcs stand in its attribute data-conic: "x0 y0 x1 y1 x2 y2 w" for each, a rational quadratic Bezier curve with
-/// Bezier weights 1, w, 1.
+/// The drawing as an SVG document: one path per curve, its cubic Bezier curves within kSvgTolerance of the
+/// conics. The exact arcs stand in its attribute data-conic: "x0 y0 x1 y1 x2 y2 w" for each, a rational
+/// quadratic Bezier curve with Bezier weights 1, w, 1.
 std::string drawing_svg(const Drawing& drawing, const World& world);
 
 }  // namespace trilens

@@ -47,10 +47,12 @@ std::vector<Use> sorted_uses(const std::vector<std::array<Id, 3>>& vertices) {
 
 /// The edge between two triangles; false where it is never drawn.
 bool describe_pair(const DrawnEdges& edges, const EdgeRules& rules, DrawnEdge& edge) {
-    const Vec3 n = normalize_or_zero(edges.normal[edge.triangle]), m = normalize_or_zero(edges.normal[edge.other]);
+    const Vec3 n = normalize_or_zero(edges.normal[edge.triangle]),
+               m = normalize_or_zero(edges.normal[edge.other]);
     const double cosine = dot(n, m) * (edge.same_winding ? 1.0 : -1.0);
     const bool materials = rules.material[edge.triangle] != rules.material[edge.other];
-    const bool creased = edge.triangle < rules.without_creases && cosine < std::cos(kCreaseAngle * std::numbers::pi / 180);
+    const bool creased =
+        edge.triangle < rules.without_creases && cosine < std::cos(kCreaseAngle * std::numbers::pi / 180);
     edge.always = materials || creased;
     return edge.always || length(n - m * (edge.same_winding ? 1.0 : -1.0)) > kFlat;
 }
@@ -78,7 +80,8 @@ DrawnEdges drawn_edges(const TriangleScene& scene, const EdgeRules& rules) {
     std::size_t vertex_count = 0;
     edges.vertex_of = weld(scene, vertex_count);
     for (const IdTriple& c : scene.triangles)
-        edges.normal.push_back(cross(scene.points[c[1]] - scene.points[c[0]], scene.points[c[2]] - scene.points[c[0]]));
+        edges.normal.push_back(
+            cross(scene.points[c[1]] - scene.points[c[0]], scene.points[c[2]] - scene.points[c[0]]));
     const std::vector<Use> uses = sorted_uses(edges.vertex_of);
     for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
         while (end < uses.size() && uses[end].low == uses[i].low && uses[end].high == uses[i].high) ++end;

@@ -14,11 +14,12 @@
 namespace trilens {
 namespace {
 
-constexpr double kStep = 0.4;          // pixels between tests along an arc
-constexpr int kMostSteps = 8000;       // on one arc; longer ones lie mostly off the film
-constexpr double kBefore = 1e-3;       // a surface nearer than the edge by this share of t hides it
-constexpr double kOutside = 1e-9;      // how far weights may leave [0, 1] on the facet's border
-constexpr double kShortest = 1.0;      // pixels: visible pieces and hidden gaps below this are rounding of the test
+constexpr double kStep = 0.4;      // pixels between tests along an arc
+constexpr int kMostSteps = 8000;   // on one arc; longer ones lie mostly off the film
+constexpr double kBefore = 1e-3;   // a surface nearer than the edge by this share of t hides it
+constexpr double kOutside = 1e-9;  // how far weights may leave [0, 1] on the facet's border
+constexpr double kShortest =
+    1.0;  // pixels: visible pieces and hidden gaps below this are rounding of the test
 
 /// Neighbours: facets that share a corner with the one drawn, for samples beside its border.
 struct FacetRing {
@@ -54,22 +55,33 @@ struct Lattice {
     const SampleGrid& grid;
     int columns() const { return grid.width() * grid.side; }
     int rows() const { return grid.height() * grid.side; }
-    bool holds(int column, int row) const { return column >= 0 && row >= 0 && column < columns() && row < rows(); }
+    bool holds(int column, int row) const {
+        return column >= 0 && row >= 0 && column < columns() && row < rows();
+    }
     std::size_t sample(int column, int row) const {
         const int s = grid.side;
-        return grid.first_sample(grid.x0 + column / s, grid.y0 + row / s) + static_cast<std::size_t>(row % s * s + column % s);
+        return grid.first_sample(grid.x0 + column / s, grid.y0 + row / s) +
+               static_cast<std::size_t>(row % s * s + column % s);
     }
-    int column(std::size_t sample) const { return static_cast<int>(std::lround((grid.position(sample).x - grid.x0) * grid.side - 0.5)); }
-    int row(std::size_t sample) const { return static_cast<int>(std::lround((grid.position(sample).y - grid.y0) * grid.side - 0.5)); }
+    int column(std::size_t sample) const {
+        return static_cast<int>(std::lround((grid.position(sample).x - grid.x0) * grid.side - 0.5));
+    }
+    int row(std::size_t sample) const {
+        return static_cast<int>(std::lround((grid.position(sample).y - grid.y0) * grid.side - 0.5));
+    }
 };
 
 /// One facet at work.
 class FacetPen {
   public:
     FacetPen(const VectorView& view, Id facet, std::vector<Id> ring)
-        : view_(view), facet_(facet), ring_(std::move(ring)), rays_(trilinear_facet(view.mesh, facet)),
+        : view_(view),
+          facet_(facet),
+          ring_(std::move(ring)),
+          rays_(trilinear_facet(view.mesh, facet)),
           cubic_(make_coplanarity(rays_)) {
-        for (int k = 0; k < 3; ++k) screen_[k] = view.mesh.screen[view.mesh.facets[facet][static_cast<std::size_t>(k)]];
+        for (int k = 0; k < 3; ++k)
+            screen_[k] = view.mesh.screen[view.mesh.facets[facet][static_cast<std::size_t>(k)]];
     }
 
     /// Edges whose images this facet may show, ascending.
@@ -114,7 +126,8 @@ std::vector<Id> FacetPen::candidates(std::span<const Id> samples) const {
             for (int dx = -1; dx <= 1; ++dx) {
                 if (!lattice.holds(column + dx, row + dy)) continue;
                 const Id triangle_there = view_.triangle[lattice.sample(column + dx, row + dy)];
-                if (triangle_there != kNone && (seen.empty() || seen.back() != triangle_there)) seen.push_back(triangle_there);
+                if (triangle_there != kNone && (seen.empty() || seen.back() != triangle_there))
+                    seen.push_back(triangle_there);
             }
     }
     std::sort(seen.begin(), seen.end());
@@ -153,7 +166,8 @@ void FacetPen::draw(const DrawnEdge& drawn, std::vector<EdgeCurve>& curves) cons
     for (const Section& section : sections(scene_triangle)) {
         if (section.edge != static_cast<int>(drawn.edge) || section.from.t == section.to.t) continue;
         const double t0 = std::min(section.from.t, section.to.t), t1 = std::max(section.from.t, section.to.t);
-        for (const ConicArc& arc : edge_arcs(cubic_, scene_triangle, drawn.edge, t0, t1)) cut(edge, arc, curves);
+        for (const ConicArc& arc : edge_arcs(cubic_, scene_triangle, drawn.edge, t0, t1))
+            cut(edge, arc, curves);
     }
 }
 
@@ -162,16 +176,19 @@ void FacetPen::cut(const Edge& edge, const ConicArc& arc, std::vector<EdgeCurve>
     const ScreenArc screen = on_screen(arc, screen_);
     if (!(screen[0].z > 0 && screen[1].z > 0 && screen[2].z > 0)) return;  // partly behind the camera
     const auto pixel = [](const Vec3& p) { return Vec2(p.x / p.z, p.y / p.z); };
-    const double around = length(pixel(screen[1]) - pixel(screen[0])) + length(pixel(screen[2]) - pixel(screen[1]));
+    const double around =
+        length(pixel(screen[1]) - pixel(screen[0])) + length(pixel(screen[2]) - pixel(screen[1]));
     const int steps = static_cast<int>(std::clamp(around / kStep, 4.0, static_cast<double>(kMostSteps)));
     std::vector<char> shown(static_cast<std::size_t>(steps));
-    for (int i = 0; i < steps; ++i) shown[static_cast<std::size_t>(i)] = shows(edge, arc.weights((i + 0.5) / steps));
+    for (int i = 0; i < steps; ++i)
+        shown[static_cast<std::size_t>(i)] = shows(edge, arc.weights((i + 0.5) / steps));
 
     // Gaps shorter than the test can tell are closed; then runs become pieces.
     const int least = static_cast<int>(std::ceil(kShortest * steps / std::max(around, kShortest)));
     const auto run_end = [&](int from) {
         int end = from;
-        while (end < steps && shown[static_cast<std::size_t>(end)] == shown[static_cast<std::size_t>(from)]) ++end;
+        while (end < steps && shown[static_cast<std::size_t>(end)] == shown[static_cast<std::size_t>(from)])
+            ++end;
         return end;
     };
     for (int i = 0, end = 0; i < steps; i = end) {
@@ -182,7 +199,8 @@ void FacetPen::cut(const Edge& edge, const ConicArc& arc, std::vector<EdgeCurve>
     for (int i = 0, end = 0; i < steps; i = end) {
         end = run_end(i);
         const bool whole = i == 0 && end == steps;
-        if (!shown[static_cast<std::size_t>(i)] || (!whole && i > 0 && end < steps && end - i < least)) continue;
+        if (!shown[static_cast<std::size_t>(i)] || (!whole && i > 0 && end < steps && end - i < least))
+            continue;
         const ScreenArc piece = whole ? screen : piece_of(screen, 1.0 * i / steps, 1.0 * end / steps);
         const bool joins = i == 0 && !curves.empty() && curves.back().triangle == edge.drawn.triangle &&
                            length(point_of(curves.back().arcs.back(), 1) - point_of(piece, 0)) < 1e-6;
@@ -203,7 +221,8 @@ bool FacetPen::shows(const Edge& edge, const Vec3& weights) const {
 
 bool FacetPen::unhidden(const Edge& edge, const Vec3& weights, const Vec2& at) const {
     // Where the ray passes the edge: closest approach, with the edge's own direction taken out.
-    const Vec3 along = edge.b - edge.a, origin = rays_.origin(weights) - edge.a, direction = rays_.direction(weights);
+    const Vec3 along = edge.b - edge.a, origin = rays_.origin(weights) - edge.a,
+               direction = rays_.direction(weights);
     const Vec3 across = direction - along * (dot(direction, along) / dot(along, along));
     const double t = -dot(across, origin) / dot(across, direction);
 

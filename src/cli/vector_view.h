@@ -11,7 +11,8 @@
 
 namespace trilens {
 
-/// A rational quadratic Bezier curve: control points (x w, y w, w), w > 0, x and y in pixels from the film's top left.
+/// A rational quadratic Bezier curve: control points (x w, y w, w), w > 0, x and y in pixels from the film's
+/// top left.
 using ScreenArc = std::array<Vec3, 3>;
 
 /// A piece of an edge's image in one facet: arcs joined end to end.
@@ -32,10 +33,11 @@ struct VectorView {
     bool wire = false;             // hidden edges too
 };
 
-/// Curves in facets that own samples, by ascending facet; cut where they leave their facet or the film. Without `wire`
-/// an arc's piece is kept where one of the four samples around it shows a triangle of the edge, or nothing that would
-/// lie before the edge if it reached there; so ends of visible pieces are right to about a sample, and an edge all of whose
-/// neighbourhood is thinner than a sample may be lost. The same for any number of threads.
+/// Curves in facets that own samples, by ascending facet; cut where they leave their facet or the film.
+/// Without `wire` an arc's piece is kept where one of the four samples around it shows a triangle of the
+/// edge, or nothing that would lie before the edge if it reached there; so ends of visible pieces are right
+/// to about a sample, and an edge all of whose neighbourhood is thinner than a sample may be lost. The same
+/// for any number of threads.
 std::vector<EdgeCurve> edge_curves(const VectorView& view);
 
 /// The piece u0 <= u <= u1 of an arc.

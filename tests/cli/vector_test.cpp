@@ -60,7 +60,8 @@ std::vector<Tag> parse_tags(const std::string& xml) {
         for (std::size_t from = inside.find(' '); from != std::string::npos && from + 1 < inside.size();) {
             const std::size_t equals = inside.find("=\"", from), quote = inside.find('"', equals + 2);
             REQUIRE(quote != std::string::npos);
-            tag.attributes.emplace_back(inside.substr(from + 1, equals - from - 1), inside.substr(equals + 2, quote - equals - 2));
+            tag.attributes.emplace_back(inside.substr(from + 1, equals - from - 1),
+                                        inside.substr(equals + 2, quote - equals - 2));
             from = quote + 1;
         }
         if (!closed) open.push_back(tag.name);
@@ -145,7 +146,8 @@ TEST_CASE("the outline in a flat mirror is that of a second camera behind it", "
         corner[k] = {mirrored.x / mirrored.z, mirrored.y / mirrored.z};
     }
 
-    // Every arc lies on an edge, and together they cover the edges: nothing hides behind the film's border here.
+    // Every arc lies on an edge, and together they cover the edges: nothing hides behind the film's border
+    // here.
     double covered = 0, whole = 0;
     for (std::size_t e = 0; e < 3; ++e) whole += length(corner[(e + 1) % 3] - corner[e]);
     for (const Arc& arc : arcs) {
@@ -169,14 +171,16 @@ TEST_CASE("outlines in a sphere lie where the picture's ids change", "[cli][vect
     REQUIRE(run_trilens("render " + scene + " --size 320x240 -o " + folder + "/out.exr").exit_code == 0);
     const std::vector<Tag> tags = parse_tags(slurp(folder + "/out.svg"));
     const Image image = read_exr(folder + "/out.exr");
-    const std::vector<Id>&object = image.find("reflect.object")->ids(), &primitive = image.find("reflect.primitive")->ids();
+    const std::vector<Id>&object = image.find("reflect.object")->ids(),
+          &primitive = image.find("reflect.primitive")->ids();
 
     const auto id = [&](int x, int y) {
         const std::size_t p = static_cast<std::size_t>(y) * 320 + static_cast<std::size_t>(x);
         return std::pair(object[p], primitive[p]);
     };
     const auto changes_near = [&](const Vec2& p) {
-        const int x = std::clamp(static_cast<int>(p.x), 1, 318), y = std::clamp(static_cast<int>(p.y), 1, 238);
+        const int x = std::clamp(static_cast<int>(p.x), 1, 318),
+                  y = std::clamp(static_cast<int>(p.y), 1, 238);
         for (int dy = -1; dy <= 1; ++dy)
             for (int dx = -1; dx <= 1; ++dx)
                 if (id(x + dx, y + dy) != id(x, y)) return true;
@@ -187,6 +191,42 @@ TEST_CASE("outlines in a sphere lie where the picture's ids change", "[cli][vect
         for (int i = 0; i < 8; ++i, ++points) on_change += changes_near(arc.at((i + 0.5) / 8));
     REQUIRE(points > 500);
     CHECK(static_cast<double>(on_change) > 0.95 * static_cast<double>(points));
+}
+
+TEST_CASE("a path's Bezier curves stay within the tolerance of its exact conics", "[cli][vector]") {
+    const std::string folder = scratch_dir("vector_paths");
+    const std::string scene = source_dir() + "/scenes/thesis/fig_4_1_2223.json";
+    REQUIRE(run_trilens("render " + scene + " -o " + folder + "/out.svg").exit_code == 0);
+    std::size_t cubics = 0;
+    for (const Tag& tag : parse_tags(slurp(folder + "/out.svg"))) {
+        if (tag.name != "path") continue;
+        std::vector<Vec2> exact;
+        for (const Arc& arc : parse_arcs(tag["data-conic"]))
+            for (int i = 0; i <= 400; ++i) exact.push_back(arc.at(i / 400.0));
+
+        // The path's commands, each with its points.
+        std::stringstream path(tag["d"]);
+        Vec2 at(0);
+        for (char command; path >> command;) {
+            Vec2 p[3];
+            const int count = command == 'C' ? 3 : 1;
+            for (int k = 0; k < count; ++k) path >> p[k].x >> p[k].y;
+            REQUIRE_FALSE(path.fail());
+            cubics += command == 'C';
+            for (int i = 1; command == 'C' && i < 10; ++i) {
+                const double u = i / 10.0, v = 1 - u;
+                const Vec2 q =
+                    v * v * v * at + 3 * v * v * u * p[0] + 3 * v * u * u * p[1] + u * u * u * p[2];
+                double nearest = 1e9;
+                for (std::size_t e = 1; e < exact.size(); ++e)
+                    if (exact[e] != exact[e - 1])
+                        nearest = std::min(nearest, distance_to_segment(q, exact[e - 1], exact[e]));
+                CHECK(nearest < 0.0105);
+            }
+            at = p[count - 1];
+        }
+    }
+    CHECK(cubics > 8);
 }
 
 TEST_CASE("a drawing's names are escaped, and options that make no sense are refused", "[cli][vector]") {
