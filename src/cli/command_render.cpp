@@ -6,8 +6,10 @@
 #include "cli/explain.h"
 #include "cli/picture.h"
 #include "cli/scene_options.h"
+#include "cli/vector_drawing.h"
 #include "cli/check_output.h"
 #include "image/image_io.h"
+#include "sweep/files.h"
 
 namespace trilens {
 namespace {
@@ -20,21 +22,29 @@ struct RenderOptions {
     std::string clip = "scene";
     int slices = 0, tessellate = 0;  // 0: not asked for
     std::string surface = "limit";
+    std::string format;  // empty: by the output's ending
+    bool wire = false;
 };
 
-enum class OutputKind { kExr, kPng };
+enum class OutputKind { kExr, kPng, kSvg };
 
-OutputKind output_kind(const std::string& file) {
+OutputKind output_kind(const RenderOptions& options, const std::string& command) {
+    const std::string& file = options.output;
+    if (options.format == "exr") return OutputKind::kExr;
+    if (options.format == "png") return OutputKind::kPng;
+    if (options.format == "svg") return OutputKind::kSvg;
     const auto ends_with = [&](const std::string& end) {
         return file.size() > end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
     };
     if (ends_with(".exr")) return OutputKind::kExr;
     if (ends_with(".png")) return OutputKind::kPng;
-    throw UsageError("the output \"" + file + "\" must end in .exr (all layers) or .png (the beauty, sRGB)");
+    if (ends_with(".svg") && command == "render") return OutputKind::kSvg;
+    throw UsageError("the output \"" + file + "\" must end in .exr (all layers)" +
+                     (command == "render" ? ", .png (the beauty, sRGB) or .svg (outlines)" : " or .png (the beauty, sRGB)"));
 }
 
-void write_picture(const std::string& file, const Image& image) {
-    if (output_kind(file) == OutputKind::kExr) return write_exr(file, image);
+void write_picture(const std::string& file, const Image& image, OutputKind kind) {
+    if (kind == OutputKind::kExr) return write_exr(file, image);
     const std::vector<float>*r = &image.find("R")->floats(), *g = &image.find("G")->floats(), *b = &image.find("B")->floats();
     std::vector<float> rgb(3 * image.pixels());
     for (std::size_t p = 0; p < image.pixels(); ++p) {
@@ -60,12 +70,34 @@ Json picture_fields(const World& world, const Picture& picture) {
     return fields;
 }
 
+/// Outlines instead of pixels.
+Answer run_vector(const RenderOptions& options, const World& world, Console& console) {
+    if (!options.scene.crop.empty()) throw UsageError("--crop is for pictures of pixels; an .svg shows the whole film");
+    const std::size_t camera = chosen_camera(options.scene, world.scene);
+    const std::unique_ptr<Drawing> drawing = make_drawing(world, camera, options.wire, console.warner());
+    replace_text_file(options.output, drawing_svg(*drawing, world));
+    Answer answer;
+    std::size_t curves = 0, arcs = 0;
+    for (const auto& layer : drawing->layers) {
+        curves += layer->curves.size();
+        for (const EdgeCurve& curve : layer->curves) arcs += curve.arcs.size();
+    }
+    answer.text = options.output;
+    answer.fields = {{"output", options.output}, {"engine", "exact"}, {"width", drawing->width}, {"height", drawing->height},
+                     {"wire", options.wire},     {"curves", curves},  {"arcs", arcs}};
+    return answer;
+}
+
 Answer run(const RenderOptions& options, const std::string& command, const EngineChoice& engine, Console& console) {
     if (options.pixel.empty() && options.output.empty()) throw UsageError(command + " needs -o OUT.exr, or --pixel x,y");
+    OutputKind kind = OutputKind::kExr;
     if (!options.output.empty()) {
-        output_kind(options.output);
+        kind = output_kind(options, command);
         check_writable(options.output);
     }
+    if (kind == OutputKind::kSvg && engine.engine == Engine::kClassic)
+        throw UsageError("an .svg is drawn by the exact engine; leave out --engine classic");
+    if (options.wire && kind != OutputKind::kSvg) throw UsageError("--wire is for .svg outputs");
     const std::unique_ptr<World> world = load_world(options.scene, console);
     PictureRequest request;
     request.camera = chosen_camera(options.scene, world->scene);
@@ -78,9 +110,10 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
         answer.text = answer.fields.dump(2);
         if (options.output.empty()) return answer;
     }
+    if (kind == OutputKind::kSvg) return run_vector(options, *world, console);
     request.layers = layer_request(options.scene, world->scene.film);
     const Picture picture = draw_picture(*world, request, console);
-    write_picture(options.output, picture.image);
+    write_picture(options.output, picture.image, kind);
     answer.fields["output"] = options.output;
     answer.fields["engine"] = engine_name(engine.engine);
     if (engine.engine == Engine::kClassic) answer.fields["classic"] = classic_name(engine.classic);
@@ -92,7 +125,7 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
 void add_render_options(CLI::App& command, RenderOptions& options) {
     add_scene_options(command, options.scene);
     add_window_options(command, options.scene);
-    command.add_option("-o,--output", options.output, "image to write: .exr (all layers) or .png (beauty)")->type_name("OUT");
+    command.add_option("-o,--output", options.output, "image to write: .exr (all layers) or .png (beauty); render: or .svg (outlines)")->type_name("OUT");
     command.add_option("--pixel", options.pixel, "explain one pixel as JSON")->type_name("x,y");
 }
 
@@ -127,11 +160,14 @@ void register_render(const CommandRegistry& registry) {
     CLI::App* command = registry.app->add_subcommand("render", "draw the scene by projection");
     add_render_options(*command, *render);
     add_engine_options(*command, *render);
+    command->add_option("--format", render->format, "exr, png or svg; default: by the output's ending")->check(CLI::IsMember({"exr", "png", "svg"}));
+    command->add_flag("--wire", render->wire, "svg: hidden edges too");
     registry.add(command, "render", [render](Console& console) { return run(*render, "render", chosen_engine(*render), console); });
 
     auto trace = std::make_shared<RenderOptions>();
     command = registry.app->add_subcommand("trace", "draw the same scene by ray tracing: the truth");
     add_render_options(*command, *trace);
+    command->add_option("--format", trace->format, "exr or png; default: by the output's ending")->check(CLI::IsMember({"exr", "png"}));
     command->add_option("--surface", trace->surface, "facets: the rays of render's facets; limit: the exact surface")
         ->check(CLI::IsMember({"facets", "limit"}));
     registry.add(command, "trace", [trace](Console& console) {

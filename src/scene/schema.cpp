@@ -62,8 +62,8 @@ const char* scene_schema() {
       },
       "points": { "type": "array", "minItems": 3, "items": { "$ref": "#/definitions/vec3" }, "description": "rayMesh: origin of each corner's ray." },
       "directions": { "type": "array", "minItems": 3, "items": { "$ref": "#/definitions/vec3" }, "description": "rayMesh: one per corner, any length but 0." },
-      "screen": { "type": "array", "minItems": 3, "description": "rayMesh: one per corner, from the film's top left.",
-        "items": { "type": "array", "minItems": 2, "maxItems": 2, "items": { "$ref": "#/definitions/share" } } },
+      "screen": { "type": "array", "minItems": 3, "description": "rayMesh: one per corner, 0..1 from the film's top left; a facet may reach beyond the film.",
+        "items": { "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number", "minimum": -1000, "maximum": 1000 } } },
       "triangles": { "type": "array", "minItems": 1, "description": "rayMesh: three corners each.",
         "items": { "type": "array", "minItems": 3, "maxItems": 3, "items": { "$ref": "#/definitions/index" } } }
     },

@@ -1,0 +1,50 @@
+// A facet and a scene triangle whose shapes form a wanted configuration, and how well a picture shows them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "trilinear/shapes.h"
+
+namespace trilens {
+
+/// The shapes' vertex counts, ascending: (2,2,2,3), (3,3,3), ...
+using Configuration = std::vector<std::size_t>;
+
+struct FacetScene {
+    TrilinearFacet facet;
+    SceneTriangle triangle;
+};
+
+/// Where the facet's corners lie on the film, 0..1 from its top left: the facet holds the whole film.
+inline constexpr std::array<Vec2, 3> kFacetOnFilm{Vec2(-0.5, 1), Vec2(1.5, 1), Vec2(0.5, -1)};
+
+/// A facet scene recut so that a film inside its facet shows all shapes, with t > 0; world scaled to the
+/// triangle.
+struct FramedScene {
+    FacetScene scene;
+    double score = 0;  // the least of the shapes' widths, their gaps and their vertices' distances, as
+                       // weighted by score_of, in film sides
+};
+
+/// The configuration over the whole plane of weights and all t.
+Configuration configuration_of(const FacetScene& scene);
+
+/// How well the best frame shows the shapes, each of them and the gaps between them; 0: not at all.
+/// The frame is free, because the parametric triangle's corners may be any three of its plane and t may start
+/// anywhere.
+double score_of(const FacetScene& scene);
+
+/// The scene recut to its best frame.
+FramedScene framed(const FacetScene& scene);
+
+/// The facet with its rays begun at `t`: what lay before is behind the viewing plane.
+TrilinearFacet begun_at(const TrilinearFacet& facet, double t);
+
+/// The area of each shape inside the facet (weights >= 0, t >= 0), as shares of the facet's area, largest
+/// first.
+std::vector<double> visible_areas(const FacetScene& scene);
+
+}  // namespace trilens

@@ -1,0 +1,126 @@
+#include "cli/vector_drawing.h"
+
+#include <algorithm>
+
+#include "cli/camera_rays.h"
+#include "cli/views.h"
+#include "projector/projector.h"
+#include "reflect/reflection.h"
+#include "refract/refraction.h"
+#include "surfaces/surfaces.h"
+
+namespace trilens {
+namespace {
+
+constexpr int kSide = 2;       // samples along a pixel's edge that decide what is hidden
+constexpr int kBandRows = 32;  // of pixels that are viewed at once
+
+/// What each sample shows, by index.
+struct SampleIds {
+    std::vector<Id> camera_facet, visible;  // the camera's facet; the triangle of objects and optics
+    std::vector<Id> optic, optic_facet;     // index into World::optics
+    std::vector<Id> reflected, refracted;   // triangles of the objects
+};
+
+std::vector<Id> camera_facets(const RayMesh& mesh, const SampleGrid& grid) {
+    std::vector<Id> facet(grid.size(), kNone);
+    const FacetSamples owned = rasterize_facets(mesh, grid);
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+        for (const Id s : owned.of(f)) facet[s] = static_cast<Id>(f);
+    return facet;
+}
+
+/// `first_facet`: where each optic's facets begin among the visible triangles.
+SampleIds look(const Viewer& viewer, const SampleGrid& grid, const std::vector<Id>& first_facet) {
+    SampleIds ids;
+    for (std::vector<Id>* list : {&ids.visible, &ids.optic, &ids.optic_facet, &ids.reflected, &ids.refracted})
+        list->assign(grid.size(), kNone);
+    for (int y = grid.y0; y < grid.y1; y += kBandRows) {
+        const SampleGrid band{grid.x0, y, grid.x1, std::min(y + kBandRows, grid.y1), grid.side};
+        std::vector<SampleView> views(band.size());
+        viewer(band, views);
+        const std::size_t first = grid.first_sample(grid.x0, y);
+        for (std::size_t s = 0; s < views.size(); ++s) {
+            const SampleView& view = views[s];
+            const bool optic = view.optic != kNone;
+            ids.visible[first + s] = optic ? first_facet[view.optic] + view.facet : view.hit.triangle;
+            ids.optic[first + s] = view.optic;
+            ids.optic_facet[first + s] = view.facet;
+            ids.reflected[first + s] = view.reflect.hit.triangle;
+            ids.refracted[first + s] = view.refract.hit.triangle;
+        }
+    }
+    return ids;
+}
+
+void append_facets(TriangleScene& visible, const SurfaceGrid& grid, Id object) {
+    const Id first = static_cast<Id>(visible.points.size());
+    visible.points.insert(visible.points.end(), grid.points.begin(), grid.points.end());
+    for (Id f = 0; f < grid.facets.size(); ++f) {
+        IdTriple corner;
+        for (std::size_t k = 0; k < 3; ++k) corner[k] = first + grid.corner_point[grid.facets[f][k]];
+        visible.triangles.push_back(corner);
+        visible.object.push_back(object);
+        visible.primitive.push_back(f);
+    }
+}
+
+/// The facets that show an optic.
+std::vector<Id> facets_of(const SampleIds& ids, Id optic) {
+    std::vector<Id> facet(ids.optic.size(), kNone);
+    for (std::size_t s = 0; s < facet.size(); ++s)
+        if (ids.optic[s] == optic) facet[s] = ids.optic_facet[s];
+    return facet;
+}
+
+}  // namespace
+
+std::unique_ptr<Drawing> make_drawing(const World& world, std::size_t camera_index, bool wire,
+                                      const Warn& warn) {
+    auto drawing = std::make_unique<Drawing>();
+    drawing->width = world.scene.film.width, drawing->height = world.scene.film.height, drawing->wire = wire;
+    const CameraRays camera = make_camera_rays(world.scene, camera_index);
+    const SampleGrid grid{0, 0, drawing->width, drawing->height, kSide};
+
+    // Everything that the camera may see, and the optics' grids.
+    drawing->visible = world.objects;
+    std::vector<Id> material = world.shading.material, first_facet;
+    std::vector<SurfaceGrid> grids;
+    for (const Optic& optic : world.optics) {
+        grids.push_back(make_grid(*optic.surface, optic.resolution));
+        first_facet.push_back(static_cast<Id>(drawing->visible.size()));
+        append_facets(drawing->visible, grids.back(), optic.mesh);
+        material.resize(drawing->visible.size(), optic.material);
+    }
+    SampleIds ids = look(make_viewer(world, camera_index, Engine::kExact, warn), grid, first_facet);
+    ids.camera_facet = camera_facets(camera.mesh, grid);
+
+    const auto add = [&](const std::string& path, Id optic, const VectorView& view) {
+        auto layer = std::make_unique<DrawingLayer>();
+        layer->path = path, layer->optic = optic, layer->scene = &view.scene;
+        layer->curves = edge_curves(view);
+        drawing->layers.push_back(std::move(layer));
+    };
+    if (world.scene.render.direct) {
+        const DrawnEdges edges = drawn_edges(drawing->visible, {material, world.objects.size()});
+        add("direct", kNone,
+            {drawing->visible, edges, camera.mesh, grid, ids.camera_facet, ids.visible, wire});
+    }
+    const DrawnEdges edges = drawn_edges(world.objects, {material, world.objects.size()});
+    for (Id i = 0; i < world.optics.size(); ++i) {
+        const Optic& optic = world.optics[i];
+        const std::vector<Id> facet = facets_of(ids, i);
+        if (world.scene.render.reflect) {
+            const RayMesh mesh = make_reflection(grids[i], *camera.linear);
+            add("reflect", optic.mesh, {world.objects, edges, mesh, grid, facet, ids.reflected, wire});
+        }
+        if (world.scene.render.refract && !optic.mirror) {
+            const RayMesh mesh =
+                make_refraction(grids[i], *camera.linear, world.scene.materials[optic.material].ior);
+            add("refract", optic.mesh, {world.objects, edges, mesh, grid, facet, ids.refracted, wire});
+        }
+    }
+    return drawing;
+}
+
+}  // namespace trilens
