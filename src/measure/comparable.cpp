@@ -56,17 +56,19 @@ std::vector<std::uint8_t> compared_pixels(const Image& reference, const Image& t
     return mask;
 }
 
-const std::vector<float>& float_channel(const Image& image, const std::string& name) {
-    const Channel* channel = image.find(name);
-    if (!channel) throw InputError("", name, "there is no such channel");
-    if (channel->is_id()) throw InputError("", name, "this channel holds ids, not floats");
+const std::vector<float>& float_channel(const Image& image, std::string_view name) {
+    const std::string text(name);
+    const Channel* channel = image.find(text);
+    if (!channel) throw InputError("", text, "there is no such channel");
+    if (channel->is_id()) throw InputError("", text, "this channel holds ids, not floats");
     return channel->floats();
 }
 
-const std::vector<Id>& id_channel(const Image& image, const std::string& name) {
-    const Channel* channel = image.find(name);
-    if (!channel) throw InputError("", name, "there is no such channel");
-    if (!channel->is_id()) throw InputError("", name, "this channel holds floats, not ids");
+const std::vector<Id>& id_channel(const Image& image, std::string_view name) {
+    const std::string text(name);
+    const Channel* channel = image.find(text);
+    if (!channel) throw InputError("", text, "there is no such channel");
+    if (!channel->is_id()) throw InputError("", text, "this channel holds floats, not ids");
     return channel->ids();
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "base/ids.h"
@@ -21,8 +22,8 @@ std::vector<std::uint8_t> compared_pixels(const Image& reference, const Image& t
                                           std::optional<Id> mask_object);
 
 /// The channel `name`, which must hold floats (ids). Throws InputError.
-const std::vector<float>& float_channel(const Image& image, const std::string& name);
-const std::vector<Id>& id_channel(const Image& image, const std::string& name);
+const std::vector<float>& float_channel(const Image& image, std::string_view name);
+const std::vector<Id>& id_channel(const Image& image, std::string_view name);
 
 /// "R" of layer "" is the beauty's R, of layer "reflect" it is "reflect.R".
 std::string channel_of(const std::string& layer, const std::string& name);

@@ -63,7 +63,7 @@ std::vector<SweepFit> fit_runs(const std::vector<RunRecord>& runs) {
     std::vector<SweepFit> fits;
     for (const RunRecord& run : runs)
         for (const OpticDisplacement& one : run.displacement)
-            for (const char* name : {"disp_mean_px", "disp_p95_px"})
+            for (const char* name : {"disp_mean_px", "disp_p50_px", "disp_p95_px"})
                 if (!find_fit(fits, one.layer, one.optic, name))
                     fits.push_back(fit_displacement(runs, one, name));
 
