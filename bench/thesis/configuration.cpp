@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kPerSection = 20;   // points on a piece of an edge's image
 constexpr int kTurns = 24;        // rotations of the film that are tried
-constexpr double kSpacing = 0.7;  // what a distance of vertices counts beside a width
+constexpr double kApart = 0.2;    // of the perimeter, between points that a neck is measured at
 constexpr double kMargin = 0.04;  // of the film's side, free on each side
 
 using Polygon = std::vector<Vec2>;  // in the plane of weights: second and third weight
@@ -104,21 +104,24 @@ double width(const Polygon& shape) {
     return around > 0 ? 2 * std::fabs(area) / around : 0;
 }
 
+double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+    const double square = dot(b - a, b - a);
+    const double share = square > 0 ? std::clamp(dot(p - a, b - a) / square, 0.0, 1.0) : 0.0;
+    return length(p - a - share * (b - a));
+}
+
 /// The least distance of a vertex of one from an edge of the other.
 double gap(const Polygon& a, const Polygon& b) {
     double least = std::numeric_limits<double>::infinity();
     const auto from_vertices = [&](const Polygon& points, const Polygon& edges) {
         for (const Vec2& p : points)
             for (std::size_t i = 0; i < edges.size(); ++i) {
-                const Vec2 q = edges[i], way = edges[(i + 1) % edges.size()] - q;
-                const double square = dot(way, way),
-                             share = square > 0 ? std::clamp(dot(p - q, way) / square, 0.0, 1.0) : 0.0;
-                const Vec2 apart = p - q - share * way;
-                least = std::min(least, dot(apart, apart));
+                const double apart = distance_to_segment(p, edges[i], edges[(i + 1) % edges.size()]);
+                least = std::min(least, apart);
             }
     };
     from_vertices(a, b), from_vertices(b, a);
-    return std::sqrt(least);
+    return least;
 }
 
 /// Between neighbouring vertices of a shape, which begin its polygon's sections.
@@ -126,6 +129,21 @@ double least_spacing(const Polygon& shape) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < shape.size(); i += kPerSection)
         least = std::min(least, length(shape[(i + kPerSection) % shape.size()] - shape[i]));
+    return least;
+}
+
+/// How narrow a shape is where it all but falls apart: the least distance of border points that both ways
+/// around are at least kApart of the perimeter from one another.
+double neck(const Polygon& shape) {
+    std::vector<double> way{0};
+    for (std::size_t i = 0; i < shape.size(); ++i)
+        way.push_back(way.back() + length(shape[(i + 1) % shape.size()] - shape[i]));
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < shape.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            const double share = (way[i] - way[j]) / way.back();
+            if (share >= kApart && share <= 1 - kApart) least = std::min(least, length(shape[i] - shape[j]));
+        }
     return least;
 }
 
@@ -139,7 +157,7 @@ Configuration configuration_of(const FacetScene& scene) {
     return configuration;
 }
 
-double score_of(const FacetScene& scene) {
+double score_of(const FacetScene& scene, const ScoreWeights& weights) {
     std::vector<Polygon> shapes = outlines_of(scene).shapes;
     const Rounding round = rounding_of(shapes);
     if (round.flat) return 0;
@@ -150,13 +168,15 @@ double score_of(const FacetScene& scene) {
         for (Vec2& p : shape) p = frame.to_film * p + frame.shift;
     double score = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        score = std::min({score, width(shapes[i]), kSpacing * least_spacing(shapes[i])});
+        score = std::min(score, width(shapes[i]));
+        if (weights.spacing > 0) score = std::min(score, weights.spacing * least_spacing(shapes[i]));
+        if (weights.neck > 0) score = std::min(score, weights.neck * neck(shapes[i]));
         for (std::size_t j = 0; j < i; ++j) score = std::min(score, 2 * gap(shapes[i], shapes[j]));
     }
     return std::isfinite(score) ? score : 0;
 }
 
-FramedScene framed(const FacetScene& scene) {
+FramedScene framed(const FacetScene& scene, const ScoreWeights& weights) {
     Outlines outlines = outlines_of(scene);
     const Rounding round = rounding_of(outlines.shapes);
     for (Polygon& shape : outlines.shapes)
@@ -166,13 +186,13 @@ FramedScene framed(const FacetScene& scene) {
 
     // New corner rays are rays of the facet's plane; t starts before the first shape and is 1 at about the
     // last.
-    FramedScene result{scene, score_of(scene)};
+    FramedScene result{scene, score_of(scene, weights)};
     const double unit = (outlines.t1 - outlines.t0) / 0.7, start = outlines.t0 - 0.2 * unit;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec2 at = round.root * (from_film * (kFacetOnFilm[k] - frame.shift)) + round.centre;
-        const Vec3 weights(1 - at.x - at.y, at.x, at.y);
-        result.scene.facet.corner[k] = {scene.facet.point(weights, start),
-                                        unit * scene.facet.direction(weights)};
+        const Vec3 corner(1 - at.x - at.y, at.x, at.y);
+        result.scene.facet.corner[k] = {scene.facet.point(corner, start),
+                                        unit * scene.facet.direction(corner)};
     }
 
     // The triangle's middle becomes the world's origin, its mean side 1.

@@ -25,20 +25,25 @@ inline constexpr std::array<Vec2, 3> kFacetOnFilm{Vec2(-0.5, 1), Vec2(1.5, 1), V
 /// triangle.
 struct FramedScene {
     FacetScene scene;
-    double score = 0;  // the least of the shapes' widths, their gaps and their vertices' distances, as
-                       // weighted by score_of, in film sides
+    double score = 0;  // see score_of
 };
 
 /// The configuration over the whole plane of weights and all t.
 Configuration configuration_of(const FacetScene& scene);
 
-/// How well the best frame shows the shapes, each of them and the gaps between them; 0: not at all.
-/// The frame is free, because the parametric triangle's corners may be any three of its plane and t may start
-/// anywhere.
-double score_of(const FacetScene& scene);
+/// What counts beside the shapes' widths and the gaps between them; 0: does not count.
+struct ScoreWeights {
+    double spacing = 0.4;  // of the distances of a shape's neighbouring vertices
+    double neck = 1;       // of the distances of border points far apart along the border
+};
+
+/// How well the best frame shows the shapes: the least of their widths, twice the gaps between them, and what
+/// the weights add, in film sides; 0: not at all. The frame is free, because the parametric triangle's
+/// corners may be any three of its plane and t may start anywhere.
+double score_of(const FacetScene& scene, const ScoreWeights& weights);
 
 /// The scene recut to its best frame.
-FramedScene framed(const FacetScene& scene);
+FramedScene framed(const FacetScene& scene, const ScoreWeights& weights);
 
 /// The facet with its rays begun at `t`: what lay before is behind the viewing plane.
 TrilinearFacet begun_at(const TrilinearFacet& facet, double t);

@@ -30,11 +30,11 @@ FacetScene moved(const FacetScene& from, double step, Dice& dice) {
 }
 
 /// Keeps a step that scores higher; steps grow where they succeed and shrink where they fail.
-Start climbed(Start at, const Configuration& wanted, int steps, Dice& dice) {
+Start climbed(Start at, const Configuration& wanted, const SearchParams& params, Dice& dice) {
     double step = 0.1;
-    for (int i = 0; i < steps; ++i) {
+    for (int i = 0; i < params.steps; ++i) {
         const FacetScene next = moved(at.scene, step, dice);
-        const double score = configuration_of(next) == wanted ? score_of(next) : 0;
+        const double score = configuration_of(next) == wanted ? score_of(next, params.weights) : 0;
         if (score > at.score)
             at = {next, score}, step = std::min(0.3, 2 * step);
         else
@@ -62,16 +62,16 @@ Found search(const Configuration& wanted, std::uint64_t seed, const SearchParams
     while (found.draws < params.most_draws && starts.size() < static_cast<std::size_t>(params.starts)) {
         ++found.draws;
         const FacetScene scene = random_scene(dice);
-        if (configuration_of(scene) == wanted) starts.push_back({scene, score_of(scene)});
+        if (configuration_of(scene) == wanted) starts.push_back({scene, score_of(scene, params.weights)});
     }
     std::stable_sort(starts.begin(), starts.end(),
                      [](const Start& a, const Start& b) { return a.score > b.score; });
     Start best;
     for (std::size_t s = 0; s < std::min(starts.size(), static_cast<std::size_t>(params.improved)); ++s) {
-        const Start top = climbed(starts[s], wanted, params.steps, dice);
+        const Start top = climbed(starts[s], wanted, params, dice);
         if (top.score > best.score) best = top;
     }
-    if (best.score > 0) found.framed = framed(best.scene);
+    if (best.score > 0) found.framed = framed(best.scene, params.weights);
     return found;
 }
 

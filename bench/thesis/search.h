@@ -21,9 +21,10 @@ class Dice {
 };
 
 struct SearchParams {
+    ScoreWeights weights;
     int starts = 12;  // random scenes of the configuration, the best of which are improved
     int improved = 4;
-    int steps = 12000;           // of the hill climbing, each
+    int steps = 8000;            // of the hill climbing, each
     long most_draws = 20000000;  // random scenes that are looked at before the search gives up
 };
 
