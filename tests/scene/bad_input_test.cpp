@@ -188,7 +188,7 @@ TEST_CASE("cameras and directions and transforms that mean nothing") {
          "/cameras/0/lookAt/up: up is parallel to the view from eye to at"},
         {"/cameras/0/lookAt/up", "[0,0,0]", "/cameras/0/lookAt/up: must not be zero"},
         {"/cameras/1/directions/2", "[0,0,0]", "/cameras/1/directions/2: a direction must not be zero"},
-        {"/cameras/1/screen/1", "[640,0]", "/cameras/1/screen/1/0: 640 is out of range: must be at most 1"},
+        {"/cameras/1/screen/1", "[6400,0]", "/cameras/1/screen/1/0: 6400 is out of range: must be at most 1000"},
         {"/lights/0/direction", "[0,0,0]", "/lights/0/direction: a direction must not be zero"},
         {"/meshes/0/transform/scale", "[1,0,1]",
          "/meshes/0/transform/scale/1: a scale of 0 flattens the mesh"},

@@ -155,7 +155,7 @@ TEST_CASE("sweep: summary.json is JSON with the fields that scripts read, and kn
     fake.run();
     const Json json = Json::parse(read_whole_file(fake.params.folder + "/summary.json").value());
     CHECK(json.at("counts").at("done") == 3);
-    REQUIRE(json.at("fits").size() == 7);  // (all, left, right) x (mean, p95), and RGB
+    REQUIRE(json.at("fits").size() == 10);  // (all, left, right) x (mean, median, p95), and RGB
     for (const Json& fit : json.at("fits")) {
         for (const char* field : {"optic", "metric", "order", "constant", "r2", "n_for_1px", "n_for_half_px"})
             CHECK(fit.contains(field));
