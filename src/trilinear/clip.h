@@ -22,9 +22,14 @@ struct Section {
     int edge = kSlice;
 };
 
+/// Whether the section lies in one slice: its image is straight, and t does not tell its points apart. So
+/// does the image of a scene edge that is parallel to the parametric triangle: its two ends have one root, up
+/// to rounding.
+bool is_level(const Section& section);
+
 /// The part of each shape whose weights are all >= 0. A section is a piece of a shape's border between two
 /// neighbours among its vertices and the points where it crosses the facet's borders; these crossings are
-/// computed in the scene (edge_sweep).
+/// computed in the scene (edge_sweep), those of level sections between their ends.
 struct ClippedShapes {
     std::vector<std::vector<Section>> closed;  // shapes wholly inside
     std::vector<std::vector<Section>> chains;  // from border to border

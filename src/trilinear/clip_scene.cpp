@@ -11,6 +11,10 @@ namespace {
 // A chain must end on the border; a scene vertex that lies on it to this share is moved there.
 constexpr double kOnBorder = 1e-7;
 
+// Two t that differ by less than this share are one: the parametric triangle between them moves by less than
+// kOnBorder of the distance to it, and roots of two ends of one edge that should be equal differ by far less.
+constexpr double kSameLevel = 1e-9;
+
 double least(const Vec3& w) {
     return std::min({w.x, w.y, w.z});
 }
@@ -62,6 +66,34 @@ std::vector<ImageVertex> slice_crossings(const FacetAndTriangle& pair, const Sec
     return crossings;
 }
 
+// The crossings of a scene edge's image in one slice: straight, so that the weights of its ends tell. The
+// sweep cannot: where the edge is parallel to a side of the parametric triangle it has no crossing, and where
+// it has, rounding puts its t on either side of the ends'. Computed from one end whichever way it runs.
+std::vector<ImageVertex> level_crossings(const Section& section) {
+    const bool turned = canonically_before(section.to.weights, section.from.weights);
+    const ImageVertex &a = turned ? section.to : section.from, &b = turned ? section.from : section.to;
+    struct Crossing {
+        double share;
+        ImageVertex vertex;
+    };
+    std::vector<Crossing> found;
+    for (int k = 0; k < 3; ++k) {
+        const double at_a = a.weights[k], at_b = b.weights[k];
+        if (!((at_a < 0 && at_b > 0) || (at_a > 0 && at_b < 0))) continue;
+        const double share = at_a / (at_a - at_b);
+        ImageVertex v{a.t + share * (b.t - a.t), a.weights + share * (b.weights - a.weights),
+                      a.barycentric + share * (b.barycentric - a.barycentric)};
+        v.weights[k] = 0;
+        v.weights[(k + 2) % 3] = 1 - v.weights[(k + 1) % 3];
+        found.push_back({turned ? 1 - share : share, v});
+    }
+    std::sort(found.begin(), found.end(),
+              [](const Crossing& first, const Crossing& second) { return first.share < second.share; });
+    std::vector<ImageVertex> crossings;
+    for (const Crossing& c : found) crossings.push_back(c.vertex);
+    return crossings;
+}
+
 // The section divided at its crossings.
 void divide(const FacetAndTriangle& pair, const Section& section,
             const std::array<std::vector<ImageVertex>, 3>& of_edge, std::vector<Section>& sections) {
@@ -69,6 +101,8 @@ void divide(const FacetAndTriangle& pair, const Section& section,
     const double from = section.from.t, to = section.to.t;
     if (section.edge == kSlice) {
         crossings = slice_crossings(pair, section);
+    } else if (is_level(section)) {
+        crossings = level_crossings(section);
     } else {
         for (const ImageVertex& c : of_edge[static_cast<std::size_t>(section.edge)]) {
             if (c.t > std::min(from, to) && c.t < std::max(from, to)) crossings.push_back(c);
@@ -88,7 +122,7 @@ void divide(const FacetAndTriangle& pair, const Section& section,
 // No border crosses a section, so one point between tells on which side it lies.
 bool inside(const FacetAndTriangle& pair, const Section& section) {
     const Vec3 middle = 0.5 * (section.from.weights + section.to.weights);
-    if (section.edge == kSlice) return least(middle) >= 0;
+    if (is_level(section)) return least(middle) >= 0;
     const auto cut = edge_cut(pair.cubic, pair.triangle, static_cast<std::size_t>(section.edge),
                               0.5 * (section.from.t + section.to.t));
     return least(cut ? cut->weights : middle) >= 0;
@@ -139,6 +173,12 @@ void add_runs(const FacetAndTriangle& pair, const std::vector<Section>& ring, Cl
 }
 
 }  // namespace
+
+bool is_level(const Section& section) {
+    const double from = section.from.t, to = section.to.t;
+    return section.edge == kSlice ||
+           std::fabs(to - from) <= kSameLevel * std::max(std::fabs(from), std::fabs(to));
+}
 
 ClippedShapes clip_in_scene(const FacetAndTriangle& pair, const std::vector<Shape>& shapes) {
     ClippedShapes result;

@@ -39,7 +39,7 @@ class Pen {
 
     // Vertices strictly inside the section, in its order. `levels`: those of its shape.
     std::vector<ImageVertex> between(const Section& s, const std::vector<double>& levels) const {
-        if (s.edge == kSlice || params_.curves == Curves::kStraight || s.from.t == s.to.t) return {};
+        if (params_.curves == Curves::kStraight || is_level(s)) return {};
         const std::size_t edge = static_cast<std::size_t>(s.edge);
         if (params_.curves == Curves::kSlices) {
             return slice_ends(pair_.cubic, pair_.triangle, edge, levels, {s.from.t, s.to.t});

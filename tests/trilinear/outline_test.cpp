@@ -127,6 +127,33 @@ Case random_case(Random& random, FacetKind kind) {
     return c;
 }
 
+// Half a wall or floor of a room about the origin.
+SceneTriangle axis_triangle(Random& random) {
+    const int across = random.below(3), u = (across + 1) % 3, v = (across + 2) % 3;
+    const double away = random.below(2) ? random.uniform(1.5, 4) : random.uniform(-4, -1.5);
+    const double low_u = random.uniform(-4, 0), high_u = random.uniform(0, 4);
+    const double low_v = random.uniform(-4, 0), high_v = random.uniform(0, 4);
+    const double corners[3][2] = {{low_u, low_v}, {high_u, low_v}, {high_u, high_v}};
+    SceneTriangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+        Vec3& corner = triangle.corner[k];
+        corner[across] = away, corner[u] = corners[k][0], corner[v] = corners[k][1];
+    }
+    return triangle;
+}
+
+// Two mirrorings, which leave every length and angle but no coordinate.
+Case turned_about_origin(const Case& c, const Vec3& first, const Vec3& second) {
+    const auto turn = [&](Vec3 v) {
+        for (const Vec3& n : {normalize(first), normalize(second)}) v -= 2.0 * dot(v, n) * n;
+        return v;
+    };
+    Case turned = c;
+    for (Ray& ray : turned.facet.corner) ray = {turn(ray.origin), turn(ray.direction)};
+    for (Vec3& corner : turned.triangle.corner) corner = turn(corner);
+    return turned;
+}
+
 const Clip kClips[] = {Clip::kUnclipped, Clip::kScreen, Clip::kScene};
 
 void check_law(std::uint64_t seed, int pairs_per_kind, int points) {
@@ -159,6 +186,35 @@ void check_law(std::uint64_t seed, int pairs_per_kind, int points) {
 
 TEST_CASE("outlines: even-odd inside is what rays meet for every kind of facet and clip", "[outline]") {
     check_law(1, 400, 50);
+}
+
+TEST_CASE("outlines: cylinder mirrors and triangles along their axis", "[outline]") {
+    // A scene edge along the axis stays parallel to every parametric triangle: its image has one t.
+    Random random(4);
+    for (const bool turned : {false, true}) {
+        for (const Clip clip : kClips) {
+            Tally sum;
+            int bad_pairs = 0;
+            for (int i = 0; i < 3000; ++i) {
+                const double angle = random.uniform(-3, 3);
+                const Vec3 eye(4 * std::sin(angle), random.uniform(-1.5, 1.5), 4 * std::cos(angle));
+                Case c{cylinder_facet(random, eye), axis_triangle(random)};
+                if (turned) c = turned_about_origin(c, random.on_sphere(), random.on_sphere());
+                ShapeParams params;
+                params.clip = clip, params.tolerance = 1e-4;
+                const Tally tally = compare(c.facet, c.triangle, params, random, 50);
+                sum.points += tally.points, sum.hits += tally.hits, sum.near += tally.near,
+                    sum.wrong += tally.wrong;
+                bad_pairs += tally.wrong > 0;
+            }
+            INFO("turned " << turned << " clip " << static_cast<int>(clip) << ": " << sum.points
+                           << " points, " << sum.hits << " hits, " << sum.near << " near an edge, "
+                           << sum.wrong << " wrong in " << bad_pairs << " pairs");
+            CHECK(sum.wrong == 0);
+            CHECK(sum.hits > sum.points / 30);
+            CHECK(sum.near < sum.points / 1000 + 5);
+        }
+    }
 }
 
 TEST_CASE("outlines: even-odd inside is what rays meet in many pairs", "[.long]") {

@@ -70,6 +70,25 @@ inline TrilinearFacet random_facet(Random& random, FacetKind kind) {
     return facet;
 }
 
+/// A facet of a mirror that is a cylinder about the y axis, of radius 1 and seen from `eye`: two corners lie
+/// on one line along the axis and share a normal, the third has the height of one of them.
+inline TrilinearFacet cylinder_facet(Random& random, const Vec3& eye) {
+    const double angle = std::atan2(eye.x, eye.z) + random.uniform(-1, 1),
+                 step = random.log_uniform(0.02, 0.7);
+    const double low = random.uniform(-1, 1), high = low + random.log_uniform(0.02, 1);
+    const double other = random.below(2) ? low : high, turn = random.below(2) ? step : -step;
+    const double angles[3] = {angle, angle, angle + turn}, heights[3] = {low, high, other};
+    const int first = random.below(3);
+    TrilinearFacet facet;
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 normal(std::sin(angles[k]), 0, std::cos(angles[k]));
+        const Vec3 point = normal + Vec3(0, heights[k], 0), incident = point - eye;
+        facet.corner[static_cast<std::size_t>((first + k) % 3)] = {
+            point, incident - 2.0 * trilens::dot(incident, normal) * normal};
+    }
+    return facet;
+}
+
 /// Three corners of a regular grid on the sphere of radius 1 about `center`, cols x rows cells in spherical
 /// angles over the side that faces `eye`, as a mirror: a RayMesh with a plain screen (x = column, y = row, w
 /// = 1).
