@@ -33,7 +33,8 @@ bool is_level(const Section& section);
 struct ClippedShapes {
     std::vector<std::vector<Section>> closed;  // shapes wholly inside
     std::vector<std::vector<Section>> chains;  // from border to border
-    bool clean = true;  // false: a chain's end is not on the border; rounding has confused a touching case
+    bool clean = true;  // false: a chain's end is not on the border, or a section runs along it: touching
+                        // cases, which rounding confuses
 };
 
 ClippedShapes clip_in_scene(const FacetAndTriangle& pair, const std::vector<Shape>& shapes);

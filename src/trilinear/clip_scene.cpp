@@ -119,13 +119,29 @@ void divide(const FacetAndTriangle& pair, const Section& section,
     sections.push_back({last, section.to, section.edge});
 }
 
-// No border crosses a section, so one point between tells on which side it lies.
-bool inside(const FacetAndTriangle& pair, const Section& section) {
+Vec3 middle_weights(const FacetAndTriangle& pair, const Section& section) {
     const Vec3 middle = 0.5 * (section.from.weights + section.to.weights);
-    if (is_level(section)) return least(middle) >= 0;
+    if (is_level(section)) return middle;
     const auto cut = edge_cut(pair.cubic, pair.triangle, static_cast<std::size_t>(section.edge),
                               0.5 * (section.from.t + section.to.t));
-    return least(cut ? cut->weights : middle) >= 0;
+    return cut ? cut->weights : middle;
+}
+
+// Where the triangle touches the facet along one of its edges, a section runs along the border and rounding
+// alone tells on which side, and whether the border's rays meet the triangle.
+bool runs_along_border(const FacetAndTriangle& pair, const Section& section) {
+    const Vec3 &a = section.from.weights, &b = section.to.weights;
+    if (length(b - a) <= kOnBorder) return false;
+    const Vec3 middle = middle_weights(pair, section);
+    for (int k = 0; k < 3; ++k) {
+        if (std::max({std::fabs(a[k]), std::fabs(b[k]), std::fabs(middle[k])}) <= kOnBorder) return true;
+    }
+    return false;
+}
+
+// No border crosses a section, so one point between tells on which side it lies.
+bool inside(const FacetAndTriangle& pair, const Section& section) {
+    return least(middle_weights(pair, section)) >= 0;
 }
 
 bool move_to_border(ImageVertex& vertex) {
@@ -148,7 +164,10 @@ bool move_to_border(ImageVertex& vertex) {
 // The runs of inside sections around one shape.
 void add_runs(const FacetAndTriangle& pair, const std::vector<Section>& ring, ClippedShapes& result) {
     std::vector<char> keep;
-    for (const Section& section : ring) keep.push_back(inside(pair, section));
+    for (const Section& section : ring) {
+        keep.push_back(inside(pair, section));
+        result.clean &= !runs_along_border(pair, section);
+    }
     const auto first_out = std::find(keep.begin(), keep.end(), 0);
     if (first_out == keep.end()) {
         result.closed.push_back(ring);

@@ -127,9 +127,9 @@ Case random_case(Random& random, FacetKind kind) {
     return c;
 }
 
-// Half a wall or floor of a room about the origin.
-SceneTriangle axis_triangle(Random& random) {
-    const int across = random.below(3), u = (across + 1) % 3, v = (across + 2) % 3;
+// Half a wall (or, across y, floor) of a room about the origin.
+SceneTriangle axis_triangle(Random& random, int across) {
+    const int u = (across + 1) % 3, v = (across + 2) % 3;
     const double away = random.below(2) ? random.uniform(1.5, 4) : random.uniform(-4, -1.5);
     const double low_u = random.uniform(-4, 0), high_u = random.uniform(0, 4);
     const double low_v = random.uniform(-4, 0), high_v = random.uniform(0, 4);
@@ -198,7 +198,12 @@ TEST_CASE("outlines: cylinder mirrors and triangles along their axis", "[outline
             for (int i = 0; i < 3000; ++i) {
                 const double angle = random.uniform(-3, 3);
                 const Vec3 eye(4 * std::sin(angle), random.uniform(-1.5, 1.5), 4 * std::cos(angle));
-                Case c{cylinder_facet(random, eye), axis_triangle(random)};
+                const bool stands = i % 3 == 0;  // a corner or an edge of the facet is in the floor's plane
+                Case c{cylinder_facet(random, eye), axis_triangle(random, stands ? 1 : random.below(3))};
+                if (stands) {
+                    const double height = c.facet.corner[static_cast<std::size_t>(i % 9 / 3)].origin.y;
+                    for (Vec3& corner : c.triangle.corner) corner.y = height;
+                }
                 if (turned) c = turned_about_origin(c, random.on_sphere(), random.on_sphere());
                 ShapeParams params;
                 params.clip = clip, params.tolerance = 1e-4;
