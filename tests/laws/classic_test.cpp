@@ -43,17 +43,10 @@ void add(Difference& sum, const std::vector<SampleView>& exact, const std::vecto
     }
 }
 
-constexpr const char* kKnownToFail = "engine";
-
-/// Over all shipped scenes that can be loaded, but for the one that is known to fail.
+/// Over all shipped scenes that can be loaded.
 Difference difference(int n, const ClassicParams& params, int width, int height) {
     Difference sum;
     for (const std::string& name : shipped_scenes()) {
-        // Known to fail: through facets of a cylinder some outlines are incomplete, up to 0.5 % of all pixels.
-        if (name == kKnownToFail) {
-            note_skip("classic engine on scene " + name, "known to leave regions of a cylinder mirror uncovered");
-            continue;
-        }
         std::string missing;
         const auto world = shipped_world(name, n, width, height, &missing);
         if (!world) {
