@@ -40,7 +40,8 @@ Json seen_json(const SeenMismatch& s) {
 
 Json displacement_json(const Displacement& d) {
     return {{"mean", json_number(d.mean)}, {"p50", json_number(d.p50)}, {"p95", json_number(d.p95)}, {"p99", json_number(d.p99)},
-            {"max", json_number(d.max)}, {"pixels", d.pixels}, {"lost", d.lost}};
+            {"max", json_number(d.max)}, {"pixels", d.pixels}, {"lost", d.lost},
+            {"mean_off_folds", json_number(d.mean_off_folds)}, {"near_folds", d.near_folds}};
 }
 
 /// Sums over layers: the interface's `seen` counts every layer.

@@ -130,7 +130,7 @@ std::string summary_text(const SweepSummary& summary) {
     std::string text = summary.manifest.subject.title + ": " + std::to_string(summary.count(RunState::kDone)) + " of " +
                        std::to_string(summary.runs.size()) + " runs done\n";
     for (const SweepFit& fit : summary.fits)
-        if (fit.order && (fit.metric == "disp_mean_px" || fit.metric == "disp_p50_px")) text += fit_line(fit);
+        if (fit.order && (fit.metric == "disp_mean_px" || fit.metric == "disp_mean_off_folds_px" || fit.metric == "disp_p50_px")) text += fit_line(fit);
     return text;
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "measure/comparable.h"
+#include "measure/folds.h"
 #include "measure/image_finder.h"
 #include "measure/other_image.h"
 #include "measure/statistics.h"
@@ -22,14 +23,17 @@ SeenPoint seen_point(const SeenField& field, std::size_t i) {
     return seen;
 }
 
-void collect_statistics(Displacement& result) {
-    std::vector<double> sizes;
+void collect_statistics(const std::vector<std::uint8_t>& near_fold, Displacement& result) {
+    std::vector<double> sizes, regular;
     for (std::size_t i = 0; i < result.state.size(); ++i) {
         if (result.state[i] == Shift::kLost) ++result.lost;
         if (result.state[i] != Shift::kFound) continue;
         sizes.push_back(glm::length(Vec2(result.shift_x[i], result.shift_y[i])));
+        if (!near_fold[i]) regular.push_back(sizes.back());
     }
     result.pixels = sizes.size();
+    result.near_folds = sizes.size() - regular.size();
+    result.mean_off_folds = summarize(std::move(regular)).mean;
     const Summary summary = summarize(std::move(sizes));
     result.mean = summary.mean;
     result.p50 = summary.p50;
@@ -68,7 +72,7 @@ std::optional<Displacement> measure_displacement(const Image& reference, const I
         }
     });
     drop_other_images(result, test.data_width);
-    collect_statistics(result);
+    collect_statistics(near_folds(finder.reference()), result);
     return result;
 }
 

@@ -27,6 +27,8 @@ class ImageFinder {
     /// its borders.
     ImageFinder(SeenField reference, SeenField test);
 
+    /// Both with their links.
+    const SeenField& reference() const { return field_; }
     const SeenField& test() const { return test_; }
 
     /// The screen vector from the pixel to the nearest place, at most `radius` pixels away, where the

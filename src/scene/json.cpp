@@ -110,6 +110,7 @@ class Builder : public nlohmann::json_sax<Json> {
 }  // namespace
 
 Json parse_json(const std::string& text, const std::string& file) {
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos) fail_at(file, "", "is empty");
     Builder builder(text, file);
     constexpr bool kWholeText = true, kIgnoreComments = true;
     Json::sax_parse(text, &builder, Json::input_format_t::json, kWholeText, kIgnoreComments);

@@ -63,7 +63,7 @@ std::vector<SweepFit> fit_runs(const std::vector<RunRecord>& runs) {
     std::vector<SweepFit> fits;
     for (const RunRecord& run : runs)
         for (const OpticDisplacement& one : run.displacement)
-            for (const char* name : {"disp_mean_px", "disp_p50_px", "disp_p95_px"})
+            for (const char* name : {"disp_mean_px", "disp_mean_off_folds_px", "disp_p50_px", "disp_p95_px"})
                 if (!find_fit(fits, one.layer, one.optic, name))
                     fits.push_back(fit_displacement(runs, one, name));
 
@@ -82,6 +82,15 @@ const SweepFit* find_fit(const std::vector<SweepFit>& fits, const std::string& l
         return fit.layer == layer && fit.optic == optic && fit.metric == metric_name;
     });
     return found == fits.end() ? nullptr : &*found;
+}
+
+const SweepFit* find_fit_off_folds(const std::vector<SweepFit>& fits, const std::string& layer,
+                                   const std::string& optic) {
+    const SweepFit* const all = find_fit(fits, layer, optic, "disp_mean_px");
+    const SweepFit* const off = find_fit(fits, layer, optic, "disp_mean_off_folds_px");
+    if (!all || !off) return nullptr;
+    const auto is_same = [](const SweepPoint& a, const SweepPoint& b) { return a.n == b.n && a.value == b.value; };
+    return std::ranges::equal(all->points, off->points, is_same) ? nullptr : off;
 }
 
 PlotSeries plot_series(const SweepFit& fit, const std::string& name) {

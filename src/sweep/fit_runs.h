@@ -20,6 +20,11 @@ std::vector<SweepFit> fit_runs(const std::vector<RunRecord>& runs);
 const SweepFit* find_fit(const std::vector<SweepFit>& fits, const std::string& layer,
                          const std::string& optic, const std::string& metric);
 
+/// The fit of the mean off the folds (measure/folds.h); nullptr where it says no more than that of the mean, because no
+/// run found a pixel near a fold.
+const SweepFit* find_fit_off_folds(const std::vector<SweepFit>& fits, const std::string& layer,
+                                   const std::string& optic);
+
 /// The fit's points and line for a plot.
 PlotSeries plot_series(const SweepFit& fit, const std::string& name);
 

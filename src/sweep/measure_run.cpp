@@ -37,13 +37,15 @@ MetricValues colour_values(const Comparison& comparison) {
 /// Without a pixel found there is no mean: only the counts.
 MetricValues displacement_values(const Displacement& displacement) {
     MetricValues values = {{"disp_pixels", static_cast<double>(displacement.pixels)},
-                           {"disp_lost", static_cast<double>(displacement.lost)}};
+                           {"disp_lost", static_cast<double>(displacement.lost)},
+                           {"disp_near_folds", static_cast<double>(displacement.near_folds)}};
     if (displacement.pixels == 0) return values;
     values["disp_mean_px"] = displacement.mean;
     values["disp_p50_px"] = displacement.p50;
     values["disp_p95_px"] = displacement.p95;
     values["disp_p99_px"] = displacement.p99;
     values["disp_max_px"] = displacement.max;
+    if (displacement.near_folds < displacement.pixels) values["disp_mean_off_folds_px"] = displacement.mean_off_folds;
     return values;
 }
 

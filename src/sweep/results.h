@@ -60,7 +60,7 @@ struct OpticDisplacement {
     std::string layer;  // "reflect", "refract"
     std::string optic;  // its name, or "all"
     MetricValues
-        metrics;  // disp_mean_px, disp_p50_px, disp_p95_px, disp_p99_px, disp_max_px, disp_pixels, disp_lost
+        metrics;  // disp_{mean,p50,p95,p99,max,mean_off_folds}_px, disp_pixels, disp_lost, disp_near_folds
 };
 
 enum class RunState { kMissing, kDone, kFailed };

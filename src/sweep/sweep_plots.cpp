@@ -18,14 +18,18 @@ constexpr const char* kResolutionLabel = "resolution n [n × n facets per cage f
 /// One line per optic; "all" only where it says more than the one optic does.
 NamedPlot displacement_plot(const SweepSummary& summary, const std::string& layer,
                             const std::string& metric) {
+    const bool is_mean = metric == "disp_mean_px";
     std::vector<const SweepFit*> fits;
     for (const SweepFit& fit : summary.fits)
         if (fit.layer == layer && fit.metric == metric) fits.push_back(&fit);
     std::vector<PlotSeries> series;
     for (const SweepFit* fit : fits)
-        if (fits.size() != 2 || fit->optic != kAll) series.push_back(plot_series(*fit, fit->optic));
+        if (fits.size() != 2 || fit->optic != kAll) {
+            series.push_back(plot_series(*fit, fit->optic));
+            const SweepFit* const off = is_mean ? find_fit_off_folds(summary.fits, layer, fit->optic) : nullptr;
+            if (off) series.push_back(plot_series(*off, fit->optic + ", off folds"));
+        }
 
-    const bool is_mean = metric == "disp_mean_px";
     PlotParams params;
     params.title = std::string(is_mean ? "Mean" : "95 %") + " displacement of " + what_layer_shows(layer);
     params.x_label = kResolutionLabel;

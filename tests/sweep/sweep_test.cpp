@@ -83,8 +83,8 @@ TEST_CASE("sweep: the order, constant and needed n of a known law are found, per
         const SweepSummary summary = fake.run();
         REQUIRE(summary.count(RunState::kDone) == 4);
         for (const char* metric : {"disp_mean_px", "disp_p95_px"}) {
-            const SweepFit& left = fit_of(summary, "reflect", "left", metric);
-            const SweepFit& right = fit_of(summary, "reflect", "right", metric);
+            const SweepFit left = fit_of(summary, "reflect", "left", metric);
+            const SweepFit right = fit_of(summary, "reflect", "right", metric);
             CHECK(left.order.value() == Approx(order).epsilon(1e-3));
             CHECK(left.constant.value() == Approx(trilens_test::kLeftConstant).epsilon(1e-3));
             CHECK(right.constant.value() == Approx(trilens_test::kRightConstant).epsilon(1e-3));
@@ -155,7 +155,7 @@ TEST_CASE("sweep: summary.json is JSON with the fields that scripts read, and kn
     fake.run();
     const Json json = Json::parse(read_whole_file(fake.params.folder + "/summary.json").value());
     CHECK(json.at("counts").at("done") == 3);
-    REQUIRE(json.at("fits").size() == 10);  // (all, left, right) x (mean, median, p95), and RGB
+    REQUIRE(json.at("fits").size() == 13);  // (all, left, right) x (mean, median, p95), and RGB
     for (const Json& fit : json.at("fits")) {
         for (const char* field : {"optic", "metric", "order", "constant", "r2", "n_for_1px", "n_for_half_px"})
             CHECK(fit.contains(field));
@@ -199,7 +199,7 @@ TEST_CASE("sweep: runs that lose many pixels take no part in a fit") {
         return trilens_test::fake_image(n == 1 ? 24 : 1.5 / (n * n), 3.0 / (n * n));
     };
     const SweepSummary summary = fake.run();
-    const SweepFit& left = fit_of(summary, "reflect", "left", "disp_mean_px");
+    const SweepFit left = fit_of(summary, "reflect", "left", "disp_mean_px");
     REQUIRE(left.points.size() == 4);
     CHECK(!left.points[0].used);
     CHECK(left.order.value() == Approx(2).epsilon(1e-3));
