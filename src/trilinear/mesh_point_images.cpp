@@ -45,7 +45,11 @@ MeshPointImages::MeshPointImages(const RayMesh& mesh) : corners_(mesh.facets), s
     if (facet_.empty()) return;
     build(mesh, 0, static_cast<std::uint32_t>(facet_.size()));
     coplanarity_.reserve(facet_.size());
-    for (const Id f : facet_) coplanarity_.push_back(make_coplanarity(trilinear_facet(mesh, f)));
+    beam_.reserve(facet_.size());
+    for (const Id f : facet_) {
+        coplanarity_.push_back(make_coplanarity(trilinear_facet(mesh, f)));
+        beam_.push_back(make_beam(coplanarity_.back()));
+    }
 }
 
 MeshPointImages::Node MeshPointImages::cone(const RayMesh& mesh, std::span<const Id> facets) {
@@ -146,6 +150,7 @@ void MeshPointImages::append(const Vec3& point, std::vector<MeshPointImage>& ima
             continue;
         }
         for (std::uint32_t i = node.first; i < node.end; ++i) {
+            if (!may_hold(coplanarity_[i], beam_[i], point)) continue;
             const Id f = facet_[i];
             for (const PointImage& image : point_images(coplanarity_[i], point)) {
                 const IdTriple& c = corners_[f];

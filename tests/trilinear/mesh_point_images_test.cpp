@@ -1,7 +1,6 @@
 // Laws of images through a whole mesh: the tree loses none, shared borders count once, threads do not matter.
 #include "trilinear/mesh_point_images.h"
 
-#include <chrono>
 #include <vector>
 
 #include "base/parallel.h"
@@ -118,20 +117,4 @@ TEST_CASE("mesh point images: many points at once are the same, for any number o
     set_thread_count(0);
     CHECK(prepared.images(std::span<const Vec3>{}).first.size() == 1);
     CHECK(MeshPointImages(RayMesh{}).images(Vec3(1)).empty());
-}
-
-TEST_CASE("mesh point images: 100,000 points through 1,000 facets", "[.bench]") {
-    const MeshPointImages prepared(sphere_mirror(Vec3(0), Vec3(0, 0, 4), 22, 23));
-    Random random(5);
-    const std::vector<Vec3> points = random_points(random, 100000, 5);
-    for (const int threads : {1, 0}) {
-        set_thread_count(threads);
-        const auto start = std::chrono::steady_clock::now();
-        const PointImageLists lists = prepared.images(points);
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        WARN(thread_count() << " threads: " << 1e3 * seconds << " ms, " << lists.image.size() << " images");
-        CHECK(seconds < 1);
-    }
-    set_thread_count(0);
 }
