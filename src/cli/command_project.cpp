@@ -81,6 +81,16 @@ Json image_json(const World& world, const WorldImage& image) {
             {"length", json_number(image.length)}, {"visible", image.visible}, {"refined", image.refined}};
 }
 
+Json points_json(const World& world, std::span<const Vec3> points, std::span<const std::vector<WorldImage>> images) {
+    Json list = Json::array();
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        Json entry{{"point", {points[p].x, points[p].y, points[p].z}}, {"images", Json::array()}};
+        for (const WorldImage& image : images[p]) entry["images"].push_back(image_json(world, image));
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
 std::string text_line(const World& world, std::size_t point, const WorldImage& image) {
     char line[256];
     std::snprintf(line, sizeof line, "%zu,%.9f,%.9f,%.12g,%s,%s,%s,%d,%d,%d\n", point, image.pixel.x, image.pixel.y, image.t,
@@ -102,16 +112,10 @@ Answer run(const ProjectOptions& options, Console& console) {
 
     Answer answer;
     answer.fields["seconds"] = seconds;
-    answer.fields["points"] = Json::array();
+    if (console.wants_json()) answer.fields["points"] = points_json(*world, points, images);
     answer.text = "point,x,y,t,path,optic,facet,inside,visible,refined\n";
-    for (std::size_t p = 0; p < points.size(); ++p) {
-        Json entry{{"point", {points[p].x, points[p].y, points[p].z}}, {"images", Json::array()}};
-        for (const WorldImage& image : images[p]) {
-            entry["images"].push_back(image_json(*world, image));
-            answer.text += text_line(*world, p, image);
-        }
-        answer.fields["points"].push_back(std::move(entry));
-    }
+    for (std::size_t p = 0; p < points.size(); ++p)
+        for (const WorldImage& image : images[p]) answer.text += text_line(*world, p, image);
     console.note(std::to_string(points.size()) + " points in " + std::to_string(seconds) + " s");
     return answer;
 }

@@ -19,6 +19,7 @@ struct ConsoleOptions {
     int verbose = 0;
     ProgressStyle progress = ProgressStyle::kAuto;
     ColourStyle colour = ColourStyle::kAuto;
+    bool wants_json = false;  // the answer's fields will be read
 };
 
 /// One writer for everything on stderr, so that a bar and a message never mix. Keeps the warnings for the JSON answer.
@@ -38,6 +39,7 @@ class Console {
     }
 
     const std::vector<std::string>& warnings() const { return warnings_; }
+    bool wants_json() const { return options_.wants_json; }
 
   private:
     void draw(const std::string& job, double done);

@@ -174,6 +174,7 @@ int run_command_line(int argc, const char* const* argv) {
         return fail(words.empty() ? "help" : words[0], json, console, usage_error(app, complaint, words));
     }
 
+    common.console.wants_json = !common.json.empty();
     Console console(common.console);
     try {
         set_threads_everywhere(common.threads);
