@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "base/facet_scene.h"
 #include "base/parallel.h"
 #include "camera/perspective.h"
 #include "reflect/reflection.h"
@@ -101,12 +102,7 @@ FacetMirror mirror_sphere() {
     const LinearCamera camera = make_perspective(params);
     const SurfaceGrid grid = make_grid(*make_primitive_surface(sphere), kResolution);
     TriangleScene facets;
-    facets.points = grid.points;
-    for (const IdTriple& facet : grid.facets) {
-        facets.triangles.push_back({grid.corner_point[facet[0]], grid.corner_point[facet[1]], grid.corner_point[facet[2]]});
-        facets.primitive.push_back(static_cast<Id>(facets.object.size()));
-        facets.object.push_back(0);
-    }
+    append_facets(grid, 0, facets);
     return {camera, make_reflection(grid, camera), Tracer(facets)};
 }
 

@@ -52,6 +52,9 @@ inline constexpr double kSameNormal = 1e-3;
 /// sub-faces to it), and the quad's n squares along it have a fifth corner and three facets.
 SurfaceGrid make_grid(const Surface& surface, int n);
 
+/// make_grid(surface, n).facets.size(), without the grid; n >= 1.
+std::size_t count_facets(const Surface& surface, int n);
+
 /// "OpenSubdiv 3.5.0": for `trilens info`.
 std::string surface_library_version();
 

@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/facet_scene.h"
 #include "base/parallel.h"
+#include "cli/optic_meshes.h"
 #include "projector/projector.h"
-#include "reflect/reflection.h"
-#include "refract/refraction.h"
-#include "surfaces/surfaces.h"
 #include "truth/tracer.h"
 
 namespace trilens {
@@ -17,11 +16,10 @@ namespace {
 /// More facets than this over all optics are refused: they would not fit in memory.
 constexpr std::size_t kMaxFacets = 100'000'000;
 
-/// One optic as facets: its grid, and the RayMeshes that look away from it.
-struct OpticMeshes {
-    SurfaceGrid grid;
-    RayMesh reflect, refract;  // facets parallel to grid.facets; empty where the optic has no such path
-    Id first_triangle = 0;     // of its facets in the visible scene
+/// One optic, and where its facets begin in the visible scene.
+struct SeenOptic {
+    OpticMeshes meshes;
+    Id first_triangle = 0;
 };
 
 /// The engine's work on one RayMesh: nearest triangles of the objects, or of all that the camera can see.
@@ -31,7 +29,7 @@ using DrawMesh = std::function<void(const RayMesh&, const FacetSamples&, const S
 struct FacetViewer {
     const World* world = nullptr;
     CameraRays camera;
-    std::vector<OpticMeshes> optics;
+    std::vector<SeenOptic> optics;
     DrawMesh draw_visible, draw_objects;
     bool redraw_direct = false;  // the camera's own view of the objects is draw_objects', not draw_visible's
 
@@ -50,20 +48,20 @@ Vec3 corner_weights(const Hit& hit) {
 }
 
 void FacetViewer::describe_optic(std::size_t index, const Hit& hit, SampleView& view) const {
-    const OpticMeshes& meshes = optics[index];
+    const SurfaceGrid& grid = optics[index].meshes.grid;
     view.optic = static_cast<Id>(index);
-    view.facet = hit.triangle - meshes.first_triangle;
+    view.facet = hit.triangle - optics[index].first_triangle;
     const Vec3 weights = corner_weights(hit);
-    const IdTriple& corner = meshes.grid.facets[view.facet];
+    const IdTriple& corner = grid.facets[view.facet];
     Vec3 normal(0);
     for (int k = 0; k < 3; ++k) {
         const std::size_t c = static_cast<std::size_t>(k);
-        normal += weights[k] * meshes.grid.corner_normal[corner[c]];
-        view.uv += weights[k] * meshes.grid.facet_uv[view.facet][c];
+        normal += weights[k] * grid.corner_normal[corner[c]];
+        view.uv += weights[k] * grid.facet_uv[view.facet][c];
     }
 
     // The side is the facet's own; the angle that of the interpolated normal, grazing where it turned away.
-    const auto point = [&](std::size_t c) { return meshes.grid.points[meshes.grid.corner_point[corner[c]]]; };
+    const auto point = [&](std::size_t c) { return grid.points[grid.corner_point[corner[c]]]; };
     const Vec3 chord = cross(point(1) - point(0), point(2) - point(0));
     view.front = dot(chord, view.ray.direction) <= 0;
     const Vec3 unit = normalize_or_zero(normal) * (view.front ? 1.0 : -1.0);
@@ -95,8 +93,8 @@ void FacetViewer::view_path(const RayMesh& mesh, const SampleGrid& grid, std::sp
 
 void FacetViewer::view_optic(std::size_t index, const SampleGrid& grid, std::span<const Hit> first,
                              std::span<SampleView> views) const {
-    const OpticMeshes& meshes = optics[index];
-    const Id begin = meshes.first_triangle, end = begin + static_cast<Id>(meshes.grid.facets.size());
+    const OpticMeshes& meshes = optics[index].meshes;
+    const Id begin = optics[index].first_triangle, end = begin + static_cast<Id>(meshes.grid.facets.size());
     std::vector<Id> owner(grid.size(), kNone);
     bool any = false;
     for (std::size_t s = 0; s < grid.size(); ++s) {
@@ -133,18 +131,6 @@ void FacetViewer::operator()(const SampleGrid& grid, std::span<SampleView> views
     for (std::size_t i = 0; i < optics.size(); ++i) view_optic(i, grid, first, views);
 }
 
-void append_facets(TriangleScene& visible, const SurfaceGrid& grid, Id object) {
-    const Id first = static_cast<Id>(visible.points.size());
-    visible.points.insert(visible.points.end(), grid.points.begin(), grid.points.end());
-    for (std::size_t f = 0; f < grid.facets.size(); ++f) {
-        IdTriple corner;
-        for (std::size_t k = 0; k < 3; ++k) corner[k] = first + grid.corner_point[grid.facets[f][k]];
-        visible.triangles.push_back(corner);
-        visible.object.push_back(object);
-        visible.primitive.push_back(static_cast<Id>(f));
-    }
-}
-
 void check_facet_count(const World& world) {
     std::size_t total = 0;
     for (const Optic& optic : world.optics) total += optic.facet_count();
@@ -161,17 +147,13 @@ Viewer make_facet_viewer(const World& world, CameraRays camera, const EngineChoi
     viewer.world = &world;
     TriangleScene visible = world.objects;
     for (const Optic& optic : world.optics) {
-        OpticMeshes meshes;
-        meshes.grid = make_grid(*optic.surface, optic.resolution);
-        meshes.first_triangle = static_cast<Id>(visible.size());
-        append_facets(visible, meshes.grid, optic.mesh);
-        if (world.scene.render.reflect) meshes.reflect = make_reflection(meshes.grid, *camera.linear);
-        if (world.scene.render.refract && !optic.mirror)
-            meshes.refract = make_refraction(meshes.grid, *camera.linear, world.scene.materials[optic.material].ior);
+        OpticMeshes meshes = make_optic_meshes(world, optic, *camera.linear);
+        const Id first_triangle = static_cast<Id>(visible.size());
+        append_facets(meshes.grid, optic.mesh, visible);
         const auto bad = std::count(meshes.grid.corner_normal.begin(), meshes.grid.corner_normal.end(), Vec3(0));
         if (bad > 0)
             warn(world.names[optic.mesh] + ": " + std::to_string(bad) + " grid corners have no normal; the facets there show nothing");
-        viewer.optics.push_back(std::move(meshes));
+        viewer.optics.push_back({std::move(meshes), first_triangle});
     }
     viewer.camera = std::move(camera);
     if (engine.engine != Engine::kFacetsTruth) {

@@ -6,12 +6,11 @@
 #include <map>
 #include <memory>
 
+#include "base/facet_scene.h"
 #include "base/parallel.h"
 #include "camera/specular_point.h"
 #include "cli/camera_rays.h"
-#include "reflect/reflection.h"
-#include "refract/refraction.h"
-#include "surfaces/surfaces.h"
+#include "cli/optic_meshes.h"
 #include "trilinear/mesh_point_images.h"
 #include "truth/tracer.h"
 
@@ -63,14 +62,7 @@ class PointProjector {
 
 std::unique_ptr<Tracer> facet_tracer(const SurfaceGrid& grid) {
     TriangleScene scene;
-    scene.points = grid.points;
-    for (std::size_t f = 0; f < grid.facets.size(); ++f) {
-        IdTriple corner;
-        for (std::size_t k = 0; k < 3; ++k) corner[k] = grid.corner_point[grid.facets[f][k]];
-        scene.triangles.push_back(corner);
-        scene.object.push_back(0);
-        scene.primitive.push_back(static_cast<Id>(f));
-    }
+    append_facets(grid, 0, scene);
     return std::make_unique<Tracer>(scene);
 }
 
@@ -86,20 +78,21 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
 
 void PointProjector::add_optic(Id index) {
     const Optic& optic = world_.optics[index];
-    OpticGrid optic_grid{make_grid(*optic.surface, optic.resolution), nullptr, {}};
+    OpticMeshes meshes = make_optic_meshes(world_, optic, *camera_.linear);
+    OpticGrid optic_grid{std::move(meshes.grid), nullptr, {}};
     optic_grid.own = facet_tracer(optic_grid.grid);
     const SurfaceGrid& grid = optic_grid.grid;
     optic_grid.around.resize(grid.points.size());
     for (Id f = 0; f < grid.facets.size(); ++f)
         for (const Id corner : grid.facets[f]) optic_grid.around[grid.corner_point[corner]].push_back(f);
 
-    const auto add = [&](LightPath path, RayMesh mesh) {
+    const auto add = [&](LightPath path, RayMesh& mesh) {
+        if (mesh.facets.empty()) return;
         auto images = std::make_unique<MeshPointImages>(mesh);
         paths_.push_back({path, index, std::move(mesh), std::move(images)});
     };
-    if (world_.scene.render.reflect) add(LightPath::kReflect, make_reflection(grid, *camera_.linear));
-    if (world_.scene.render.refract && !optic.mirror)
-        add(LightPath::kRefract, make_refraction(grid, *camera_.linear, world_.scene.materials[optic.material].ior));
+    add(LightPath::kReflect, meshes.reflect);
+    add(LightPath::kRefract, meshes.refract);
     grids_.push_back(std::move(optic_grid));
 }
 

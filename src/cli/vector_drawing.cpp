@@ -2,12 +2,11 @@
 
 #include <algorithm>
 
+#include "base/facet_scene.h"
 #include "cli/camera_rays.h"
+#include "cli/optic_meshes.h"
 #include "cli/views.h"
 #include "projector/projector.h"
-#include "reflect/reflection.h"
-#include "refract/refraction.h"
-#include "surfaces/surfaces.h"
 
 namespace trilens {
 namespace {
@@ -53,18 +52,6 @@ SampleIds look(const Viewer& viewer, const SampleGrid& grid, const std::vector<I
     return ids;
 }
 
-void append_facets(TriangleScene& visible, const SurfaceGrid& grid, Id object) {
-    const Id first = static_cast<Id>(visible.points.size());
-    visible.points.insert(visible.points.end(), grid.points.begin(), grid.points.end());
-    for (Id f = 0; f < grid.facets.size(); ++f) {
-        IdTriple corner;
-        for (std::size_t k = 0; k < 3; ++k) corner[k] = first + grid.corner_point[grid.facets[f][k]];
-        visible.triangles.push_back(corner);
-        visible.object.push_back(object);
-        visible.primitive.push_back(f);
-    }
-}
-
 /// The facets that show an optic.
 std::vector<Id> facets_of(const SampleIds& ids, Id optic) {
     std::vector<Id> facet(ids.optic.size(), kNone);
@@ -85,11 +72,11 @@ std::unique_ptr<Drawing> make_drawing(const World& world, std::size_t camera_ind
     // Everything that the camera may see, and the optics' grids.
     drawing->visible = world.objects;
     std::vector<Id> material = world.shading.material, first_facet;
-    std::vector<SurfaceGrid> grids;
+    std::vector<OpticMeshes> meshes;
     for (const Optic& optic : world.optics) {
-        grids.push_back(make_grid(*optic.surface, optic.resolution));
+        meshes.push_back(make_optic_meshes(world, optic, *camera.linear));
         first_facet.push_back(static_cast<Id>(drawing->visible.size()));
-        append_facets(drawing->visible, grids.back(), optic.mesh);
+        append_facets(meshes.back().grid, optic.mesh, drawing->visible);
         material.resize(drawing->visible.size(), optic.material);
     }
     SampleIds ids = look(make_viewer(world, camera_index, Engine::kExact, warn), grid, first_facet);
@@ -108,17 +95,13 @@ std::unique_ptr<Drawing> make_drawing(const World& world, std::size_t camera_ind
     }
     const DrawnEdges edges = drawn_edges(world.objects, {material, world.objects.size()});
     for (Id i = 0; i < world.optics.size(); ++i) {
-        const Optic& optic = world.optics[i];
+        const Id optic = world.optics[i].mesh;
         const std::vector<Id> facet = facets_of(ids, i);
-        if (world.scene.render.reflect) {
-            const RayMesh mesh = make_reflection(grids[i], *camera.linear);
-            add("reflect", optic.mesh, {world.objects, edges, mesh, grid, facet, ids.reflected, wire});
-        }
-        if (world.scene.render.refract && !optic.mirror) {
-            const RayMesh mesh =
-                make_refraction(grids[i], *camera.linear, world.scene.materials[optic.material].ior);
-            add("refract", optic.mesh, {world.objects, edges, mesh, grid, facet, ids.refracted, wire});
-        }
+        const auto add_path = [&](const std::string& path, const RayMesh& mesh, const std::vector<Id>& seen) {
+            if (!mesh.facets.empty()) add(path, optic, {world.objects, edges, mesh, grid, facet, seen, wire});
+        };
+        add_path("reflect", meshes[i].reflect, ids.reflected);
+        add_path("refract", meshes[i].refract, ids.refracted);
     }
     return drawing;
 }

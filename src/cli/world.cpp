@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/facet_scene.h"
 #include "surfaces/normal_override.h"
 #include "surfaces/surfaces.h"
 #include "truth/tracer.h"
@@ -65,17 +66,7 @@ bool has_shadows(const Scene& scene) {
 TriangleScene shadow_casters(const World& world) {
     TriangleScene casters = world.objects;
     for (const Optic& optic : world.optics) {
-        if (!optic.mirror) continue;
-        const SurfaceGrid grid = make_grid(*optic.surface, kShadowResolution);
-        const Id first = static_cast<Id>(casters.points.size());
-        casters.points.insert(casters.points.end(), grid.points.begin(), grid.points.end());
-        for (std::size_t f = 0; f < grid.facets.size(); ++f) {
-            IdTriple corner;
-            for (std::size_t k = 0; k < 3; ++k) corner[k] = first + grid.corner_point[grid.facets[f][k]];
-            casters.triangles.push_back(corner);
-            casters.object.push_back(optic.mesh);
-            casters.primitive.push_back(static_cast<Id>(f));
-        }
+        if (optic.mirror) append_facets(make_grid(*optic.surface, kShadowResolution), optic.mesh, casters);
     }
     return casters;
 }
@@ -93,13 +84,7 @@ double diagonal(const TriangleScene& scene) {
 
 }  // namespace
 
-std::size_t Optic::facet_count() const {
-    const std::size_t n = static_cast<std::size_t>(resolution);
-    std::size_t count = 0;
-    for (Id face = 0; face < surface->face_count(); ++face)
-        count += n * n * (surface->domain(face) == FaceDomain::kSquare ? 2 : 1);
-    return count;
-}
+std::size_t Optic::facet_count() const { return count_facets(*surface, resolution); }
 
 std::unique_ptr<World> make_world(Scene scene, const Warn& warn) {
     auto world = std::make_unique<World>();

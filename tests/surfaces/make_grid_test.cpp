@@ -144,6 +144,18 @@ TEST_CASE("A grid has the counts that it promises", "[surfaces]") {
     }
 }
 
+TEST_CASE("The count of facets is that of the grid", "[surfaces]") {
+    std::vector<std::pair<std::string, Cage>> cages = small_cages();
+    if (!data_missing("cages/catmark_pawn.obj"))
+        for (const std::string& name : cage_files()) cages.emplace_back(name, read_cage(name));
+    for (const auto& [name, cage] : cages)
+        for (int n : {1, 2, 5}) {
+            CAPTURE(name, n);
+            const auto surface = quietly(cage);
+            CHECK(count_facets(*surface, n) == make_grid(*surface, n).facets.size());
+        }
+}
+
 TEST_CASE("Corners lie on the surface where their (u, v) says, whichever face is asked", "[surfaces]") {
     std::vector<std::pair<std::string, Cage>> cages = small_cages();
     if (!data_missing("cages/catmark_pawn.obj"))
