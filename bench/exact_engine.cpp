@@ -1,4 +1,5 @@
-// How fast the exact engine draws, against Embree on the same interpolated rays: float packets, as a renderer uses it.
+// How fast the exact engine draws, against Embree on the same interpolated rays: float packets, as a renderer
+// uses it.
 #include <cmath>
 #include <cstdio>
 
@@ -77,8 +78,8 @@ std::size_t measure(const TriangleScene& triangles, const RayMesh& mesh, const S
     const double drawn = median_ms(kRepeats, [&] { draw(scene, mesh, owned, grid, hits); });
     const std::vector<RayPacket> packets = make_ray_packets(mesh, owned, grid);
     const double traced = median_ms(kRepeats, [&] { tracer.trace(packets, float_hits); });
-    std::printf("%7d %9zu %7zu %9.2f %9.2f %9.2f %9.2f %9.2f %7.2f\n", thread_count(), triangles.size(), mesh.facets.size(), prepare,
-                raster, drawn, build, traced, drawn / traced);
+    std::printf("%7d %9zu %7zu %9.2f %9.2f %9.2f %9.2f %9.2f %7.2f\n", thread_count(), triangles.size(),
+                mesh.facets.size(), prepare, raster, drawn, build, traced, drawn / traced);
     std::size_t unseen = 0;
     for (const Id s : owned.sample) unseen += !hits[s].seen();
     return unseen;
@@ -88,7 +89,9 @@ std::size_t measure(const TriangleScene& triangles, const RayMesh& mesh, const S
 
 int main() {
     const SampleGrid grid{0, 0, 640, 480, 1};
-    std::printf("640 x 480, one sample each, milliseconds, medians of %d runs; Embree's rays are made beforehand\n", kRepeats);
+    std::printf(
+        "640 x 480, one sample each, milliseconds, medians of %d runs; Embree's rays are made beforehand\n",
+        kRepeats);
     std::printf("threads triangles  facets   prepare rasterize      draw    E.build   E.trace   ratio\n");
     std::size_t unseen = 0;
     for (const int threads : {1, 0}) {

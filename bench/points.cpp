@@ -1,6 +1,6 @@
-// Where do points appear in a mirror? The cubic per facet against a search by tracing rays, as one would do it
-// otherwise: the nearest ray of a coarse image, then Newton on the screen with rays traced at each step. Both look
-// through the same facets, so that they must find the same images.
+// Where do points appear in a mirror? The cubic per facet against a search by tracing rays, as one would do
+// it otherwise: the nearest ray of a coarse image, then Newton on the screen with rays traced at each step.
+// Both look through the same facets, so that they must find the same images.
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -22,11 +22,11 @@ using namespace trilens;
 constexpr int kWidth = 640, kHeight = 480;
 constexpr int kResolution = 9;  // 6 x 2 x 81 = 972 facets
 constexpr std::size_t kPoints = 100000;
-constexpr int kCoarse = 8;         // pixels between the rays of the coarse image
-constexpr int kMostSteps = 12;     // of Newton
-constexpr double kProbe = 1e-4;    // pixels, for its differences
-constexpr double kClose = 1e-9;    // pixels, the last step
-constexpr double kSame = 1e-5;     // pixels between two images that are one
+constexpr int kCoarse = 8;       // pixels between the rays of the coarse image
+constexpr int kMostSteps = 12;   // of Newton
+constexpr double kProbe = 1e-4;  // pixels, for its differences
+constexpr double kClose = 1e-9;  // pixels, the last step
+constexpr double kSame = 1e-5;   // pixels between two images that are one
 constexpr int kRepeats = 5;
 
 /// A mirror of facets that can be asked for the ray at a pixel.
@@ -81,13 +81,16 @@ std::optional<Vec2> search(const FacetMirror& mirror, std::span<const CoarseRay>
         if (!here || !right || !down) return std::nullopt;
         // Least squares: the step that makes the miss vanish.
         const Vec3 residual = miss(*here, point);
-        const Vec3 dx = (miss(*right, point) - residual) / kProbe, dy = (miss(*down, point) - residual) / kProbe;
+        const Vec3 dx = (miss(*right, point) - residual) / kProbe,
+                   dy = (miss(*down, point) - residual) / kProbe;
         const double xx = dot(dx, dx), xy = dot(dx, dy), yy = dot(dy, dy), determinant = xx * yy - xy * xy;
         if (!(determinant > 0)) return std::nullopt;
         const Vec2 move = Vec2(xy * dot(dy, residual) - yy * dot(dx, residual),
-                               xy * dot(dx, residual) - xx * dot(dy, residual)) / determinant;
+                               xy * dot(dx, residual) - xx * dot(dy, residual)) /
+                          determinant;
         at += move;
-        if (length(move) < kClose) return dot(point - here->origin, here->direction) > 0 ? std::optional(at) : std::nullopt;
+        if (length(move) < kClose)
+            return dot(point - here->origin, here->direction) > 0 ? std::optional(at) : std::nullopt;
     }
     return std::nullopt;
 }
@@ -111,7 +114,8 @@ RayMesh without_back(const FacetMirror& mirror) {
     RayMesh mesh = mirror.mesh;
     for (IdTriple& facet : mesh.facets) {
         const auto at = [&](std::size_t k) { return mesh.rays[facet[k]].origin; };
-        if (dot(cross(at(1) - at(0), at(2) - at(0)), at(0) - mirror.camera.eye) >= 0) facet = {kNone, kNone, kNone};
+        if (dot(cross(at(1) - at(0), at(2) - at(0)), at(0) - mirror.camera.eye) >= 0)
+            facet = {kNone, kNone, kNone};
     }
     return mesh;
 }
@@ -134,7 +138,8 @@ int main() {
 
     const MeshPointImages front_only(without_back(mirror));
     PointImageLists front_images;
-    const double front_cubic = trilens_bench::median_ms(kRepeats, [&] { front_images = front_only.images(points); });
+    const double front_cubic =
+        trilens_bench::median_ms(kRepeats, [&] { front_images = front_only.images(points); });
 
     std::vector<CoarseRay> coarse;
     const double coarse_ms = trilens_bench::median_ms(kRepeats, [&] { coarse = coarse_image(mirror); });
@@ -159,14 +164,16 @@ int main() {
         both += same;
         only_search += found[i] && !same;
     }
-    std::printf("%zu points, %zu facets, %d threads, medians of %d runs\n", points.size(), mirror.mesh.facets.size(),
-                thread_count(), kRepeats);
-    std::printf("cubic:  prepare %7.2f ms, images %8.1f ms: %zu images, %zu of them on the side that the eye sees\n", prepare,
-                cubic, total, front);
-    std::printf("front:                     images %8.1f ms: %zu images, through the facets that face the eye\n", front_cubic,
-                front_images.image.size());
-    std::printf("search: prepare %7.2f ms, images %8.1f ms: %zu of those found, %zu others\n", coarse_ms, traced, both,
-                only_search);
+    std::printf("%zu points, %zu facets, %d threads, medians of %d runs\n", points.size(),
+                mirror.mesh.facets.size(), thread_count(), kRepeats);
+    std::printf(
+        "cubic:  prepare %7.2f ms, images %8.1f ms: %zu images, %zu of them on the side that the eye sees\n",
+        prepare, cubic, total, front);
+    std::printf(
+        "front:                     images %8.1f ms: %zu images, through the facets that face the eye\n",
+        front_cubic, front_images.image.size());
+    std::printf("search: prepare %7.2f ms, images %8.1f ms: %zu of those found, %zu others\n", coarse_ms,
+                traced, both, only_search);
     std::printf("search / cubic: %.1f, search / front: %.1f\n", traced / cubic, traced / front_cubic);
     return only_search == 0 && front > 0 ? 0 : 1;
 }

@@ -16,7 +16,8 @@ inline double median_ms(int repeats, const std::function<void()>& work) {
     for (int i = 0; i < repeats; ++i) {
         const auto start = std::chrono::steady_clock::now();
         work();
-        times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        times.push_back(
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
     std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
     return times[static_cast<std::size_t>(repeats / 2)];

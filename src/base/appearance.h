@@ -1,4 +1,5 @@
-// What things look like: materials, textures, lights, background; plain data that scene writes and shade reads.
+// What things look like: materials, textures, lights, background; plain data that scene writes and shade
+// reads.
 #pragma once
 
 #include <memory>
@@ -35,8 +36,9 @@ struct Light {
     enum class Type { kDirectional, kPoint, kAmbient };
     Type type = Type::kAmbient;
     Vec3 color{1};
-    double intensity = 1;       // directional: lux; point: candela; ambient: radiance added to every diffuse surface
-    Vec3 direction{0, -1, 0};   // unit, the way the light travels
+    double intensity =
+        1;  // directional: lux; point: candela; ambient: radiance added to every diffuse surface
+    Vec3 direction{0, -1, 0};  // unit, the way the light travels
     Vec3 position{0};
     bool shadows = false;
 };

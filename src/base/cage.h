@@ -28,20 +28,22 @@ struct Cage {
     std::vector<double> crease_sharpnesses;  // one per chain, or one per edge of all chains
     std::vector<int> corner_indices;
     std::vector<double> corner_sharpnesses;
-    std::vector<int> hole_indices;           // faces that are not drawn
+    std::vector<int> hole_indices;  // faces that are not drawn
 };
 
 /// An optic given by a formula instead of a cage; world frame.
 struct Primitive {
     enum class Type { kSphere, kParaboloid, kCylinder, kPlane };
     Type type = Type::kSphere;
-    Vec3 center{0};        // sphere: centre; paraboloid: apex; cylinder and plane: middle
-    Vec3 axis{0, 1, 0};    // unit. paraboloid: from the apex towards the focus; cylinder: along it; plane: its normal
-    Vec3 tangent{1, 0, 0}; // unit, at right angles to axis: where u begins (paraboloid, cylinder), the u side (plane)
-    double radius = 1;     // sphere, cylinder; paraboloid: radius of its rim
+    Vec3 center{0};  // sphere: centre; paraboloid: apex; cylinder and plane: middle
+    Vec3 axis{0, 1,
+              0};  // unit. paraboloid: from the apex towards the focus; cylinder: along it; plane: its normal
+    Vec3 tangent{
+        1, 0, 0};  // unit, at right angles to axis: where u begins (paraboloid, cylinder), the u side (plane)
+    double radius = 1;        // sphere, cylinder; paraboloid: radius of its rim
     double focal_length = 1;  // paraboloid: apex to focus
-    double height = 2;     // cylinder: length along the axis
-    Vec2 size{2, 2};       // plane: lengths of its sides along tangent and axis x tangent
+    double height = 2;        // cylinder: length along the axis
+    Vec2 size{2, 2};          // plane: lengths of its sides along tangent and axis x tangent
 };
 
 }  // namespace trilens

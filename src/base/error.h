@@ -7,8 +7,18 @@
 namespace trilens {
 
 /// Exit codes of the command (interface: "Command").
-enum class ExitCode { kDone = 0, kExceeded = 1, kUsage = 2, kInput = 3, kOutput = 4, kComputation = 5,
-                      kSomeJobsFailed = 6, kSkipped = 77, kInterrupted = 130, kTerminated = 143 };
+enum class ExitCode {
+    kDone = 0,
+    kExceeded = 1,
+    kUsage = 2,
+    kInput = 3,
+    kOutput = 4,
+    kComputation = 5,
+    kSomeJobsFailed = 6,
+    kSkipped = 77,
+    kInterrupted = 130,
+    kTerminated = 143
+};
 
 /// A failure that is not a bug. what() is one line: "file: place: message", parts that are empty left out.
 class Error : public std::runtime_error {

@@ -6,8 +6,8 @@
 
 namespace trilens {
 
-/// Appends the facets of `grid` to `scene` as triangles of `object`; primitive f is facet f. Points that facets share stay
-/// shared.
+/// Appends the facets of `grid` to `scene` as triangles of `object`; primitive f is facet f. Points that
+/// facets share stay shared.
 void append_facets(const SurfaceGrid& grid, Id object, TriangleScene& scene);
 
 }  // namespace trilens

@@ -9,10 +9,11 @@ namespace trilens {
 /// Perspective (all rays leave `eye`) or parallel (all rays share `view_direction`), world frame.
 struct LinearCamera {
     bool parallel = false;
-    Vec3 eye{0};               // perspective: the centre of projection; parallel: any point of the image plane
-    Vec3 view_direction{0};    // unit, the view axis; parallel: the rays' direction too
-    Vec4 screen_x{0}, screen_y{0}, screen_w{0};  // rows of the map: (x w, y w, w) = rows . (point, 1); w is the depth
-                                                 // along the view axis from `eye` for perspective, 1 for parallel
+    Vec3 eye{0};             // perspective: the centre of projection; parallel: any point of the image plane
+    Vec3 view_direction{0};  // unit, the view axis; parallel: the rays' direction too
+    Vec4 screen_x{0}, screen_y{0},
+        screen_w{0};  // rows of the map: (x w, y w, w) = rows . (point, 1); w is the depth
+                      // along the view axis from `eye` for perspective, 1 for parallel
 };
 
 /// Homogeneous screen position (x w, y w, w) of a world point; x, y in pixels from the film's top left.
@@ -22,8 +23,8 @@ inline Vec3 screen_from_world(const LinearCamera& camera, const Vec3& point) {
     return {dot(camera.screen_x, p), dot(camera.screen_y, p), dot(camera.screen_w, p)};
 }
 
-/// The direction from the camera to `point`: for perspective point - eye, NOT unit (the eye-to-corner length);
-/// for parallel the unit view direction.
+/// The direction from the camera to `point`: for perspective point - eye, NOT unit (the eye-to-corner
+/// length); for parallel the unit view direction.
 inline Vec3 incident_direction(const LinearCamera& camera, const Vec3& point) {
     if (!camera.parallel) return point - camera.eye;
     return camera.view_direction;

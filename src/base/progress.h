@@ -9,8 +9,8 @@ namespace trilens {
 
 /// Handed down into long work; default: silent and never cancelled.
 struct Progress {
-    std::function<void(double done)> report;     // share done, 0..1, never called from two threads at once
-    const std::atomic<bool>* cancel = nullptr;   // set by a signal handler
+    std::function<void(double done)> report;    // share done, 0..1, never called from two threads at once
+    const std::atomic<bool>* cancel = nullptr;  // set by a signal handler
 
     void operator()(double done) const {
         if (report) report(done);

@@ -10,17 +10,19 @@ namespace trilens {
 
 /// Facets with shared corners (Vallance 2005, chapter 2). `rays` and `screen` have one entry per corner.
 struct RayMesh {
-    std::vector<Ray> rays;         // world frame; directions are not unit
-    std::vector<Vec3> screen;      // homogeneous screen position (x w, y w, w), x and y in pixels from the film's
-                                   // top left, w the depth along the view axis (1 for affine screens)
-    std::vector<IdTriple> facets;  // corners; {kNone, kNone, kNone}: this facet has no rays (total internal reflection)
+    std::vector<Ray> rays;     // world frame; directions are not unit
+    std::vector<Vec3> screen;  // homogeneous screen position (x w, y w, w), x and y in pixels from the film's
+                               // top left, w the depth along the view axis (1 for affine screens)
+    std::vector<IdTriple>
+        facets;  // corners; {kNone, kNone, kNone}: this facet has no rays (total internal reflection)
 
     bool has_rays(std::size_t facet) const { return facets[facet][0] != kNone; }
 };
 
-/// The unnormalised weights e of one facet as functions of the screen: e(x, y) = weights_from_screen * (x, y, 1).
-/// The weights of the facet's corners are e / (e0 + e1 + e2); perspective-correct by construction
-/// (homogeneous rasterisation: Olano and Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, 1997).
+/// The unnormalised weights e of one facet as functions of the screen: e(x, y) = weights_from_screen * (x, y,
+/// 1). The weights of the facet's corners are e / (e0 + e1 + e2); perspective-correct by construction
+/// (homogeneous rasterisation: Olano and Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates,
+/// 1997).
 struct FacetWeights {
     Mat3 weights_from_screen{0};
     bool edge_on = true;  // the facet has no area on the screen: no pixel sees it, the matrix is zero

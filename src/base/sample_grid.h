@@ -15,13 +15,16 @@ struct SampleGrid {
 
     int width() const { return x1 - x0; }
     int height() const { return y1 - y0; }
-    std::size_t pixels() const { return static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()); }
+    std::size_t pixels() const {
+        return static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
+    }
     int samples_per_pixel() const { return side * side; }
     std::size_t size() const { return pixels() * static_cast<std::size_t>(samples_per_pixel()); }
 
     /// The first sample of the pixel (x, y) of the film.
     std::size_t first_sample(int x, int y) const {
-        return (static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x - x0)) *
+        return (static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) +
+                static_cast<std::size_t>(x - x0)) *
                static_cast<std::size_t>(samples_per_pixel());
     }
     /// Position of a sample on the film, in pixels from its top left; a pixel's centre is at .5.

@@ -25,14 +25,14 @@ struct SurfacePoint {
 /// One side of a face: the edge that it runs along. Sides with equal edges are one curve in the world.
 struct FaceSide {
     enum class Part { kWhole, kFirstHalf, kSecondHalf };
-    Id edge = kNone;          // kNone: no other face has this side
-    Part part = Part::kWhole; // which part of the edge, in the edge's own direction
-    bool reversed = false;    // the side runs against the edge
+    Id edge = kNone;           // kNone: no other face has this side
+    Part part = Part::kWhole;  // which part of the edge, in the edge's own direction
+    bool reversed = false;     // the side runs against the edge
 };
 
-/// How a face hangs together with its neighbours. Square: corners (0,0), (1,0), (1,1), (0,1); triangle: (0,0),
-/// (1,0), (0,1). Side k runs from corner k to the next. Equal corners are one point in the world; kNone: no other
-/// face has it.
+/// How a face hangs together with its neighbours. Square: corners (0,0), (1,0), (1,1), (0,1); triangle:
+/// (0,0), (1,0), (0,1). Side k runs from corner k to the next. Equal corners are one point in the world;
+/// kNone: no other face has it.
 struct FaceBorder {
     std::array<Id, 4> corners{kNone, kNone, kNone, kNone};
     std::array<FaceSide, 4> sides{};
@@ -67,11 +67,11 @@ class Surface {
 /// An N x N grid on a surface: facets whose corners lie on the surface. Points on edges that faces share
 /// exist once, so there are no cracks; a corner is a point with one normal, so it splits along sharp creases.
 struct SurfaceGrid {
-    std::vector<Vec3> points;            // world frame, on the surface
-    std::vector<Id> corner_point;        // per corner: index into points
-    std::vector<Vec3> corner_normal;     // per corner: unit; zero where the surface has none
-    std::vector<IdTriple> facets;        // corners, counter-clockwise seen from the front
-    std::vector<Id> facet_face;          // per facet: face of the surface
+    std::vector<Vec3> points;                   // world frame, on the surface
+    std::vector<Id> corner_point;               // per corner: index into points
+    std::vector<Vec3> corner_normal;            // per corner: unit; zero where the surface has none
+    std::vector<IdTriple> facets;               // corners, counter-clockwise seen from the front
+    std::vector<Id> facet_face;                 // per facet: face of the surface
     std::vector<std::array<Vec2, 3>> facet_uv;  // per facet: (u, v) of its corners in that face
 };
 

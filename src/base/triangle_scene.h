@@ -21,9 +21,9 @@ struct TriangleScene {
 
 /// What a ray sees: the first triangle along it.
 struct Hit {
-    Id triangle = kNone;   // index into TriangleScene::triangles; kNone: nothing is seen, the rest is unset
-    double t = 0;          // in units of the ray's direction, >= 0
-    Vec2 barycentric{0};   // weights of the triangle's second and third corner
+    Id triangle = kNone;  // index into TriangleScene::triangles; kNone: nothing is seen, the rest is unset
+    double t = 0;         // in units of the ray's direction, >= 0
+    Vec2 barycentric{0};  // weights of the triangle's second and third corner
 
     bool seen() const { return triangle != kNone; }
 };

@@ -21,12 +21,15 @@ using glm::length;
 using glm::normalize;
 
 /// The triple product a . (b x c): six times the signed volume of the tetrahedron on a, b, c.
-inline double triple(const Vec3& a, const Vec3& b, const Vec3& c) { return dot(a, cross(b, c)); }
+inline double triple(const Vec3& a, const Vec3& b, const Vec3& c) {
+    return dot(a, cross(b, c));
+}
 
 /// `direction` scaled to length 1, or the zero vector where its length is zero or not finite.
 inline Vec3 normalize_or_zero(const Vec3& direction) {
     // Scale by the largest component first, so that tiny and huge vectors neither vanish nor overflow.
-    const double largest = glm::max(glm::max(glm::abs(direction.x), glm::abs(direction.y)), glm::abs(direction.z));
+    const double largest =
+        glm::max(glm::max(glm::abs(direction.x), glm::abs(direction.y)), glm::abs(direction.z));
     if (!(largest > 0) || largest > 1.7e308) return Vec3(0);
     const Vec3 scaled = direction / largest;
     return scaled / length(scaled);

@@ -12,8 +12,9 @@ namespace {
 void refuse_optics(const Scene& scene, std::size_t index) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         if (scene.meshes[m].role != Role::kOptic) continue;
-        throw InputError(scene.file, "/cameras/" + std::to_string(index),
-                         "a rayMesh camera shows objects only, but mesh \"" + scene.meshes[m].name + "\" is an optic");
+        throw InputError(
+            scene.file, "/cameras/" + std::to_string(index),
+            "a rayMesh camera shows objects only, but mesh \"" + scene.meshes[m].name + "\" is an optic");
     }
 }
 
@@ -25,7 +26,8 @@ CameraRays make_camera_rays(const Scene& scene, std::size_t index) {
     CameraRays camera;
     if (from.type == CameraDescription::Type::kRayMesh) {
         refuse_optics(scene, index);
-        camera.mesh = make_ray_mesh({from.points, from.directions, from.screen, from.triangles}, width, height);
+        camera.mesh =
+            make_ray_mesh({from.points, from.directions, from.screen, from.triangles}, width, height);
         return camera;
     }
     PerspectiveParams params;
@@ -38,7 +40,8 @@ CameraRays make_camera_rays(const Scene& scene, std::size_t index) {
     return camera;
 }
 
-void set_camera_rays(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid, std::span<SampleView> views) {
+void set_camera_rays(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                     std::span<SampleView> views) {
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         if (!mesh.has_rays(f)) continue;
         const FacetWeights weights = facet_weights(mesh, f);

@@ -16,11 +16,12 @@ struct CameraRays {
     RayMesh mesh;
 };
 
-/// The camera `index` of the scene. Throws InputError where it is a RayMesh and the scene has optics: their grids
-/// have no place on a nonlinear screen.
+/// The camera `index` of the scene. Throws InputError where it is a RayMesh and the scene has optics: their
+/// grids have no place on a nonlinear screen.
 CameraRays make_camera_rays(const Scene& scene, std::size_t index);
 
 /// Sets the camera's ray of every sample that `owned` gives to a facet.
-void set_camera_rays(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid, std::span<SampleView> views);
+void set_camera_rays(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                     std::span<SampleView> views);
 
 }  // namespace trilens

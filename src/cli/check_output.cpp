@@ -11,12 +11,15 @@ namespace trilens {
 
 void check_writable(const std::string& file) {
     const std::filesystem::path path(file);
-    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    const std::filesystem::path folder =
+        path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
     std::error_code code;
     if (file.empty()) throw OutputError(file, "the output has no name");
-    if (!std::filesystem::is_directory(folder, code)) throw OutputError(file, "there is no folder " + folder.string());
+    if (!std::filesystem::is_directory(folder, code))
+        throw OutputError(file, "there is no folder " + folder.string());
     if (std::filesystem::is_directory(path, code)) throw OutputError(file, "is a folder");
-    if (access(folder.c_str(), W_OK) != 0) throw OutputError(file, "the folder " + folder.string() + " is not writable");
+    if (access(folder.c_str(), W_OK) != 0)
+        throw OutputError(file, "the folder " + folder.string() + " is not writable");
 }
 
 }  // namespace trilens

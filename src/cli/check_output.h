@@ -5,8 +5,8 @@
 
 namespace trilens {
 
-/// Throws OutputError where a file of that name could not be created: its folder is missing or not writable, or the
-/// name is a folder.
+/// Throws OutputError where a file of that name could not be created: its folder is missing or not writable,
+/// or the name is a folder.
 void check_writable(const std::string& file);
 
 }  // namespace trilens

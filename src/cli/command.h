@@ -23,8 +23,8 @@ struct Answer {
 
 using CommandBody = std::function<Answer(Console&)>;
 
-/// Where commands register: each adds its sub-command with its options to `app` and calls `on_chosen` with its
-/// body. `name` is what the JSON schema field says: "trilens.<name>/1".
+/// Where commands register: each adds its sub-command with its options to `app` and calls `on_chosen` with
+/// its body. `name` is what the JSON schema field says: "trilens.<name>/1".
 struct CommandRegistry {
     CLI::App* app = nullptr;
     std::function<void(CLI::App* command, const std::string& name, CommandBody body)> add;

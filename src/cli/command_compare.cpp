@@ -2,8 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
-#include "cli/command.h"
 #include "cli/check_output.h"
+#include "cli/command.h"
 #include "image/image_io.h"
 #include "measure/compare.h"
 #include "measure/difference.h"
@@ -28,20 +28,30 @@ struct SecondaryComparison {
 };
 
 Json metrics_json(const Metrics& m) {
-    return {{"mae", json_number(m.mae)}, {"rmse", json_number(m.rmse)}, {"relmse", json_number(m.relmse)}, {"relmse_eps", 0.01},
-            {"psnr_db", json_number(m.psnr_db)}, {"psnr_peak", 1}, {"ssim", json_number(m.ssim)}, {"max", json_number(m.max)},
-            {"p50", json_number(m.p50)}, {"p95", json_number(m.p95)}, {"p99", json_number(m.p99)}};
+    return {
+        {"mae", json_number(m.mae)},   {"rmse", json_number(m.rmse)},       {"relmse", json_number(m.relmse)},
+        {"relmse_eps", 0.01},          {"psnr_db", json_number(m.psnr_db)}, {"psnr_peak", 1},
+        {"ssim", json_number(m.ssim)}, {"max", json_number(m.max)},         {"p50", json_number(m.p50)},
+        {"p95", json_number(m.p95)},   {"p99", json_number(m.p99)}};
 }
 
 Json seen_json(const SeenMismatch& s) {
-    return {{"pixels", s.pixels}, {"object_mismatch", s.object_mismatch}, {"primitive_mismatch", s.primitive_mismatch},
+    return {{"pixels", s.pixels},
+            {"object_mismatch", s.object_mismatch},
+            {"primitive_mismatch", s.primitive_mismatch},
             {"coverage_mismatch", s.coverage_mismatch}};
 }
 
 Json displacement_json(const Displacement& d) {
-    return {{"mean", json_number(d.mean)}, {"p50", json_number(d.p50)}, {"p95", json_number(d.p95)}, {"p99", json_number(d.p99)},
-            {"max", json_number(d.max)}, {"pixels", d.pixels}, {"lost", d.lost},
-            {"mean_off_folds", json_number(d.mean_off_folds)}, {"near_folds", d.near_folds}};
+    return {{"mean", json_number(d.mean)},
+            {"p50", json_number(d.p50)},
+            {"p95", json_number(d.p95)},
+            {"p99", json_number(d.p99)},
+            {"max", json_number(d.max)},
+            {"pixels", d.pixels},
+            {"lost", d.lost},
+            {"mean_off_folds", json_number(d.mean_off_folds)},
+            {"near_folds", d.near_folds}};
 }
 
 /// Sums over layers: the interface's `seen` counts every layer.
@@ -58,7 +68,8 @@ SeenMismatch total_seen(const std::vector<SecondaryComparison>& layers) {
 }
 
 /// The layer that stands for the whole: the one asked for, else the first that shows something.
-const SecondaryComparison* main_layer(const std::vector<SecondaryComparison>& layers, const std::string& asked) {
+const SecondaryComparison* main_layer(const std::vector<SecondaryComparison>& layers,
+                                      const std::string& asked) {
     for (const SecondaryComparison& layer : layers)
         if (layer.layer == asked && layer.displacement) return &layer;
     for (const SecondaryComparison& layer : layers)
@@ -74,39 +85,58 @@ std::string line(const char* format, auto... values) {
 
 std::string summary_text(const Comparison& comparison, const std::vector<SecondaryComparison>& layers) {
     const Metrics& m = comparison.metrics;
-    std::string text = line("pixels        %zu (%zu beyond fail, %zu beyond hardfail, %zu beyond warn)", comparison.counts.pixels,
-                            comparison.counts.fail, comparison.counts.hard, comparison.counts.warn);
+    std::string text = line("pixels        %zu (%zu beyond fail, %zu beyond hardfail, %zu beyond warn)",
+                            comparison.counts.pixels, comparison.counts.fail, comparison.counts.hard,
+                            comparison.counts.warn);
     text += line("error         mae %.6g  rmse %.6g  relmse %.6g  max %.6g", m.mae, m.rmse, m.relmse, m.max);
     text += line("likeness      psnr %.2f dB  ssim %.6f", m.psnr_db, m.ssim);
     if (!comparison.worst.channel.empty())
-        text += line("worst         pixel %d,%d channel %s: %.6g, reference %.6g", comparison.worst.x, comparison.worst.y,
-                     comparison.worst.channel.c_str(), comparison.worst.test, comparison.worst.reference);
+        text += line("worst         pixel %d,%d channel %s: %.6g, reference %.6g", comparison.worst.x,
+                     comparison.worst.y, comparison.worst.channel.c_str(), comparison.worst.test,
+                     comparison.worst.reference);
     for (const SecondaryComparison& layer : layers) {
         if (layer.seen && layer.seen->pixels > 0)
-            text += line("%-8s seen %zu pixels: %zu other object, %zu other triangle, %zu covered in one only", layer.layer.c_str(),
-                         layer.seen->pixels, layer.seen->object_mismatch, layer.seen->primitive_mismatch, layer.seen->coverage_mismatch);
+            text +=
+                line("%-8s seen %zu pixels: %zu other object, %zu other triangle, %zu covered in one only",
+                     layer.layer.c_str(), layer.seen->pixels, layer.seen->object_mismatch,
+                     layer.seen->primitive_mismatch, layer.seen->coverage_mismatch);
         if (layer.displacement && layer.displacement->pixels + layer.displacement->lost > 0)
-            text += line("%-8s displacement mean %.4g  p50 %.4g  p95 %.4g  p99 %.4g  max %.4g px over %zu pixels, %zu lost",
-                         layer.layer.c_str(), layer.displacement->mean, layer.displacement->p50, layer.displacement->p95,
-                         layer.displacement->p99, layer.displacement->max, layer.displacement->pixels, layer.displacement->lost);
+            text += line(
+                "%-8s displacement mean %.4g  p50 %.4g  p95 %.4g  p99 %.4g  max %.4g px over %zu pixels, %zu "
+                "lost",
+                layer.layer.c_str(), layer.displacement->mean, layer.displacement->p50,
+                layer.displacement->p95, layer.displacement->p99, layer.displacement->max,
+                layer.displacement->pixels, layer.displacement->lost);
     }
     for (const std::string& reason : comparison.reasons) text += reason + "\n";
-    return text + (comparison.verdict == Verdict::kFailure ? "FAILURE" : comparison.verdict == Verdict::kWarning ? "WARNING" : "PASS") + "\n";
+    return text +
+           (comparison.verdict == Verdict::kFailure   ? "FAILURE"
+            : comparison.verdict == Verdict::kWarning ? "WARNING"
+                                                      : "PASS") +
+           "\n";
 }
 
-Answer answer_of(const CompareCommand& command, const Comparison& comparison, const std::vector<SecondaryComparison>& layers) {
+Answer answer_of(const CompareCommand& command, const Comparison& comparison,
+                 const std::vector<SecondaryComparison>& layers) {
     Answer answer;
     const CompareCounts& c = comparison.counts;
     const CompareOptions& o = command.options;
     answer.fields["ref"] = {{"file", command.reference}};
     answer.fields["test"] = {{"file", command.test}};
-    answer.fields["thresholds"] = {{"fail", o.fail}, {"failpercent", o.failpercent}, {"hardfail", o.hardfail},
-                                   {"failrelative", o.failrelative}, {"allowfailures", o.allowfailures}, {"warn", o.warn}, {"warnpercent", o.warnpercent}};
-    answer.fields["counts"] = {{"pixels", c.pixels}, {"fail", c.fail}, {"warn", c.warn}, {"hard", c.hard}, {"nan_ref", c.nan_ref},
-                               {"nan_test", c.nan_test}, {"inf_ref", c.inf_ref}, {"inf_test", c.inf_test}, {"masked", c.masked}};
+    answer.fields["thresholds"] = {{"fail", o.fail},
+                                   {"failpercent", o.failpercent},
+                                   {"hardfail", o.hardfail},
+                                   {"failrelative", o.failrelative},
+                                   {"allowfailures", o.allowfailures},
+                                   {"warn", o.warn},
+                                   {"warnpercent", o.warnpercent}};
+    answer.fields["counts"] = {{"pixels", c.pixels},   {"fail", c.fail},         {"warn", c.warn},
+                               {"hard", c.hard},       {"nan_ref", c.nan_ref},   {"nan_test", c.nan_test},
+                               {"inf_ref", c.inf_ref}, {"inf_test", c.inf_test}, {"masked", c.masked}};
     answer.fields["metrics"]["RGB"] = metrics_json(comparison.metrics);
     answer.fields["seen"] = seen_json(total_seen(layers));
-    if (const SecondaryComparison* main = main_layer(layers, o.layer)) answer.fields["displacement_px"] = displacement_json(*main->displacement);
+    if (const SecondaryComparison* main = main_layer(layers, o.layer))
+        answer.fields["displacement_px"] = displacement_json(*main->displacement);
     for (const SecondaryComparison& layer : layers) {
         Json entry = Json::object();
         if (layer.seen) entry["seen"] = seen_json(*layer.seen);
@@ -114,9 +144,14 @@ Answer answer_of(const CompareCommand& command, const Comparison& comparison, co
         answer.fields["layers"][layer.layer] = entry;
     }
     if (!comparison.worst.channel.empty())
-        answer.fields["worst"] = {{"x", comparison.worst.x}, {"y", comparison.worst.y}, {"channel", comparison.worst.channel},
-                                  {"ref", json_number(comparison.worst.reference)}, {"test", json_number(comparison.worst.test)}};
-    answer.fields["verdict"] = comparison.verdict == Verdict::kFailure ? "failure" : comparison.verdict == Verdict::kWarning ? "warning" : "pass";
+        answer.fields["worst"] = {{"x", comparison.worst.x},
+                                  {"y", comparison.worst.y},
+                                  {"channel", comparison.worst.channel},
+                                  {"ref", json_number(comparison.worst.reference)},
+                                  {"test", json_number(comparison.worst.test)}};
+    answer.fields["verdict"] = comparison.verdict == Verdict::kFailure   ? "failure"
+                               : comparison.verdict == Verdict::kWarning ? "warning"
+                                                                         : "pass";
     answer.fields["reasons"] = comparison.reasons;
     answer.text = summary_text(comparison, layers);
     answer.code = comparison.verdict == Verdict::kFailure ? ExitCode::kExceeded : ExitCode::kDone;
@@ -132,14 +167,16 @@ Answer run(CompareCommand command, Console& console) {
     std::vector<SecondaryComparison> layers;
     for (const char* name : {"reflect", "refract"}) {
         if (!reference.find(std::string(name) + ".object")) continue;
-        SecondaryComparison layer{name, compare_seen(reference, test, name, command.options.mask_object),
-                                  measure_displacement(reference, test, name, {command.radius, command.options.mask_object})};
+        SecondaryComparison layer{
+            name, compare_seen(reference, test, name, command.options.mask_object),
+            measure_displacement(reference, test, name, {command.radius, command.options.mask_object})};
         layers.push_back(std::move(layer));
     }
     if (!command.diff.empty()) {
         const SecondaryComparison* main = main_layer(layers, command.options.layer);
-        write_exr(command.diff, make_difference(reference, test, {command.options.layer, command.options.mask_object,
-                                                                  main ? &*main->displacement : nullptr}));
+        write_exr(command.diff, make_difference(reference, test,
+                                                {command.options.layer, command.options.mask_object,
+                                                 main ? &*main->displacement : nullptr}));
     }
     if (comparison.verdict == Verdict::kWarning)
         for (const std::string& reason : comparison.reasons) console.warn(reason);
@@ -150,21 +187,30 @@ Answer run(CompareCommand command, Console& console) {
 
 void register_compare(const CommandRegistry& registry) {
     auto command = std::make_shared<CompareCommand>();
-    CLI::App* app = registry.app->add_subcommand("compare", "error metrics between two images and a verdict: exit 0 within tolerance, 1 beyond");
+    CLI::App* app = registry.app->add_subcommand(
+        "compare", "error metrics between two images and a verdict: exit 0 within tolerance, 1 beyond");
     CompareOptions& o = command->options;
     app->add_option("REF", command->reference, "the reference, .exr")->required();
     app->add_option("TEST", command->test, "the image in question, .exr")->required();
     app->add_option("-o,--output", command->diff, "difference image to write, .exr")->type_name("DIFF.exr");
-    app->add_option("--layer", o.layer, "compare this layer instead of the beauty: direct, reflect, refract")->type_name("L");
-    app->add_option("--mask-object", command->mask, "only pixels whose optic.object is this id")->check(CLI::Range(0LL, 4294967294LL))->type_name("ID");
+    app->add_option("--layer", o.layer, "compare this layer instead of the beauty: direct, reflect, refract")
+        ->type_name("L");
+    app->add_option("--mask-object", command->mask, "only pixels whose optic.object is this id")
+        ->check(CLI::Range(0LL, 4294967294LL))
+        ->type_name("ID");
     app->add_option("--fail", o.fail, "difference beyond which a pixel fails")->check(CLI::NonNegativeNumber);
-    app->add_option("--failpercent", o.failpercent, "percentage of pixels that may fail")->check(CLI::Range(0.0, 100.0));
-    app->add_option("--hardfail", o.hardfail, "difference that no pixel may exceed")->check(CLI::NonNegativeNumber);
-    app->add_option("--failrelative", o.failrelative, "a failing pixel must also differ by this share")->check(CLI::NonNegativeNumber);
+    app->add_option("--failpercent", o.failpercent, "percentage of pixels that may fail")
+        ->check(CLI::Range(0.0, 100.0));
+    app->add_option("--hardfail", o.hardfail, "difference that no pixel may exceed")
+        ->check(CLI::NonNegativeNumber);
+    app->add_option("--failrelative", o.failrelative, "a failing pixel must also differ by this share")
+        ->check(CLI::NonNegativeNumber);
     app->add_option("--allowfailures", o.allowfailures, "so many pixels may differ by any amount");
     app->add_option("--warn", o.warn, "difference worth a warning")->check(CLI::NonNegativeNumber);
-    app->add_option("--warnpercent", o.warnpercent, "percentage of pixels that may be so")->check(CLI::Range(0.0, 100.0));
-    app->add_option("--radius", command->radius, "how far displaced points are looked for, pixels")->check(CLI::Range(1.0, 4096.0));
+    app->add_option("--warnpercent", o.warnpercent, "percentage of pixels that may be so")
+        ->check(CLI::Range(0.0, 100.0));
+    app->add_option("--radius", command->radius, "how far displaced points are looked for, pixels")
+        ->check(CLI::Range(1.0, 4096.0));
     registry.add(app, "compare", [command](Console& console) { return run(*command, console); });
 }
 

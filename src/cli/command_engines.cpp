@@ -39,7 +39,9 @@ struct StudyRow {
     std::size_t uncovered = 0;  // where the exact engine sees something that the classic one sees nothing for
     double exact_seconds = 0, classic_seconds = 0;
 
-    double share() const { return static_cast<double>(differing) / static_cast<double>(std::max<std::size_t>(1, pixels)); }
+    double share() const {
+        return static_cast<double>(differing) / static_cast<double>(std::max<std::size_t>(1, pixels));
+    }
 };
 
 struct SeenPicture {
@@ -52,18 +54,21 @@ SeenPicture look(const World& world, std::size_t camera, const EngineChoice& eng
     const Film& film = world.scene.film;
     const Viewer viewer = make_viewer(world, camera, engine, console.warner());
     const auto start = std::chrono::steady_clock::now();
-    std::vector<SampleView> views(static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height));
+    std::vector<SampleView> views(static_cast<std::size_t>(film.width) *
+                                  static_cast<std::size_t>(film.height));
     viewer({0, 0, film.width, film.height, 1}, views);
     SeenPicture picture;
     picture.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (const SampleView& view : views)
-        picture.pixel.push_back({view.hit.triangle, view.optic, view.reflect.hit.triangle, view.refract.hit.triangle});
+        picture.pixel.push_back(
+            {view.hit.triangle, view.optic, view.reflect.hit.triangle, view.refract.hit.triangle});
     return picture;
 }
 
 std::string resolution_text(const World& world) {
     std::string text;
-    for (const Optic& optic : world.optics) text += (text.empty() ? "" : " ") + std::to_string(optic.resolution);
+    for (const Optic& optic : world.optics)
+        text += (text.empty() ? "" : " ") + std::to_string(optic.resolution);
     return text;
 }
 
@@ -74,7 +79,8 @@ StudyRow compare(const SeenPicture& exact, const SeenPicture& classic) {
     row.classic_seconds = classic.seconds;
     for (std::size_t p = 0; p < row.pixels; ++p) {
         const Seen &a = exact.pixel[p], &b = classic.pixel[p];
-        const bool direct = a.direct != b.direct, reflect = a.reflect != b.reflect, refract = a.refract != b.refract;
+        const bool direct = a.direct != b.direct, reflect = a.reflect != b.reflect,
+                   refract = a.refract != b.refract;
         const auto lost = [](Id x, Id y) { return x != kNone && y == kNone; };
         row.optic_pixels += a.optic != kNone;
         row.direct += direct;
@@ -86,35 +92,46 @@ StudyRow compare(const SeenPicture& exact, const SeenPicture& classic) {
     return row;
 }
 
-std::string clip_name(Clip clip) { return clip == Clip::kScene ? "scene" : clip == Clip::kScreen ? "screen" : "none"; }
-
-std::string curves_name(Curves curves) {
-    return curves == Curves::kSlices ? "slices" : curves == Curves::kTessellate ? "tessellate" : curves == Curves::kArcs ? "arcs" : "straight";
+std::string clip_name(Clip clip) {
+    return clip == Clip::kScene ? "scene" : clip == Clip::kScreen ? "screen" : "none";
 }
 
-bool has_pieces(const StudyRow& row) { return row.params.curves == Curves::kSlices || row.params.curves == Curves::kTessellate; }
+std::string curves_name(Curves curves) {
+    return curves == Curves::kSlices       ? "slices"
+           : curves == Curves::kTessellate ? "tessellate"
+           : curves == Curves::kArcs       ? "arcs"
+                                           : "straight";
+}
+
+bool has_pieces(const StudyRow& row) {
+    return row.params.curves == Curves::kSlices || row.params.curves == Curves::kTessellate;
+}
 
 std::string table_csv(const std::vector<StudyRow>& rows) {
-    std::string text = "scene,resolution,curves,pieces,clip,pixels,optic_pixels,differing,direct,reflect,refract,uncovered,"
-                       "differing_share,exact_seconds,classic_seconds\n";
+    std::string text =
+        "scene,resolution,curves,pieces,clip,pixels,optic_pixels,differing,direct,reflect,refract,uncovered,"
+        "differing_share,exact_seconds,classic_seconds\n";
     for (const StudyRow& row : rows) {
         char numbers[300];
-        std::snprintf(numbers, sizeof numbers, "%zu,%zu,%zu,%zu,%zu,%zu,%zu,%.6g,%.4g,%.4g\n", row.pixels, row.optic_pixels, row.differing,
-                      row.direct, row.reflect, row.refract, row.uncovered, row.share(), row.exact_seconds, row.classic_seconds);
+        std::snprintf(numbers, sizeof numbers, "%zu,%zu,%zu,%zu,%zu,%zu,%zu,%.6g,%.4g,%.4g\n", row.pixels,
+                      row.optic_pixels, row.differing, row.direct, row.reflect, row.refract, row.uncovered,
+                      row.share(), row.exact_seconds, row.classic_seconds);
         text += row.scene + "," + row.resolution + "," + curves_name(row.params.curves) + "," +
-                (has_pieces(row) ? std::to_string(row.params.pieces) : "") + "," + clip_name(row.params.clip) + "," + numbers;
+                (has_pieces(row) ? std::to_string(row.params.pieces) : "") + "," +
+                clip_name(row.params.clip) + "," + numbers;
     }
     return text;
 }
 
 std::string table_text(const std::vector<StudyRow>& rows) {
     char line[300];
-    std::snprintf(line, sizeof line, "%-14s %4s  %-27s %8s %9s %10s %9s %9s\n", "scene", "n", "classic", "pixels", "differing", "share",
-                  "uncovered", "seconds");
+    std::snprintf(line, sizeof line, "%-14s %4s  %-27s %8s %9s %10s %9s %9s\n", "scene", "n", "classic",
+                  "pixels", "differing", "share", "uncovered", "seconds");
     std::string text = line;
     for (const StudyRow& row : rows) {
-        std::snprintf(line, sizeof line, "%-14s %4s  %-27s %8zu %9zu %9.4f%% %9zu %9.3f\n", row.scene.c_str(), row.resolution.c_str(),
-                      classic_name(row.params).c_str(), row.pixels, row.differing, 100 * row.share(), row.uncovered, row.classic_seconds);
+        std::snprintf(line, sizeof line, "%-14s %4s  %-27s %8zu %9zu %9.4f%% %9zu %9.3f\n", row.scene.c_str(),
+                      row.resolution.c_str(), classic_name(row.params).c_str(), row.pixels, row.differing,
+                      100 * row.share(), row.uncovered, row.classic_seconds);
         text += line;
     }
     return text;
@@ -179,7 +196,8 @@ std::vector<ClassicParams> ways_to_draw_curves() {
 std::vector<ClassicParams> ways_to_clip() {
     std::vector<ClassicParams> ways;
     for (const Clip clip : {Clip::kScene, Clip::kScreen})
-        for (const Curves curves : {Curves::kStraight, Curves::kTessellate, Curves::kSlices, Curves::kArcs}) ways.push_back({curves, clip, 4});
+        for (const Curves curves : {Curves::kStraight, Curves::kTessellate, Curves::kSlices, Curves::kArcs})
+            ways.push_back({curves, clip, 4});
     return ways;
 }
 
@@ -190,7 +208,8 @@ Answer run(const StudyOptions& options, Console& console) {
         SceneOptions scene = options.scene;
         scene.scene = file;
         const std::unique_ptr<World> world = load_world(scene, console);
-        const Subject subject{std::filesystem::path(file).stem().string(), *world, chosen_camera(scene, world->scene), console};
+        const Subject subject{std::filesystem::path(file).stem().string(), *world,
+                              chosen_camera(scene, world->scene), console};
         const std::vector<StudyRow> rows = subject.rows(ways_to_draw_curves());
         curves.insert(curves.end(), rows.begin(), rows.end());
         replace_text_file(options.output + "/plots/" + subject.name + ".svg", share_plot(subject.name, rows));
@@ -213,12 +232,19 @@ Answer run(const StudyOptions& options, Console& console) {
 
 void register_sweep_engines(const CommandRegistry& registry, CLI::App& sweep) {
     auto options = std::make_shared<StudyOptions>();
-    CLI::App* command = sweep.add_subcommand("engines", "the classic engine against the exact one: curves and clipping");
+    CLI::App* command =
+        sweep.add_subcommand("engines", "the classic engine against the exact one: curves and clipping");
     command->add_option("SCENES", options->scenes, "scene files")->required();
-    command->add_option("-o,--output", options->output, "folder for the tables and plots")->required()->type_name("DIR");
+    command->add_option("-o,--output", options->output, "folder for the tables and plots")
+        ->required()
+        ->type_name("DIR");
     options->scene.resolution = 2;
-    command->add_option("-n,--resolution", options->scene.resolution, "resolution of the optics while K varies: coarse facets bend edges most")
-        ->check(CLI::Range(1, 1024))->capture_default_str()->type_name("N");
+    command
+        ->add_option("-n,--resolution", options->scene.resolution,
+                     "resolution of the optics while K varies: coarse facets bend edges most")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str()
+        ->type_name("N");
     add_scene_overrides(*command, options->scene);
     registry.add(command, "sweep", [options](Console& console) { return run(*options, console); });
 }

@@ -39,7 +39,8 @@ std::string join(const std::vector<std::string>& words) {
 }
 
 Answer info() {
-    const std::vector<std::string> libraries{tracer_library_version(), surface_library_version(), image_library_version()};
+    const std::vector<std::string> libraries{tracer_library_version(), surface_library_version(),
+                                             image_library_version()};
     Answer answer;
     answer.fields["version"] = kVersion;
     answer.fields["compiler"] = compiler();
@@ -47,9 +48,11 @@ Answer info() {
     answer.fields["libraries"] = libraries;
     answer.fields["instruction_sets"] = instruction_sets();
     answer.fields["threads"] = thread_count();
-    answer.text = std::string("trilens ") + kVersion + "\ncompiler   " + compiler() + ", " + TRILENS_BUILD_TYPE;
+    answer.text =
+        std::string("trilens ") + kVersion + "\ncompiler   " + compiler() + ", " + TRILENS_BUILD_TYPE;
     for (const std::string& library : libraries) answer.text += "\nlibrary    " + library;
-    answer.text += "\nprocessor  " + join(instruction_sets()) + "\nthreads    " + std::to_string(thread_count());
+    answer.text +=
+        "\nprocessor  " + join(instruction_sets()) + "\nthreads    " + std::to_string(thread_count());
     return answer;
 }
 

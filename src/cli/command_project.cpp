@@ -47,7 +47,8 @@ std::vector<Vec3> read_points(const std::string& file) {
     for (std::size_t number = 1; std::getline(in, line); ++number) {
         if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
         const std::optional<Vec3> point = parse_point(line);
-        if (point) points.push_back(*point);
+        if (point)
+            points.push_back(*point);
         else if (number > 1 || line.find_first_of("0123456789") == 0)
             throw InputError(file, "line " + std::to_string(number), "needs x,y,z, not \"" + line + "\"");
     }
@@ -57,7 +58,8 @@ std::vector<Vec3> read_points(const std::string& file) {
 }
 
 std::vector<Vec3> wanted_points(const ProjectOptions& options) {
-    if (options.point.empty() == options.points.empty()) throw UsageError("project needs either --point X,Y,Z or --points FILE.csv");
+    if (options.point.empty() == options.points.empty())
+        throw UsageError("project needs either --point X,Y,Z or --points FILE.csv");
     if (!options.points.empty()) return read_points(options.points);
     std::vector<Vec3> points;
     for (const std::string& text : options.point) {
@@ -72,16 +74,26 @@ const char* path_name(LightPath path) {
     return path == LightPath::kDirect ? "direct" : path == LightPath::kReflect ? "reflect" : "refract";
 }
 
-Json id_json(Id id) { return id == kNone ? Json(nullptr) : Json(id); }
-
-Json image_json(const World& world, const WorldImage& image) {
-    return {{"x", json_number(image.pixel.x)}, {"y", json_number(image.pixel.y)}, {"t", json_number(image.t)},
-            {"optic", image.optic == kNone ? Json(nullptr) : Json(world.names[world.optics[image.optic].mesh])},
-            {"facet", id_json(image.facet)}, {"inside", image.inside}, {"path", path_name(image.path)},
-            {"length", json_number(image.length)}, {"visible", image.visible}, {"refined", image.refined}};
+Json id_json(Id id) {
+    return id == kNone ? Json(nullptr) : Json(id);
 }
 
-Json points_json(const World& world, std::span<const Vec3> points, std::span<const std::vector<WorldImage>> images) {
+Json image_json(const World& world, const WorldImage& image) {
+    return {
+        {"x", json_number(image.pixel.x)},
+        {"y", json_number(image.pixel.y)},
+        {"t", json_number(image.t)},
+        {"optic", image.optic == kNone ? Json(nullptr) : Json(world.names[world.optics[image.optic].mesh])},
+        {"facet", id_json(image.facet)},
+        {"inside", image.inside},
+        {"path", path_name(image.path)},
+        {"length", json_number(image.length)},
+        {"visible", image.visible},
+        {"refined", image.refined}};
+}
+
+Json points_json(const World& world, std::span<const Vec3> points,
+                 std::span<const std::vector<WorldImage>> images) {
     Json list = Json::array();
     for (std::size_t p = 0; p < points.size(); ++p) {
         Json entry{{"point", {points[p].x, points[p].y, points[p].z}}, {"images", Json::array()}};
@@ -93,9 +105,11 @@ Json points_json(const World& world, std::span<const Vec3> points, std::span<con
 
 std::string text_line(const World& world, std::size_t point, const WorldImage& image) {
     char line[256];
-    std::snprintf(line, sizeof line, "%zu,%.9f,%.9f,%.12g,%s,%s,%s,%d,%d,%d\n", point, image.pixel.x, image.pixel.y, image.t,
-                  path_name(image.path), image.optic == kNone ? "" : world.names[world.optics[image.optic].mesh].c_str(),
-                  image.facet == kNone ? "" : std::to_string(image.facet).c_str(), image.inside, image.visible, image.refined);
+    std::snprintf(line, sizeof line, "%zu,%.9f,%.9f,%.12g,%s,%s,%s,%d,%d,%d\n", point, image.pixel.x,
+                  image.pixel.y, image.t, path_name(image.path),
+                  image.optic == kNone ? "" : world.names[world.optics[image.optic].mesh].c_str(),
+                  image.facet == kNone ? "" : std::to_string(image.facet).c_str(), image.inside,
+                  image.visible, image.refined);
     return line;
 }
 
@@ -124,12 +138,19 @@ Answer run(const ProjectOptions& options, Console& console) {
 
 void register_project(const CommandRegistry& registry) {
     auto options = std::make_shared<ProjectOptions>();
-    CLI::App* command = registry.app->add_subcommand("project", "where world points appear: all images, in pixels");
+    CLI::App* command =
+        registry.app->add_subcommand("project", "where world points appear: all images, in pixels");
     add_scene_options(*command, options->scene);
-    command->add_option("--point", options->point, "a world point; may be given several times")->type_name("X,Y,Z")
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->expected(1)->take_all();
-    command->add_option("--points", options->points, "a file of x,y,z per line; a header line is allowed")->type_name("FILE.csv");
-    command->add_option("--refine", options->refine, "exact: on the exact surface by Newton; none: as the facets have it")
+    command->add_option("--point", options->point, "a world point; may be given several times")
+        ->type_name("X,Y,Z")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->expected(1)
+        ->take_all();
+    command->add_option("--points", options->points, "a file of x,y,z per line; a header line is allowed")
+        ->type_name("FILE.csv");
+    command
+        ->add_option("--refine", options->refine,
+                     "exact: on the exact surface by Newton; none: as the facets have it")
         ->check(CLI::IsMember({"exact", "none"}));
     command->add_flag("--no-visibility", options->no_visibility, "do not ask what hides the images");
     registry.add(command, "project", [options](Console& console) { return run(*options, console); });

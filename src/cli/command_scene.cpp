@@ -13,12 +13,14 @@ namespace {
 
 Json box_json(const Bounds& bounds) {
     if (bounds.empty) return nullptr;
-    return {{"low", {bounds.low.x, bounds.low.y, bounds.low.z}}, {"high", {bounds.high.x, bounds.high.y, bounds.high.z}}};
+    return {{"low", {bounds.low.x, bounds.low.y, bounds.low.z}},
+            {"high", {bounds.high.x, bounds.high.y, bounds.high.z}}};
 }
 
 Json mesh_json(const MeshInfo& mesh) {
-    Json json{{"name", mesh.name}, {"role", mesh.role == Role::kOptic ? "optic" : "object"}, {"shape", mesh.shape},
-              {"material", mesh.material}, {"points", mesh.points}, {"faces", mesh.faces}};
+    Json json{{"name", mesh.name},     {"role", mesh.role == Role::kOptic ? "optic" : "object"},
+              {"shape", mesh.shape},   {"material", mesh.material},
+              {"points", mesh.points}, {"faces", mesh.faces}};
     if (mesh.role == Role::kObject) {
         json["triangles"] = mesh.triangles;
     } else {
@@ -35,7 +37,8 @@ std::string mesh_line(const MeshInfo& mesh) {
     std::string line = mesh.role == Role::kOptic ? "  optic   " : "  object  ";
     line += mesh.name + ": " + mesh.shape;
     if (mesh.faces > 0) line += ", " + std::to_string(mesh.faces) + " faces";
-    line += mesh.role == Role::kOptic ? ", resolution " + std::to_string(mesh.resolution) : ", " + std::to_string(mesh.triangles) + " triangles";
+    line += mesh.role == Role::kOptic ? ", resolution " + std::to_string(mesh.resolution)
+                                      : ", " + std::to_string(mesh.triangles) + " triangles";
     return line + ", material " + mesh.material + "\n";
 }
 
@@ -53,14 +56,19 @@ Answer info(const SceneOptions& options, Console& console) {
     fields["bounds"] = box_json(found.bounds);
     fields["materials"] = Json::array();
     for (const MaterialInfo& material : found.materials)
-        fields["materials"].push_back({{"name", material.name}, {"kind", material.kind}, {"texture", material.has_texture}, {"meshes", material.meshes}});
+        fields["materials"].push_back({{"name", material.name},
+                                       {"kind", material.kind},
+                                       {"texture", material.has_texture},
+                                       {"meshes", material.meshes}});
     fields["meshes"] = Json::array();
 
-    answer.text = "film " + std::to_string(scene.film.width) + " x " + std::to_string(scene.film.height) + ", " +
-                  std::to_string(scene.film.spp) + " x " + std::to_string(scene.film.spp) + " samples\ncameras:";
+    answer.text = "film " + std::to_string(scene.film.width) + " x " + std::to_string(scene.film.height) +
+                  ", " + std::to_string(scene.film.spp) + " x " + std::to_string(scene.film.spp) +
+                  " samples\ncameras:";
     for (const std::string& camera : found.cameras) answer.text += " " + camera;
-    answer.text += "\n" + std::to_string(found.optics) + " optics, " + std::to_string(found.objects) + " objects, " +
-                   std::to_string(found.triangles) + " triangles, " + std::to_string(found.lights) + " lights\n";
+    answer.text += "\n" + std::to_string(found.optics) + " optics, " + std::to_string(found.objects) +
+                   " objects, " + std::to_string(found.triangles) + " triangles, " +
+                   std::to_string(found.lights) + " lights\n";
     for (const MeshInfo& mesh : found.meshes) {
         fields["meshes"].push_back(mesh_json(mesh));
         answer.text += mesh_line(mesh);
@@ -93,7 +101,8 @@ Answer example(const std::string& name) {
         answer.text += std::string(one.name) + ": " + one.summary + "\n";
         answer.fields["examples"].push_back({{"name", one.name}, {"summary", one.summary}});
     }
-    if (!name.empty() && name != "list") throw UsageError("there is no example \"" + name + "\"" + suggestion(name, names));
+    if (!name.empty() && name != "list")
+        throw UsageError("there is no example \"" + name + "\"" + suggestion(name, names));
     return answer;
 }
 

@@ -24,7 +24,9 @@ struct SweepOptions {
     std::string shard = "0/1";
 };
 
-std::string scene_name(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+std::string scene_name(const std::string& file) {
+    return std::filesystem::path(file).stem().string();
+}
 
 /// The command line that makes a sweep again, without the parts that are defaults.
 std::string command_line(const SweepOptions& options, const std::string& scene) {
@@ -37,7 +39,8 @@ std::string command_line(const SweepOptions& options, const std::string& scene) 
     return line + " -o " + options.output;
 }
 
-SweepSubject subject_of(const SweepOptions& options, const World& world, std::size_t camera, const std::string& scene) {
+SweepSubject subject_of(const SweepOptions& options, const World& world, std::size_t camera,
+                        const std::string& scene) {
     SweepSubject subject;
     subject.title = scene_name(scene);
     subject.scene = scene;
@@ -50,8 +53,10 @@ SweepSubject subject_of(const SweepOptions& options, const World& world, std::si
         subject.mesh += (subject.mesh.empty() ? "" : " ") + world.names[optic.mesh];
     }
     subject.commands = {command_line(options, scene)};
-    subject.versions = {{"trilens", kVersion}, {"ray tracing", tracer_library_version()},
-                        {"surfaces", surface_library_version()}, {"images", image_library_version()}};
+    subject.versions = {{"trilens", kVersion},
+                        {"ray tracing", tracer_library_version()},
+                        {"surfaces", surface_library_version()},
+                        {"images", image_library_version()}};
     return subject;
 }
 
@@ -76,12 +81,14 @@ Image draw(const SweepJob& job, Engine engine, std::size_t camera, Console& cons
     return draw_picture(*job.world, request, console).image;
 }
 
-std::unique_ptr<SweepJob> make_job(const SweepOptions& options, const std::string& scene, const std::string& folder, Console& console) {
+std::unique_ptr<SweepJob> make_job(const SweepOptions& options, const std::string& scene,
+                                   const std::string& folder, Console& console) {
     auto job = std::make_unique<SweepJob>();
     SceneOptions scene_options = options.scene;
     scene_options.scene = scene;
     job->world = load_world(scene_options, console);
-    if (job->world->optics.empty()) throw InputError(scene, "/meshes", "a sweep needs an optic whose resolution it can vary");
+    if (job->world->optics.empty())
+        throw InputError(scene, "/meshes", "a sweep needs an optic whose resolution it can vary");
     const std::size_t camera = chosen_camera(scene_options, job->world->scene);
 
     job->params.folder = folder;
@@ -96,41 +103,59 @@ std::unique_ptr<SweepJob> make_job(const SweepOptions& options, const std::strin
         return draw(*raw, Engine::kExact, camera, console);
     };
     job->callbacks.trace = [raw, camera, truth, &console] { return draw(*raw, truth, camera, console); };
-    job->callbacks.job_key = std::string(kVersion) + "\n" + job->params.subject.camera + "\n" + job->world->scene.resolved;
+    job->callbacks.job_key =
+        std::string(kVersion) + "\n" + job->params.subject.camera + "\n" + job->world->scene.resolved;
     job->callbacks.truth_key = job->callbacks.job_key + "\n" + options.truth;
     return job;
 }
 
-Json optional_json(const std::optional<double>& value) { return value ? json_number(*value) : Json(nullptr); }
+Json optional_json(const std::optional<double>& value) {
+    return value ? json_number(*value) : Json(nullptr);
+}
 
 Json fit_json(const SweepFit& fit) {
-    return {{"optic", fit.optic}, {"layer", fit.layer}, {"metric", fit.metric}, {"order", optional_json(fit.order)},
-            {"constant", optional_json(fit.constant)}, {"r2", optional_json(fit.r2)},
-            {"n_for_1px", optional_json(fit.n_for_1px)}, {"n_for_half_px", optional_json(fit.n_for_half_px)}};
+    return {{"optic", fit.optic},
+            {"layer", fit.layer},
+            {"metric", fit.metric},
+            {"order", optional_json(fit.order)},
+            {"constant", optional_json(fit.constant)},
+            {"r2", optional_json(fit.r2)},
+            {"n_for_1px", optional_json(fit.n_for_1px)},
+            {"n_for_half_px", optional_json(fit.n_for_half_px)}};
 }
 
 Json summary_json(const SweepSummary& summary) {
-    Json json{{"folder", summary.folder}, {"runs", summary.runs.size()}, {"done", summary.count(RunState::kDone)},
-              {"failed", summary.count(RunState::kFailed)}, {"missing", summary.count(RunState::kMissing)}, {"fits", Json::array()}};
+    Json json{{"folder", summary.folder},
+              {"runs", summary.runs.size()},
+              {"done", summary.count(RunState::kDone)},
+              {"failed", summary.count(RunState::kFailed)},
+              {"missing", summary.count(RunState::kMissing)},
+              {"fits", Json::array()}};
     for (const SweepFit& fit : summary.fits) json["fits"].push_back(fit_json(fit));
     return json;
 }
 
 std::string fit_line(const SweepFit& fit) {
     char text[300];
-    std::snprintf(text, sizeof text, "  %-8s %-14s %-16s order %5.2f  constant %8.4g  r2 %.4f", fit.layer.c_str(), fit.optic.c_str(),
-                  fit.metric.c_str(), *fit.order, fit.constant.value_or(0), fit.r2.value_or(0));
+    std::snprintf(text, sizeof text, "  %-8s %-14s %-16s order %5.2f  constant %8.4g  r2 %.4f",
+                  fit.layer.c_str(), fit.optic.c_str(), fit.metric.c_str(), *fit.order,
+                  fit.constant.value_or(0), fit.r2.value_or(0));
     std::string line = text;
-    if (fit.n_for_1px) line += "  1 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_1px)));
-    if (fit.n_for_half_px) line += "  0.5 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_half_px)));
+    if (fit.n_for_1px)
+        line += "  1 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_1px)));
+    if (fit.n_for_half_px)
+        line += "  0.5 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_half_px)));
     return line + "\n";
 }
 
 std::string summary_text(const SweepSummary& summary) {
-    std::string text = summary.manifest.subject.title + ": " + std::to_string(summary.count(RunState::kDone)) + " of " +
+    std::string text = summary.manifest.subject.title + ": " +
+                       std::to_string(summary.count(RunState::kDone)) + " of " +
                        std::to_string(summary.runs.size()) + " runs done\n";
     for (const SweepFit& fit : summary.fits)
-        if (fit.order && (fit.metric == "disp_mean_px" || fit.metric == "disp_mean_off_folds_px" || fit.metric == "disp_p50_px")) text += fit_line(fit);
+        if (fit.order && (fit.metric == "disp_mean_px" || fit.metric == "disp_mean_off_folds_px" ||
+                          fit.metric == "disp_p50_px"))
+            text += fit_line(fit);
     return text;
 }
 
@@ -178,9 +203,12 @@ Answer plan(const SweepOptions& options, Console& console) {
 void add_sweep_options(CLI::App& command, SweepOptions& options) {
     command.add_option("SCENES", options.scenes, "scene files; several make a gallery")->required();
     command.add_option("-o,--output", options.output, "folder for the results")->required()->type_name("DIR");
-    command.add_option("--over", options.over, "what is varied: resolution=1,2,4 or resolution=1..64:x2")->type_name("AXIS");
-    command.add_option("--truth", options.truth, "limit or facets")->check(CLI::IsMember({"limit", "facets"}));
-    command.add_option("--shard", options.shard, "do part i of n only: i/n, or auto in a job array")->type_name("i/n");
+    command.add_option("--over", options.over, "what is varied: resolution=1,2,4 or resolution=1..64:x2")
+        ->type_name("AXIS");
+    command.add_option("--truth", options.truth, "limit or facets")
+        ->check(CLI::IsMember({"limit", "facets"}));
+    command.add_option("--shard", options.shard, "do part i of n only: i/n, or auto in a job array")
+        ->type_name("i/n");
     add_scene_overrides(command, options.scene);
 }
 
@@ -207,7 +235,8 @@ void register_sweep(const CommandRegistry& registry) {
 
     command = sweep->add_subcommand("report", "sum up again: tables, fits, plots, page");
     command->add_option("DIR", *folder, "the sweep's folder")->required();
-    registry.add(command, "sweep", [folder](Console&) { return answer_of({report_sweep(*folder)}, *folder + "/report.html"); });
+    registry.add(command, "sweep",
+                 [folder](Console&) { return answer_of({report_sweep(*folder)}, *folder + "/report.html"); });
 }
 
 }  // namespace trilens

@@ -31,9 +31,13 @@ void install_signal_handlers() {
     std::signal(SIGTERM, handle_signal);
 }
 
-const std::atomic<bool>& stop_requested() { return g_stop; }
+const std::atomic<bool>& stop_requested() {
+    return g_stop;
+}
 
-int stop_exit_code() { return g_signal == SIGTERM ? 143 : 130; }
+int stop_exit_code() {
+    return g_signal == SIGTERM ? 143 : 130;
+}
 
 Console::Console(const ConsoleOptions& options) : options_(options) {
     if (options_.progress == ProgressStyle::kAuto)
@@ -43,7 +47,9 @@ Console::Console(const ConsoleOptions& options) : options_(options) {
               (options_.colour == ColourStyle::kAuto && is_live_terminal() && !std::getenv("NO_COLOR"));
 }
 
-Console::~Console() { clear_bar(); }
+Console::~Console() {
+    clear_bar();
+}
 
 void Console::clear_bar() {
     if (!bar_shown_) return;
@@ -102,14 +108,16 @@ void Console::draw(const std::string& job, double done) {
     last_time_ = now;
     const int percent = static_cast<int>(100 * done);
     if (options_.progress == ProgressStyle::kJson) {
-        std::fprintf(stderr, "{\"t\":%.1f,\"job\":\"%s\",\"done\":%.3f,\"eta_s\":%.0f}\n", elapsed, job.c_str(), done, eta);
+        std::fprintf(stderr, "{\"t\":%.1f,\"job\":\"%s\",\"done\":%.3f,\"eta_s\":%.0f}\n", elapsed,
+                     job.c_str(), done, eta);
     } else if (options_.progress == ProgressStyle::kPlain) {
         std::fprintf(stderr, "trilens: %s %d %%, %.0f s left\n", job.c_str(), percent, eta);
     } else if (done >= 1) {
         clear_bar();
     } else {
         const int filled = static_cast<int>(30 * done);
-        std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %% %.0f s left", job.c_str(), std::string(static_cast<std::size_t>(filled), '#').c_str(),
+        std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %% %.0f s left", job.c_str(),
+                     std::string(static_cast<std::size_t>(filled), '#').c_str(),
                      std::string(static_cast<std::size_t>(30 - filled), ' ').c_str(), percent, eta);
         std::fflush(stderr);
         bar_shown_ = true;

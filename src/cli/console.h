@@ -22,7 +22,8 @@ struct ConsoleOptions {
     bool wants_json = false;  // the answer's fields will be read
 };
 
-/// One writer for everything on stderr, so that a bar and a message never mix. Keeps the warnings for the JSON answer.
+/// One writer for everything on stderr, so that a bar and a message never mix. Keeps the warnings for the
+/// JSON answer.
 class Console {
   public:
     explicit Console(const ConsoleOptions& options);

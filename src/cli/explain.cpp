@@ -5,15 +5,22 @@
 namespace trilens {
 namespace {
 
-Json vector_json(const Vec3& v) { return {json_number(v.x), json_number(v.y), json_number(v.z)}; }
+Json vector_json(const Vec3& v) {
+    return {json_number(v.x), json_number(v.y), json_number(v.z)};
+}
 
-Json ray_json(const Ray& ray) { return {{"origin", vector_json(ray.origin)}, {"direction", vector_json(ray.direction)}}; }
+Json ray_json(const Ray& ray) {
+    return {{"origin", vector_json(ray.origin)}, {"direction", vector_json(ray.direction)}};
+}
 
 Json hit_json(const World& world, const Hit& hit) {
     if (!hit.seen()) return nullptr;
     const Id object = world.objects.object[hit.triangle];
-    return {{"object", object}, {"name", world.names[object]}, {"primitive", world.objects.primitive[hit.triangle]},
-            {"t", json_number(hit.t)}, {"barycentric", {json_number(hit.barycentric.x), json_number(hit.barycentric.y)}},
+    return {{"object", object},
+            {"name", world.names[object]},
+            {"primitive", world.objects.primitive[hit.triangle]},
+            {"t", json_number(hit.t)},
+            {"barycentric", {json_number(hit.barycentric.x), json_number(hit.barycentric.y)}},
             {"position", vector_json(position(world.objects, hit))}};
 }
 
@@ -43,13 +50,17 @@ Json explain_pixel(const World& world, const PictureRequest& request, int x, int
     fields["sees"] = hit_json(world, view.hit);
     if (view.optic != kNone) {
         const Optic& optic = world.optics[view.optic];
-        fields["optic"] = {{"object", optic.mesh}, {"name", world.names[optic.mesh]}, {"facet", view.facet},
-                           {"uv", {json_number(view.uv.x), json_number(view.uv.y)}}, {"cos_incident", json_number(view.cos_incident)},
+        fields["optic"] = {{"object", optic.mesh},
+                           {"name", world.names[optic.mesh]},
+                           {"facet", view.facet},
+                           {"uv", {json_number(view.uv.x), json_number(view.uv.y)}},
+                           {"cos_incident", json_number(view.cos_incident)},
                            {"front", view.front}};
         fields["reflect"] = secondary_json(world, view.reflect);
         fields["refract"] = secondary_json(world, view.refract);
     }
-    fields["colour"] = {{"direct", vector_json(colour.direct)}, {"reflect", vector_json(colour.reflect)},
+    fields["colour"] = {{"direct", vector_json(colour.direct)},
+                        {"reflect", vector_json(colour.reflect)},
                         {"refract", vector_json(colour.refract)}};
     return fields;
 }

@@ -37,9 +37,10 @@ struct FacetViewer {
 
   private:
     void draw_direct(const FacetSamples& owned, const SampleGrid& grid, std::span<Hit> first) const;
-    void view_optic(std::size_t index, const SampleGrid& grid, std::span<const Hit> first, std::span<SampleView> views) const;
-    void view_path(const RayMesh& mesh, const SampleGrid& grid, std::span<const Id> owner, std::span<SampleView> views,
-                   SecondaryView SampleView::*path) const;
+    void view_optic(std::size_t index, const SampleGrid& grid, std::span<const Hit> first,
+                    std::span<SampleView> views) const;
+    void view_path(const RayMesh& mesh, const SampleGrid& grid, std::span<const Id> owner,
+                   std::span<SampleView> views, SecondaryView SampleView::*path) const;
     void describe_optic(std::size_t index, const Hit& hit, SampleView& view) const;
 };
 
@@ -135,13 +136,15 @@ void check_facet_count(const World& world) {
     std::size_t total = 0;
     for (const Optic& optic : world.optics) total += optic.facet_count();
     if (total > kMaxFacets)
-        throw InputError(world.scene.file, "/meshes", "the optics have " + std::to_string(total) + " facets, more than " +
-                                                          std::to_string(kMaxFacets) + "; lower their resolution");
+        throw InputError(world.scene.file, "/meshes",
+                         "the optics have " + std::to_string(total) + " facets, more than " +
+                             std::to_string(kMaxFacets) + "; lower their resolution");
 }
 
 }  // namespace
 
-Viewer make_facet_viewer(const World& world, CameraRays camera, const EngineChoice& engine, const Warn& warn) {
+Viewer make_facet_viewer(const World& world, CameraRays camera, const EngineChoice& engine,
+                         const Warn& warn) {
     check_facet_count(world);
     FacetViewer viewer;
     viewer.world = &world;
@@ -150,33 +153,41 @@ Viewer make_facet_viewer(const World& world, CameraRays camera, const EngineChoi
         OpticMeshes meshes = make_optic_meshes(world, optic, *camera.linear);
         const Id first_triangle = static_cast<Id>(visible.size());
         append_facets(meshes.grid, optic.mesh, visible);
-        const auto bad = std::count(meshes.grid.corner_normal.begin(), meshes.grid.corner_normal.end(), Vec3(0));
+        const auto bad =
+            std::count(meshes.grid.corner_normal.begin(), meshes.grid.corner_normal.end(), Vec3(0));
         if (bad > 0)
-            warn(world.names[optic.mesh] + ": " + std::to_string(bad) + " grid corners have no normal; the facets there show nothing");
+            warn(world.names[optic.mesh] + ": " + std::to_string(bad) +
+                 " grid corners have no normal; the facets there show nothing");
         viewer.optics.push_back({std::move(meshes), first_triangle});
     }
     viewer.camera = std::move(camera);
     if (engine.engine != Engine::kFacetsTruth) {
-        auto all = std::make_shared<PreparedScene>(visible), objects = std::make_shared<PreparedScene>(world.objects);
+        auto all = std::make_shared<PreparedScene>(visible),
+             objects = std::make_shared<PreparedScene>(world.objects);
         viewer.draw_visible = [all](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                                     std::span<Hit> hits) { draw(*all, mesh, owned, grid, hits); };
-        viewer.draw_objects = [objects](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+        viewer.draw_objects = [objects](const RayMesh& mesh, const FacetSamples& owned,
+                                        const SampleGrid& grid,
                                         std::span<Hit> hits) { draw(*objects, mesh, owned, grid, hits); };
         if (engine.engine == Engine::kClassic) {
             viewer.redraw_direct = true;
-            viewer.draw_objects = [objects, params = engine.classic](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
-                                                                     std::span<Hit> hits) { draw_classic(*objects, mesh, owned, grid, hits, params); };
+            viewer.draw_objects = [objects, params = engine.classic](
+                                      const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                                      std::span<Hit> hits) {
+                draw_classic(*objects, mesh, owned, grid, hits, params);
+            };
         }
     } else {
         auto all = std::make_shared<Tracer>(visible), objects = std::make_shared<Tracer>(world.objects);
         viewer.draw_visible = [all](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                                     std::span<Hit> hits) { trace_facets(*all, mesh, owned, grid, hits); };
-        viewer.draw_objects = [objects](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
-                                        std::span<Hit> hits) { trace_facets(*objects, mesh, owned, grid, hits); };
+        viewer.draw_objects = [objects](const RayMesh& mesh, const FacetSamples& owned,
+                                        const SampleGrid& grid, std::span<Hit> hits) {
+            trace_facets(*objects, mesh, owned, grid, hits);
+        };
     }
-    return [shared = std::make_shared<FacetViewer>(std::move(viewer))](const SampleGrid& grid, std::span<SampleView> views) {
-        (*shared)(grid, views);
-    };
+    return [shared = std::make_shared<FacetViewer>(std::move(viewer))](
+               const SampleGrid& grid, std::span<SampleView> views) { (*shared)(grid, views); };
 }
 
 }  // namespace trilens

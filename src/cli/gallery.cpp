@@ -26,7 +26,8 @@ Facts facts_of(const SweepSummary& summary, const RunRecord& run) {
         const auto mean = one.metrics.find("disp_mean_px"), lost = one.metrics.find("disp_lost");
         if (one.optic != "all" || mean == one.metrics.end()) continue;
         facts.emplace_back(one.layer + ", mean displacement", rounded_text(mean->second, 3) + " px");
-        if (lost != one.metrics.end() && lost->second > 0) facts.emplace_back(one.layer + ", lost pixels", rounded_text(lost->second, 6));
+        if (lost != one.metrics.end() && lost->second > 0)
+            facts.emplace_back(one.layer + ", lost pixels", rounded_text(lost->second, 6));
     }
     for (const SweepFit& fit : summary.fits)
         if (fit.optic == "all" && fit.metric == "disp_mean_px" && fit.order)
@@ -65,11 +66,15 @@ GalleryEntry entry_of(const SweepSummary& summary) {
 void write_sweep_gallery(const std::string& folder, std::span<const SweepSummary> summaries) {
     Gallery gallery;
     gallery.title = "trilens: curved mirrors and glass by projection";
-    gallery.text = "Each scene as projected at its finest resolution, as ray traced on the exact surfaces, their difference, and how the "
-                   "displacement of what is seen falls with the resolution. A click on a title leads to all runs of the scene.";
+    gallery.text =
+        "Each scene as projected at its finest resolution, as ray traced on the exact surfaces, their "
+        "difference, and how the "
+        "displacement of what is seen falls with the resolution. A click on a title leads to all runs of the "
+        "scene.";
     for (const SweepSummary& summary : summaries) {
         gallery.entries.push_back(entry_of(summary));
-        for (const std::string& command : summary.manifest.subject.commands) gallery.commands.push_back(command);
+        for (const std::string& command : summary.manifest.subject.commands)
+            gallery.commands.push_back(command);
     }
     if (!summaries.empty()) gallery.versions = summaries.front().manifest.subject.versions;
     write_gallery(folder + "/report.html", gallery);

@@ -1,4 +1,5 @@
-// The page over several sweeps: each scene with its finest picture, the truth, the difference and the error plot.
+// The page over several sweeps: each scene with its finest picture, the truth, the difference and the error
+// plot.
 #pragma once
 
 #include <span>

@@ -38,7 +38,9 @@ OpticWeights optic_weights(const World& world, const Optic& optic, const SampleV
 }
 
 /// Distance from the optic to what is seen, along the secondary ray.
-double path_length(const SecondaryView& secondary) { return secondary.hit.t * length(secondary.ray.direction); }
+double path_length(const SecondaryView& secondary) {
+    return secondary.hit.t * length(secondary.ray.direction);
+}
 
 Vec3 refracted_light(const World& world, const Optic& optic, const SampleView& view) {
     const Vec3 light = shade_ray(world.shading, view.refract.hit, view.refract.ray);
@@ -75,7 +77,8 @@ struct Channels {
 };
 
 bool wanted(const LayerRequest& request, const std::string& layer) {
-    return request.aovs.empty() || std::find(request.aovs.begin(), request.aovs.end(), layer) != request.aovs.end();
+    return request.aovs.empty() ||
+           std::find(request.aovs.begin(), request.aovs.end(), layer) != request.aovs.end();
 }
 
 SecondaryChannels add_secondary(Canvas& canvas, const std::string& layer) {
@@ -112,7 +115,8 @@ Channels add_channels(Canvas& canvas, const LayerRequest& request) {
     return channels;
 }
 
-void put_secondary(const World& world, const SecondaryView& view, const SecondaryChannels& channels, std::size_t pixel) {
+void put_secondary(const World& world, const SecondaryView& view, const SecondaryChannels& channels,
+                   std::size_t pixel) {
     if (!channels.object) return;
     const bool seen = view.has_ray && view.hit.seen();
     const Vec3 point = seen ? position(world.objects, view.hit) : Vec3(0);
@@ -147,7 +151,8 @@ void put_colour(const SampleColour& mean, const Channels& channels, std::size_t 
         if (!std::isfinite(beauty[c])) throw ComputationError("a pixel's colour is not finite");
         (*channels.rgba[c])[pixel] = static_cast<float>(beauty[c]);
         for (int layer = 0; layer < 3; ++layer)
-            if (channels.parts[layer][c]) (*channels.parts[layer][c])[pixel] = static_cast<float>((*parts[layer])[c]);
+            if (channels.parts[layer][c])
+                (*channels.parts[layer][c])[pixel] = static_cast<float>((*parts[layer])[c]);
     }
     (*channels.rgba[3])[pixel] = static_cast<float>(mean.coverage);
 }
@@ -157,7 +162,8 @@ bool lacks_ray(const World& world, const SampleView& view) {
     if (view.optic == kNone) return false;
     const Optic& optic = world.optics[view.optic];
     if (world.scene.render.reflect && !view.reflect.has_ray && optic.mirror) return true;
-    const double eta = view.front ? 1 / world.scene.materials[optic.material].ior : world.scene.materials[optic.material].ior;
+    const double eta = view.front ? 1 / world.scene.materials[optic.material].ior
+                                  : world.scene.materials[optic.material].ior;
     const bool total = fresnel_reflectance(view.cos_incident, eta) >= 1;
     return !optic.mirror && world.scene.render.refract && !view.refract.has_ray && !total;
 }
@@ -198,8 +204,8 @@ SampleColour shade_view(const World& world, const SampleView& view) {
     return colour;
 }
 
-Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& request, const Progress& progress,
-                  LayerStatistics* statistics) {
+Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& request,
+                  const Progress& progress, LayerStatistics* statistics) {
     Canvas canvas;
     canvas.image.width = world.scene.film.width;
     canvas.image.height = world.scene.film.height;
@@ -210,7 +216,8 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
     const Channels channels = add_channels(canvas, request);
 
     const int side = world.scene.film.spp;
-    const std::size_t samples_per_row = static_cast<std::size_t>(canvas.image.data_width) * static_cast<std::size_t>(side * side);
+    const std::size_t samples_per_row =
+        static_cast<std::size_t>(canvas.image.data_width) * static_cast<std::size_t>(side * side);
     const int rows = static_cast<int>(std::max<std::size_t>(1, kBandSamples / samples_per_row));
     LayerStatistics counts;
     std::vector<SampleView> views, centres;
@@ -227,7 +234,8 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
             viewer(centre_grid, centres);
         }
         const std::vector<SampleView>& middle = side > 1 ? centres : views;
-        const std::size_t first = static_cast<std::size_t>(y - request.y0) * static_cast<std::size_t>(grid.width());
+        const std::size_t first =
+            static_cast<std::size_t>(y - request.y0) * static_cast<std::size_t>(grid.width());
         const std::size_t per_pixel = static_cast<std::size_t>(side * side);
         parallel_for(grid.pixels(), 256, [&](std::size_t from, std::size_t to) {
             for (std::size_t p = from; p < to; ++p) {

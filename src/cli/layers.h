@@ -30,10 +30,10 @@ struct LayerStatistics {
     std::size_t pixels_without_ray = 0;  // pixels on an optic that lack a ray a path asked for
 };
 
-/// Draws the window band by band. Colours are the mean over the samples of a pixel; ids, positions and depths are those
-/// of the pixel's centre, whatever the number of samples. Throws Interrupted, and ComputationError when a
-/// pixel is not finite.
-Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& request, const Progress& progress,
-                  LayerStatistics* statistics = nullptr);
+/// Draws the window band by band. Colours are the mean over the samples of a pixel; ids, positions and depths
+/// are those of the pixel's centre, whatever the number of samples. Throws Interrupted, and ComputationError
+/// when a pixel is not finite.
+Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& request,
+                  const Progress& progress, LayerStatistics* statistics = nullptr);
 
 }  // namespace trilens

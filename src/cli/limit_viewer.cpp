@@ -13,13 +13,14 @@
 namespace trilens {
 namespace {
 
-/// Facets of the fine grid that finds the face under a ray; Newton then finds the exact point, so this only decides
-/// how little of a silhouette is missed.
+/// Facets of the fine grid that finds the face under a ray; Newton then finds the exact point, so this only
+/// decides how little of a silhouette is missed.
 constexpr std::size_t kFineFacets = 400'000;
 constexpr int kMinFine = 4, kMaxFine = 256;
 
 int fine_resolution(const Surface& surface) {
-    const double per_face = static_cast<double>(kFineFacets) / (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
+    const double per_face = static_cast<double>(kFineFacets) /
+                            (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
     return std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFine, kMaxFine);
 }
 
@@ -88,8 +89,9 @@ Viewer make_limit_viewer(const World& world, CameraRays camera) {
     viewer->camera = std::move(camera);
     viewer->objects = std::make_shared<Tracer>(world.objects);
     for (const Optic& optic : world.optics) {
-        const SurfaceGrid fine = optic.surface->has_closed_form() ? SurfaceGrid{}
-                                                                  : make_grid(*optic.surface, fine_resolution(*optic.surface));
+        const SurfaceGrid fine = optic.surface->has_closed_form()
+                                     ? SurfaceGrid{}
+                                     : make_grid(*optic.surface, fine_resolution(*optic.surface));
         viewer->optics.push_back(std::make_shared<LimitTracer>(*optic.surface, fine));
     }
     return [viewer](const SampleGrid& grid, std::span<SampleView> views) { (*viewer)(grid, views); };

@@ -9,8 +9,8 @@ namespace trilens {
 
 struct LinearCamera;
 
-/// Facets of the RayMeshes are those of the grid; a RayMesh is empty where the scene does not draw its path or the optic
-/// has none.
+/// Facets of the RayMeshes are those of the grid; a RayMesh is empty where the scene does not draw its path
+/// or the optic has none.
 struct OpticMeshes {
     SurfaceGrid grid;
     RayMesh reflect, refract;

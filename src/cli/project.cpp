@@ -20,8 +20,8 @@ namespace {
 /// A segment is free if what it meets lies within this share of its ends.
 constexpr double kFreeShare = 1e-6;
 
-/// A refined image further than this from its facet's image belongs to another one, in multiples of the facet's
-/// size on the screen.
+/// A refined image further than this from its facet's image belongs to another one, in multiples of the
+/// facet's size on the screen.
 constexpr double kRefineReach = 2;
 
 struct PathMesh {
@@ -48,7 +48,8 @@ class PointProjector {
     void add_direct(const Vec3& point, std::vector<WorldImage>& images) const;
     void add_through(const PathMesh& path, const Vec3& point, std::vector<WorldImage>& images) const;
     bool own_optic_hides(const PathMesh& path, const MeshPointImage& image) const;
-    std::optional<SpecularPoint> refined(const PathMesh& path, const MeshPointImage& image, const Vec3& point) const;
+    std::optional<SpecularPoint> refined(const PathMesh& path, const MeshPointImage& image,
+                                         const Vec3& point) const;
     bool on_film(const Vec2& pixel) const;
     bool is_free(const Vec3& from, const Vec3& to) const;
 
@@ -67,10 +68,13 @@ std::unique_ptr<Tracer> facet_tracer(const SurfaceGrid& grid) {
 }
 
 PointProjector::PointProjector(const World& world, const ProjectRequest& request)
-    : world_(world), request_(request), camera_(make_camera_rays(world.scene, request.camera)),
+    : world_(world),
+      request_(request),
+      camera_(make_camera_rays(world.scene, request.camera)),
       objects_(std::make_unique<Tracer>(world.objects)) {
     if (!camera_.linear) {
-        paths_.push_back({LightPath::kDirect, kNone, camera_.mesh, std::make_unique<MeshPointImages>(camera_.mesh)});
+        paths_.push_back(
+            {LightPath::kDirect, kNone, camera_.mesh, std::make_unique<MeshPointImages>(camera_.mesh)});
         return;
     }
     for (Id i = 0; i < world.optics.size(); ++i) add_optic(i);
@@ -97,7 +101,8 @@ void PointProjector::add_optic(Id index) {
 }
 
 bool PointProjector::on_film(const Vec2& pixel) const {
-    return pixel.x >= 0 && pixel.y >= 0 && pixel.x <= world_.scene.film.width && pixel.y <= world_.scene.film.height;
+    return pixel.x >= 0 && pixel.y >= 0 && pixel.x <= world_.scene.film.width &&
+           pixel.y <= world_.scene.film.height;
 }
 
 bool PointProjector::is_free(const Vec3& from, const Vec3& to) const {
@@ -116,7 +121,9 @@ void PointProjector::add_direct(const Vec3& point, std::vector<WorldImage>& imag
     if (request_.visibility) {
         image.visible = image.inside && is_free(camera_.linear->eye, point);
         for (const OpticGrid& optic : grids_)
-            if (optic.own->occluded({camera_.linear->eye, point - camera_.linear->eye}, kFreeShare, 1 - kFreeShare)) image.visible = false;
+            if (optic.own->occluded({camera_.linear->eye, point - camera_.linear->eye}, kFreeShare,
+                                    1 - kFreeShare))
+                image.visible = false;
     }
     images.push_back(image);
 }
@@ -126,12 +133,14 @@ bool PointProjector::own_optic_hides(const PathMesh& path, const MeshPointImage&
     const IdTriple& corner = optic.grid.facets[image.facet];
     Vec3 on_facet(0);
     for (int k = 0; k < 3; ++k)
-        on_facet += image.weights[k] * optic.grid.points[optic.grid.corner_point[corner[static_cast<std::size_t>(k)]]];
+        on_facet += image.weights[k] *
+                    optic.grid.points[optic.grid.corner_point[corner[static_cast<std::size_t>(k)]]];
     const Ray sight{camera_.linear->eye, on_facet - camera_.linear->eye};
     return optic.own->occluded(sight, kFreeShare, 1 - kFreeShare);
 }
 
-std::optional<SpecularPoint> PointProjector::refined(const PathMesh& path, const MeshPointImage& image, const Vec3& point) const {
+std::optional<SpecularPoint> PointProjector::refined(const PathMesh& path, const MeshPointImage& image,
+                                                     const Vec3& point) const {
     const Optic& optic = world_.optics[path.optic];
     const SurfaceGrid& grid = grids_[path.optic].grid;
     const IdTriple& corner = grid.facets[image.facet];
@@ -151,29 +160,38 @@ std::optional<SpecularPoint> PointProjector::refined(const PathMesh& path, const
     query.own_normals = world_.scene.meshes[optic.mesh].normals.type == NormalOverride::Type::kSmooth;
     if (query.event == SpecularEvent::kRefract) {
         const auto at = [&](std::size_t c) { return grid.points[grid.corner_point[corner[c]]]; };
-        const bool front = dot(cross(at(1) - at(0), at(2) - at(0)), incident_direction(query.camera, at(0))) <= 0;
+        const bool front =
+            dot(cross(at(1) - at(0), at(2) - at(0)), incident_direction(query.camera, at(0))) <= 0;
         const double ior = world_.scene.materials[optic.material].ior;
         query.eye_index = front ? 1 : ior;
         query.point_index = front ? ior : 1;
     }
 
-    // From the facet's own image; else from the facets around it, since the exact image may lie on a neighbouring face.
+    // From the facet's own image; else from the facets around it, since the exact image may lie on a
+    // neighbouring face.
     const double reach = kRefineReach * std::max(length(high - low), 1.0);
-    const auto near = [&](const std::optional<SpecularPoint>& found) { return found && length(found->pixel - image.screen) <= reach; };
-    std::optional<SpecularPoint> best = refine_specular_point(*optic.surface, {grid.facet_face[image.facet], uv}, query);
+    const auto near = [&](const std::optional<SpecularPoint>& found) {
+        return found && length(found->pixel - image.screen) <= reach;
+    };
+    std::optional<SpecularPoint> best =
+        refine_specular_point(*optic.surface, {grid.facet_face[image.facet], uv}, query);
     if (near(best)) return best;
     best.reset();
     for (const Id c : corner) {
         for (const Id f : grids_[path.optic].around[grid.corner_point[c]]) {
             const auto& uvs = grid.facet_uv[f];
-            const auto found = refine_specular_point(*optic.surface, {grid.facet_face[f], (uvs[0] + uvs[1] + uvs[2]) / 3.0}, query);
-            if (near(found) && (!best || length(found->pixel - image.screen) < length(best->pixel - image.screen))) best = found;
+            const auto found = refine_specular_point(
+                *optic.surface, {grid.facet_face[f], (uvs[0] + uvs[1] + uvs[2]) / 3.0}, query);
+            if (near(found) &&
+                (!best || length(found->pixel - image.screen) < length(best->pixel - image.screen)))
+                best = found;
         }
     }
     return best;
 }
 
-void PointProjector::add_through(const PathMesh& path, const Vec3& point, std::vector<WorldImage>& images) const {
+void PointProjector::add_through(const PathMesh& path, const Vec3& point,
+                                 std::vector<WorldImage>& images) const {
     std::vector<SpecularPoint> taken;
     for (const MeshPointImage& found : path.images->images(point)) {
         WorldImage image;
@@ -203,7 +221,8 @@ void PointProjector::add_through(const PathMesh& path, const Vec3& point, std::v
         }
         image.inside = on_film(image.pixel);
         if (request_.visibility)
-            image.visible = image.inside && is_free(from, point) && (path.optic == kNone || is_free(camera_.linear->eye, from));
+            image.visible = image.inside && is_free(from, point) &&
+                            (path.optic == kNone || is_free(camera_.linear->eye, from));
         images.push_back(image);
     }
 }
@@ -217,7 +236,8 @@ std::vector<WorldImage> PointProjector::images(const Vec3& point) const {
 
 }  // namespace
 
-std::vector<std::vector<WorldImage>> project_points(const World& world, const ProjectRequest& request, std::span<const Vec3> points) {
+std::vector<std::vector<WorldImage>> project_points(const World& world, const ProjectRequest& request,
+                                                    std::span<const Vec3> points) {
     const PointProjector projector(world, request);
     std::vector<std::vector<WorldImage>> result(points.size());
     parallel_for(points.size(), 64, [&](std::size_t from, std::size_t to) {

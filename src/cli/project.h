@@ -1,4 +1,5 @@
-// Where world points appear: directly, and by every optic; first through its facets, then on the exact surface.
+// Where world points appear: directly, and by every optic; first through its facets, then on the exact
+// surface.
 #pragma once
 
 #include <span>
@@ -29,9 +30,11 @@ struct ProjectRequest {
     bool visibility = true;  // else `visible` stays false
 };
 
-/// All images of every point, through all facets of all optics (thesis chapter 3), each then refined on the exact
-/// surface by Newton where there is an exact image near it. Images that the optic itself hides from the camera (the back of
-/// a closed body) are left out. Exact images that no facet has are not looked for: raise the resolution.
-std::vector<std::vector<WorldImage>> project_points(const World& world, const ProjectRequest& request, std::span<const Vec3> points);
+/// All images of every point, through all facets of all optics (thesis chapter 3), each then refined on the
+/// exact surface by Newton where there is an exact image near it. Images that the optic itself hides from the
+/// camera (the back of a closed body) are left out. Exact images that no facet has are not looked for: raise
+/// the resolution.
+std::vector<std::vector<WorldImage>> project_points(const World& world, const ProjectRequest& request,
+                                                    std::span<const Vec3> points);
 
 }  // namespace trilens

@@ -7,10 +7,10 @@
 
 #include "base/parallel.h"
 #include "cli/command.h"
-#include "scene/nearest.h"
 #include "cli/version.h"
-#include "sweep/files.h"
 #include "image/image_io.h"
+#include "scene/nearest.h"
+#include "sweep/files.h"
 #include "truth/tracer.h"
 
 namespace trilens {
@@ -35,21 +35,33 @@ struct Chosen {
     CommandBody body;
 };
 
-const std::map<std::string, ProgressStyle> kProgressNames{{"auto", ProgressStyle::kAuto}, {"bar", ProgressStyle::kBar},
-    {"plain", ProgressStyle::kPlain}, {"json", ProgressStyle::kJson}, {"none", ProgressStyle::kSilent}};
+const std::map<std::string, ProgressStyle> kProgressNames{{"auto", ProgressStyle::kAuto},
+                                                          {"bar", ProgressStyle::kBar},
+                                                          {"plain", ProgressStyle::kPlain},
+                                                          {"json", ProgressStyle::kJson},
+                                                          {"none", ProgressStyle::kSilent}};
 const std::map<std::string, ColourStyle> kColourNames{
     {"auto", ColourStyle::kAuto}, {"always", ColourStyle::kAlways}, {"never", ColourStyle::kNever}};
 
 void add_common(CLI::App& command, CommonOptions& common) {
     command.add_flag("-q,--quiet", common.console.quiet, "say errors only")->group("Common");
     command.add_flag("-v,--verbose", common.console.verbose, "say more")->group("Common");
-    command.add_option("-t,--threads", common.threads, "threads; 0 means all")->check(CLI::Range(0, 4096))->group("Common");
-    command.add_option("--json", common.json, "answer with one JSON object on stdout, or beside the text in =FILE")
-        ->type_name("[=FILE]")->group("Common");
+    command.add_option("-t,--threads", common.threads, "threads; 0 means all")
+        ->check(CLI::Range(0, 4096))
+        ->group("Common");
+    command
+        .add_option("--json", common.json,
+                    "answer with one JSON object on stdout, or beside the text in =FILE")
+        ->type_name("[=FILE]")
+        ->group("Common");
     command.add_option("--progress", common.console.progress, "auto, bar, plain, json or none")
-        ->transform(CLI::CheckedTransformer(kProgressNames, CLI::ignore_case).description(""))->type_name("STYLE")->group("Common");
+        ->transform(CLI::CheckedTransformer(kProgressNames, CLI::ignore_case).description(""))
+        ->type_name("STYLE")
+        ->group("Common");
     command.add_option("--color", common.console.colour, "auto, always or never")
-        ->transform(CLI::CheckedTransformer(kColourNames, CLI::ignore_case).description(""))->type_name("WHEN")->group("Common");
+        ->transform(CLI::CheckedTransformer(kColourNames, CLI::ignore_case).description(""))
+        ->type_name("WHEN")
+        ->group("Common");
 }
 
 /// A bare `--json` means stdout; CLI11 would otherwise take the next word for its value.
@@ -81,7 +93,8 @@ void print(const std::string& text) {
     if (std::fflush(stdout) != 0) throw OutputError("stdout", "cannot be written");
 }
 
-void give_answer(const Chosen& chosen, const CommonOptions& common, const Console& console, const Answer& answer) {
+void give_answer(const Chosen& chosen, const CommonOptions& common, const Console& console,
+                 const Answer& answer) {
     if (common.json.empty()) return print(answer.text);
     Json object = answer_object(chosen.name, answer.code, console);
     object.update(answer.fields);
@@ -91,15 +104,18 @@ void give_answer(const Chosen& chosen, const CommonOptions& common, const Consol
 }
 
 int fail(const std::string& command, const std::string& json, Console& console, const Error& error) {
-    const int code = error.code() == ExitCode::kInterrupted ? stop_exit_code() : static_cast<int>(error.code());
+    const int code =
+        error.code() == ExitCode::kInterrupted ? stop_exit_code() : static_cast<int>(error.code());
     console.error(error.what());
     if (!json.empty()) {
         Json object = answer_object(command, error.code(), console);
         object["exit_code"] = code;
         object["errors"].push_back(error.what());
         try {
-            if (json == "-") print(object.dump(2, ' ', false, Json::error_handler_t::replace));
-            else replace_text_file(json, object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+            if (json == "-")
+                print(object.dump(2, ' ', false, Json::error_handler_t::replace));
+            else
+                replace_text_file(json, object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
         } catch (const Error& second) {
             console.error(second.what());
         }
@@ -115,11 +131,13 @@ void collect_options(const CLI::App& command, std::vector<std::string>& known) {
 }
 
 /// The usage error behind a CLI11 complaint, with the nearest known word where one was mistyped.
-UsageError usage_error(const CLI::App& app, const CLI::ParseError& complaint, const std::vector<std::string>& words) {
+UsageError usage_error(const CLI::App& app, const CLI::ParseError& complaint,
+                       const std::vector<std::string>& words) {
     std::vector<std::string> commands;
     for (const CLI::App* command : app.get_subcommands(nullptr)) commands.push_back(command->get_name());
     if (words.empty()) return UsageError("a command is required; see trilens --help");
-    if (words[0].rfind("-", 0) != 0 && std::find(commands.begin(), commands.end(), words[0]) == commands.end())
+    if (words[0].rfind("-", 0) != 0 &&
+        std::find(commands.begin(), commands.end(), words[0]) == commands.end())
         return UsageError("there is no command \"" + words[0] + "\"" + suggestion(words[0], commands));
 
     // CLI11 lists what it did not take; the first option among it is the one to explain.
@@ -142,7 +160,8 @@ UsageError usage_error(const CLI::App& app, const CLI::ParseError& complaint, co
 
 int run_command_line(int argc, const char* const* argv) {
     install_signal_handlers();
-    CLI::App app{"trilens draws what curved mirrors and glass show, by projection, and measures its error.", "trilens"};
+    CLI::App app{"trilens draws what curved mirrors and glass show, by projection, and measures its error.",
+                 "trilens"};
     app.require_subcommand(1);
     app.set_version_flag("--version", std::string("trilens ") + kVersion);
     app.set_help_flag("-h,--help", "print this help");
@@ -186,7 +205,8 @@ int run_command_line(int argc, const char* const* argv) {
     } catch (const std::bad_alloc&) {
         return fail(chosen.name, common.json, console, ComputationError("out of memory"));
     } catch (const std::exception& error) {
-        return fail(chosen.name, common.json, console, ComputationError(std::string("internal error: ") + error.what()));
+        return fail(chosen.name, common.json, console,
+                    ComputationError(std::string("internal error: ") + error.what()));
     }
 }
 

@@ -6,16 +6,18 @@
 
 #include "base/error.h"
 #include "cli/json.h"
-#include "scene/nearest.h"
 #include "image/image_io.h"
 #include "scene/load.h"
+#include "scene/nearest.h"
 
 namespace trilens {
 namespace {
 
 const std::vector<std::string> kLayers{"Z", "optic", "direct", "reflect", "refract"};
 
-TextureReader image_reader() { return {read_texture, decode_texture}; }
+TextureReader image_reader() {
+    return {read_texture, decode_texture};
+}
 
 std::vector<SceneOverride> scene_overrides(const SceneOptions& options) {
     std::vector<SceneOverride> overrides;
@@ -54,7 +56,8 @@ bool is_image(const std::string& file) {
 
 }  // namespace
 
-std::vector<int> parse_integers(const std::string& text, char separator, std::size_t count, const std::string& option) {
+std::vector<int> parse_integers(const std::string& text, char separator, std::size_t count,
+                                const std::string& option) {
     std::vector<int> values;
     const char *at = text.data(), *end = at + text.size();
     while (at <= end) {
@@ -68,28 +71,40 @@ std::vector<int> parse_integers(const std::string& text, char separator, std::si
         ++at;
     }
     if (at != end || values.size() != count)
-        throw UsageError(option + " needs " + std::to_string(count) + " integers separated by '" + separator + "', not \"" + text + "\"");
+        throw UsageError(option + " needs " + std::to_string(count) + " integers separated by '" + separator +
+                         "', not \"" + text + "\"");
     return values;
 }
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {
-    command.add_option("SCENE", options.scene, "scene file (JSON), or an image that carries its scene")->required();
-    command.add_option("-n,--resolution", options.resolution, "N x N facets per quad face of every optic")->check(CLI::Range(1, 1024));
+    command.add_option("SCENE", options.scene, "scene file (JSON), or an image that carries its scene")
+        ->required();
+    command.add_option("-n,--resolution", options.resolution, "N x N facets per quad face of every optic")
+        ->check(CLI::Range(1, 1024));
     add_scene_overrides(command, options);
 }
 
 void add_scene_overrides(CLI::App& command, SceneOptions& options) {
     command.add_option("--size", options.size, "film size in pixels")->type_name("WxH");
-    command.add_option("--spp", options.spp, "S x S samples per pixel")->check(CLI::Range(1, 64))->type_name("S");
+    command.add_option("--spp", options.spp, "S x S samples per pixel")
+        ->check(CLI::Range(1, 64))
+        ->type_name("S");
     command.add_option("--camera", options.camera, "camera by name; default: the first")->type_name("NAME");
-    command.add_option("--max-depth", options.max_depth, "optic hits after the first")->check(CLI::Range(0, 64));
-    command.add_option("--set", options.set, "replace a value of the scene")->type_name("/json/pointer=VALUE")
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->expected(1)->take_all();
+    command.add_option("--max-depth", options.max_depth, "optic hits after the first")
+        ->check(CLI::Range(0, 64));
+    command.add_option("--set", options.set, "replace a value of the scene")
+        ->type_name("/json/pointer=VALUE")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->expected(1)
+        ->take_all();
 }
 
 void add_window_options(CLI::App& command, SceneOptions& options) {
     command.add_option("--crop", options.crop, "draw this window of pixels only")->type_name("x0,y0,x1,y1");
-    command.add_option("--aov", options.aov, "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract")->type_name("LIST");
+    command
+        .add_option("--aov", options.aov,
+                    "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract")
+        ->type_name("LIST");
 }
 
 Scene load_scene_with(const SceneOptions& options, Console& console) {
@@ -98,7 +113,8 @@ Scene load_scene_with(const SceneOptions& options, Console& console) {
     if (is_image(options.scene)) {
         const Image image = read_exr(options.scene);
         const auto text = image.metadata.find("trilens:scene");
-        if (text == image.metadata.end()) throw InputError(options.scene, "", "the image carries no scene (trilens:scene)");
+        if (text == image.metadata.end())
+            throw InputError(options.scene, "", "the image carries no scene (trilens:scene)");
         scene = load_scene_text(text->second, options.scene, overrides, image_reader());
     } else {
         scene = load_scene(options.scene, overrides, image_reader());
@@ -128,8 +144,8 @@ LayerRequest layer_request(const SceneOptions& options, const Film& film) {
         const std::vector<int> window = parse_integers(options.crop, ',', 4, "--crop");
         if (window[0] < 0 || window[1] < 0 || window[2] > film.width || window[3] > film.height ||
             window[0] >= window[2] || window[1] >= window[3])
-            throw UsageError("--crop " + options.crop + " is not a window of the " + std::to_string(film.width) + " x " +
-                             std::to_string(film.height) + " film");
+            throw UsageError("--crop " + options.crop + " is not a window of the " +
+                             std::to_string(film.width) + " x " + std::to_string(film.height) + " film");
         request = {window[0], window[1], window[2], window[3], {}};
     }
     if (options.aov == "all") return request;

@@ -18,12 +18,12 @@ namespace trilens {
 struct SceneOptions {
     std::string scene;  // a scene file, or an image that carries its scene
     std::string camera;
-    int resolution = 0;  // 0: as the scene says
-    std::string size;    // "640x480"; empty: as the scene says
-    int spp = 0;         // 0: as the scene says
-    int max_depth = -1;  // < 0: as the scene says
+    int resolution = 0;            // 0: as the scene says
+    std::string size;              // "640x480"; empty: as the scene says
+    int spp = 0;                   // 0: as the scene says
+    int max_depth = -1;            // < 0: as the scene says
     std::vector<std::string> set;  // "/json/pointer=VALUE"
-    std::string crop;    // "x0,y0,x1,y1"
+    std::string crop;              // "x0,y0,x1,y1"
     std::string aov = "all";
 };
 
@@ -47,6 +47,7 @@ std::size_t chosen_camera(const SceneOptions& options, const Scene& scene);
 LayerRequest layer_request(const SceneOptions& options, const Film& film);
 
 /// Integers separated by `separator`. Throws UsageError naming `option` unless there are exactly `count`.
-std::vector<int> parse_integers(const std::string& text, char separator, std::size_t count, const std::string& option);
+std::vector<int> parse_integers(const std::string& text, char separator, std::size_t count,
+                                const std::string& option);
 
 }  // namespace trilens

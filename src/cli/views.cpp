@@ -13,10 +13,14 @@ Viewer make_viewer(const World& world, std::size_t camera, const EngineChoice& e
 
 std::string engine_name(Engine engine) {
     switch (engine) {
-        case Engine::kExact: return "exact";
-        case Engine::kClassic: return "classic";
-        case Engine::kFacetsTruth: return "facets";
-        case Engine::kLimitTruth: return "limit";
+        case Engine::kExact:
+            return "exact";
+        case Engine::kClassic:
+            return "classic";
+        case Engine::kFacetsTruth:
+            return "facets";
+        case Engine::kLimitTruth:
+            return "limit";
     }
     return "";
 }
@@ -24,10 +28,18 @@ std::string engine_name(Engine engine) {
 std::string classic_name(const ClassicParams& params) {
     std::string name;
     switch (params.curves) {
-        case Curves::kStraight: name = "straight"; break;
-        case Curves::kSlices: name = "slices " + std::to_string(params.pieces); break;
-        case Curves::kTessellate: name = "tessellate " + std::to_string(params.pieces); break;
-        case Curves::kArcs: name = "arcs"; break;
+        case Curves::kStraight:
+            name = "straight";
+            break;
+        case Curves::kSlices:
+            name = "slices " + std::to_string(params.pieces);
+            break;
+        case Curves::kTessellate:
+            name = "tessellate " + std::to_string(params.pieces);
+            break;
+        case Curves::kArcs:
+            name = "arcs";
+            break;
     }
     if (params.clip == Clip::kScreen) name += ", clip screen";
     if (params.clip == Clip::kUnclipped) name += ", clip none";

@@ -23,15 +23,15 @@ struct SecondaryView {
 
 /// What one sample shows.
 struct SampleView {
-    Ray ray;  // the camera's
-    Hit hit;  // of World::objects; unset where an optic is nearer
+    Ray ray;              // the camera's
+    Hit hit;              // of World::objects; unset where an optic is nearer
     double depth = 1e30;  // t along `ray` of whatever is first; distance along the view axis
 
-    Id optic = kNone;          // index into World::optics
-    Id facet = kNone;          // of the optic's grid; limit truth: face of the surface
-    Vec2 uv{0};                // in the facet's face
-    double cos_incident = 1;   // between the ray and the optic's normal, 0..1
-    bool front = true;         // the ray comes from the side the normal points to
+    Id optic = kNone;         // index into World::optics
+    Id facet = kNone;         // of the optic's grid; limit truth: face of the surface
+    Vec2 uv{0};               // in the facet's face
+    double cos_incident = 1;  // between the ray and the optic's normal, 0..1
+    bool front = true;        // the ray comes from the side the normal points to
     SecondaryView reflect, refract;
 };
 

@@ -16,7 +16,8 @@ constexpr int kShadowResolution = 16;
 
 void append_object(World& world, Id id, const Mesh& mesh) {
     const Id first_point = static_cast<Id>(world.objects.points.size());
-    world.objects.points.insert(world.objects.points.end(), mesh.object.points.begin(), mesh.object.points.end());
+    world.objects.points.insert(world.objects.points.end(), mesh.object.points.begin(),
+                                mesh.object.points.end());
     const std::size_t count = mesh.object.triangles.size();
     for (std::size_t t = 0; t < count; ++t) {
         IdTriple corner = mesh.object.triangles[t];
@@ -26,7 +27,8 @@ void append_object(World& world, Id id, const Mesh& mesh) {
         world.objects.primitive.push_back(static_cast<Id>(t));
         world.shading.material.push_back(mesh.object.material[t]);
         world.shading.uvs.push_back(mesh.object.uvs.empty() ? std::array<Vec2, 3>{} : mesh.object.uvs[t]);
-        world.shading.normals.push_back(mesh.object.normals.empty() ? std::array<Vec3, 3>{} : mesh.object.normals[t]);
+        world.shading.normals.push_back(mesh.object.normals.empty() ? std::array<Vec3, 3>{}
+                                                                    : mesh.object.normals[t]);
     }
 }
 
@@ -59,7 +61,8 @@ Optic make_optic(const Scene& scene, Id id, const Warn& warn) {
 
 /// Whether any light asks what lies between it and a point.
 bool has_shadows(const Scene& scene) {
-    return std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.shadows; });
+    return std::any_of(scene.lights.begin(), scene.lights.end(),
+                       [](const Light& light) { return light.shadows; });
 }
 
 /// Objects and mirrors cast shadows; glass lets the light through.
@@ -84,7 +87,9 @@ double diagonal(const TriangleScene& scene) {
 
 }  // namespace
 
-std::size_t Optic::facet_count() const { return count_facets(*surface, resolution); }
+std::size_t Optic::facet_count() const {
+    return count_facets(*surface, resolution);
+}
 
 std::unique_ptr<World> make_world(Scene scene, const Warn& warn) {
     auto world = std::make_unique<World>();

@@ -22,15 +22,17 @@ struct Channel {
     std::vector<Id>& ids() { return std::get<1>(values); }
 };
 
-/// A film of `width` x `height` pixels of which the data window [x0, x0 + data_width) x [y0, y0 + data_height)
-/// holds values.
+/// A film of `width` x `height` pixels of which the data window [x0, x0 + data_width) x [y0, y0 +
+/// data_height) holds values.
 struct Image {
     int width = 0, height = 0;
     int x0 = 0, y0 = 0, data_width = 0, data_height = 0;
     std::vector<Channel> channels;
     std::map<std::string, std::string> metadata;  // "trilens:scene" and its like
 
-    std::size_t pixels() const { return static_cast<std::size_t>(data_width) * static_cast<std::size_t>(data_height); }
+    std::size_t pixels() const {
+        return static_cast<std::size_t>(data_width) * static_cast<std::size_t>(data_height);
+    }
     const Channel* find(const std::string& name) const {
         for (const Channel& channel : channels)
             if (channel.name == name) return &channel;

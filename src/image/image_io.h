@@ -11,32 +11,33 @@
 
 namespace trilens {
 
-/// Writes one part, scan lines, zip, float32 and uint32 channels in their native types to the last bit (NaN and
-/// infinity too); beside its name, then renamed. The file's bytes depend on the image alone: DateTime is
-/// SOURCE_DATE_EPOCH where that is set, else 1970. Metadata names must start with "trilens:"; empty values are not
-/// kept. Throws OutputError.
+/// Writes one part, scan lines, zip, float32 and uint32 channels in their native types to the last bit (NaN
+/// and infinity too); beside its name, then renamed. The file's bytes depend on the image alone: DateTime is
+/// SOURCE_DATE_EPOCH where that is set, else 1970. Metadata names must start with "trilens:"; empty values
+/// are not kept. Throws OutputError.
 void write_exr(const std::string& file, const Image& image);
 
 /// The bytes that write_exr writes. `name`: for messages. Throws OutputError.
 std::vector<unsigned char> encode_exr(const std::string& name, const Image& image);
 
-/// Reads every channel of the only part in its native type (half becomes float), and the "trilens:" texts of its
-/// header. Channels come layer by layer (in a layer R G B A Z, then the others by name), whatever order they were
-/// written in. All or nothing: throws InputError where the file is missing, no OpenEXR, truncated or damaged, has
-/// more than one part or deep pixels, or its display window does not start at (0, 0).
+/// Reads every channel of the only part in its native type (half becomes float), and the "trilens:" texts of
+/// its header. Channels come layer by layer (in a layer R G B A Z, then the others by name), whatever order
+/// they were written in. All or nothing: throws InputError where the file is missing, no OpenEXR, truncated
+/// or damaged, has more than one part or deep pixels, or its display window does not start at (0, 0).
 Image read_exr(const std::string& file);
 
-/// Reads any picture that OpenImageIO knows as linear Rec.709: 8 and 16 bit integer files are taken as sRGB unless
-/// they say that they are linear, all others as linear. One or two channels become grey; alpha is dropped, colours
-/// stay as the file has them. Of a file with layers the root R G B are taken; of a data window that is not the
-/// display window the display window, black where there is no data. Throws InputError.
+/// Reads any picture that OpenImageIO knows as linear Rec.709: 8 and 16 bit integer files are taken as sRGB
+/// unless they say that they are linear, all others as linear. One or two channels become grey; alpha is
+/// dropped, colours stay as the file has them. Of a file with layers the root R G B are taken; of a data
+/// window that is not the display window the display window, black where there is no data. Throws InputError.
 std::shared_ptr<const Texture> read_texture(const std::string& file);
 
 /// The same for a PNG, JPEG, OpenEXR or Radiance file held in memory. `name`: for messages.
-std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> encoded, const std::string& name);
+std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> encoded,
+                                              const std::string& name);
 
-/// An 8-bit sRGB PNG of linear RGB triples, rows from the top; values are clamped to 0..1 before encoding, NaN becomes 0.
-/// Beside its name, then renamed. Throws OutputError.
+/// An 8-bit sRGB PNG of linear RGB triples, rows from the top; values are clamped to 0..1 before encoding,
+/// NaN becomes 0. Beside its name, then renamed. Throws OutputError.
 void write_png(const std::string& file, int width, int height, std::span<const float> rgb);
 
 /// The same PNG as bytes in memory. Throws OutputError.

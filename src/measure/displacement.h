@@ -25,14 +25,14 @@ enum class Shift : std::uint8_t {
 };
 
 /// Statistics over the pixels that are kFound, all zero where there are none; and the vectors themselves, per
-/// pixel of the data window. At folds of the reference (folds.h) displacements fall more slowly than elsewhere: the
-/// mean off the folds shows the order of the surface alone.
+/// pixel of the data window. At folds of the reference (folds.h) displacements fall more slowly than
+/// elsewhere: the mean off the folds shows the order of the surface alone.
 struct Displacement {
     double mean = 0, p50 = 0, p95 = 0, p99 = 0, max = 0;  // pixels
     std::size_t pixels = 0;                               // found
     std::size_t lost = 0;
-    double mean_off_folds = 0;       // over the found pixels that are not near a fold of the reference
-    std::size_t near_folds = 0;      // found pixels that are
+    double mean_off_folds = 0;   // over the found pixels that are not near a fold of the reference
+    std::size_t near_folds = 0;  // found pixels that are
     std::vector<Shift> state;
     std::vector<float> shift_x, shift_y;  // from the test's pixel to the place in the reference, x right and
                                           // y down; zero where not found

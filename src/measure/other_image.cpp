@@ -20,7 +20,8 @@ bool is_jump(const Displacement& displacement, std::span<const double> size, int
     std::vector<double> around;
     for (int y = std::max(0, row - kReach); y <= std::min(height - 1, row + kReach); ++y) {
         for (int x = std::max(0, column - kReach); x <= std::min(width - 1, column + kReach); ++x) {
-            const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+            const std::size_t i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
             if (i != pixel && displacement.state[i] == Shift::kFound) around.push_back(size[i]);
         }
     }
@@ -41,7 +42,8 @@ void drop_other_images(Displacement& displacement, int width) {
     std::vector<std::uint8_t> jump(size.size(), 0);
     parallel_for(size.size(), 4096, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i)
-            jump[i] = displacement.state[i] == Shift::kFound && size[i] > kLeast && is_jump(displacement, size, width, i);
+            jump[i] = displacement.state[i] == Shift::kFound && size[i] > kLeast &&
+                      is_jump(displacement, size, width, i);
     });
     for (std::size_t i = 0; i < size.size(); ++i) {
         if (!jump[i]) continue;

@@ -17,7 +17,8 @@
 namespace trilens {
 namespace {
 
-/// An MTL text whose materials are called 0, 1, 2, ...: tinyobjloader's versions read names with spaces differently.
+/// An MTL text whose materials are called 0, 1, 2, ...: tinyobjloader's versions read names with spaces
+/// differently.
 struct NumberedMtl {
     std::string text;
     std::vector<std::string> names;

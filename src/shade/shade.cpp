@@ -34,7 +34,8 @@ Frame frame_at(const ShadeScene& scene, const Hit& hit, const Vec3& toward_surfa
     frame.normal = frame.geometric_normal;
     if (hit.triangle < scene.normals.size()) {
         const auto& n = scene.normals[hit.triangle];
-        const Vec3 smooth = normalize_or_zero(frame.weights.x * n[0] + frame.weights.y * n[1] + frame.weights.z * n[2]);
+        const Vec3 smooth =
+            normalize_or_zero(frame.weights.x * n[0] + frame.weights.y * n[1] + frame.weights.z * n[2]);
         if (smooth != Vec3(0)) frame.normal = dot(smooth, frame.geometric_normal) < 0 ? -smooth : smooth;
     }
     return frame;
@@ -58,7 +59,8 @@ Vec3 light_arriving(const ShadeScene& scene, const Light& light, const Frame& fr
     if (light.shadows && scene.occluded) {
         // Light that arrives from behind the flat triangle is in the triangle's own shadow.
         if (dot(frame.geometric_normal, toward_light) <= 0) return Vec3(0);
-        if (scene.occluded(frame.position + kShadowOffset * scene.size * frame.geometric_normal, target)) return Vec3(0);
+        if (scene.occluded(frame.position + kShadowOffset * scene.size * frame.geometric_normal, target))
+            return Vec3(0);
     }
     return kInversePi * irradiance * cosine * light.color;
 }
@@ -73,7 +75,8 @@ Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
     if (material.base_color_texture) {
         Vec2 uv(0);
         if (hit.triangle < scene.uvs.size())
-            for (int k = 0; k < 3; ++k) uv += frame.weights[k] * scene.uvs[hit.triangle][static_cast<std::size_t>(k)];
+            for (int k = 0; k < 3; ++k)
+                uv += frame.weights[k] * scene.uvs[hit.triangle][static_cast<std::size_t>(k)];
         base *= lookup_repeat(*material.base_color_texture, uv);
     }
     if (material.unlit) return base;
@@ -86,8 +89,9 @@ Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
 Vec3 shade_background(const Background& background, const Vec3& direction) {
     if (!background.environment) return background.color;
     const double c = background.rotate_cos, s = background.rotate_sin;
-    return lookup_latitude_longitude(*background.environment,
-                                     Vec3(c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z));
+    return lookup_latitude_longitude(
+        *background.environment,
+        Vec3(c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z));
 }
 
 Vec3 metal_reflectance(const Vec3& f0, double cos_incident) {
@@ -99,7 +103,8 @@ Vec3 metal_reflectance(const Vec3& f0, double cos_incident) {
 Vec3 volume_transmittance(const Material& material, double distance) {
     if (!(material.attenuation_distance > 0)) return Vec3(1);
     const double exponent = distance / material.attenuation_distance;
-    return {std::pow(material.attenuation_color.x, exponent), std::pow(material.attenuation_color.y, exponent),
+    return {std::pow(material.attenuation_color.x, exponent),
+            std::pow(material.attenuation_color.y, exponent),
             std::pow(material.attenuation_color.z, exponent)};
 }
 

@@ -15,21 +15,22 @@ namespace trilens {
 /// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle.
 struct ShadeScene {
     const TriangleScene* triangles = nullptr;
-    std::vector<Id> material;                   // index into materials
-    std::vector<std::array<Vec2, 3>> uvs;       // v upward from the picture's bottom; unset triangles hold zeros
-    std::vector<std::array<Vec3, 3>> normals;   // unit per corner; all zero: the triangle is flat
+    std::vector<Id> material;              // index into materials
+    std::vector<std::array<Vec2, 3>> uvs;  // v upward from the picture's bottom; unset triangles hold zeros
+    std::vector<std::array<Vec3, 3>> normals;  // unit per corner; all zero: the triangle is flat
     std::vector<Material> materials;
     std::vector<Light> lights;
     Background background;
     double size = 1;  // diagonal of the scene's bounding box, the unit of shadow offsets
 
-    /// Whether the open segment from `from` to `to` (world) meets anything that casts a shadow; only asked for lights
-    /// with shadows.
+    /// Whether the open segment from `from` to `to` (world) meets anything that casts a shadow; only asked
+    /// for lights with shadows.
     std::function<bool(const Vec3& from, const Vec3& to)> occluded;
 };
 
-/// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided and
-/// diffuse (radiance = base colour times irradiance over pi, plus ambient), or show their base colour if unlit.
+/// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided
+/// and diffuse (radiance = base colour times irradiance over pi, plus ambient), or show their base colour if
+/// unlit.
 Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray);
 
 /// Radiance of the background along `direction` (any length, world).

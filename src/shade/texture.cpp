@@ -12,8 +12,9 @@ int wrap(long index, int size) {
 }
 
 Vec3 texel(const Texture& texture, int x, int y) {
-    const float* rgb = &texture.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(texture.width) +
-                                         static_cast<std::size_t>(x))];
+    const float* rgb =
+        &texture.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(texture.width) +
+                          static_cast<std::size_t>(x))];
     return {rgb[0], rgb[1], rgb[2]};
 }
 
@@ -22,7 +23,8 @@ template <typename Row>
 Vec3 bilinear(const Texture& texture, double x, double y, Row row) {
     const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
     const double fx = x - 0.5 - left, fy = y - 0.5 - top;
-    const int x0 = wrap(static_cast<long>(left), texture.width), x1 = wrap(static_cast<long>(left) + 1, texture.width);
+    const int x0 = wrap(static_cast<long>(left), texture.width),
+              x1 = wrap(static_cast<long>(left) + 1, texture.width);
     const int y0 = row(static_cast<long>(top)), y1 = row(static_cast<long>(top) + 1);
     return (1 - fy) * ((1 - fx) * texel(texture, x0, y0) + fx * texel(texture, x1, y0)) +
            fy * ((1 - fx) * texel(texture, x0, y1) + fx * texel(texture, x1, y1));

@@ -21,9 +21,10 @@ constexpr std::array kColumns = {
     "status", "exit_code", "image", "diff", "image_fnv1a",
     "coverage_mismatch", "object_mismatch", "primitive_mismatch"};
 // clang-format on
-constexpr std::array kDisplacementColumns = {"disp_mean_px", "disp_p50_px", "disp_p95_px", "disp_p99_px",
-                                             "disp_max_px",  "disp_pixels", "disp_lost",
-                                             "disp_mean_off_folds_px", "disp_near_folds"};
+constexpr std::array kDisplacementColumns = {
+    "disp_mean_px",   "disp_p50_px", "disp_p95_px", "disp_p99_px",
+    "disp_max_px",    "disp_pixels", "disp_lost",   "disp_mean_off_folds_px",
+    "disp_near_folds"};
 
 std::string cell(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;

@@ -89,7 +89,9 @@ const SweepFit* find_fit_off_folds(const std::vector<SweepFit>& fits, const std:
     const SweepFit* const all = find_fit(fits, layer, optic, "disp_mean_px");
     const SweepFit* const off = find_fit(fits, layer, optic, "disp_mean_off_folds_px");
     if (!all || !off) return nullptr;
-    const auto is_same = [](const SweepPoint& a, const SweepPoint& b) { return a.n == b.n && a.value == b.value; };
+    const auto is_same = [](const SweepPoint& a, const SweepPoint& b) {
+        return a.n == b.n && a.value == b.value;
+    };
     return std::ranges::equal(all->points, off->points, is_same) ? nullptr : off;
 }
 

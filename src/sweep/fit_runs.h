@@ -20,8 +20,8 @@ std::vector<SweepFit> fit_runs(const std::vector<RunRecord>& runs);
 const SweepFit* find_fit(const std::vector<SweepFit>& fits, const std::string& layer,
                          const std::string& optic, const std::string& metric);
 
-/// The fit of the mean off the folds (measure/folds.h); nullptr where it says no more than that of the mean, because no
-/// run found a pixel near a fold.
+/// The fit of the mean off the folds (measure/folds.h); nullptr where it says no more than that of the mean,
+/// because no run found a pixel near a fold.
 const SweepFit* find_fit_off_folds(const std::vector<SweepFit>& fits, const std::string& layer,
                                    const std::string& optic);
 

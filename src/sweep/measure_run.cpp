@@ -45,7 +45,8 @@ MetricValues displacement_values(const Displacement& displacement) {
     values["disp_p95_px"] = displacement.p95;
     values["disp_p99_px"] = displacement.p99;
     values["disp_max_px"] = displacement.max;
-    if (displacement.near_folds < displacement.pixels) values["disp_mean_off_folds_px"] = displacement.mean_off_folds;
+    if (displacement.near_folds < displacement.pixels)
+        values["disp_mean_off_folds_px"] = displacement.mean_off_folds;
     return values;
 }
 

@@ -26,7 +26,8 @@ NamedPlot displacement_plot(const SweepSummary& summary, const std::string& laye
     for (const SweepFit* fit : fits)
         if (fits.size() != 2 || fit->optic != kAll) {
             series.push_back(plot_series(*fit, fit->optic));
-            const SweepFit* const off = is_mean ? find_fit_off_folds(summary.fits, layer, fit->optic) : nullptr;
+            const SweepFit* const off =
+                is_mean ? find_fit_off_folds(summary.fits, layer, fit->optic) : nullptr;
             if (off) series.push_back(plot_series(*off, fit->optic + ", off folds"));
         }
 

@@ -51,7 +51,8 @@ std::vector<Headline> make_headlines(const SweepSummary& summary) {
         headlines.push_back(
             {fit->order ? fixed_text(*fit->order, 2) : "—", layer + ": order of convergence"});
         const SweepFit* off = find_fit_off_folds(summary.fits, layer, kAll);
-        if (off && off->order) headlines.push_back({fixed_text(*off->order, 2), layer + ": order off the folds"});
+        if (off && off->order)
+            headlines.push_back({fixed_text(*off->order, 2), layer + ": order off the folds"});
         headlines.push_back({resolution_text(*fit, fit->n_for_1px), layer + ": for a mean of 1 px"});
         headlines.push_back({resolution_text(*fit, fit->n_for_half_px), layer + ": for a mean of 0.5 px"});
     }
@@ -74,15 +75,17 @@ std::string summary_words(const SweepSummary& summary) {
         }
     const std::string side = std::to_string(subject.spp);
     words += subject.spp == 1 ? ", one sample each" : ", " + side + " × " + side + " samples each";
-    return words + ". Displacement says how many pixels a seen point lies from where the truth shows it. "
-                   "Folds are where two images of a point meet: there displacements fall more slowly.";
+    return words +
+           ". Displacement says how many pixels a seen point lies from where the truth shows it. "
+           "Folds are where two images of a point meet: there displacements fall more slowly.";
 }
 
 void fill_table(const SweepSummary& summary, Report& report) {
     const std::vector<std::string> layers = layers_of(summary);
     report.table_columns = {"n", "status", "facets"};
     for (const std::string& layer : layers)
-        for (const char* what : {": mean [px]", ": mean off folds [px]", ": 95 % [px]", ": max [px]", ": pixels lost"})
+        for (const char* what :
+             {": mean [px]", ": mean off folds [px]", ": 95 % [px]", ": max [px]", ": pixels lost"})
             report.table_columns.push_back(layer + what);
     for (const char* column : {"RGB RMSE", "PSNR [dB]", "SSIM", "time [s]"})
         report.table_columns.push_back(column);

@@ -20,7 +20,8 @@ Beam make_beam(const Coplanarity& facet) {
     beam.along = {dot(d0, beam.axis), dot(d1, beam.axis), dot(d2, beam.axis)};
     // Nearly across the axis, t would hang on rounding.
     constexpr double kAcross = 1e-3;
-    if (beam.along.x <= kAcross * length(d0) || beam.along.y <= kAcross * length(d1) || beam.along.z <= kAcross * length(d2))
+    if (beam.along.x <= kAcross * length(d0) || beam.along.y <= kAcross * length(d1) ||
+        beam.along.z <= kAcross * length(d2))
         beam.axis = Vec3(0);
     return beam;
 }
@@ -29,13 +30,16 @@ bool may_hold(const Coplanarity& facet, const Beam& beam, const Vec3& point) {
     if (beam.axis == Vec3(0)) return true;
     const Vec3 x = point - facet.origin;
     const Vec3 d0 = facet.direction, d1 = d0 + facet.f1, d2 = d0 + facet.f2;
-    const double size = length(x) + length(facet.e1) + length(facet.e2) + kRounding * length(facet.origin) / kStandOff;
+    const double size =
+        length(x) + length(facet.e1) + length(facet.e2) + kRounding * length(facet.origin) / kStandOff;
 
     // t = (sum w_k N_k) / (sum w_k D_k) is a mean of the N_k / D_k, since all D_k are positive.
     const double height = dot(x, beam.axis);
-    const Vec3 t = Vec3(height, height - dot(facet.e1, beam.axis), height - dot(facet.e2, beam.axis)) / beam.along;
+    const Vec3 t =
+        Vec3(height, height - dot(facet.e1, beam.axis), height - dot(facet.e2, beam.axis)) / beam.along;
     const Vec3 margin = kStandOff * size / beam.along;
-    const double low = std::max(std::min({t.x - margin.x, t.y - margin.y, t.z - margin.z}), -std::max({margin.x, margin.y, margin.z}));
+    const double low = std::max(std::min({t.x - margin.x, t.y - margin.y, t.z - margin.z}),
+                                -std::max({margin.x, margin.y, margin.z}));
     const double high = std::max({t.x + margin.x, t.y + margin.y, t.z + margin.z});
     if (high < low) return false;
 
@@ -50,7 +54,8 @@ bool may_hold(const Coplanarity& facet, const Beam& beam, const Vec3& point) {
             const double side = dot(normal, hull[i]);
             least = std::min(least, side), most = std::max(most, side);
         }
-        const double room = kStandOff * (most - least) + kRounding * length(normal) * (size + length(facet.origin));
+        const double room =
+            kStandOff * (most - least) + kRounding * length(normal) * (size + length(facet.origin));
         const double here = dot(normal, x);
         if (here > most + room || here < least - room) return false;
     }

@@ -1,4 +1,5 @@
-// Every bad input gets one clear message that names the place, the right exit code, and leaves nothing behind.
+// Every bad input gets one clear message that names the place, the right exit code, and leaves nothing
+// behind.
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -29,7 +30,9 @@ void check_one_message(const CommandRun& run, int exit_code, const std::vector<s
     CHECK(run.out.empty());
     CHECK(run.err.find("trilens: error: ") != std::string::npos);
     std::size_t errors = 0;
-    for (std::size_t at = run.err.find("error: "); at != std::string::npos; at = run.err.find("trilens: error: ", at + 1)) ++errors;
+    for (std::size_t at = run.err.find("error: "); at != std::string::npos;
+         at = run.err.find("trilens: error: ", at + 1))
+        ++errors;
     CHECK(errors == 1);
     for (const std::string& words : must_say) {
         INFO("must say: " << words);
@@ -42,15 +45,23 @@ struct BadScene {
     std::vector<std::string> says;
 };
 
-std::string film() { return R"("width": 32, "height": 24)"; }
+std::string film() {
+    return R"("width": 32, "height": 24)";
+}
 
 std::vector<BadScene> bad_scenes() {
     return {
-        {"unknown key", R"("radius": 1)", R"("radius": 1, "raduis": 2)", {"/meshes/0/primitive", "raduis", "radius"}},
+        {"unknown key",
+         R"("radius": 1)",
+         R"("radius": 1, "raduis": 2)",
+         {"/meshes/0/primitive", "raduis", "radius"}},
         {"wrong type", R"("yfov": 40)", R"("yfov": "wide")", {"/cameras/0/yfov"}},
         {"index out of range", "[0,1,2,3] } ]", "[0,1,2,4] } ]", {"/meshes/1/faceVertexIndices/3", "4"}},
         {"negative index", "[0,1,2,3] } ]", "[0,1,2,-1] } ]", {"/meshes/1/faceVertexIndices/3"}},
-        {"counts and indices differ", R"("faceVertexCounts": [4])", R"("faceVertexCounts": [5])", {"/meshes/1"}},
+        {"counts and indices differ",
+         R"("faceVertexCounts": [4])",
+         R"("faceVertexCounts": [5])",
+         {"/meshes/1"}},
         {"infinite number", "[4,4,5]", "[4,1e999,5]", {"line 6", "1e999"}},
         {"absurd number", "[4,4,5]", "[4,1e300,5]", {"/meshes/1/points/2"}},
         {"NaN is no JSON", "[4,4,5]", "[4,NaN,5]", {"line"}},
@@ -60,10 +71,15 @@ std::vector<BadScene> bad_scenes() {
         {"film of no size", film(), R"("width": 0, "height": 24)", {"/film/width"}},
         {"film of absurd size", film(), R"("width": 2000000000, "height": 24)", {"/film/width"}},
         {"n of zero", R"("resolution": 4)", R"("resolution": 0)", {"/meshes/0/resolution"}},
-        {"unknown material", R"("material": "chrome")", R"("material": "crome")", {"/meshes/0/material", "crome", "chrome"}},
+        {"unknown material",
+         R"("material": "chrome")",
+         R"("material": "crome")",
+         {"/meshes/0/material", "crome", "chrome"}},
         {"rough mirror", R"("roughnessFactor": 0)", R"("roughnessFactor": 0.3)", {"roughness"}},
-        {"missing mesh file", R"("points": [[-4,-4,5],[4,-4,5],[4,4,5],[-4,4,5]], "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3])",
-         R"("file": "no-such.obj")", {"no-such.obj"}},
+        {"missing mesh file",
+         R"("points": [[-4,-4,5],[4,-4,5],[4,4,5],[-4,4,5]], "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3])",
+         R"("file": "no-such.obj")",
+         {"no-such.obj"}},
         {"duplicate key", R"("version": 1)", R"("version": 1, "version": 1)", {"version"}},
         {"no version", R"("version": 1, )", "", {"version"}},
         {"cut off", "] })", "]", {"line"}},
@@ -78,7 +94,8 @@ TEST_CASE("a scene that cannot be used: exit 3, the file and the place", "[cli]"
     for (const BadScene& bad : bad_scenes()) {
         INFO(bad.what);
         // "cut off" drops the closing brace.
-        std::string text = bad.what == "cut off" ? small_scene() : replaced(small_scene(), bad.replace, bad.by);
+        std::string text =
+            bad.what == "cut off" ? small_scene() : replaced(small_scene(), bad.replace, bad.by);
         if (bad.what == "cut off") text.pop_back();
         const std::string scene = write_file(folder, "scene.json", text);
         std::vector<std::string> says = bad.says;
@@ -93,7 +110,8 @@ TEST_CASE("a scene that cannot be used: exit 3, the file and the place", "[cli]"
 TEST_CASE("files that cannot be read: exit 3", "[cli]") {
     const std::string folder = scratch_dir("bad_files");
     const std::string scene = write_file(folder, "scene.json", small_scene());
-    check_one_message(run_trilens("render " + folder + "/nothing.json -o " + folder + "/out.exr"), 3, {"nothing.json"});
+    check_one_message(run_trilens("render " + folder + "/nothing.json -o " + folder + "/out.exr"), 3,
+                      {"nothing.json"});
     check_one_message(run_trilens("render " + folder + " -o " + folder + "/out.exr"), 3, {"bad_files"});
     check_one_message(run_trilens("compare " + folder + "/a.exr " + folder + "/b.exr"), 3, {"a.exr"});
     check_one_message(run_trilens("project " + scene + " --points " + folder + "/no.csv"), 3, {"no.csv"});
@@ -107,7 +125,8 @@ TEST_CASE("files that cannot be read: exit 3", "[cli]") {
         fs::copy_file(folder + "/whole.exr", folder + "/cut.exr", fs::copy_options::overwrite_existing);
         fs::resize_file(folder + "/cut.exr", keep);
         INFO("kept " << keep << " of " << size);
-        check_one_message(run_trilens("compare " + folder + "/whole.exr " + folder + "/cut.exr"), 3, {"cut.exr"});
+        check_one_message(run_trilens("compare " + folder + "/whole.exr " + folder + "/cut.exr"), 3,
+                          {"cut.exr"});
     }
 }
 
@@ -115,13 +134,17 @@ TEST_CASE("an OBJ with a face of 300 corners: exit 3 with its line", "[cli]") {
     const std::string folder = scratch_dir("big_face");
     std::string obj = "# a disk\n", face = "f";
     for (int k = 0; k < 300; ++k) {
-        obj += "v " + std::to_string(std::cos(k * 0.0209439)) + " " + std::to_string(std::sin(k * 0.0209439)) + " 0\n";
+        obj += "v " + std::to_string(std::cos(k * 0.0209439)) + " " +
+               std::to_string(std::sin(k * 0.0209439)) + " 0\n";
         face += " " + std::to_string(k + 1);
     }
     write_file(folder, "disk.obj", obj + face + "\n");
-    const std::string scene = write_file(folder, "scene.json",
-        replaced(small_scene(), R"("primitive": { "type": "sphere", "center": [0,0,0], "radius": 1 })", R"("file": "disk.obj")"));
-    check_one_message(run_trilens("render " + scene + " -o " + folder + "/out.exr"), 3, {"disk.obj", "302", "300"});
+    const std::string scene = write_file(
+        folder, "scene.json",
+        replaced(small_scene(), R"("primitive": { "type": "sphere", "center": [0,0,0], "radius": 1 })",
+                 R"("file": "disk.obj")"));
+    check_one_message(run_trilens("render " + scene + " -o " + folder + "/out.exr"), 3,
+                      {"disk.obj", "302", "300"});
 }
 
 TEST_CASE("a command line that makes no sense: exit 2 and the nearest word", "[cli]") {
@@ -129,7 +152,8 @@ TEST_CASE("a command line that makes no sense: exit 2 and the nearest word", "[c
     const std::string scene = write_file(folder, "scene.json", small_scene());
     const std::string out = " -o " + folder + "/out.exr";
     check_one_message(run_trilens("rendr " + scene + out), 2, {"rendr", "render"});
-    check_one_message(run_trilens("render " + scene + out + " --resolutoin 4"), 2, {"--resolutoin", "--resolution"});
+    check_one_message(run_trilens("render " + scene + out + " --resolutoin 4"), 2,
+                      {"--resolutoin", "--resolution"});
     check_one_message(run_trilens("render " + scene + out + " -n 0"), 2, {});
     check_one_message(run_trilens("render " + scene + out + " -n many"), 2, {});
     check_one_message(run_trilens("render " + scene + out + " --size 640"), 2, {"--size"});
@@ -151,7 +175,8 @@ TEST_CASE("--set and --size reach the checks of the scene: exit 3", "[cli]") {
     const std::string scene = write_file(folder, "scene.json", small_scene());
     const std::string out = " -o " + folder + "/out.exr";
     check_one_message(run_trilens("render " + scene + out + " --set /film/widht=3"), 3, {"/film", "widht"});
-    check_one_message(run_trilens("render " + scene + out + " --set /meshes/9/resolution=3"), 3, {"/meshes/9"});
+    check_one_message(run_trilens("render " + scene + out + " --set /meshes/9/resolution=3"), 3,
+                      {"/meshes/9"});
     check_one_message(run_trilens("render " + scene + out + " --size 0x0"), 3, {"/film"});
     check_one_message(run_trilens("render " + scene + out + " --size 99999999x1"), 3, {"/film/width"});
     CHECK(files_in(folder) == 1);

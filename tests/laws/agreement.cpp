@@ -18,13 +18,15 @@ struct Seen {
 };
 
 Seen seen(const SampleView& view) {
-    return {view.hit.triangle, view.optic, view.facet, view.reflect.has_ray ? view.reflect.hit.triangle : kNone,
+    return {view.hit.triangle, view.optic, view.facet,
+            view.reflect.has_ray ? view.reflect.hit.triangle : kNone,
             view.refract.has_ray ? view.refract.hit.triangle : kNone};
 }
 
 bool covers_same(const Seen& a, const Seen& b) {
     const auto same = [](Id x, Id y) { return (x == kNone) == (y == kNone); };
-    return same(a.direct, b.direct) && same(a.optic, b.optic) && same(a.reflect, b.reflect) && same(a.refract, b.refract);
+    return same(a.direct, b.direct) && same(a.optic, b.optic) && same(a.reflect, b.reflect) &&
+           same(a.refract, b.refract);
 }
 
 CameraRays shifted(CameraRays camera, const Vec2& by) {
@@ -51,7 +53,8 @@ struct Differing {
 /// Leaves those of `open` for which no shifted view shows the other engine's answer.
 void close_edge_ties(const World& world, std::vector<Differing>& open) {
     const double d = kEdgeDistance, c = kEdgeDistance * 0.70710678;
-    for (const Vec2& by : {Vec2(d, 0), Vec2(-d, 0), Vec2(0, d), Vec2(0, -d), Vec2(c, c), Vec2(-c, c), Vec2(c, -c), Vec2(-c, -c)}) {
+    for (const Vec2& by : {Vec2(d, 0), Vec2(-d, 0), Vec2(0, d), Vec2(0, -d), Vec2(c, c), Vec2(-c, c),
+                           Vec2(c, -c), Vec2(-c, -c)}) {
         if (open.empty()) return;
         const CameraRays camera = shifted(make_camera_rays(world.scene, 0), by);
         const Viewer project = make_facet_viewer(world, camera, Engine::kExact, ignore);
@@ -94,10 +97,11 @@ Agreement compare_engines(const World& world) {
     if (!open.empty()) {
         const Differing& d = open.front();
         const auto text = [](const Seen& s) {
-            return std::to_string(s.direct) + "/" + std::to_string(s.optic) + "/" + std::to_string(s.facet) + "/" +
-                   std::to_string(s.reflect) + "/" + std::to_string(s.refract);
+            return std::to_string(s.direct) + "/" + std::to_string(s.optic) + "/" + std::to_string(s.facet) +
+                   "/" + std::to_string(s.reflect) + "/" + std::to_string(s.refract);
         };
-        result.first_off_edge = "pixel " + std::to_string(d.x) + "," + std::to_string(d.y) + ": projector " + text(d.projected) + ", Embree " + text(d.traced);
+        result.first_off_edge = "pixel " + std::to_string(d.x) + "," + std::to_string(d.y) + ": projector " +
+                                text(d.projected) + ", Embree " + text(d.traced);
     }
     return result;
 }

@@ -17,14 +17,16 @@ constexpr double kEdgeShare = 1e-3;
 void check_agreement(const std::string& name, int n, const World& world, bool print) {
     const Agreement a = compare_engines(world);
     if (print) {
-        std::printf("%-28s n=%-3d optic pixels %7zu  seen %4zu  coverage %4zu  off edge %zu  worst t %.1e\n", name.c_str(), n,
-                    a.optic_pixels, a.seen, a.coverage, a.off_edge, a.worst_t);
+        std::printf("%-28s n=%-3d optic pixels %7zu  seen %4zu  coverage %4zu  off edge %zu  worst t %.1e\n",
+                    name.c_str(), n, a.optic_pixels, a.seen, a.coverage, a.off_edge, a.worst_t);
         std::fflush(stdout);
     }
     INFO(name << " at n = " << n << ": " << a.first_off_edge);
     CHECK(a.off_edge == 0);
-    CHECK(static_cast<double>(a.seen) <= kEdgeShare * static_cast<double>(std::max<std::size_t>(a.optic_pixels, 1000)));
-    CHECK(static_cast<double>(a.coverage) <= kEdgeShare * static_cast<double>(std::max<std::size_t>(a.optic_pixels, 1000)));
+    CHECK(static_cast<double>(a.seen) <=
+          kEdgeShare * static_cast<double>(std::max<std::size_t>(a.optic_pixels, 1000)));
+    CHECK(static_cast<double>(a.coverage) <=
+          kEdgeShare * static_cast<double>(std::max<std::size_t>(a.optic_pixels, 1000)));
     CHECK(a.worst_t < 1e-6);
 }
 
@@ -51,9 +53,13 @@ void check_cages(int width, int height, bool print) {
 
 }  // namespace
 
-TEST_CASE("projector and Embree agree on the shipped scenes", "[laws]") { check_shipped(160, 120, false); }
+TEST_CASE("projector and Embree agree on the shipped scenes", "[laws]") {
+    check_shipped(160, 120, false);
+}
 
-TEST_CASE("projector and Embree agree on Pixar's cages as mirrors", "[laws]") { check_cages(96, 72, false); }
+TEST_CASE("projector and Embree agree on Pixar's cages as mirrors", "[laws]") {
+    check_cages(96, 72, false);
+}
 
 TEST_CASE("the same at full size, with a table", "[.long][agreement]") {
     check_shipped(640, 480, true);

@@ -126,8 +126,10 @@ TEST_CASE("the classic engine shows the same with any number of threads", "[laws
         const auto same = [](const Hit& a, const Hit& b) {
             return a.triangle == b.triangle && a.t == b.t && a.barycentric == b.barycentric;
         };
-        CHECK(std::equal(one.begin(), one.end(), two.begin(), two.end(), [&](const SampleView& a, const SampleView& b) {
-            return same(a.hit, b.hit) && same(a.reflect.hit, b.reflect.hit) && same(a.refract.hit, b.refract.hit);
-        }));
+        CHECK(std::equal(one.begin(), one.end(), two.begin(), two.end(),
+                         [&](const SampleView& a, const SampleView& b) {
+                             return same(a.hit, b.hit) && same(a.reflect.hit, b.reflect.hit) &&
+                                    same(a.refract.hit, b.refract.hit);
+                         }));
     }
 }

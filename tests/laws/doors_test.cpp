@@ -27,14 +27,16 @@ bool is_source(const fs::path& path) {
 std::vector<Include> includes_under(const std::string& folder) {
     static const std::regex kLine(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
     std::vector<Include> found;
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(trilens_test::source_dir()) / folder)) {
+    for (const auto& entry :
+         fs::recursive_directory_iterator(fs::path(trilens_test::source_dir()) / folder)) {
         if (!entry.is_regular_file() || !is_source(entry.path())) continue;
         std::ifstream in(entry.path());
         std::string line;
         std::smatch match;
         while (std::getline(in, line)) {
             if (!std::regex_search(line, match, kLine)) continue;
-            found.push_back({fs::relative(entry.path(), trilens_test::source_dir()).string(), match[2], match[1] == "<"});
+            found.push_back(
+                {fs::relative(entry.path(), trilens_test::source_dir()).string(), match[2], match[1] == "<"});
         }
     }
     return found;
@@ -60,8 +62,10 @@ std::map<std::string, Room> rooms() {
         std::stringstream words((*it)[3].str());
         std::string word, section;
         while (words >> word) {
-            if (word == "SEES" || word == "DOORS") section = word;
-            else if (section == "SEES") room.sees.insert(word);
+            if (word == "SEES" || word == "DOORS")
+                section = word;
+            else if (section == "SEES")
+                room.sees.insert(word);
         }
         result[(*it)[1]] = room;
     }
@@ -108,15 +112,17 @@ TEST_CASE("every outside library is included through its one door", "[laws]") {
         }
     }
     // The table would be worth nothing if it matched nothing.
-    for (const char* used : {"glm/", "tbb/", "opensubdiv/", "nlohmann/", "OpenImageIO/", "embree", "CLI/", "tiny_gltf.h"})
+    for (const char* used :
+         {"glm/", "tbb/", "opensubdiv/", "nlohmann/", "OpenImageIO/", "embree", "CLI/", "tiny_gltf.h"})
         CHECK_FALSE(doors_used[used].empty());
     // One file each: whoever wants the library asks that file.
     for (const char* single : {"glm/", "tbb/"}) CHECK(doors_used[single].size() == 1);
 }
 
 TEST_CASE("no header of ours brings an outside library with it, but for the vocabulary", "[laws]") {
-    const std::set<std::string> vocabulary{"src/base/vec.h", "src/scene/json.h", "src/sweep/json.h", "src/cli/json.h",
-                                           "src/truth/embree_device.h"};  // the last is the door's own, for that room's .cpp files
+    const std::set<std::string> vocabulary{
+        "src/base/vec.h", "src/scene/json.h", "src/sweep/json.h", "src/cli/json.h",
+        "src/truth/embree_device.h"};  // the last is the door's own, for that room's .cpp files
     for (const std::string& folder : kFolders) {
         for (const Include& include : includes_under(folder)) {
             if (include.file.size() < 2 || include.file.substr(include.file.size() - 2) != ".h") continue;

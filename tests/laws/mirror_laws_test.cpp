@@ -5,10 +5,10 @@
 #include <random>
 #include <sstream>
 
+#include "camera/perspective.h"
 #include "cli/command_line.h"
 #include "cli/project.h"
 #include "cli/views.h"
-#include "camera/perspective.h"
 #include "laws/worlds.h"
 #include "support/test.h"
 #include "truth/tracer.h"
@@ -20,8 +20,8 @@ namespace {
 
 void ignore(const std::string&) {}
 
-/// The point of the unit sphere round the origin that mirrors `x` to `e`: in their plane, where the angles to both are
-/// equal, by bisection between the two directions.
+/// The point of the unit sphere round the origin that mirrors `x` to `e`: in their plane, where the angles to
+/// both are equal, by bisection between the two directions.
 Vec3 alhazen_point(const Vec3& e, const Vec3& x) {
     const Vec3 a = normalize(e), b = normalize(x);
     const auto on_arc = [&](double s) { return normalize((1 - s) * a + s * b); };
@@ -68,7 +68,8 @@ TEST_CASE("a flat mirror shows what a second camera behind it sees, at any resol
                 continue;
             }
             if (hit.seen())
-                CHECK(length(position(world->objects, hit) - position(world->objects, view.reflect.hit)) < 1e-12);
+                CHECK(length(position(world->objects, hit) - position(world->objects, view.reflect.hit)) <
+                      1e-12);
             // Every corner ray meets in the virtual eye at t = -1.
             CHECK(length(view.reflect.ray.origin - view.reflect.ray.direction - virtual_eye) < 1e-13);
         }
@@ -110,8 +111,9 @@ TEST_CASE("the same file for one thread and for two", "[laws]") {
         for (const std::string command : {"render", "trace", "trace --surface facets"}) {
             std::string first;
             for (const std::string threads : {"1", "2"}) {
-                const CommandRun run = run_trilens(command + " " + source_dir() + "/scenes/" + scene + ".json --size 160x120 -t " + threads +
-                                                   " -o " + folder + "/out.exr -q");
+                const CommandRun run =
+                    run_trilens(command + " " + source_dir() + "/scenes/" + scene +
+                                ".json --size 160x120 -t " + threads + " -o " + folder + "/out.exr -q");
                 REQUIRE(run.exit_code == 0);
                 if (first.empty()) first = bytes_of(folder + "/out.exr");
                 INFO(scene << " " << command);
@@ -124,9 +126,12 @@ TEST_CASE("the same file for one thread and for two", "[laws]") {
 TEST_CASE("an image drawn again from its own header is the same image", "[laws]") {
     const std::string folder = scratch_dir("again");
     const std::string scene = write_file(folder, "scene.json", small_scene());
-    REQUIRE(run_trilens("render " + scene + " -n 6 --set /film/spp=2 -o " + folder + "/first.exr").exit_code == 0);
+    REQUIRE(
+        run_trilens("render " + scene + " -n 6 --set /film/spp=2 -o " + folder + "/first.exr").exit_code ==
+        0);
     REQUIRE(run_trilens("render " + folder + "/first.exr -o " + folder + "/again.exr").exit_code == 0);
-    const CommandRun compared = run_trilens("compare " + folder + "/first.exr " + folder + "/again.exr --fail 0 --hardfail 0 --failpercent 0");
+    const CommandRun compared = run_trilens("compare " + folder + "/first.exr " + folder +
+                                            "/again.exr --fail 0 --hardfail 0 --failpercent 0");
     INFO(compared.out);
     CHECK(compared.exit_code == 0);
     CHECK(compared.out.find("PASS") != std::string::npos);
@@ -138,7 +143,9 @@ TEST_CASE("degenerate but legal scenes render, with a word where the user would 
         std::string what, replace, by, says;
     };
     const std::vector<Case> cases{
-        {"empty scene", small_scene().substr(small_scene().find("\"meshes\": ["), small_scene().find("\"lights\"") - small_scene().find("\"meshes\": [")),
+        {"empty scene",
+         small_scene().substr(small_scene().find("\"meshes\": ["),
+                              small_scene().find("\"lights\"") - small_scene().find("\"meshes\": [")),
          "\"meshes\": [], ", "no optic"},
         {"behind the camera", R"("center": [0,0,0])", R"("center": [0,0,9])", "no pixel sees an optic"},
         {"camera inside", R"("radius": 1)", R"("radius": 4.4)", ""},

@@ -54,13 +54,13 @@ std::string fit(const Box& box, double size, const Vec3& centre) {
     const Vec3 extent = box.high - box.low;
     const double scale = size / std::max({extent.x, extent.y, extent.z});
     const Vec3 move = centre - scale * 0.5 * (box.low + box.high);
-    return "{\"translate\":[" + number(move.x) + "," + number(move.y) + "," + number(move.z) + "],\"scale\":[" + number(scale) + "," +
-           number(scale) + "," + number(scale) + "]}";
+    return "{\"translate\":[" + number(move.x) + "," + number(move.y) + "," + number(move.z) +
+           "],\"scale\":[" + number(scale) + "," + number(scale) + "," + number(scale) + "]}";
 }
 
 std::string wall(const std::string& name, const std::string& points) {
-    return "{\"name\":\"" + name + "\",\"role\":\"object\",\"material\":\"" + name + "\",\"points\":" + points +
-           ",\"faceVertexCounts\":[4],\"faceVertexIndices\":[0,1,2,3]}";
+    return "{\"name\":\"" + name + "\",\"role\":\"object\",\"material\":\"" + name +
+           "\",\"points\":" + points + ",\"faceVertexCounts\":[4],\"faceVertexIndices\":[0,1,2,3]}";
 }
 
 }  // namespace
@@ -76,13 +76,17 @@ const std::vector<std::string>& shipped_scenes() {
     return names;
 }
 
-std::unique_ptr<World> shipped_world(const std::string& name, int n, int width, int height, std::string* missing) {
-    const std::vector<SceneOverride> film{{"/film/width", std::to_string(width)}, {"/film/height", std::to_string(height)}};
+std::unique_ptr<World> shipped_world(const std::string& name, int n, int width, int height,
+                                     std::string* missing) {
+    const std::vector<SceneOverride> film{{"/film/width", std::to_string(width)},
+                                          {"/film/height", std::to_string(height)}};
     try {
-        return finish(load_scene(source_dir() + "/scenes/" + name + ".json", film, {read_texture, decode_texture}), n);
+        return finish(
+            load_scene(source_dir() + "/scenes/" + name + ".json", film, {read_texture, decode_texture}), n);
     } catch (const InputError& error) {
         // Only a model that Debian packages and this machine lacks may be missing.
-        if (!missing || fs::exists("/usr/share/assimp/models") || std::string(error.what()).find("/usr/share/assimp") == std::string::npos)
+        if (!missing || fs::exists("/usr/share/assimp/models") ||
+            std::string(error.what()).find("/usr/share/assimp") == std::string::npos)
             throw;
         *missing = error.what();
         return nullptr;
@@ -108,20 +112,26 @@ std::unique_ptr<World> cage_world(const std::string& cage, int n, int width, int
     const std::string cage_file = data_dir() + "/cages/" + cage, model_file = data_dir() + "/models/spot.obj";
     const std::string scheme = cage.rfind("loop_", 0) == 0 ? "loop" : "catmullClark";
     const std::string json =
-        "{\"version\":1,\"film\":{\"width\":" + std::to_string(width) + ",\"height\":" + std::to_string(height) +
-        "},\"cameras\":[{\"name\":\"main\",\"type\":\"perspective\",\"yfov\":40,\"lookAt\":{\"eye\":[0.4,0.9,4.4],\"at\":[0,0,0],\"up\":[0,1,0]}}],"
-        "\"materials\":[{\"name\":\"chrome\",\"metallicFactor\":1,\"roughnessFactor\":0},{\"name\":\"floor\"},{\"name\":\"back\"},{\"name\":\"left\"},"
+        "{\"version\":1,\"film\":{\"width\":" + std::to_string(width) +
+        ",\"height\":" + std::to_string(height) +
+        "},\"cameras\":[{\"name\":\"main\",\"type\":\"perspective\",\"yfov\":40,\"lookAt\":{\"eye\":[0.4,0.9,"
+        "4.4],\"at\":[0,0,0],\"up\":[0,1,0]}}],"
+        "\"materials\":[{\"name\":\"chrome\",\"metallicFactor\":1,\"roughnessFactor\":0},{\"name\":\"floor\"}"
+        ",{\"name\":\"back\"},{\"name\":\"left\"},"
         "{\"name\":\"right\"},{\"name\":\"ceiling\"},{\"name\":\"front\"},{\"name\":\"spot\"}],\"meshes\":["
-        "{\"name\":\"cage\",\"role\":\"optic\",\"material\":\"chrome\",\"file\":\"" + cage_file + "\",\"subdivisionScheme\":\"" + scheme +
-        "\",\"transform\":" + fit(obj_bounds(cage_file), 2.2, Vec3(0)) + "},"
-        "{\"name\":\"spot\",\"role\":\"object\",\"material\":\"spot\",\"file\":\"" + model_file + "\",\"transform\":" +
-        fit(obj_bounds(model_file), 1.6, Vec3(1.7, -0.6, 1.2)) + "}," +
+        "{\"name\":\"cage\",\"role\":\"optic\",\"material\":\"chrome\",\"file\":\"" +
+        cage_file + "\",\"subdivisionScheme\":\"" + scheme +
+        "\",\"transform\":" + fit(obj_bounds(cage_file), 2.2, Vec3(0)) +
+        "},"
+        "{\"name\":\"spot\",\"role\":\"object\",\"material\":\"spot\",\"file\":\"" +
+        model_file + "\",\"transform\":" + fit(obj_bounds(model_file), 1.6, Vec3(1.7, -0.6, 1.2)) + "}," +
         wall("floor", "[[-3,-1.5,5],[3,-1.5,5],[3,-1.5,-3],[-3,-1.5,-3]]") + "," +
         wall("back", "[[-3,-1.5,-3],[3,-1.5,-3],[3,2.8,-3],[-3,2.8,-3]]") + "," +
         wall("left", "[[-3,-1.5,5],[-3,-1.5,-3],[-3,2.8,-3],[-3,2.8,5]]") + "," +
         wall("right", "[[3,-1.5,-3],[3,-1.5,5],[3,2.8,5],[3,2.8,-3]]") + "," +
         wall("ceiling", "[[-3,2.8,-3],[3,2.8,-3],[3,2.8,5],[-3,2.8,5]]") + "," +
-        wall("front", "[[3,-1.5,5],[-3,-1.5,5],[-3,2.8,5],[3,2.8,5]]") + "],\"lights\":[{\"type\":\"ambient\"}]}";
+        wall("front", "[[3,-1.5,5],[-3,-1.5,5],[-3,2.8,5],[3,2.8,5]]") +
+        "],\"lights\":[{\"type\":\"ambient\"}]}";
     return world_from("cage_" + cage, json, n);
 }
 

@@ -16,7 +16,8 @@ const std::vector<std::string>& shipped_scenes();
 
 /// A shipped scene on a film of width x height, its optics at resolution n. Empty where a file that the scene
 /// needs is not installed (`missing` then says which).
-std::unique_ptr<trilens::World> shipped_world(const std::string& name, int n, int width, int height, std::string* missing = nullptr);
+std::unique_ptr<trilens::World> shipped_world(const std::string& name, int n, int width, int height,
+                                              std::string* missing = nullptr);
 
 /// A cage of the outside data as a mirror in a coloured room with a model in it; both scaled to fit.
 std::unique_ptr<trilens::World> cage_world(const std::string& cage, int n, int width, int height);

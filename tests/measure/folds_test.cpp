@@ -1,4 +1,5 @@
-// Folds are found where a field turns over and nowhere else; off them a mean displacement falls with the error's order.
+// Folds are found where a field turns over and nowhere else; off them a mean displacement falls with the
+// error's order.
 #include "measure/folds.h"
 
 #include <algorithm>
@@ -25,7 +26,9 @@ std::vector<std::uint8_t> folds_of(const Field& field) {
     return near_folds(seen);
 }
 
-std::ptrdiff_t count(const std::vector<std::uint8_t>& near) { return std::count(near.begin(), near.end(), 1); }
+std::ptrdiff_t count(const std::vector<std::uint8_t>& near) {
+    return std::count(near.begin(), near.end(), 1);
+}
 
 /// A plane seen twice, its images meeting in the column `at`; `error` moves what is seen.
 Field folded(double at, double error) {
@@ -37,7 +40,8 @@ Field folded(double at, double error) {
 
 }  // namespace
 
-TEST_CASE("a fold is found wherever it runs, with pixels at most kFoldReach + 2 from it", "[measure][folds]") {
+TEST_CASE("a fold is found wherever it runs, with pixels at most kFoldReach + 2 from it",
+          "[measure][folds]") {
     const double at = GENERATE(20.0, 33.5, 60.3, 99.9);
     const std::vector<std::uint8_t> near = folds_of(folded(at, 0));
     for (int y = 0; y < kSize; ++y) {
@@ -51,17 +55,23 @@ TEST_CASE("a fold is found wherever it runs, with pixels at most kFoldReach + 2 
     }
 }
 
-TEST_CASE("a plane, a convex mirror, two walls that meet and one that hides the other have no fold", "[measure][folds]") {
+TEST_CASE("a plane, a convex mirror, two walls that meet and one that hides the other have no fold",
+          "[measure][folds]") {
     CHECK(count(folds_of([](double x, double y) { return Seen{1, 0, Vec3(x, 0.3 * x + y, 0.1 * y)}; })) == 0);
     CHECK(count(folds_of([](double x, double y) { return Seen{1, 0, Vec3(-x, y, 4)}; })) == 0);
     CHECK(count(folds_of([](double x, double y) { return mirror_sphere(x, y, kSize); })) == 0);
     // Two walls that meet in a column, and one that hides the other.
-    CHECK(count(folds_of([](double x, double y) { return Seen{1, 0, Vec3(std::min(x, 57.2), y, std::max(0.0, x - 57.2))}; })) == 0);
-    CHECK(count(folds_of([](double x, double y) { return Seen{1, 0, x < 50 ? Vec3(x, y, 0) : Vec3(x, y, 40)}; })) == 0);
+    CHECK(count(folds_of([](double x, double y) {
+              return Seen{1, 0, Vec3(std::min(x, 57.2), y, std::max(0.0, x - 57.2))};
+          })) == 0);
+    CHECK(count(folds_of([](double x, double y) {
+              return Seen{1, 0, x < 50 ? Vec3(x, y, 0) : Vec3(x, y, 40)};
+          })) == 0);
     CHECK(count(folds_of([](double, double) { return Seen{}; })) == 0);
 }
 
-TEST_CASE("off a fold the mean displacement falls like the error, over all pixels more slowly", "[measure][folds]") {
+TEST_CASE("off a fold the mean displacement falls like the error, over all pixels more slowly",
+          "[measure][folds]") {
     const Image reference = image_of(kSize, kSize, folded(60.3, 0));
     double before = 0, before_off = 0, order = 0, order_off = 0;
     for (const double error : {4e-4, 1e-4, 2.5e-5}) {

@@ -33,7 +33,8 @@ std::size_t lost(const Displacement& d) {
 }  // namespace
 
 TEST_CASE("an isolated jump and a rim of jumps are other images", "[measure]") {
-    Displacement d = field_of([](int x, int y) { return (x == 20 && y == 15) || x == kWidth - 1 ? 60.0 : 0.01; });
+    Displacement d =
+        field_of([](int x, int y) { return (x == 20 && y == 15) || x == kWidth - 1 ? 60.0 : 0.01; });
     drop_other_images(d, kWidth);
     CHECK(lost(d) == 1 + kHeight);
     CHECK(d.shift_x[15 * kWidth + 20] == 0);

@@ -20,7 +20,9 @@ TriangleScene one_triangle() {
     return scene;
 }
 
-Hit middle() { return {0, 1.0, Vec2(0.25, 0.5)}; }
+Hit middle() {
+    return {0, 1.0, Vec2(0.25, 0.5)};
+}
 
 ShadeScene lit_by(const TriangleScene& triangles, const Light& light) {
     ShadeScene shading;

@@ -16,9 +16,13 @@ namespace trilens_test {
 void note_skip(const std::string& test, const std::string& why);
 
 /// The project's own folder.
-inline std::string source_dir() { return TRILENS_SOURCE_DIR; }
+inline std::string source_dir() {
+    return TRILENS_SOURCE_DIR;
+}
 /// Cages and models that are not part of the project; may be missing: see data_missing.
-inline std::string data_dir() { return TRILENS_DATA_DIR; }
+inline std::string data_dir() {
+    return TRILENS_DATA_DIR;
+}
 /// Whether data_dir()/`relative` is missing.
 bool data_missing(const std::string& relative);
 /// A folder under the build tree for this test's files, made empty.
@@ -27,10 +31,10 @@ std::string scratch_dir(const std::string& name);
 }  // namespace trilens_test
 
 /// Leaves the test, counted as skipped with a reason.
-#define TRILENS_SKIP(why)                                                              \
-    do {                                                                               \
+#define TRILENS_SKIP(why)                                                               \
+    do {                                                                                \
         trilens_test::note_skip(Catch::getResultCapture().getCurrentTestName(), (why)); \
-        return;                                                                        \
+        return;                                                                         \
     } while (false)
 
 /// Skips where a file of the outside data is missing.

@@ -17,9 +17,13 @@ std::map<std::string, std::string>& skips() {
 
 namespace trilens_test {
 
-void note_skip(const std::string& test, const std::string& why) { skips()[test] = why; }
+void note_skip(const std::string& test, const std::string& why) {
+    skips()[test] = why;
+}
 
-bool data_missing(const std::string& relative) { return !std::filesystem::exists(data_dir() + "/" + relative); }
+bool data_missing(const std::string& relative) {
+    return !std::filesystem::exists(data_dir() + "/" + relative);
+}
 
 std::string scratch_dir(const std::string& name) {
     const std::filesystem::path folder = std::filesystem::path(TRILENS_BUILD_DIR) / "scratch" / name;

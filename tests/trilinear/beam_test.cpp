@@ -36,12 +36,14 @@ Vec3 beam_point(Random& random, const TrilinearFacet& facet) {
 
 }  // namespace
 
-TEST_CASE("beam: what the cubic images is never turned away, for every kind of facet, size and place", "[beam]") {
+TEST_CASE("beam: what the cubic images is never turned away, for every kind of facet, size and place",
+          "[beam]") {
     Random random(7);
     int imaged = 0;
     for (int trial = 0; trial < 60000; ++trial) {
         const double scale = random.log_uniform(1e-4, 1e4);
-        const Vec3 offset = random.below(2) ? Vec3(0) : scale * random.log_uniform(1, 1e4) * random.on_sphere();
+        const Vec3 offset =
+            random.below(2) ? Vec3(0) : scale * random.log_uniform(1, 1e4) * random.on_sphere();
         const auto kind = static_cast<FacetKind>(random.below(static_cast<int>(FacetKind::kCount)));
         const TrilinearFacet facet = moved(random_facet(random, kind), scale, offset);
         const Coplanarity coplanarity = make_coplanarity(facet);
