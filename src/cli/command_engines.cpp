@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kPieces[] = {1, 2, 4, 8, 16, 32};
 constexpr int kResolutions[] = {1, 2, 5, 16};
+constexpr double kMostTriangles = 2e7;  // a scene cut into more is left out
 
 struct StudyOptions {
     SceneOptions scene;
@@ -169,12 +170,25 @@ struct Subject {
     std::size_t camera = 0;
     Console& console;
 
+    bool is_too_large(const ClassicParams& params) const {
+        if (params.curves != Curves::kTessellate) return false;
+        const double pieces = params.pieces;
+        const double triangles = pieces * pieces * static_cast<double>(world.objects.size());
+        if (triangles <= kMostTriangles) return false;
+        char text[200];
+        std::snprintf(text, sizeof text, "%s, %s: left out, it would cut the scene into %.0f million triangles",
+                      name.c_str(), classic_name(params).c_str(), 1e-6 * triangles);
+        console.warn(text);
+        return true;
+    }
+
     std::vector<StudyRow> rows(const std::vector<ClassicParams>& ways) const {
         const SeenPicture exact = look(world, camera, Engine::kExact, console);
         const Progress progress = console.progress(name + " at n = " + resolution_text(world));
         std::vector<StudyRow> rows;
         for (const ClassicParams& params : ways) {
             if (progress.cancelled()) throw Interrupted();
+            if (is_too_large(params)) continue;
             StudyRow row = compare(exact, look(world, camera, params, console));
             row.scene = name;
             row.resolution = resolution_text(world);
@@ -202,7 +216,8 @@ std::vector<ClassicParams> ways_to_clip() {
 }
 
 Answer run(const StudyOptions& options, Console& console) {
-    std::vector<StudyRow> curves, clipping;
+    std::vector<StudyRow> curves, clipping, complete;  // complete: of the scenes that could be drawn in every way
+    int complete_scenes = 0;
     make_folder(options.output + "/plots");
     for (const std::string& file : options.scenes) {
         SceneOptions scene = options.scene;
@@ -212,15 +227,22 @@ Answer run(const StudyOptions& options, Console& console) {
                               chosen_camera(scene, world->scene), console};
         const std::vector<StudyRow> rows = subject.rows(ways_to_draw_curves());
         curves.insert(curves.end(), rows.begin(), rows.end());
+        if (rows.size() == ways_to_draw_curves().size()) {
+            complete.insert(complete.end(), rows.begin(), rows.end());
+            ++complete_scenes;
+        }
         replace_text_file(options.output + "/plots/" + subject.name + ".svg", share_plot(subject.name, rows));
         for (const int n : kResolutions) {
             for (Optic& optic : world->optics) optic.resolution = n;
             for (const StudyRow& row : subject.rows(ways_to_clip())) clipping.push_back(row);
         }
+        // After every scene, so that an interrupted study keeps what it has.
+        replace_text_file(options.output + "/engines.csv", table_csv(curves));
+        replace_text_file(options.output + "/clipping.csv", table_csv(clipping));
     }
-    replace_text_file(options.output + "/engines.csv", table_csv(curves));
-    replace_text_file(options.output + "/clipping.csv", table_csv(clipping));
-    replace_text_file(options.output + "/plots/engines.svg", share_plot("all scenes", curves));
+    if (!complete.empty())
+        replace_text_file(options.output + "/plots/engines.svg",
+                          share_plot(std::to_string(complete_scenes) + " scenes", complete));
     Answer answer;
     answer.text = table_text(curves) + "\n" + table_text(clipping);
     for (const char* name : {"engines.csv", "clipping.csv", "plots/engines.svg"})
