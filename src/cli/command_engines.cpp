@@ -142,7 +142,7 @@ std::string table_text(const std::vector<StudyRow>& rows) {
 std::string share_plot(const std::string& title, const std::vector<StudyRow>& rows) {
     PlotParams params;
     params.title = "Classic against exact engine: " + title + ", n = " + rows.front().resolution;
-    params.x_label = "K [slices a stretch; K × K triangles]";
+    params.x_label = "K [parts of an edge; K × K triangles]";
     params.y_label = "pixels that differ [%]";
     const auto percent = [&](Curves curves, int pieces) {
         std::size_t differing = 0, pixels = 0;
@@ -158,8 +158,8 @@ std::string share_plot(const std::string& title, const std::vector<StudyRow>& ro
         series[0].points.push_back({k, percent(Curves::kSlices, k)});
         series[1].points.push_back({k, percent(Curves::kTessellate, k)});
     }
-    const double arcs = percent(Curves::kArcs, 0);
-    if (arcs > 0) params.levels = {{arcs, "arcs"}};
+    series.push_back({"arcs, without any K", {}, std::nullopt});
+    for (const int k : kPieces) series[2].points.push_back({k, percent(Curves::kArcs, 0)});
     return log_log_plot(params, series);
 }
 
@@ -176,8 +176,9 @@ struct Subject {
         const double triangles = pieces * pieces * static_cast<double>(world.objects.size());
         if (triangles <= kMostTriangles) return false;
         char text[200];
-        std::snprintf(text, sizeof text, "%s, %s: left out, it would cut the scene into %.0f million triangles",
-                      name.c_str(), classic_name(params).c_str(), 1e-6 * triangles);
+        std::snprintf(text, sizeof text,
+                      "%s, %s: left out, it would cut the scene into %.0f million triangles", name.c_str(),
+                      classic_name(params).c_str(), 1e-6 * triangles);
         console.warn(text);
         return true;
     }
@@ -216,7 +217,8 @@ std::vector<ClassicParams> ways_to_clip() {
 }
 
 Answer run(const StudyOptions& options, Console& console) {
-    std::vector<StudyRow> curves, clipping, complete;  // complete: of the scenes that could be drawn in every way
+    std::vector<StudyRow> curves, clipping,
+        complete;  // complete: of the scenes that could be drawn in every way
     int complete_scenes = 0;
     make_folder(options.output + "/plots");
     for (const std::string& file : options.scenes) {

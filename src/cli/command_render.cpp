@@ -149,7 +149,8 @@ void add_engine_options(CLI::App& command, RenderOptions& options) {
         ->check(CLI::IsMember({"exact", "classic", "auto"}));
     CLI::Option* slices =
         command
-            .add_option("--slices", options.slices, "classic: curved edges by K slices a stretch, not arcs")
+            .add_option("--slices", options.slices,
+                        "classic: curved edges by K straight pieces between levels of t, not arcs")
             ->check(CLI::Range(1, 1024))
             ->type_name("K");
     command

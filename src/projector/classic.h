@@ -12,7 +12,7 @@ struct ClassicParams {
     Curves curves = Curves::kArcs;
     Clip clip = Clip::kScene;
     int pieces = 8;           // kSlices, kTessellate: at least 1
-    double tolerance = 0.01;  // kArcs: how far an outline may leave its conic, in pixels
+    double tolerance = 0.001; // kArcs: how far an outline may leave its conic, in pixels
 };
 
 /// The contract of draw(), but for coverage: a sample sees a triangle where the triangle's outlines in the

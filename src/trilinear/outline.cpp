@@ -37,12 +37,12 @@ class Pen {
   public:
     Pen(const FacetAndTriangle& pair, const ShapeParams& params) : pair_(pair), params_(params) {}
 
-    // Vertices strictly inside the section, in its order. `levels`: those of its shape.
-    std::vector<ImageVertex> between(const Section& s, const std::vector<double>& levels) const {
+    // Vertices strictly inside the section, in its order.
+    std::vector<ImageVertex> between(const Section& s) const {
         if (params_.curves == Curves::kStraight || is_level(s)) return {};
         const std::size_t edge = static_cast<std::size_t>(s.edge);
         if (params_.curves == Curves::kSlices) {
-            return slice_ends(pair_.cubic, pair_.triangle, edge, levels, {s.from.t, s.to.t});
+            return slice_ends(pair_.cubic, pair_.triangle, edge, {s.from.t, s.to.t}, params_.pieces);
         }
         std::vector<ImageVertex> vertices;
         for (const ConicArc& arc : edge_arcs(pair_.cubic, pair_.triangle, edge, std::min(s.from.t, s.to.t),
@@ -54,10 +54,10 @@ class Pen {
         return vertices;
     }
 
-    Chain polyline(const std::vector<Section>& sections, const std::vector<double>& levels) const {
+    Chain polyline(const std::vector<Section>& sections) const {
         Chain chain{sections.front().from};
         for (const Section& s : sections) {
-            for (const ImageVertex& v : between(s, levels)) chain.push_back(v);
+            for (const ImageVertex& v : between(s)) chain.push_back(v);
             chain.push_back(s.to);
         }
         return chain;
@@ -97,16 +97,6 @@ std::vector<Section> sections_of(const Shape& shape) {
     return sections;
 }
 
-std::vector<double> levels_of(const std::vector<Shape>& shapes, const ShapeParams& params) {
-    std::vector<double> levels;
-    if (params.curves != Curves::kSlices) return levels;
-    for (const Shape& shape : shapes) {
-        for (const double t : slice_levels(shape, params.pieces)) levels.push_back(t);
-    }
-    std::sort(levels.begin(), levels.end());
-    return levels;
-}
-
 Outline closed_outline(Chain chain) {
     chain.pop_back();
     return {std::move(chain)};
@@ -118,23 +108,19 @@ std::vector<Outline> project_curved(const FacetAndTriangle& pair, const ShapePar
         for (Shape& shape : make_shapes(pair.cubic, pair.triangle, window))
             shapes.push_back(std::move(shape));
     }
-    // Shapes do not overlap in t, so that their levels can stand in one list.
-    const std::vector<double> levels = levels_of(shapes, params);
     const Pen pen(pair, params);
     std::vector<Outline> outlines;
     if (params.clip == Clip::kScene) {
         const ClippedShapes clipped = clip_in_scene(pair, shapes);
         if (clipped.clean) {
             std::vector<Chain> chains;
-            for (const auto& run : clipped.chains) chains.push_back(pen.polyline(run, levels));
+            for (const auto& run : clipped.chains) chains.push_back(pen.polyline(run));
             outlines = join_along_border(pair, chains);
-            for (const auto& ring : clipped.closed)
-                outlines.push_back(closed_outline(pen.polyline(ring, levels)));
+            for (const auto& ring : clipped.closed) outlines.push_back(closed_outline(pen.polyline(ring)));
             return outlines;
         }
     }
-    for (const Shape& shape : shapes)
-        outlines.push_back(closed_outline(pen.polyline(sections_of(shape), levels)));
+    for (const Shape& shape : shapes) outlines.push_back(closed_outline(pen.polyline(sections_of(shape))));
     return params.clip == Clip::kUnclipped ? outlines : clip_on_screen(pair, std::move(outlines));
 }
 

@@ -16,9 +16,8 @@ struct Outline {
 /// How curved edges between projected vertices are drawn.
 enum class Curves {
     kStraight,    // as straight lines
-    kSlices,      // with points at further levels of t (section 4.4): `pieces` stretches between neighbouring
-                  // vertices' t
-    kTessellate,  // the scene triangle as pieces^2 triangles, each straight (section 4.3)
+    kSlices,      // with points at further levels of t (section 4.5.2): `pieces` parts of each edge's stretch of t
+    kTessellate,  // the scene triangle as pieces^2 triangles, each straight (section 4.5.1)
     kArcs,        // along the exact conics, within `tolerance`
 };
 

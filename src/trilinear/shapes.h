@@ -31,7 +31,7 @@ using Shape = std::vector<ShapeVertex>;
 std::array<RealRoots, 3> project_vertices(const Coplanarity& facet, const SceneTriangle& triangle);
 
 /// All shapes whose t lies in the window, over the whole plane of weights; over all t there are one to four
-/// of two to nine vertices. The rule (section 4.2): along each scene edge the roots of both ends, merged and
+/// of two to nine vertices. The rule (section 4.3): along each scene edge the roots of both ends, merged and
 /// sorted by t, are joined first to second, third to fourth, and so on; where the edge is cut at the window's
 /// begin, that cut comes first. Where the window ends, a slice closes the outline. Left out are shapes with a
 /// vertex where the parametric triangle is degenerate: let the window end before (view_windows).

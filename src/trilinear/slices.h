@@ -1,23 +1,22 @@
-// Parametric triangle slices: curved edges by points at further levels of t (Vallance 2005, section 4.4).
+// Parametric triangle slices: curved edges by points at further levels of t (Vallance 2005, section 4.5.2).
 #pragma once
 
 #include <vector>
 
-#include "trilinear/shapes.h"
+#include "trilinear/scene_edge.h"
 
 namespace trilens {
-
-/// Levels of t that divide each stretch between neighbouring vertices of a shape into `pieces` equal parts,
-/// ascending; the vertices' own t are not among them.
-std::vector<double> slice_levels(const Shape& shape, int pieces);
 
 /// From one t to another, which may be smaller.
 struct Stretch {
     double from = 0, to = 0;
 };
 
-/// The ends, on one scene edge, of the slices at those levels that lie inside the stretch, in its order.
+/// The ends, on one scene edge, of the slices at the levels of t that divide the stretch into `pieces` equal
+/// parts, in its order. The thesis divides what lies between the vertices of a whole shape; dividing each
+/// edge's own stretch gives both triangles that share the edge the same points, bit for bit, so that no gap
+/// opens between them.
 std::vector<ImageVertex> slice_ends(const Coplanarity& facet, const SceneTriangle& triangle, std::size_t edge,
-                                    const std::vector<double>& levels, Stretch stretch);
+                                    Stretch stretch, int pieces);
 
 }  // namespace trilens

@@ -1,4 +1,4 @@
-// Scene triangle tessellation: curved edges by smaller triangles (Vallance 2005, section 4.3).
+// Scene triangle tessellation: curved edges by smaller triangles (Vallance 2005, section 4.5.1).
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // Which stretches of t a facet sees of a scene triangle: from the viewing plane t = 0 on (Vallance 2005,
-// section 4.5).
+// section 4.6).
 #pragma once
 
 #include <vector>

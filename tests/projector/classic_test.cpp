@@ -185,7 +185,7 @@ TEST_CASE("a closed box leaves no sample uncovered, however coarse its outlines"
         const RayMesh mesh = bulging_mesh(grid, 1 + i % 4, random.uniform(-0.8, 0.8));
         const TriangleScene box = closed_box(random);
         REQUIRE(unseen(drawn_exactly(box, mesh, grid)) == 0);
-        for (const Curves curves : {Curves::kArcs, Curves::kStraight, Curves::kTessellate}) {
+        for (const Curves curves : {Curves::kArcs, Curves::kStraight, Curves::kTessellate, Curves::kSlices}) {
             INFO("trial " << i << ", curves " << static_cast<int>(curves));
             CHECK(unseen(drawn(box, mesh, grid, {curves, Clip::kScene, 3})) == 0);
         }
