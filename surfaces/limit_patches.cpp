@@ -66,7 +66,7 @@ Sdc::SchemeType scheme_of(const CheckedCage& cage) {
 Sdc::Options options_of(const CheckedCage& cage) {
     Sdc::Options options;
     switch (cage.interpolate_boundary) {
-        case InterpolateBoundary::kNone:
+        case InterpolateBoundary::kNothing:
             options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
             break;
         case InterpolateBoundary::kEdgeOnly:

@@ -10,10 +10,7 @@
 namespace trilens {
 
 enum class SubdivisionScheme { kCatmullClark, kLoop, kBilinear };
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"  // GCC takes the scoped enumerator for a shadow of the Id kNone
-enum class InterpolateBoundary { kNone, kEdgeOnly, kEdgeAndCorner };
-#pragma GCC diagnostic pop
+enum class InterpolateBoundary { kNothing, kEdgeOnly, kEdgeAndCorner };
 
 /// A polygon mesh with subdivision tags. As an object it is drawn as its polygons; as an optic it stands for
 /// its limit surface. Field names and meaning: UsdGeomMesh; a sharpness >= 10 is infinite.

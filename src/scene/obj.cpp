@@ -216,7 +216,7 @@ void ObjReader::apply_tag(const Tag& tag) {
 
 void ObjReader::set_boundary(int code) {
     if (code < 0 || code > 2) fail("interpolateboundary must be 0, 1 or 2");
-    result_.mesh.cage.interpolate_boundary = code == 0   ? InterpolateBoundary::kNone
+    result_.mesh.cage.interpolate_boundary = code == 0   ? InterpolateBoundary::kNothing
                                              : code == 1 ? InterpolateBoundary::kEdgeAndCorner
                                                          : InterpolateBoundary::kEdgeOnly;
 }

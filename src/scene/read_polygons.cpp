@@ -91,7 +91,7 @@ void read_subdivision(const Node& mesh, Cage& cage) {
     }
     if (mesh.has("interpolateBoundary")) {
         const std::string boundary = mesh["interpolateBoundary"].json.get<std::string>();
-        cage.interpolate_boundary = boundary == "none"       ? InterpolateBoundary::kNone
+        cage.interpolate_boundary = boundary == "none"       ? InterpolateBoundary::kNothing
                                     : boundary == "edgeOnly" ? InterpolateBoundary::kEdgeOnly
                                                              : InterpolateBoundary::kEdgeAndCorner;
     }

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "film_mesh.h"
 #include "projector/draw_options.h"
 #include "projector/projector.h"
 #include "random_cases.h"
@@ -26,24 +27,9 @@ bool same(const Hit& a, const Hit& b) {
 
 /// A curved mesh of cells x cells quads over the film, bulging towards -z, with rays that fan out along +z.
 RayMesh curved_mesh(const SampleGrid& grid, int cells, double bulge) {
-    RayMesh mesh;
-    for (int j = 0; j <= cells; ++j) {
-        for (int i = 0; i <= cells; ++i) {
-            const double x = 2.0 * i / cells - 1, y = 2.0 * j / cells - 1;
-            mesh.rays.push_back({Vec3(x, y, bulge * (x * x + y * y)), Vec3(bulge * x, bulge * y, 1)});
-            mesh.screen.push_back(
-                {grid.x0 + (x + 1) / 2 * grid.width(), grid.y0 + (y + 1) / 2 * grid.height(), 1});
-        }
-    }
-    const Id row = static_cast<Id>(cells + 1);
-    for (Id j = 0; j + 1 < row; ++j) {
-        for (Id i = 0; i + 1 < row; ++i) {
-            const Id a = j * row + i;
-            mesh.facets.push_back({a, a + 1, a + row});
-            mesh.facets.push_back({a + 1, a + row + 1, a + row});
-        }
-    }
-    return mesh;
+    return film_mesh(grid, cells, [&](double x, double y) {
+        return Ray{Vec3(x, y, bulge * (x * x + y * y)), Vec3(bulge * x, bulge * y, 1)};
+    });
 }
 
 TriangleScene permuted(const TriangleScene& scene, Random& random) {

@@ -3,24 +3,13 @@
 #include "reflect/reflection.h"
 
 #include "camera/draw.h"
+#include "camera/pinhole.h"
 #include "camera/test_surfaces.h"
 #include "support/test.h"
 
 using namespace trilens_test;
 
 namespace {
-
-/// A pinhole with the view axis along -z and unit focal length in pixels; enough for rays and order-one
-/// screens.
-LinearCamera pinhole(const Vec3& eye) {
-    LinearCamera camera;
-    camera.eye = eye;
-    camera.view_direction = Vec3(0, 0, -1);
-    camera.screen_x = Vec4(1, 0, 0, -eye.x);
-    camera.screen_y = Vec4(0, -1, 0, eye.y);
-    camera.screen_w = Vec4(0, 0, -1, eye.z);
-    return camera;
-}
 
 LinearCamera parallel_along(const Vec3& direction) {
     LinearCamera camera;

@@ -2,22 +2,13 @@
 #include "refract/refraction.h"
 
 #include "camera/draw.h"
+#include "camera/pinhole.h"
 #include "camera/test_surfaces.h"
 #include "support/test.h"
 
 using namespace trilens_test;
 
 namespace {
-
-LinearCamera pinhole(const Vec3& eye) {
-    LinearCamera camera;
-    camera.eye = eye;
-    camera.view_direction = Vec3(0, 0, -1);
-    camera.screen_x = Vec4(1, 0, 0, -eye.x);
-    camera.screen_y = Vec4(0, -1, 0, eye.y);
-    camera.screen_w = Vec4(0, 0, -1, eye.z);
-    return camera;
-}
 
 bool from_back(const SurfaceGrid& grid, std::size_t facet, const Vec3& eye) {
     const IdTriple& corner = grid.facets[facet];

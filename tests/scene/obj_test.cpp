@@ -171,7 +171,7 @@ TEST_CASE("cages load as optics and as objects and count the same") {
     const Scene helmet = scene_with("/cages/catmark_helmet.obj", "optic", "");
     CHECK(helmet.meshes[0].cage.interpolate_boundary == InterpolateBoundary::kEdgeAndCorner);
     const Scene open = scene_with("/cages/catmark_helmet.obj", "optic", R"(,"interpolateBoundary":"none")");
-    CHECK(open.meshes[0].cage.interpolate_boundary == InterpolateBoundary::kNone);
+    CHECK(open.meshes[0].cage.interpolate_boundary == InterpolateBoundary::kNothing);
     const Scene loop = scene_with("/cages/loop_icosahedron.obj", "optic", R"(,"subdivisionScheme":"loop")");
     CHECK(loop.meshes[0].face_count == 20);
     CHECK(loop.meshes[0].cage.scheme == SubdivisionScheme::kLoop);

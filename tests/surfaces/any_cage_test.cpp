@@ -185,7 +185,7 @@ TEST_CASE("What is repaired or left out is said", "[surfaces]") {
 
     said.clear();
     cage = sheet(3, 3);
-    cage.interpolate_boundary = InterpolateBoundary::kNone;
+    cage.interpolate_boundary = InterpolateBoundary::kNothing;
     CHECK(make_limit_surface(cage, "sheet", warn)->face_count() == 1);
     REQUIRE(said.size() == 1);
     CHECK(said[0] == "sheet: 8 faces have no limit surface and are left out");

@@ -59,7 +59,7 @@ inline Cage read_cage(const std::string& name) {
                 cage.hole_indices.push_back(a);
             } else if (word == "interpolateboundary" && words >> a) {
                 using trilens::InterpolateBoundary;
-                cage.interpolate_boundary = a == 0   ? InterpolateBoundary::kNone
+                cage.interpolate_boundary = a == 0   ? InterpolateBoundary::kNothing
                                             : a == 1 ? InterpolateBoundary::kEdgeAndCorner
                                                      : InterpolateBoundary::kEdgeOnly;
             }
