@@ -110,16 +110,8 @@ RTCBounds local_bounds(const LocalFrame& frame, const Box& box) {
 
 }  // namespace
 
-struct BoxTree::Data {
-    explicit Data(const std::string& isa) : device(isa) {}
-    ~Data() {
-        if (scene) rtcReleaseScene(scene);
-    }
-    Data(const Data&) = delete;
-    Data& operator=(const Data&) = delete;
-
-    EmbreeDevice device;
-    RTCScene scene = nullptr;  // null: there are no boxes
+struct BoxTree::Data : EmbreeTree {
+    using EmbreeTree::EmbreeTree;
     LocalFrame frame;
 };
 

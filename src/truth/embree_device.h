@@ -36,6 +36,19 @@ class EmbreeDevice {
     static void on_error(void* self, RTCError code, const char* message);
 };
 
+/// A device with one scene, both released at the end.
+struct EmbreeTree {
+    explicit EmbreeTree(const std::string& isa) : device(isa) {}
+    ~EmbreeTree() {
+        if (scene) rtcReleaseScene(scene);
+    }
+    EmbreeTree(const EmbreeTree&) = delete;
+    EmbreeTree& operator=(const EmbreeTree&) = delete;
+
+    EmbreeDevice device;
+    RTCScene scene = nullptr;  // null: there is nothing to meet
+};
+
 /// What a query carries to its callbacks: derive from it and hand it to intersect_one.
 #if TRILENS_EMBREE_MAJOR >= 4
 using EmbreeContext = RTCRayQueryContext;

@@ -93,16 +93,8 @@ std::vector<RayPacket> make_ray_packets(const RayMesh& mesh, const FacetSamples&
     return packets;
 }
 
-struct PacketTracer::Data {
-    explicit Data(const std::string& isa) : device(isa) {}
-    ~Data() {
-        if (scene) rtcReleaseScene(scene);
-    }
-    Data(const Data&) = delete;
-    Data& operator=(const Data&) = delete;
-
-    EmbreeDevice device;
-    RTCScene scene = nullptr;
+struct PacketTracer::Data : EmbreeTree {
+    using EmbreeTree::EmbreeTree;
 };
 
 void PacketTracer::attach_triangles(const TriangleScene& scene, bool best_tree, Data* data) {
