@@ -9,7 +9,7 @@
 
 namespace trilens {
 
-void check_writable(const std::string& file) {
+void check_writable(const std::string& file, const std::vector<std::string>& inputs) {
     const std::filesystem::path path(file);
     const std::filesystem::path folder =
         path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -18,6 +18,11 @@ void check_writable(const std::string& file) {
     if (!std::filesystem::is_directory(folder, code))
         throw OutputError(file, "there is no folder " + folder.string());
     if (std::filesystem::is_directory(path, code)) throw OutputError(file, "is a folder");
+    if (std::filesystem::exists(path, code) && !std::filesystem::is_regular_file(path, code))
+        throw OutputError(file, "is a device or a pipe, not a file");
+    for (const std::string& input : inputs)
+        if (std::filesystem::equivalent(path, input, code))
+            throw UsageError("the output " + file + " is the input " + input);
     if (access(folder.c_str(), W_OK) != 0)
         throw OutputError(file, "the folder " + folder.string() + " is not writable");
 }

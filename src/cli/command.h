@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "cli/console.h"
@@ -18,6 +19,7 @@ namespace trilens {
 struct Answer {
     std::string text;
     Json fields = Json::object();
+    std::vector<std::string> errors;  // for the JSON's `errors`: of jobs that could not run
     ExitCode code = ExitCode::kDone;
 };
 

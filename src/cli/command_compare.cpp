@@ -1,6 +1,8 @@
 // trilens compare: error metrics and a verdict.
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
 #include "cli/check_output.h"
 #include "cli/command.h"
@@ -135,8 +137,8 @@ Answer answer_of(const CompareCommand& command, const Comparison& comparison,
                                {"inf_ref", c.inf_ref}, {"inf_test", c.inf_test}, {"masked", c.masked}};
     answer.fields["metrics"]["RGB"] = metrics_json(comparison.metrics);
     answer.fields["seen"] = seen_json(total_seen(layers));
-    if (const SecondaryComparison* main = main_layer(layers, o.layer))
-        answer.fields["displacement_px"] = displacement_json(*main->displacement);
+    const SecondaryComparison* main = main_layer(layers, o.layer);
+    answer.fields["displacement_px"] = displacement_json(main ? *main->displacement : Displacement());
     for (const SecondaryComparison& layer : layers) {
         Json entry = Json::object();
         if (layer.seen) entry["seen"] = seen_json(*layer.seen);
@@ -159,7 +161,9 @@ Answer answer_of(const CompareCommand& command, const Comparison& comparison,
 }
 
 Answer run(CompareCommand command, Console& console) {
-    if (!command.diff.empty()) check_writable(command.diff);
+    if (!command.diff.empty() && std::filesystem::path(command.diff).extension() != ".exr")
+        throw UsageError("a difference is written as .exr, not \"" + command.diff + "\"");
+    if (!command.diff.empty()) check_writable(command.diff, {command.reference, command.test});
     if (command.mask >= 0) command.options.mask_object = static_cast<Id>(command.mask);
     const Image reference = read_exr(command.reference), test = read_exr(command.test);
     const Comparison comparison = compare(reference, test, command.options);
@@ -183,9 +187,26 @@ Answer run(CompareCommand command, Console& console) {
     return answer_of(command, comparison, layers);
 }
 
+/// A number from `least` to `most`; NaN is none.
+CLI::Validator number_between(double least, double most, const std::string& name) {
+    return CLI::Validator(
+        [least, most](std::string& text) {
+            char* end = nullptr;
+            const double value = std::strtod(text.c_str(), &end);
+            const bool is_good = !text.empty() && *end == '\0' && value >= least && value <= most;
+            return is_good ? std::string()
+                           : "\"" + text + "\" is not a number from " + Json(least).dump() + " to " +
+                                 (std::isinf(most) ? "inf" : Json(most).dump());
+        },
+        name);
+}
+
 }  // namespace
 
 void register_compare(const CommandRegistry& registry) {
+    const CLI::Validator tolerance = number_between(0, INFINITY, "NONNEGATIVE"),
+                         percentage = number_between(0, 100, "0..100"),
+                         radius = number_between(1, 4096, "1..4096");
     auto command = std::make_shared<CompareCommand>();
     CLI::App* app = registry.app->add_subcommand(
         "compare", "error metrics between two images and a verdict: exit 0 within tolerance, 1 beyond");
@@ -198,19 +219,17 @@ void register_compare(const CommandRegistry& registry) {
     app->add_option("--mask-object", command->mask, "only pixels whose optic.object is this id")
         ->check(CLI::Range(0LL, 4294967294LL))
         ->type_name("ID");
-    app->add_option("--fail", o.fail, "difference beyond which a pixel fails")->check(CLI::NonNegativeNumber);
-    app->add_option("--failpercent", o.failpercent, "percentage of pixels that may fail")
-        ->check(CLI::Range(0.0, 100.0));
-    app->add_option("--hardfail", o.hardfail, "difference that no pixel may exceed")
-        ->check(CLI::NonNegativeNumber);
+    app->add_option("--fail", o.fail, "difference beyond which a pixel fails")->check(tolerance);
+    app->add_option("--failpercent", o.failpercent, "percentage of pixels that may fail")->check(percentage);
+    app->add_option("--hardfail", o.hardfail, "difference that no pixel may exceed")->check(tolerance);
     app->add_option("--failrelative", o.failrelative, "a failing pixel must also differ by this share")
-        ->check(CLI::NonNegativeNumber);
-    app->add_option("--allowfailures", o.allowfailures, "so many pixels may differ by any amount");
-    app->add_option("--warn", o.warn, "difference worth a warning")->check(CLI::NonNegativeNumber);
-    app->add_option("--warnpercent", o.warnpercent, "percentage of pixels that may be so")
-        ->check(CLI::Range(0.0, 100.0));
+        ->check(tolerance);
+    app->add_option("--allowfailures", o.allowfailures, "so many pixels may differ by any amount")
+        ->check(CLI::Range(0LL, 1LL << 53));
+    app->add_option("--warn", o.warn, "difference worth a warning")->check(tolerance);
+    app->add_option("--warnpercent", o.warnpercent, "percentage of pixels that may be so")->check(percentage);
     app->add_option("--radius", command->radius, "how far displaced points are looked for, pixels")
-        ->check(CLI::Range(1.0, 4096.0));
+        ->check(radius);
     registry.add(app, "compare", [command](Console& console) { return run(*command, console); });
 }
 

@@ -1,5 +1,6 @@
 // trilens project: where world points appear.
 #include <CLI/CLI.hpp>
+#include <cctype>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/project.h"
 #include "cli/scene_options.h"
+#include "scene/polygons.h"
 
 namespace trilens {
 namespace {
@@ -31,12 +33,29 @@ std::optional<Vec3> parse_point(const std::string& text) {
         skip_blanks();
         if (at < end && *at == '+') ++at;
         const auto [next, error] = std::from_chars(at, end, point[k]);
-        if (error != std::errc() || !std::isfinite(point[k])) return std::nullopt;
+        if (error != std::errc() || !(std::abs(point[k]) <= kLargestCoordinate)) return std::nullopt;
         at = next;
         skip_blanks();
         if (k < 2 && (at >= end || *at++ != ',')) return std::nullopt;
     }
     return at == end ? std::optional(point) : std::nullopt;
+}
+
+/// Whether a line that is no point holds only words.
+bool is_header(const std::string& line) {
+    std::string field;
+    for (const char letter : line + ",") {
+        if (letter != ',') {
+            if (!std::isspace(static_cast<unsigned char>(letter)) && letter != '"' && letter != '\'')
+                field += letter;
+            continue;
+        }
+        double value = 0;
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+        if (!field.empty() && end == field.data() + field.size()) return false;
+        field.clear();
+    }
+    return true;
 }
 
 std::vector<Vec3> read_points(const std::string& file) {
@@ -45,12 +64,14 @@ std::vector<Vec3> read_points(const std::string& file) {
     std::vector<Vec3> points;
     std::string line;
     for (std::size_t number = 1; std::getline(in, line); ++number) {
+        if (number == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);  // a byte order mark
         if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
         const std::optional<Vec3> point = parse_point(line);
         if (point)
             points.push_back(*point);
-        else if (number > 1 || line.find_first_of("0123456789") == 0)
-            throw InputError(file, "line " + std::to_string(number), "needs x,y,z, not \"" + line + "\"");
+        else if (number > 1 || !is_header(line))
+            throw InputError(file, "line " + std::to_string(number),
+                             "needs x,y,z within 1e30, not \"" + line + "\"");
     }
     if (in.bad()) throw InputError(file, "", "cannot be read");
     if (points.empty()) throw InputError(file, "", "holds no points");
@@ -64,7 +85,7 @@ std::vector<Vec3> wanted_points(const ProjectOptions& options) {
     std::vector<Vec3> points;
     for (const std::string& text : options.point) {
         const std::optional<Vec3> point = parse_point(text);
-        if (!point) throw UsageError("--point needs X,Y,Z, not \"" + text + "\"");
+        if (!point) throw UsageError("--point needs X,Y,Z within 1e30, not \"" + text + "\"");
         points.push_back(*point);
     }
     return points;

@@ -103,7 +103,7 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
     OutputKind kind = OutputKind::kExr;
     if (!options.output.empty()) {
         kind = output_kind(options, command);
-        check_writable(options.output);
+        check_writable(options.output, {options.scene.scene});
     }
     if (kind == OutputKind::kSvg && engine.engine == Engine::kClassic)
         throw UsageError("an .svg is drawn by the exact engine; leave out --engine classic");

@@ -123,7 +123,8 @@ void register_scene(const CommandRegistry& registry) {
 
     command = scene->add_subcommand("schema", "print the JSON Schema of scene files");
     registry.add(command, "scene", [](Console&) {
-        return Answer{scene_schema(), {{"schema_document", Json::parse(scene_schema())}}, ExitCode::kDone};
+        return Answer{
+            scene_schema(), {{"schema_document", Json::parse(scene_schema())}}, {}, ExitCode::kDone};
     });
 
     auto name = std::make_shared<std::string>();

@@ -1,12 +1,15 @@
 // trilens sweep: error against resolution, for one scene or for a gallery of scenes.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "cli/command.h"
 #include "cli/gallery.h"
 #include "cli/picture.h"
 #include "cli/scene_options.h"
 #include "cli/version.h"
+#include "cli/world_digest.h"
 #include "image/image_io.h"
 #include "surfaces/surfaces.h"
 #include "sweep/sweep.h"
@@ -103,8 +106,8 @@ std::unique_ptr<SweepJob> make_job(const SweepOptions& options, const std::strin
         return draw(*raw, Engine::kExact, camera, console);
     };
     job->callbacks.trace = [raw, camera, truth, &console] { return draw(*raw, truth, camera, console); };
-    job->callbacks.job_key =
-        std::string(kVersion) + "\n" + job->params.subject.camera + "\n" + job->world->scene.resolved;
+    job->callbacks.job_key = std::string(kVersion) + "\n" + job->params.subject.camera + "\n" +
+                             job->world->scene.resolved + "\n" + world_digest(*job->world);
     job->callbacks.truth_key = job->callbacks.job_key + "\n" + options.truth;
     return job;
 }
@@ -161,15 +164,21 @@ std::string summary_text(const SweepSummary& summary) {
 
 Answer answer_of(const std::vector<SweepSummary>& summaries, const std::string& report) {
     Answer answer;
-    answer.fields["report"] = report;
+    answer.fields["report"] = report.empty() ? Json(nullptr) : Json(report);
     answer.fields["sweeps"] = Json::array();
     for (const SweepSummary& summary : summaries) {
         answer.text += summary_text(summary);
         answer.fields["sweeps"].push_back(summary_json(summary));
-        if (summary.count(RunState::kFailed) > 0) answer.code = ExitCode::kSomeJobsFailed;
+        for (const RunRecord& run : summary.runs) {
+            if (run.state != RunState::kFailed) continue;
+            answer.code = ExitCode::kSomeJobsFailed;
+            answer.text += "  n = " + std::to_string(run.plan.n) + " failed: " + run.error + "\n";
+            answer.errors.push_back(summary.manifest.subject.title + ", n = " + std::to_string(run.plan.n) +
+                                    ": " + run.error);
+        }
     }
     if (summaries.size() == 1) answer.fields["fits"] = answer.fields["sweeps"][0]["fits"];
-    answer.text += report + "\n";
+    if (!report.empty()) answer.text += report + "\n";
     return answer;
 }
 
@@ -178,19 +187,35 @@ std::string folder_of(const SweepOptions& options, const std::string& scene) {
     return options.scenes.size() == 1 ? options.output : options.output + "/" + scene_name(scene);
 }
 
+/// Two scenes of one name would write over each other.
+void require_distinct_names(const std::vector<std::string>& scenes) {
+    std::map<std::string, std::string> scene_of_name;
+    for (const std::string& scene : scenes) {
+        const auto [known, is_new] = scene_of_name.emplace(scene_name(scene), scene);
+        if (!is_new)
+            throw UsageError("the scenes " + known->second + " and " + scene +
+                             " have one name, and so one folder; sweep them into different ones");
+    }
+}
+
 Answer run(const SweepOptions& options, Console& console) {
+    require_distinct_names(options.scenes);
     std::vector<SweepSummary> summaries;
+    bool is_whole = true;
     for (const std::string& scene : options.scenes) {
         const std::unique_ptr<SweepJob> job = make_job(options, scene, folder_of(options, scene), console);
         summaries.push_back(run_sweep(job->params, job->callbacks));
+        is_whole = is_whole && job->params.shard.count == 1;
     }
-    std::string report = options.output + "/report.html";
-    if (summaries.size() > 1) write_sweep_gallery(options.output, summaries);
+    // A shard sums up nothing: `sweep report` does once all are done.
+    const std::string report = is_whole ? options.output + "/report.html" : "";
+    if (is_whole && summaries.size() > 1) write_sweep_gallery(options.output, summaries);
     return answer_of(summaries, report);
 }
 
 Answer plan(const SweepOptions& options, Console& console) {
     Answer answer;
+    require_distinct_names(options.scenes);
     for (const std::string& scene : options.scenes) {
         const std::unique_ptr<SweepJob> job = make_job(options, scene, folder_of(options, scene), console);
         plan_sweep(job->params, job->callbacks);
@@ -198,6 +223,19 @@ Answer plan(const SweepOptions& options, Console& console) {
         answer.fields["plans"].push_back(job->params.folder + "/plan.jsonl");
     }
     return answer;
+}
+
+/// The folder itself, or those below it where a sweep of several scenes made it; in the order of their names.
+std::vector<std::string> sweeps_in(const std::string& folder) {
+    namespace fs = std::filesystem;
+    std::error_code none;
+    std::vector<std::string> found;
+    if (!fs::exists(folder + "/manifest.json", none))
+        for (fs::directory_iterator entry(folder, none), end; !none && entry != end; entry.increment(none))
+            if (fs::exists(entry->path() / "manifest.json", none)) found.push_back(entry->path().string());
+    std::sort(found.begin(), found.end());
+    // Nothing there: the sweep's own message says so.
+    return found.empty() ? std::vector<std::string>{folder} : found;
 }
 
 void add_sweep_options(CLI::App& command, SweepOptions& options) {
@@ -231,12 +269,20 @@ void register_sweep(const CommandRegistry& registry) {
     auto folder = std::make_shared<std::string>();
     command = sweep->add_subcommand("status", "what is done of a sweep");
     command->add_option("DIR", *folder, "the sweep's folder")->required();
-    registry.add(command, "sweep", [folder](Console&) { return answer_of({load_sweep(*folder)}, *folder); });
+    registry.add(command, "sweep", [folder](Console&) {
+        std::vector<SweepSummary> summaries;
+        for (const std::string& one : sweeps_in(*folder)) summaries.push_back(load_sweep(one));
+        return answer_of(summaries, *folder);
+    });
 
     command = sweep->add_subcommand("report", "sum up again: tables, fits, plots, page");
     command->add_option("DIR", *folder, "the sweep's folder")->required();
-    registry.add(command, "sweep",
-                 [folder](Console&) { return answer_of({report_sweep(*folder)}, *folder + "/report.html"); });
+    registry.add(command, "sweep", [folder](Console&) {
+        std::vector<SweepSummary> summaries;
+        for (const std::string& one : sweeps_in(*folder)) summaries.push_back(report_sweep(one));
+        if (summaries.size() > 1) write_sweep_gallery(*folder, summaries);
+        return answer_of(summaries, *folder + "/report.html");
+    });
 }
 
 }  // namespace trilens

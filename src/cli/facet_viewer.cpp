@@ -13,9 +13,6 @@
 namespace trilens {
 namespace {
 
-/// More facets than this over all optics are refused: they would not fit in memory.
-constexpr std::size_t kMaxFacets = 100'000'000;
-
 /// One optic, and where its facets begin in the visible scene.
 struct SeenOptic {
     OpticMeshes meshes;
@@ -130,15 +127,6 @@ void FacetViewer::operator()(const SampleGrid& grid, std::span<SampleView> views
         if (first[s].seen()) views[s].depth = first[s].t;
     }
     for (std::size_t i = 0; i < optics.size(); ++i) view_optic(i, grid, first, views);
-}
-
-void check_facet_count(const World& world) {
-    std::size_t total = 0;
-    for (const Optic& optic : world.optics) total += optic.facet_count();
-    if (total > kMaxFacets)
-        throw InputError(world.scene.file, "/meshes",
-                         "the optics have " + std::to_string(total) + " facets, more than " +
-                             std::to_string(kMaxFacets) + "; lower their resolution");
 }
 
 }  // namespace

@@ -1,10 +1,26 @@
 #include "cli/optic_meshes.h"
 
+#include "base/error.h"
 #include "reflect/reflection.h"
 #include "refract/refraction.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
+namespace {
+
+/// More facets than this over all optics are refused: they would not fit in memory.
+constexpr std::size_t kMaxFacets = 100'000'000;
+
+}  // namespace
+
+void check_facet_count(const World& world) {
+    std::size_t total = 0;
+    for (const Optic& optic : world.optics) total += optic.facet_count();
+    if (total > kMaxFacets)
+        throw InputError(world.scene.file, "/meshes",
+                         "the optics have " + std::to_string(total) + " facets, more than " +
+                             std::to_string(kMaxFacets) + "; lower their resolution");
+}
 
 OpticMeshes make_optic_meshes(const World& world, const Optic& optic, const LinearCamera& camera) {
     OpticMeshes meshes;

@@ -16,6 +16,9 @@ struct OpticMeshes {
     RayMesh reflect, refract;
 };
 
+/// Throws InputError where the optics together have too many facets to hold.
+void check_facet_count(const World& world);
+
 /// The optic's grid at its own resolution, seen by the camera.
 OpticMeshes make_optic_meshes(const World& world, const Optic& optic, const LinearCamera& camera);
 

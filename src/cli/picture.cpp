@@ -59,6 +59,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, Console&
     for (const Optic& optic : world.optics) facets += optic.facet_count();
     header["trilens:facets"] = std::to_string(facets);
     header["trilens:scene"] = world.scene.resolved;
+    header["trilens:folder"] = world.scene.folder;
     tell(world, request, picture, console);
     return picture;
 }

@@ -77,6 +77,7 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
             {LightPath::kDirect, kNone, camera_.mesh, std::make_unique<MeshPointImages>(camera_.mesh)});
         return;
     }
+    check_facet_count(world);
     for (Id i = 0; i < world.optics.size(); ++i) add_optic(i);
 }
 
@@ -111,7 +112,9 @@ bool PointProjector::is_free(const Vec3& from, const Vec3& to) const {
 
 void PointProjector::add_direct(const Vec3& point, std::vector<WorldImage>& images) const {
     const Vec3 screen = screen_from_world(*camera_.linear, point);
-    if (!(screen.z > 0)) return;
+    // Nor has the eye itself an image, which rounding may put in front of it.
+    const double depth = kFreeShare * kFreeShare * (length(camera_.linear->eye) + length(point));
+    if (!(screen.z > (camera_.linear->parallel ? 0 : depth))) return;
     WorldImage image;
     image.pixel = Vec2(screen.x, screen.y) / screen.z;
     image.t = screen.z;

@@ -68,6 +68,21 @@ void add_common(CLI::App& command, CommonOptions& common) {
 std::vector<std::string> spelled_out(int argc, const char* const* argv) {
     std::vector<std::string> words;
     for (int i = 1; i < argc; ++i) words.push_back(std::string(argv[i]) == "--json" ? "--json=-" : argv[i]);
+
+    // Common options may stand before the command too; CLI11 wants them behind it.
+    std::size_t command = 0;
+    while (command < words.size() && words[command].rfind('-', 0) == 0) {
+        const bool takes_next = words[command] == "-t" || words[command] == "--threads" ||
+                                words[command] == "--progress" || words[command] == "--color";
+        command += takes_next ? 2 : 1;
+    }
+    const bool asks_of_program = std::any_of(
+        words.begin(), words.begin() + static_cast<std::ptrdiff_t>(std::min(command, words.size())),
+        [](const std::string& word) { return word == "-h" || word == "--help" || word == "--version"; });
+    if (asks_of_program || command >= words.size()) return words;
+    const std::vector<std::string> first(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(command));
+    words.erase(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(command));
+    words.insert(words.end(), first.begin(), first.end());
     return words;
 }
 
@@ -97,6 +112,7 @@ void give_answer(const Chosen& chosen, const CommonOptions& common, const Consol
                  const Answer& answer) {
     if (common.json.empty()) return print(answer.text);
     Json object = answer_object(chosen.name, answer.code, console);
+    object["errors"] = answer.errors;
     object.update(answer.fields);
     if (common.json == "-") return print(object.dump(2));
     replace_text_file(common.json, object.dump(2) + "\n");
@@ -190,7 +206,8 @@ int run_command_line(int argc, const char* const* argv) {
         std::string json = common.json;
         for (const std::string& word : words)
             if (word.rfind("--json=", 0) == 0) json = word.substr(7);
-        return fail(words.empty() ? "help" : words[0], json, console, usage_error(app, complaint, words));
+        return fail(words.empty() || words[0][0] == '-' ? "help" : words[0], json, console,
+                    usage_error(app, complaint, words));
     }
 
     common.console.wants_json = !common.json.empty();

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 
 #include "base/error.h"
 #include "cli/json.h"
@@ -31,6 +32,7 @@ std::vector<SceneOverride> scene_overrides(const SceneOptions& options) {
     // Options that have a place in the file are overrides too, so that the resolved scene holds them.
     if (!options.size.empty()) {
         const std::vector<int> size = parse_integers(options.size, 'x', 2, "--size");
+        if (size[0] < 1 || size[1] < 1) throw UsageError("--size " + options.size + " is no film");
         overrides.push_back({"/film/width", std::to_string(size[0])});
         overrides.push_back({"/film/height", std::to_string(size[1])});
     }
@@ -52,6 +54,26 @@ void set_resolution(Scene& scene, int resolution) {
 
 bool is_image(const std::string& file) {
     return file.size() > 4 && file.compare(file.size() - 4, 4, ".exr") == 0;
+}
+
+/// The scene that an image carries. Its camera is the scene's own; its files are looked for where the scene's
+/// were, or beside the image where that folder is gone.
+Scene load_scene_of_image(const std::string& file, std::span<const SceneOverride> overrides) {
+    const Image image = read_exr(file);
+    const auto text = [&](const char* name) {
+        const auto found = image.metadata.find(name);
+        return found == image.metadata.end() ? std::string() : found->second;
+    };
+    const std::string json = text("trilens:scene"), folder = text("trilens:folder"),
+                      camera = text("trilens:camera");
+    if (json.empty()) throw InputError(file, "", "the image carries no scene (trilens:scene)");
+    std::error_code none;
+    const bool has_folder = !folder.empty() && std::filesystem::is_directory(folder, none);
+    Scene scene = load_scene_text(json, has_folder ? SceneSource(file, folder) : SceneSource(file), overrides,
+                                  image_reader());
+    for (std::size_t c = 0; c < scene.cameras.size(); ++c)
+        if (scene.cameras[c].name == camera) scene.own_camera = c;
+    return scene;
 }
 
 }  // namespace
@@ -111,11 +133,7 @@ Scene load_scene_with(const SceneOptions& options, Console& console) {
     const std::vector<SceneOverride> overrides = scene_overrides(options);
     Scene scene;
     if (is_image(options.scene)) {
-        const Image image = read_exr(options.scene);
-        const auto text = image.metadata.find("trilens:scene");
-        if (text == image.metadata.end())
-            throw InputError(options.scene, "", "the image carries no scene (trilens:scene)");
-        scene = load_scene_text(text->second, options.scene, overrides, image_reader());
+        scene = load_scene_of_image(options.scene, overrides);
     } else {
         scene = load_scene(options.scene, overrides, image_reader());
     }
@@ -129,7 +147,7 @@ std::unique_ptr<World> load_world(const SceneOptions& options, Console& console)
 }
 
 std::size_t chosen_camera(const SceneOptions& options, const Scene& scene) {
-    if (options.camera.empty()) return 0;
+    if (options.camera.empty()) return scene.own_camera;
     std::vector<std::string> names;
     for (std::size_t c = 0; c < scene.cameras.size(); ++c) {
         if (scene.cameras[c].name == options.camera) return c;

@@ -16,8 +16,8 @@ class App;
 namespace trilens {
 
 struct SceneOptions {
-    std::string scene;  // a scene file, or an image that carries its scene
-    std::string camera;
+    std::string scene;             // a scene file, or an image that carries its scene
+    std::string camera;            // empty: the image's own, or the first
     int resolution = 0;            // 0: as the scene says
     std::string size;              // "640x480"; empty: as the scene says
     int spp = 0;                   // 0: as the scene says

@@ -33,9 +33,28 @@ int write_all(const std::string& file, std::span<const unsigned char> bytes) {
     return failed;
 }
 
+/// Where writing to `file` ends: behind a symbolic link, the file that it names.
+std::string output_target(const std::string& file) {
+    namespace fs = std::filesystem;
+    constexpr int kMostLinks = 40;  // as the system has it; a longer chain is a circle
+    fs::path target = file;
+    std::error_code error;
+    for (int links = 0; fs::is_symlink(target, error); ++links) {
+        if (links == kMostLinks) throw OutputError(file, "cannot be written: its links form a circle");
+        const fs::path next = fs::read_symlink(target, error);
+        if (error) throw OutputError(file, "cannot be written: " + error.message());
+        target = target.parent_path() / next;
+    }
+    const fs::file_status status = fs::status(target, error);
+    if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
+        throw OutputError(file, "is a device or a pipe, not a file");
+    return target.string();
+}
+
 }  // namespace
 
-void replace_file(const std::string& file, std::span<const unsigned char> bytes) {
+void replace_file(const std::string& named, std::span<const unsigned char> bytes) {
+    const std::string file = output_target(named);
     const std::string temporary = temporary_name(file);
     const int write_error = write_all(temporary, bytes);
     std::error_code rename_error;

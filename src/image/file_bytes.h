@@ -7,7 +7,9 @@
 namespace trilens {
 
 /// Writes `bytes` to a new file in the same folder, then renames it to `file`: a reader sees the old file or
-/// the whole new one. Leaves nothing behind on failure. Throws OutputError with the system's reason.
+/// the whole new one. A symbolic link stays, the file that it names is replaced. Leaves nothing behind on
+/// failure. Throws OutputError with the system's reason, and for devices and pipes, which renaming would
+/// destroy.
 void replace_file(const std::string& file, std::span<const unsigned char> bytes);
 
 /// The size of a file that can be read. Throws InputError: missing, a folder, not permitted.

@@ -100,6 +100,8 @@ std::shared_ptr<const Texture> read_open(OIIO::ImageInput& in, const std::string
                                   static_cast<std::size_t>(spec.nchannels));
         if (!in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, values.data()) || in.has_error())
             throw InputError(name, "", "is truncated or damaged: " + one_line(in.geterror()));
+        for (const float value : values)
+            if (!std::isfinite(value)) throw InputError(name, "", "holds a value that is not finite");
         return texture_of(spec, values);
     } catch (const std::bad_alloc&) {
         throw InputError(name, "", "needs more memory than there is");

@@ -16,6 +16,8 @@ std::string read_required_file(const std::string& file) {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
         throw InputError(file, "", "is a directory, not a file");
+    if (std::filesystem::is_character_file(file, ignored) || std::filesystem::is_block_file(file, ignored))
+        throw InputError(file, "", "is a device, not a file");
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw InputError(file, "", std::string("cannot be opened: ") + std::strerror(errno));

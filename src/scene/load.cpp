@@ -1,6 +1,7 @@
 // From a scene file to a Scene: parse, override, check against the schema, then read part by part.
 #include "scene/load.h"
 
+#include <filesystem>
 #include <set>
 
 #include "scene/files.h"
@@ -57,16 +58,22 @@ void read_meshes(const Node& root, Reading& reading) {
 
 }  // namespace
 
-Scene load_scene_text(const std::string& text, const std::string& file,
+SceneSource::SceneSource(std::string named)
+    : file(std::move(named)), folder(std::filesystem::path(file).parent_path().string()) {}
+
+Scene load_scene_text(const std::string& text, const SceneSource& source,
                       std::span<const SceneOverride> overrides, const TextureReader& textures) {
+    const std::string& file = source.file;
     Json json = parse_json(text, file);
     apply_overrides(json, overrides, file);
     if (const auto found = find_problem(json, scene_schema_json()))
         fail_at(file, found->place, found->message);
 
-    Reading reading{file, textures, {}, {}};
+    Reading reading{file, source.folder, textures, {}, {}};
     const Node root{json, "", file};
     reading.scene.file = file;
+    reading.scene.folder =
+        std::filesystem::absolute(source.folder.empty() ? "." : source.folder).lexically_normal().string();
     reading.scene.resolved = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     reading.scene.film = read_film(root);
     read_cameras(root, reading);
@@ -82,7 +89,7 @@ Scene load_scene_text(const std::string& text, const std::string& file,
 
 Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides,
                  const TextureReader& textures) {
-    return load_scene_text(read_required_file(file), file, overrides, textures);
+    return load_scene_text(read_required_file(file), SceneSource(file), overrides, textures);
 }
 
 }  // namespace trilens

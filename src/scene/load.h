@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "scene/scene.h"
 
@@ -32,9 +33,18 @@ struct SceneOverride {
 Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides,
                  const TextureReader& textures);
 
-/// The same from text in memory, as an image's header holds it: `file` stands in messages, and its folder is
-/// where relative paths start; it need not exist.
-Scene load_scene_text(const std::string& text, const std::string& file,
+/// Where a scene's text comes from.
+struct SceneSource {
+    SceneSource(std::string named);                               // relative paths start at the file's folder
+    SceneSource(std::string named, std::string paths_start_here)  // or somewhere else
+        : file(std::move(named)), folder(std::move(paths_start_here)) {}
+
+    std::string file;    // stands in messages; need not exist
+    std::string folder;  // may be empty: where the program runs
+};
+
+/// The same from text in memory, as an image's header holds it.
+Scene load_scene_text(const std::string& text, const SceneSource& source,
                       std::span<const SceneOverride> overrides, const TextureReader& textures);
 
 /// The JSON Schema (draft 7) of a scene file, as text.

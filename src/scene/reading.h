@@ -16,6 +16,7 @@ namespace trilens {
 /// One scene being read.
 struct Reading {
     const std::string& file;
+    const std::string& folder;  // where its relative paths start
     const TextureReader& textures;
     Scene scene;
     std::map<std::string, std::shared_ptr<const Texture>> texture_of_path;
@@ -24,7 +25,7 @@ struct Reading {
 
     /// A path as the scene file writes it, relative to that file.
     std::string resolve(const std::string& path) const {
-        return (std::filesystem::path(file).parent_path() / path).string();
+        return (std::filesystem::path(folder) / path).string();
     }
     void warn(const std::string& place, const std::string& message) {
         scene.warnings.push_back(file + ": " + one_line((place.empty() ? "" : place + ": ") + message));

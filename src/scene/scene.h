@@ -78,9 +78,11 @@ struct RenderSettings {
 
 struct Scene {
     std::string file;      // where it came from, for messages
+    std::string folder;    // absolute: where its relative paths start
     std::string resolved;  // the scene as JSON after --set, one line: goes into image headers
     Film film;
     std::vector<CameraDescription> cameras;  // at least one
+    std::size_t own_camera = 0;              // used where none is asked for
     Background background;
     std::vector<Material> materials;
     std::vector<Mesh> meshes;

@@ -12,7 +12,7 @@
 namespace trilens {
 namespace {
 
-constexpr int kLargestValue = 65536;  // N x N facets per cage face would no longer have 32-bit ids above it
+constexpr int kLargestValue = 1024;  // as everywhere: finer grids of a cage would not fit in memory
 constexpr std::size_t kMostValues = 1000;
 
 [[noreturn]] void refuse_axis(const std::string& text, const std::string& why) {
@@ -51,7 +51,7 @@ void append_range(const std::string& whole, std::string_view item, std::size_t d
     const int step = axis_value(whole, item.substr(colon + 2));
     if (kind != 'x' && kind != '+') refuse_axis(whole, "a step is xK or +K");
     if (kind == 'x' && step < 2) refuse_axis(whole, "a factor is at least 2");
-    // 65536^2 fits into 64 bits, so the product is safe.
+    // 1024^2 fits into 64 bits, so the product is safe.
     for (long long value = first; value <= last; value = kind == 'x' ? value * step : value + step) {
         values.push_back(static_cast<int>(value));
         if (values.size() > kMostValues)

@@ -157,6 +157,7 @@ TEST_CASE("a command line that makes no sense: exit 2 and the nearest word", "[c
     check_one_message(run_trilens("render " + scene + out + " -n 0"), 2, {});
     check_one_message(run_trilens("render " + scene + out + " -n many"), 2, {});
     check_one_message(run_trilens("render " + scene + out + " --size 640"), 2, {"--size"});
+    check_one_message(run_trilens("render " + scene + out + " --size 0x0"), 2, {"--size"});
     check_one_message(run_trilens("render " + scene + out + " --crop 0,0,99,99"), 2, {"--crop"});
     check_one_message(run_trilens("render " + scene + out + " --pixel 32,0"), 2, {"--pixel"});
     check_one_message(run_trilens("render " + scene + out + " --camera mian"), 2, {"mian", "main"});
@@ -166,6 +167,13 @@ TEST_CASE("a command line that makes no sense: exit 2 and the nearest word", "[c
     check_one_message(run_trilens("render " + scene + out + " --set film=3"), 2, {"--set"});
     check_one_message(run_trilens("project " + scene + " --point 1,2"), 2, {"--point"});
     check_one_message(run_trilens("project " + scene), 2, {"--point"});
+    check_one_message(run_trilens("project " + scene + " --point 1e308,0,0"), 2, {"--point"});
+    for (const char* tolerance :
+         {"--fail nan", "--hardfail nan", "--warn nan", "--failrelative -1", "--failpercent 101",
+          "--allowfailures -1", "--allowfailures 99999999999999999999", "--radius nan"})
+        check_one_message(run_trilens(std::string("compare a.exr b.exr ") + tolerance), 2, {"--"});
+    check_one_message(run_trilens("compare a.exr b.exr -o diff.png"), 2, {"diff.png"});
+    check_one_message(run_trilens("sweep run " + scene + " --over resolution=2000" + out), 2, {"2000"});
     check_one_message(run_trilens(""), 2, {"command"});
     CHECK(files_in(folder) == 1);
 }
@@ -177,7 +185,6 @@ TEST_CASE("--set and --size reach the checks of the scene: exit 3", "[cli]") {
     check_one_message(run_trilens("render " + scene + out + " --set /film/widht=3"), 3, {"/film", "widht"});
     check_one_message(run_trilens("render " + scene + out + " --set /meshes/9/resolution=3"), 3,
                       {"/meshes/9"});
-    check_one_message(run_trilens("render " + scene + out + " --size 0x0"), 3, {"/film"});
     check_one_message(run_trilens("render " + scene + out + " --size 99999999x1"), 3, {"/film/width"});
     CHECK(files_in(folder) == 1);
 }
