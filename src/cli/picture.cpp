@@ -1,8 +1,12 @@
 #include "cli/picture.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 
+#include "base/error.h"
 #include "cli/version.h"
 
 namespace trilens {
@@ -34,9 +38,24 @@ void tell(const World& world, const PictureRequest& request, const Picture& pict
                      "normal); that path is black there");
 }
 
+/// Refuses a film whose layers alone would fill the machine's memory: the system would end the program
+/// without a word.
+void check_film_fits(const World& world, const LayerRequest& window) {
+    constexpr double kBytesPerPixel = 2 * 34 * 4;  // up to 34 channels, once more while they are encoded
+    const double needed = kBytesPerPixel * (window.x1 - window.x0) * (window.y1 - window.y0);
+    const double memory =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed < memory) return;
+    char text[200];
+    std::snprintf(text, sizeof text, "an image of %d x %d pixels needs about %.0f GiB; this machine has %.0f",
+                  window.x1 - window.x0, window.y1 - window.y0, needed / (1 << 30), memory / (1 << 30));
+    throw InputError(world.scene.file, "/film", text);
+}
+
 }  // namespace
 
 Picture draw_picture(const World& world, const PictureRequest& request, Console& console) {
+    check_film_fits(world, request.layers);
     Picture picture;
     auto start = std::chrono::steady_clock::now();
     const Viewer viewer = make_viewer(world, request.camera, request.engine, console.warner());

@@ -133,7 +133,7 @@ int fail(const std::string& command, const std::string& json, Console& console, 
             else
                 replace_text_file(json, object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
         } catch (const Error& second) {
-            console.error(second.what());
+            if (std::string(second.what()) != error.what()) console.error(second.what());
         }
     }
     return code;

@@ -45,6 +45,22 @@ void check_constant(const Texture& texture, std::array<double, 3> rgb, double to
 
 }  // namespace
 
+TEST_CASE("a picture with a NaN or an infinity is refused by name", "[image]") {
+    const std::string file = trilens_test::scratch_dir("odd_texture") + "/sky.exr";
+    for (const float odd :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        Image image;
+        image.width = image.data_width = image.height = image.data_height = 4;
+        for (const char* name : {"R", "G", "B"})
+            image.channels.push_back({name, std::vector<float>(16, 0.5f)});
+        write_exr(file, image);
+        CHECK(read_texture(file)->width == 4);
+        image.channels[1].floats()[3] = odd;
+        write_exr(file, image);
+        CHECK_THROWS_WITH(read_texture(file), file + ": holds a value that is not finite");
+    }
+}
+
 TEST_CASE("a PNG read back is the linear picture to half a step", "[image]") {
     const std::string folder = trilens_test::scratch_dir("png");
     std::vector<float> rgb;
