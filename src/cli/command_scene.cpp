@@ -1,7 +1,9 @@
 // trilens scene: validate, info, schema, example.
 #include <CLI/CLI.hpp>
 
+#include "cli/camera_rays.h"
 #include "cli/command.h"
+#include "cli/optic_meshes.h"
 #include "cli/scene_options.h"
 #include "scene/examples.h"
 #include "scene/info.h"
@@ -79,6 +81,9 @@ Answer info(const SceneOptions& options, Console& console) {
 /// Loading is not all: a cage may have no limit surface.
 Answer validate(const SceneOptions& options, Console& console) {
     const std::unique_ptr<World> world = load_world(options, console);
+    // What drawing would refuse.
+    make_camera_rays(world->scene, chosen_camera(options, world->scene));
+    check_facet_count(*world);
     Answer answer;
     answer.text = options.scene + ": valid, " + std::to_string(world->optics.size()) + " optics, " +
                   std::to_string(world->objects.size()) + " triangles";
