@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "projector/projector.h"
+#include "reflect/mirror.h"
 #include "timing.h"
 #include "truth/packet_tracer.h"
 
@@ -50,8 +51,7 @@ RayMesh mesh_over_film(const SampleGrid& grid, int cells, bool mirror) {
             const double x = 2.0 * i / cells - 1, y = 2.0 * j / cells - 1;
             const Vec3 eye(0, 0, -3), look = Vec3(x * 4 / 3, y, 3), bump(x * 4 / 3, y, 0.3 * (x * x + y * y));
             const Vec3 normal = normalize(Vec3(x * 0.6, y * 0.6, -1));
-            const Vec3 incident = bump - eye, out = incident - 2 * dot(incident, normal) * normal;
-            mesh.rays.push_back(mirror ? Ray{bump, out} : Ray{eye, look});
+            mesh.rays.push_back(mirror ? Ray{bump, mirrored(bump - eye, normal)} : Ray{eye, look});
             mesh.screen.push_back({(x + 1) / 2 * grid.width(), (y + 1) / 2 * grid.height(), 1});
         }
     }

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "image/file_bytes.h"
 
 namespace trilens {
 
@@ -18,8 +19,7 @@ void check_writable(const std::string& file, const std::vector<std::string>& inp
     if (!std::filesystem::is_directory(folder, code))
         throw OutputError(file, "there is no folder " + folder.string());
     if (std::filesystem::is_directory(path, code)) throw OutputError(file, "is a folder");
-    if (std::filesystem::exists(path, code) && !std::filesystem::is_regular_file(path, code))
-        throw OutputError(file, "is a device or a pipe, not a file");
+    output_target(file);
     for (const std::string& input : inputs)
         if (std::filesystem::equivalent(path, input, code))
             throw UsageError("the output " + file + " is the input " + input);

@@ -20,6 +20,10 @@ namespace {
 /// A segment is free if what it meets lies within this share of its ends.
 constexpr double kFreeShare = 1e-6;
 
+/// A point nearer to the eye's plane than this share of the coordinates has no direct image: rounding put it
+/// there.
+constexpr double kLeastDepth = 1e-12;
+
 /// A refined image further than this from its facet's image belongs to another one, in multiples of the
 /// facet's size on the screen.
 constexpr double kRefineReach = 2;
@@ -113,7 +117,7 @@ bool PointProjector::is_free(const Vec3& from, const Vec3& to) const {
 void PointProjector::add_direct(const Vec3& point, std::vector<WorldImage>& images) const {
     const Vec3 screen = screen_from_world(*camera_.linear, point);
     // Nor has the eye itself an image, which rounding may put in front of it.
-    const double depth = kFreeShare * kFreeShare * (length(camera_.linear->eye) + length(point));
+    const double depth = kLeastDepth * (length(camera_.linear->eye) + length(point));
     if (!(screen.z > (camera_.linear->parallel ? 0 : depth))) return;
     WorldImage image;
     image.pixel = Vec2(screen.x, screen.y) / screen.z;

@@ -68,21 +68,6 @@ void add_common(CLI::App& command, CommonOptions& common) {
 std::vector<std::string> spelled_out(int argc, const char* const* argv) {
     std::vector<std::string> words;
     for (int i = 1; i < argc; ++i) words.push_back(std::string(argv[i]) == "--json" ? "--json=-" : argv[i]);
-
-    // Common options may stand before the command too; CLI11 wants them behind it.
-    std::size_t command = 0;
-    while (command < words.size() && words[command].rfind('-', 0) == 0) {
-        const bool takes_next = words[command] == "-t" || words[command] == "--threads" ||
-                                words[command] == "--progress" || words[command] == "--color";
-        command += takes_next ? 2 : 1;
-    }
-    const bool asks_of_program = std::any_of(
-        words.begin(), words.begin() + static_cast<std::ptrdiff_t>(std::min(command, words.size())),
-        [](const std::string& word) { return word == "-h" || word == "--help" || word == "--version"; });
-    if (asks_of_program || command >= words.size()) return words;
-    const std::vector<std::string> first(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(command));
-    words.erase(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(command));
-    words.insert(words.end(), first.begin(), first.end());
     return words;
 }
 
@@ -182,6 +167,7 @@ int run_command_line(int argc, const char* const* argv) {
     app.set_version_flag("--version", std::string("trilens ") + kVersion);
     app.set_help_flag("-h,--help", "print this help");
     CommonOptions common;
+    add_common(app, common);
     Chosen chosen;
     CommandRegistry registry;
     registry.app = &app;

@@ -33,7 +33,8 @@ int write_all(const std::string& file, std::span<const unsigned char> bytes) {
     return failed;
 }
 
-/// Where writing to `file` ends: behind a symbolic link, the file that it names.
+}  // namespace
+
 std::string output_target(const std::string& file) {
     namespace fs = std::filesystem;
     constexpr int kMostLinks = 40;  // as the system has it; a longer chain is a circle
@@ -50,8 +51,6 @@ std::string output_target(const std::string& file) {
         throw OutputError(file, "is a device or a pipe, not a file");
     return target.string();
 }
-
-}  // namespace
 
 void replace_file(const std::string& named, std::span<const unsigned char> bytes) {
     const std::string file = output_target(named);

@@ -6,10 +6,13 @@
 
 namespace trilens {
 
-/// Writes `bytes` to a new file in the same folder, then renames it to `file`: a reader sees the old file or
-/// the whole new one. A symbolic link stays, the file that it names is replaced. Leaves nothing behind on
-/// failure. Throws OutputError with the system's reason, and for devices and pipes, which renaming would
-/// destroy.
+/// Where writing to `file` ends: behind symbolic links, the file that they name. Throws OutputError for
+/// devices and pipes, which a rename would destroy, and for links in a circle.
+std::string output_target(const std::string& file);
+
+/// Writes `bytes` to a new file beside output_target(file), then renames it: a reader sees the old file or
+/// the whole new one. Leaves nothing behind on failure. Throws OutputError with the system's reason, and as
+/// output_target does.
 void replace_file(const std::string& file, std::span<const unsigned char> bytes);
 
 /// The size of a file that can be read. Throws InputError: missing, a folder, not permitted.

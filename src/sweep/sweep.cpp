@@ -155,9 +155,9 @@ std::optional<DrawnRun> draw_run(const SweepCallbacks& callbacks, const Truth& t
 
 RunRecord do_run(const SweepParams& params, const SweepCallbacks& callbacks, const Truth& truth,
                  const PlannedRun& plan) {
+    clear_run(params.folder, plan);
     RunRecord run;
     run.plan = plan;
-    clear_run(params.folder, plan);
     const std::optional<DrawnRun> drawn = draw_run(callbacks, truth, params.subject, run);
     if (drawn) return store_run(params.folder, std::move(run), drawn->image, drawn->diff);
     store_failure(params.folder, run);

@@ -9,16 +9,13 @@
 #include "support/test.h"
 
 namespace trilens_test {
-namespace {
 
-std::string slurp(const std::string& file) {
+std::string bytes_of(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
     std::stringstream text;
     text << in.rdbuf();
     return text.str();
 }
-
-}  // namespace
 
 CommandRun run_trilens(const std::string& arguments) {
     static const std::string folder = scratch_dir("command_line");
@@ -26,7 +23,7 @@ CommandRun run_trilens(const std::string& arguments) {
     const std::string line =
         std::string(TRILENS_BUILD_DIR) + "/trilens " + arguments + " >" + out + " 2>" + err;
     const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + status, slurp(out), slurp(err)};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + status, bytes_of(out), bytes_of(err)};
 }
 
 std::string write_file(const std::string& folder, const std::string& name, const std::string& text) {

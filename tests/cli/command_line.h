@@ -13,6 +13,9 @@ struct CommandRun {
 /// `arguments` as one shell line behind the program's name.
 CommandRun run_trilens(const std::string& arguments);
 
+/// What a file holds; empty where it cannot be read.
+std::string bytes_of(const std::string& file);
+
 /// Writes a file and returns its path.
 std::string write_file(const std::string& folder, const std::string& name, const std::string& text);
 

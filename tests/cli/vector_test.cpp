@@ -16,13 +16,6 @@ using namespace trilens_test;
 
 namespace {
 
-std::string slurp(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
 /// An element's start tag: its name and attributes, or the end of a group.
 struct Tag {
     std::string name;
@@ -132,7 +125,7 @@ TEST_CASE("the outline in a flat mirror is that of a second camera behind it", "
     const std::string folder = scratch_dir("vector_flat");
     const std::string scene = write_file(folder, "scene.json", flat_mirror_scene());
     REQUIRE(run_trilens("render " + scene + " --wire -o " + folder + "/out.svg").exit_code == 0);
-    const std::string svg = slurp(folder + "/out.svg");
+    const std::string svg = bytes_of(folder + "/out.svg");
     CHECK(svg.find("Wire drawing") != std::string::npos);
     const std::vector<Arc> arcs = arcs_in(parse_tags(svg), "reflect");
 
@@ -169,7 +162,7 @@ TEST_CASE("outlines in a sphere lie where the picture's ids change", "[cli][vect
     const std::string scene = source_dir() + "/scenes/sphere.json";
     REQUIRE(run_trilens("render " + scene + " --size 320x240 -o " + folder + "/out.svg").exit_code == 0);
     REQUIRE(run_trilens("render " + scene + " --size 320x240 -o " + folder + "/out.exr").exit_code == 0);
-    const std::vector<Tag> tags = parse_tags(slurp(folder + "/out.svg"));
+    const std::vector<Tag> tags = parse_tags(bytes_of(folder + "/out.svg"));
     const Image image = read_exr(folder + "/out.exr");
     const std::vector<Id>&object = image.find("reflect.object")->ids(),
           &primitive = image.find("reflect.primitive")->ids();
@@ -198,7 +191,7 @@ TEST_CASE("a path's Bezier curves stay within the tolerance of its exact conics"
     const std::string scene = source_dir() + "/scenes/thesis/fig_4_1_2223.json";
     REQUIRE(run_trilens("render " + scene + " -o " + folder + "/out.svg").exit_code == 0);
     std::size_t cubics = 0;
-    for (const Tag& tag : parse_tags(slurp(folder + "/out.svg"))) {
+    for (const Tag& tag : parse_tags(bytes_of(folder + "/out.svg"))) {
         if (tag.name != "path") continue;
         std::vector<Vec2> exact;
         for (const Arc& arc : parse_arcs(tag["data-conic"]))
@@ -233,7 +226,7 @@ TEST_CASE("a drawing's names are escaped, and options that make no sense are ref
     const std::string folder = scratch_dir("vector_options");
     const std::string scene = write_file(folder, "scene.json", flat_mirror_scene());
     REQUIRE(run_trilens("render " + scene + " --format svg -o " + folder + "/lines.xml").exit_code == 0);
-    const std::string svg = slurp(folder + "/lines.xml");
+    const std::string svg = bytes_of(folder + "/lines.xml");
     CHECK_FALSE(parse_tags(svg).empty());
     CHECK(svg.find("&quot;a&quot; &lt;triangle&gt; &amp; more") != std::string::npos);
     CHECK(svg.find("Hidden edges are removed") != std::string::npos);

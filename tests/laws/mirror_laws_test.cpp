@@ -35,13 +35,6 @@ Vec3 alhazen_point(const Vec3& e, const Vec3& x) {
     return on_arc(0.5 * (low + high));
 }
 
-std::string bytes_of(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
 }  // namespace
 
 TEST_CASE("a flat mirror shows what a second camera behind it sees, at any resolution", "[laws]") {
