@@ -4,10 +4,11 @@
 #include <cstdio>
 
 #include "base/parallel.h"
+#include "base/rasterize.h"
+#include "intersect/packet_tracer.h"
 #include "projector/projector.h"
 #include "reflect/mirror.h"
 #include "timing.h"
-#include "truth/packet_tracer.h"
 
 namespace {
 

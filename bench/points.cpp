@@ -9,11 +9,11 @@
 #include "base/facet_scene.h"
 #include "base/parallel.h"
 #include "camera/perspective.h"
+#include "intersect/tracer.h"
 #include "reflect/reflection.h"
 #include "surfaces/surfaces.h"
 #include "timing.h"
 #include "trilinear/mesh_point_images.h"
-#include "truth/tracer.h"
 
 namespace {
 

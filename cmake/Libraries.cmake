@@ -1,5 +1,6 @@
 # Every outside library, found once. Debian 12 and 13 differ in versions and in target names.
 find_package(glm REQUIRED CONFIG)
+find_package(fmt REQUIRED CONFIG)
 find_package(TBB REQUIRED CONFIG)
 find_package(OpenSubdiv REQUIRED MODULE)  # Debian's own config names a static library that it does not ship
 find_package(nlohmann_json REQUIRED CONFIG)

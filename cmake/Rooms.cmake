@@ -29,8 +29,8 @@ function(trilens_room name folder)
     endif()
   endforeach()
   foreach(door IN LISTS ROOM_DOORS)
-    # GLM is vocabulary: base passes it on. Every other library stays behind its door.
-    if(door STREQUAL "glm::glm")
+    # GLM and libfmt are vocabulary: base passes them on. Every other library stays behind its door.
+    if(door STREQUAL "glm::glm" OR door STREQUAL "fmt::fmt")
       target_link_libraries(trilens_${name} PUBLIC ${door})
     else()
       target_link_libraries(trilens_${name} PRIVATE ${door})

@@ -22,10 +22,7 @@ Ray corner_ray(const LinearCamera& camera, const Vec3& point, const Vec3& normal
 }
 
 bool seen_from_back(const SurfaceGrid& grid, const IdTriple& facet, const LinearCamera& camera) {
-    const Vec3& a = grid.points[grid.corner_point[facet[0]]];
-    const Vec3& b = grid.points[grid.corner_point[facet[1]]];
-    const Vec3& c = grid.points[grid.corner_point[facet[2]]];
-    return dot(cross(b - a, c - a), incident_direction(camera, a)) > 0;
+    return !faces_front(grid, facet, incident_direction(camera, grid.points[grid.corner_point[facet[0]]]));
 }
 
 /// Appends corners for the facets seen from the back, each grid corner once, and points those facets at them.

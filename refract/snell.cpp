@@ -1,6 +1,5 @@
 #include "refract/snell.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace trilens {
@@ -19,18 +18,6 @@ std::optional<Vec3> refracted(const Vec3& incoming, const Vec3& unit_normal, dou
     if (sin2 > 1) return std::nullopt;
     const Vec3 direction = tangential - std::sqrt(1 - sin2) * unit_normal;
     return direction * (size / length(direction));
-}
-
-double fresnel_reflectance(double cos_incident, double eta) {
-    const double cos_i = std::clamp(cos_incident, 0.0, 1.0);
-    const double sin2 = eta * eta * (1 - cos_i * cos_i);
-    if (sin2 >= 1) return 1;
-    const double cos_t = std::sqrt(1 - sin2);
-
-    // Amplitudes for the field parallel and at right angles to the plane of incidence; light is half of each.
-    const double parallel = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    const double perpendicular = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    return 0.5 * (parallel * parallel + perpendicular * perpendicular);
 }
 
 }  // namespace trilens

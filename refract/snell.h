@@ -1,4 +1,4 @@
-// Snell's law and the Fresnel equations for one ray at one interface between dielectrics.
+// Snell's law for one ray at one interface between dielectrics.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,5 @@ namespace trilens {
 /// (incoming . normal <= 0); where rounding or interpolation turned it beyond grazing, the incidence counts
 /// as grazing. eta: refractive index where the ray comes from over the index where it goes.
 std::optional<Vec3> refracted(const Vec3& incoming, const Vec3& unit_normal, double eta);
-
-/// The share of unpolarised light that the interface reflects, 0..1 (1 on total internal reflection).
-/// cos_incident: cosine of the angle of incidence, 0..1; eta as above.
-/// Source: the Fresnel equations, Born and Wolf, Principles of Optics, section 1.5.2.
-double fresnel_reflectance(double cos_incident, double eta);
 
 }  // namespace trilens

@@ -1,5 +1,7 @@
 #include "base/error.h"
 
+#include <cctype>
+
 namespace trilens {
 namespace {
 
@@ -14,5 +16,12 @@ std::string join(const std::string& file, const std::string& place, const std::s
 
 Error::Error(ExitCode code, const std::string& file, const std::string& place, const std::string& message)
     : std::runtime_error(join(file, place, message)), code_(code) {}
+
+std::string one_line(std::string text) {
+    for (char& letter : text)
+        if (std::iscntrl(static_cast<unsigned char>(letter))) letter = ' ';
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    return text;
+}
 
 }  // namespace trilens

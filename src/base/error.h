@@ -30,6 +30,10 @@ class Error : public std::runtime_error {
     ExitCode code_;
 };
 
+/// `text` as the one line that an Error's message is: control characters become spaces, and those at its end
+/// go.
+std::string one_line(std::string text);
+
 /// The command line asks for something that does not exist or makes no sense (exit 2).
 class UsageError : public Error {
   public:

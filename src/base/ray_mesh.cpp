@@ -40,4 +40,9 @@ Ray interpolated_ray(const RayMesh& mesh, std::size_t facet, const Vec3& weights
     return ray;
 }
 
+Ray sample_ray(const RayMesh& mesh, std::size_t facet, const FacetWeights& weights, const Vec2& at) {
+    const Vec3 e = weights.unnormalised(at.x, at.y);
+    return interpolated_ray(mesh, facet, e / (e.x + e.y + e.z));
+}
+
 }  // namespace trilens

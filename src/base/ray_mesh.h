@@ -37,4 +37,8 @@ FacetWeights facet_weights(const RayMesh& mesh, std::size_t facet);
 /// The facet's ray for weights that sum to 1: origin and direction interpolated linearly.
 Ray interpolated_ray(const RayMesh& mesh, std::size_t facet, const Vec3& weights);
 
+/// The facet's ray through the screen position `at` (pixels from the film's top left). `weights`: the facet's
+/// own, not edge-on.
+Ray sample_ray(const RayMesh& mesh, std::size_t facet, const FacetWeights& weights, const Vec2& at);
+
 }  // namespace trilens

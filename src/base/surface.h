@@ -75,4 +75,13 @@ struct SurfaceGrid {
     std::vector<std::array<Vec2, 3>> facet_uv;  // per facet: (u, v) of its corners in that face
 };
 
+/// Whether a ray of this direction (any length) comes to the flat facet from its front; edge-on counts as the
+/// front.
+inline bool faces_front(const SurfaceGrid& grid, const IdTriple& facet, const Vec3& direction) {
+    const Vec3& a = grid.points[grid.corner_point[facet[0]]];
+    const Vec3& b = grid.points[grid.corner_point[facet[1]]];
+    const Vec3& c = grid.points[grid.corner_point[facet[2]]];
+    return dot(cross(b - a, c - a), direction) <= 0;
+}
+
 }  // namespace trilens

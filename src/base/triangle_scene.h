@@ -1,6 +1,8 @@
 // The scene as projector and truth see it: a structure of arrays of world-space triangles.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/ids.h"
@@ -39,5 +41,12 @@ inline Vec3 position(const TriangleScene& scene, const Hit& hit) {
 /// Two hits whose t differ by less than this share of t are taken as one depth: the triangle with the
 /// smaller (object, primitive) is then the one seen, in the projector and in the truth alike.
 inline constexpr double kDepthTie = 1e-9;
+
+/// Whether what lies at t, of `object`, is seen before what lies at than_t, of than_object, by that rule; for
+/// two hits of different objects along one ray.
+inline bool comes_before(double t, Id object, double than_t, Id than_object) {
+    if (std::fabs(t - than_t) <= kDepthTie * std::fabs(std::min(t, than_t))) return object < than_object;
+    return t < than_t;
+}
 
 }  // namespace trilens

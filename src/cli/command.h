@@ -1,11 +1,11 @@
 // What a command is to the program: options in, one answer out.
 #pragma once
 
+#include <trilens/error.h>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "cli/console.h"
 #include "cli/json.h"
 

@@ -1,16 +1,15 @@
 // trilens compare: error metrics and a verdict.
+#include <trilens/compare.h>
+#include <trilens/files.h>
+#include <trilens/image.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
-#include "cli/check_output.h"
 #include "cli/command.h"
-#include "image/image_io.h"
-#include "measure/compare.h"
-#include "measure/difference.h"
-#include "measure/displacement.h"
-#include "measure/seen.h"
+#include "cli/format.h"
 
 namespace trilens {
 namespace {
@@ -20,13 +19,6 @@ struct CompareCommand {
     long long mask = -1;
     double radius = DisplacementOptions{}.radius;
     CompareOptions options;
-};
-
-/// What one layer shows through an optic, and where.
-struct SecondaryComparison {
-    std::string layer;
-    std::optional<SeenMismatch> seen;
-    std::optional<Displacement> displacement;
 };
 
 Json metrics_json(const Metrics& m) {
@@ -56,59 +48,28 @@ Json displacement_json(const Displacement& d) {
             {"near_folds", d.near_folds}};
 }
 
-/// Sums over layers: the interface's `seen` counts every layer.
-SeenMismatch total_seen(const std::vector<SecondaryComparison>& layers) {
-    SeenMismatch total;
-    for (const SecondaryComparison& layer : layers) {
-        if (!layer.seen) continue;
-        total.pixels += layer.seen->pixels;
-        total.object_mismatch += layer.seen->object_mismatch;
-        total.primitive_mismatch += layer.seen->primitive_mismatch;
-        total.coverage_mismatch += layer.seen->coverage_mismatch;
-    }
-    return total;
-}
-
-/// The layer that stands for the whole: the one asked for, else the first that shows something.
-const SecondaryComparison* main_layer(const std::vector<SecondaryComparison>& layers,
-                                      const std::string& asked) {
-    for (const SecondaryComparison& layer : layers)
-        if (layer.layer == asked && layer.displacement) return &layer;
-    for (const SecondaryComparison& layer : layers)
-        if (layer.displacement && layer.displacement->pixels + layer.displacement->lost > 0) return &layer;
-    return nullptr;
-}
-
-std::string line(const char* format, auto... values) {
-    char text[400];
-    std::snprintf(text, sizeof text, format, values...);
-    return std::string(text) + "\n";
-}
-
-std::string summary_text(const Comparison& comparison, const std::vector<SecondaryComparison>& layers) {
+std::string summary_text(const Comparison& comparison, const std::vector<LayerComparison>& layers) {
     const Metrics& m = comparison.metrics;
-    std::string text = line("pixels        %zu (%zu beyond fail, %zu beyond hardfail, %zu beyond warn)",
-                            comparison.counts.pixels, comparison.counts.fail, comparison.counts.hard,
-                            comparison.counts.warn);
-    text += line("error         mae %.6g  rmse %.6g  relmse %.6g  max %.6g", m.mae, m.rmse, m.relmse, m.max);
-    text += line("likeness      psnr %.2f dB  ssim %.6f", m.psnr_db, m.ssim);
-    if (!comparison.worst.channel.empty())
-        text += line("worst         pixel %d,%d channel %s: %.6g, reference %.6g", comparison.worst.x,
-                     comparison.worst.y, comparison.worst.channel.c_str(), comparison.worst.test,
-                     comparison.worst.reference);
-    for (const SecondaryComparison& layer : layers) {
-        if (layer.seen && layer.seen->pixels > 0)
-            text +=
-                line("%-8s seen %zu pixels: %zu other object, %zu other triangle, %zu covered in one only",
-                     layer.layer.c_str(), layer.seen->pixels, layer.seen->object_mismatch,
-                     layer.seen->primitive_mismatch, layer.seen->coverage_mismatch);
-        if (layer.displacement && layer.displacement->pixels + layer.displacement->lost > 0)
-            text += line(
-                "%-8s displacement mean %.4g  p50 %.4g  p95 %.4g  p99 %.4g  max %.4g px over %zu pixels, %zu "
-                "lost",
-                layer.layer.c_str(), layer.displacement->mean, layer.displacement->p50,
-                layer.displacement->p95, layer.displacement->p99, layer.displacement->max,
-                layer.displacement->pixels, layer.displacement->lost);
+    const CompareCounts& c = comparison.counts;
+    std::string text = fmt::format("pixels        {} ({} beyond fail, {} beyond hardfail, {} beyond warn)\n",
+                                   c.pixels, c.fail, c.hard, c.warn);
+    text += fmt::format("error         mae {:.6g}  rmse {:.6g}  relmse {:.6g}  max {:.6g}\n", m.mae, m.rmse,
+                        m.relmse, m.max);
+    text += fmt::format("likeness      psnr {:.2f} dB  ssim {:.6f}\n", m.psnr_db, m.ssim);
+    if (const WorstPixel& worst = comparison.worst; !worst.channel.empty())
+        text += fmt::format("worst         pixel {},{} channel {}: {:.6g}, reference {:.6g}\n", worst.x,
+                            worst.y, worst.channel, worst.test, worst.reference);
+    for (const LayerComparison& layer : layers) {
+        if (const auto& seen = layer.seen; seen && seen->pixels > 0)
+            text += fmt::format(
+                "{:<8} seen {} pixels: {} other object, {} other triangle, {} covered in one only\n",
+                layer.layer, seen->pixels, seen->object_mismatch, seen->primitive_mismatch,
+                seen->coverage_mismatch);
+        if (const auto& d = layer.displacement; d && d->pixels + d->lost > 0)
+            text += fmt::format(
+                "{:<8} displacement mean {:.4g}  p50 {:.4g}  p95 {:.4g}  p99 {:.4g}  max {:.4g} "
+                "px over {} pixels, {} lost\n",
+                layer.layer, d->mean, d->p50, d->p95, d->p99, d->max, d->pixels, d->lost);
     }
     for (const std::string& reason : comparison.reasons) text += reason + "\n";
     return text +
@@ -119,7 +80,7 @@ std::string summary_text(const Comparison& comparison, const std::vector<Seconda
 }
 
 Answer answer_of(const CompareCommand& command, const Comparison& comparison,
-                 const std::vector<SecondaryComparison>& layers) {
+                 const std::vector<LayerComparison>& layers) {
     Answer answer;
     const CompareCounts& c = comparison.counts;
     const CompareOptions& o = command.options;
@@ -137,9 +98,9 @@ Answer answer_of(const CompareCommand& command, const Comparison& comparison,
                                {"inf_ref", c.inf_ref}, {"inf_test", c.inf_test}, {"masked", c.masked}};
     answer.fields["metrics"]["RGB"] = metrics_json(comparison.metrics);
     answer.fields["seen"] = seen_json(total_seen(layers));
-    const SecondaryComparison* main = main_layer(layers, o.layer);
+    const LayerComparison* main = main_layer(layers, o.layer);
     answer.fields["displacement_px"] = displacement_json(main ? *main->displacement : Displacement());
-    for (const SecondaryComparison& layer : layers) {
+    for (const LayerComparison& layer : layers) {
         Json entry = Json::object();
         if (layer.seen) entry["seen"] = seen_json(*layer.seen);
         if (layer.displacement) entry["displacement_px"] = displacement_json(*layer.displacement);
@@ -165,22 +126,15 @@ Answer run(CompareCommand command, Console& console) {
         throw UsageError("a difference is written as .exr, not \"" + command.diff + "\"");
     if (!command.diff.empty()) check_writable(command.diff, {command.reference, command.test});
     if (command.mask >= 0) command.options.mask_object = static_cast<Id>(command.mask);
-    const Image reference = read_exr(command.reference), test = read_exr(command.test);
+    const Image reference = read_image(command.reference), test = read_image(command.test);
     const Comparison comparison = compare(reference, test, command.options);
-
-    std::vector<SecondaryComparison> layers;
-    for (const char* name : {"reflect", "refract"}) {
-        if (!reference.find(std::string(name) + ".object")) continue;
-        SecondaryComparison layer{
-            name, compare_seen(reference, test, name, command.options.mask_object),
-            measure_displacement(reference, test, name, {command.radius, command.options.mask_object})};
-        layers.push_back(std::move(layer));
-    }
+    const std::vector<LayerComparison> layers =
+        compare_layers(reference, test, {command.radius, command.options.mask_object});
     if (!command.diff.empty()) {
-        const SecondaryComparison* main = main_layer(layers, command.options.layer);
-        write_exr(command.diff, make_difference(reference, test,
-                                                {command.options.layer, command.options.mask_object,
-                                                 main ? &*main->displacement : nullptr}));
+        const LayerComparison* main = main_layer(layers, command.options.layer);
+        write_image(command.diff, make_difference(reference, test,
+                                                  {command.options.layer, command.options.mask_object,
+                                                   main ? &*main->displacement : nullptr}));
     }
     if (comparison.verdict == Verdict::kWarning)
         for (const std::string& reason : comparison.reasons) console.warn(reason);

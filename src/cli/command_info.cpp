@@ -1,12 +1,9 @@
 // trilens info: the build, its libraries and the machine, for bug reports.
+#include <trilens/version.h>
+
 #include <CLI/CLI.hpp>
 
-#include "base/parallel.h"
 #include "cli/command.h"
-#include "cli/version.h"
-#include "image/image_io.h"
-#include "surfaces/surfaces.h"
-#include "truth/tracer.h"
 
 namespace trilens {
 namespace {
@@ -39,20 +36,17 @@ std::string join(const std::vector<std::string>& words) {
 }
 
 Answer info() {
-    const std::vector<std::string> libraries{tracer_library_version(), surface_library_version(),
-                                             image_library_version()};
+    const std::vector<std::string> libraries = library_versions();
     Answer answer;
-    answer.fields["version"] = kVersion;
+    answer.fields["version"] = version();
     answer.fields["compiler"] = compiler();
     answer.fields["build_type"] = TRILENS_BUILD_TYPE;
     answer.fields["libraries"] = libraries;
     answer.fields["instruction_sets"] = instruction_sets();
-    answer.fields["threads"] = thread_count();
-    answer.text =
-        std::string("trilens ") + kVersion + "\ncompiler   " + compiler() + ", " + TRILENS_BUILD_TYPE;
+    answer.fields["threads"] = threads();
+    answer.text = "trilens " + version() + "\ncompiler   " + compiler() + ", " + TRILENS_BUILD_TYPE;
     for (const std::string& library : libraries) answer.text += "\nlibrary    " + library;
-    answer.text +=
-        "\nprocessor  " + join(instruction_sets()) + "\nthreads    " + std::to_string(thread_count());
+    answer.text += "\nprocessor  " + join(instruction_sets()) + "\nthreads    " + std::to_string(threads());
     return answer;
 }
 

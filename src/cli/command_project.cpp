@@ -1,15 +1,16 @@
 // trilens project: where world points appear.
+#include <trilens/project.h>
+#include <trilens/stopwatch.h>
+
 #include <CLI/CLI.hpp>
 #include <cctype>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 
 #include "cli/command.h"
-#include "cli/project.h"
+#include "cli/format.h"
 #include "cli/scene_options.h"
-#include "scene/polygons.h"
 
 namespace trilens {
 namespace {
@@ -91,66 +92,62 @@ std::vector<Vec3> wanted_points(const ProjectOptions& options) {
     return points;
 }
 
-const char* path_name(LightPath path) {
-    return path == LightPath::kDirect ? "direct" : path == LightPath::kReflect ? "reflect" : "refract";
+std::string optic_name(const Renderer& renderer, const WorldImage& image) {
+    return image.optic == kNone ? "" : renderer.scene().meshes[image.object].name;
 }
 
 Json id_json(Id id) {
     return id == kNone ? Json(nullptr) : Json(id);
 }
 
-Json image_json(const World& world, const WorldImage& image) {
-    return {
-        {"x", json_number(image.pixel.x)},
-        {"y", json_number(image.pixel.y)},
-        {"t", json_number(image.t)},
-        {"optic", image.optic == kNone ? Json(nullptr) : Json(world.names[world.optics[image.optic].mesh])},
-        {"facet", id_json(image.facet)},
-        {"inside", image.inside},
-        {"path", path_name(image.path)},
-        {"length", json_number(image.length)},
-        {"visible", image.visible},
-        {"refined", image.refined}};
+Json image_json(const Renderer& renderer, const WorldImage& image) {
+    return {{"x", json_number(image.pixel.x)},
+            {"y", json_number(image.pixel.y)},
+            {"t", json_number(image.t)},
+            {"optic", image.optic == kNone ? Json(nullptr) : Json(optic_name(renderer, image))},
+            {"facet", id_json(image.facet)},
+            {"inside", image.inside},
+            {"path", path_name(image.path)},
+            {"length", json_number(image.length)},
+            {"visible", image.visible},
+            {"refined", image.refined}};
 }
 
-Json points_json(const World& world, std::span<const Vec3> points,
+Json points_json(const Renderer& renderer, std::span<const Vec3> points,
                  std::span<const std::vector<WorldImage>> images) {
     Json list = Json::array();
     for (std::size_t p = 0; p < points.size(); ++p) {
         Json entry{{"point", {points[p].x, points[p].y, points[p].z}}, {"images", Json::array()}};
-        for (const WorldImage& image : images[p]) entry["images"].push_back(image_json(world, image));
+        for (const WorldImage& image : images[p]) entry["images"].push_back(image_json(renderer, image));
         list.push_back(std::move(entry));
     }
     return list;
 }
 
-std::string text_line(const World& world, std::size_t point, const WorldImage& image) {
-    char line[256];
-    std::snprintf(line, sizeof line, "%zu,%.9f,%.9f,%.12g,%s,%s,%s,%d,%d,%d\n", point, image.pixel.x,
-                  image.pixel.y, image.t, path_name(image.path),
-                  image.optic == kNone ? "" : world.names[world.optics[image.optic].mesh].c_str(),
-                  image.facet == kNone ? "" : std::to_string(image.facet).c_str(), image.inside,
-                  image.visible, image.refined);
-    return line;
+std::string text_line(const Renderer& renderer, std::size_t point, const WorldImage& image) {
+    return fmt::format("{},{:.9f},{:.9f},{:.12g},{},{},{},{:d},{:d},{:d}\n", point, image.pixel.x,
+                       image.pixel.y, image.t, path_name(image.path), optic_name(renderer, image),
+                       image.facet == kNone ? "" : std::to_string(image.facet), image.inside, image.visible,
+                       image.refined);
 }
 
 Answer run(const ProjectOptions& options, Console& console) {
     const std::vector<Vec3> points = wanted_points(options);
-    const std::unique_ptr<World> world = load_world(options.scene, console);
+    const Renderer renderer = load_renderer(options.scene, console);
     ProjectRequest request;
-    request.camera = chosen_camera(options.scene, world->scene);
+    request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
     request.refine = options.refine == "exact";
     request.visibility = !options.no_visibility;
-    const auto start = std::chrono::steady_clock::now();
-    const auto images = project_points(*world, request, points);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const Stopwatch watch;
+    const auto images = renderer.project(points, request);
+    const double seconds = watch.seconds();
 
     Answer answer;
     answer.fields["seconds"] = seconds;
-    if (console.wants_json()) answer.fields["points"] = points_json(*world, points, images);
+    if (console.wants_json()) answer.fields["points"] = points_json(renderer, points, images);
     answer.text = "point,x,y,t,path,optic,facet,inside,visible,refined\n";
     for (std::size_t p = 0; p < points.size(); ++p)
-        for (const WorldImage& image : images[p]) answer.text += text_line(*world, p, image);
+        for (const WorldImage& image : images[p]) answer.text += text_line(renderer, p, image);
     console.note(std::to_string(points.size()) + " points in " + std::to_string(seconds) + " s");
     return answer;
 }

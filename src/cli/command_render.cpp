@@ -1,15 +1,15 @@
 // trilens render and trilens trace: one picture.
+#include <trilens/files.h>
+#include <trilens/image.h>
+#include <trilens/render.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 
-#include "cli/check_output.h"
 #include "cli/command.h"
 #include "cli/explain.h"
-#include "cli/picture.h"
 #include "cli/scene_options.h"
-#include "cli/vector_drawing.h"
-#include "image/image_io.h"
-#include "sweep/files.h"
 
 namespace trilens {
 namespace {
@@ -26,108 +26,79 @@ struct RenderOptions {
     bool wire = false;
 };
 
-enum class OutputKind { kExr, kPng, kSvg };
-
-OutputKind output_kind(const RenderOptions& options, const std::string& command) {
-    const std::string& file = options.output;
-    if (options.format == "exr") return OutputKind::kExr;
-    if (options.format == "png") return OutputKind::kPng;
-    if (options.format == "svg") return OutputKind::kSvg;
-    const auto ends_with = [&](const std::string& end) {
-        return file.size() > end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
-    };
-    if (ends_with(".exr")) return OutputKind::kExr;
-    if (ends_with(".png")) return OutputKind::kPng;
-    if (ends_with(".svg") && command == "render") return OutputKind::kSvg;
-    throw UsageError("the output \"" + file + "\" must end in .exr (all layers)" +
+/// What an output is, by --format or its name's ending: "exr", "png" or "svg".
+std::string output_format(const RenderOptions& options, const std::string& command) {
+    if (!options.format.empty()) return options.format;
+    const std::string ending = std::filesystem::path(options.output).extension().string();
+    if (ending == ".exr" || ending == ".png" || (ending == ".svg" && command == "render"))
+        return ending.substr(1);
+    throw UsageError("the output \"" + options.output + "\" must end in .exr (all layers)" +
                      (command == "render" ? ", .png (the beauty, sRGB) or .svg (outlines)"
                                           : " or .png (the beauty, sRGB)"));
 }
 
-void write_picture(const std::string& file, const Image& image, OutputKind kind) {
-    if (kind == OutputKind::kExr) return write_exr(file, image);
-    const std::vector<float>*r = &image.find("R")->floats(), *g = &image.find("G")->floats(),
-          *b = &image.find("B")->floats();
-    std::vector<float> rgb(3 * image.pixels());
-    for (std::size_t p = 0; p < image.pixels(); ++p) {
-        rgb[3 * p] = (*r)[p];
-        rgb[3 * p + 1] = (*g)[p];
-        rgb[3 * p + 2] = (*b)[p];
-    }
-    write_png(file, image.data_width, image.data_height, rgb);
-}
-
-Json picture_fields(const World& world, const Picture& picture) {
-    Json fields;
-    fields["width"] = picture.image.width;
-    fields["height"] = picture.image.height;
-    fields["triangles"] = world.objects.size();
-    std::size_t facets = 0;
-    for (const Optic& optic : world.optics) facets += optic.facet_count();
-    fields["facets"] = facets;
-    fields["optic_pixels"] = picture.statistics.optic_pixels;
-    fields["pixels_without_ray"] = picture.statistics.pixels_without_ray;
-    fields["prepare_seconds"] = picture.prepare_seconds;
-    fields["draw_seconds"] = picture.draw_seconds;
-    return fields;
+Json picture_fields(const Renderer& renderer, const Picture& picture) {
+    return {{"width", picture.image.width},
+            {"height", picture.image.height},
+            {"triangles", renderer.triangle_count()},
+            {"facets", renderer.facet_count()},
+            {"optic_pixels", picture.statistics.optic_pixels},
+            {"pixels_without_ray", picture.statistics.pixels_without_ray},
+            {"prepare_seconds", picture.prepare_seconds},
+            {"draw_seconds", picture.draw_seconds}};
 }
 
 /// Outlines instead of pixels.
-Answer run_vector(const RenderOptions& options, const World& world, Console& console) {
+Answer run_vector(const RenderOptions& options, const Renderer& renderer, Console& console) {
     if (!options.scene.crop.empty())
         throw UsageError("--crop is for pictures of pixels; an .svg shows the whole film");
-    const std::size_t camera = chosen_camera(options.scene, world.scene);
-    const std::unique_ptr<Drawing> drawing = make_drawing(world, camera, options.wire, console.warner());
-    replace_text_file(options.output, drawing_svg(*drawing, world));
+    const std::size_t camera = find_camera(renderer.scene(), options.scene.camera);
+    const LineDrawing drawing = renderer.draw_lines({camera, 0}, options.wire, console.warner());
+    replace_text_file(options.output, drawing.svg);
     Answer answer;
-    std::size_t curves = 0, arcs = 0;
-    for (const auto& layer : drawing->layers) {
-        curves += layer->curves.size();
-        for (const EdgeCurve& curve : layer->curves) arcs += curve.arcs.size();
-    }
     answer.text = options.output;
     answer.fields = {{"output", options.output},
                      {"engine", "exact"},
-                     {"width", drawing->width},
-                     {"height", drawing->height},
+                     {"width", renderer.scene().film.width},
+                     {"height", renderer.scene().film.height},
                      {"wire", options.wire},
-                     {"curves", curves},
-                     {"arcs", arcs}};
+                     {"curves", drawing.curves},
+                     {"arcs", drawing.arcs}};
     return answer;
+}
+
+void check_options(const RenderOptions& options, const std::string& format, const EngineChoice& engine) {
+    if (format == "svg" && engine.engine == Engine::kClassic)
+        throw UsageError("an .svg is drawn by the exact engine; leave out --engine classic");
+    if (options.wire && format != "svg") throw UsageError("--wire is for .svg outputs");
 }
 
 Answer run(const RenderOptions& options, const std::string& command, const EngineChoice& engine,
            Console& console) {
     if (options.pixel.empty() && options.output.empty())
         throw UsageError(command + " needs -o OUT.exr, or --pixel x,y");
-    OutputKind kind = OutputKind::kExr;
-    if (!options.output.empty()) {
-        kind = output_kind(options, command);
-        check_writable(options.output, {options.scene.scene});
-    }
-    if (kind == OutputKind::kSvg && engine.engine == Engine::kClassic)
-        throw UsageError("an .svg is drawn by the exact engine; leave out --engine classic");
-    if (options.wire && kind != OutputKind::kSvg) throw UsageError("--wire is for .svg outputs");
-    const std::unique_ptr<World> world = load_world(options.scene, console);
+    const std::string format = options.output.empty() ? "" : output_format(options, command);
+    if (!options.output.empty()) check_writable(options.output, {options.scene.scene});
+    check_options(options, format, engine);
     PictureRequest request;
-    request.camera = chosen_camera(options.scene, world->scene);
     request.engine = engine;
-    request.command = command;
+    request.layers = layer_request(options.scene);
+    const Renderer renderer = load_renderer(options.scene, console);
+    request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
     Answer answer;
     if (!options.pixel.empty()) {
         const std::vector<int> pixel = parse_integers(options.pixel, ',', 2, "--pixel");
-        answer.fields = explain_pixel(*world, request, pixel[0], pixel[1], console);
+        answer.fields = explanation_json(renderer, engine, renderer.explain(request, pixel[0], pixel[1]));
         answer.text = answer.fields.dump(2);
         if (options.output.empty()) return answer;
     }
-    if (kind == OutputKind::kSvg) return run_vector(options, *world, console);
-    request.layers = layer_request(options.scene, world->scene.film);
-    const Picture picture = draw_picture(*world, request, console);
-    write_picture(options.output, picture.image, kind);
+    if (format == "svg") return run_vector(options, renderer, console);
+    const Picture picture = renderer.draw(request, console.progress(command), console.warner());
+    write_image_as(options.output, picture.image, format == "png" ? ImageFormat::kPng : ImageFormat::kExr);
     answer.fields["output"] = options.output;
     answer.fields["engine"] = engine_name(engine.engine);
     if (engine.engine == Engine::kClassic) answer.fields["classic"] = classic_name(engine.classic);
-    answer.fields.update(picture_fields(*world, picture));
+    answer.fields.update(picture_fields(renderer, picture));
     if (answer.text.empty()) answer.text = options.output;
     return answer;
 }

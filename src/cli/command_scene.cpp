@@ -1,20 +1,18 @@
 // trilens scene: validate, info, schema, example.
+#include <trilens/render.h>
+#include <trilens/scene.h>
+#include <trilens/text.h>
+
 #include <CLI/CLI.hpp>
 
-#include "cli/camera_rays.h"
 #include "cli/command.h"
-#include "cli/optic_meshes.h"
 #include "cli/scene_options.h"
-#include "scene/examples.h"
-#include "scene/info.h"
-#include "scene/load.h"
-#include "scene/nearest.h"
 
 namespace trilens {
 namespace {
 
-Json box_json(const Bounds& bounds) {
-    if (bounds.empty) return nullptr;
+Json box_json(const Box& bounds) {
+    if (bounds.empty()) return nullptr;
     return {{"low", {bounds.low.x, bounds.low.y, bounds.low.z}},
             {"high", {bounds.high.x, bounds.high.y, bounds.high.z}}};
 }
@@ -45,7 +43,7 @@ std::string mesh_line(const MeshInfo& mesh) {
 }
 
 Answer info(const SceneOptions& options, Console& console) {
-    const Scene scene = load_scene_with(options, console);
+    const Scene scene = load_scene(options, console);
     const SceneInfo found = make_scene_info(scene);
     Answer answer;
     Json& fields = answer.fields;
@@ -80,15 +78,15 @@ Answer info(const SceneOptions& options, Console& console) {
 
 /// Loading is not all: a cage may have no limit surface.
 Answer validate(const SceneOptions& options, Console& console) {
-    const std::unique_ptr<World> world = load_world(options, console);
+    const Renderer renderer = load_renderer(options, console);
     // What drawing would refuse.
-    make_camera_rays(world->scene, chosen_camera(options, world->scene));
-    check_facet_count(*world);
+    renderer.check({find_camera(renderer.scene(), options.camera), 0});
+    const std::size_t optics = renderer.optics().size(), triangles = renderer.triangle_count();
     Answer answer;
-    answer.text = options.scene + ": valid, " + std::to_string(world->optics.size()) + " optics, " +
-                  std::to_string(world->objects.size()) + " triangles";
-    answer.fields["optics"] = world->optics.size();
-    answer.fields["triangles"] = world->objects.size();
+    answer.text = options.scene + ": valid, " + std::to_string(optics) + " optics, " +
+                  std::to_string(triangles) + " triangles";
+    answer.fields["optics"] = optics;
+    answer.fields["triangles"] = triangles;
     return answer;
 }
 

@@ -1,19 +1,14 @@
 // trilens sweep: error against resolution, for one scene or for a gallery of scenes.
+#include <trilens/sweep.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <map>
 
 #include "cli/command.h"
-#include "cli/gallery.h"
-#include "cli/picture.h"
+#include "cli/format.h"
 #include "cli/scene_options.h"
-#include "cli/version.h"
-#include "cli/world_digest.h"
-#include "image/image_io.h"
-#include "surfaces/surfaces.h"
-#include "sweep/sweep.h"
-#include "truth/tracer.h"
 
 namespace trilens {
 namespace {
@@ -40,76 +35,6 @@ std::string command_line(const SweepOptions& options, const std::string& scene) 
     if (options.scene.spp > 0) line += " --spp " + std::to_string(options.scene.spp);
     for (const std::string& set : options.scene.set) line += " --set '" + set + "'";
     return line + " -o " + options.output;
-}
-
-SweepSubject subject_of(const SweepOptions& options, const World& world, std::size_t camera,
-                        const std::string& scene) {
-    SweepSubject subject;
-    subject.title = scene_name(scene);
-    subject.scene = scene;
-    subject.camera = world.scene.cameras[camera].name;
-    subject.method = engine_name(Engine::kExact);
-    subject.truth = options.truth;
-    subject.spp = world.scene.film.spp;
-    for (const Optic& optic : world.optics) {
-        subject.optics.push_back({optic.mesh, world.names[optic.mesh]});
-        subject.mesh += (subject.mesh.empty() ? "" : " ") + world.names[optic.mesh];
-    }
-    subject.commands = {command_line(options, scene)};
-    subject.versions = {{"trilens", kVersion},
-                        {"ray tracing", tracer_library_version()},
-                        {"surfaces", surface_library_version()},
-                        {"images", image_library_version()}};
-    return subject;
-}
-
-/// Everything one sweep needs, alive while it runs.
-struct SweepJob {
-    std::unique_ptr<World> world;
-    SweepParams params;
-    SweepCallbacks callbacks;
-};
-
-void set_resolution(World& world, int n) {
-    for (Optic& optic : world.optics) optic.resolution = n;
-}
-
-Image draw(const SweepJob& job, Engine engine, std::size_t camera, Console& console) {
-    const Film& film = job.world->scene.film;
-    PictureRequest request;
-    request.camera = camera;
-    request.engine = engine;
-    request.layers = {0, 0, film.width, film.height, {}};
-    request.command = engine == Engine::kExact ? "render" : "trace";
-    return draw_picture(*job.world, request, console).image;
-}
-
-std::unique_ptr<SweepJob> make_job(const SweepOptions& options, const std::string& scene,
-                                   const std::string& folder, Console& console) {
-    auto job = std::make_unique<SweepJob>();
-    SceneOptions scene_options = options.scene;
-    scene_options.scene = scene;
-    job->world = load_world(scene_options, console);
-    if (job->world->optics.empty())
-        throw InputError(scene, "/meshes", "a sweep needs an optic whose resolution it can vary");
-    const std::size_t camera = chosen_camera(scene_options, job->world->scene);
-
-    job->params.folder = folder;
-    job->params.axis = parse_axis(options.over);
-    job->params.shard = parse_shard(options.shard, [](const char* name) { return std::getenv(name); });
-    job->params.subject = subject_of(options, *job->world, camera, scene);
-    job->params.progress = console.progress("sweep of " + job->params.subject.title);
-    SweepJob* raw = job.get();
-    const Engine truth = options.truth == "facets" ? Engine::kFacetsTruth : Engine::kLimitTruth;
-    job->callbacks.render = [raw, camera, &console](int n) {
-        set_resolution(*raw->world, n);
-        return draw(*raw, Engine::kExact, camera, console);
-    };
-    job->callbacks.trace = [raw, camera, truth, &console] { return draw(*raw, truth, camera, console); };
-    job->callbacks.job_key = std::string(kVersion) + "\n" + job->params.subject.camera + "\n" +
-                             job->world->scene.resolved + "\n" + world_digest(*job->world);
-    job->callbacks.truth_key = job->callbacks.job_key + "\n" + options.truth;
-    return job;
 }
 
 Json optional_json(const std::optional<double>& value) {
@@ -139,11 +64,9 @@ Json summary_json(const SweepSummary& summary) {
 }
 
 std::string fit_line(const SweepFit& fit) {
-    char text[300];
-    std::snprintf(text, sizeof text, "  %-8s %-14s %-16s order %5.2f  constant %8.4g  r2 %.4f",
-                  fit.layer.c_str(), fit.optic.c_str(), fit.metric.c_str(), *fit.order,
-                  fit.constant.value_or(0), fit.r2.value_or(0));
-    std::string line = text;
+    std::string line =
+        fmt::format("  {:<8} {:<14} {:<16} order {:5.2f}  constant {:8.4g}  r2 {:.4f}", fit.layer, fit.optic,
+                    fit.metric, *fit.order, fit.constant.value_or(0), fit.r2.value_or(0));
     if (fit.n_for_1px)
         line += "  1 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_1px)));
     if (fit.n_for_half_px)
@@ -198,16 +121,27 @@ void require_distinct_names(const std::vector<std::string>& scenes) {
     }
 }
 
+SweepRequest sweep_request(const SweepOptions& options, const std::string& scene) {
+    SceneOptions one = options.scene;
+    one.scene = scene;
+    SweepRequest request;
+    request.scene = scene_request(one);
+    request.camera = options.scene.camera;
+    request.over = options.over;
+    request.truth = options.truth;
+    request.shard = options.shard;
+    request.folder = folder_of(options, scene);
+    request.command = command_line(options, scene);
+    return request;
+}
+
 Answer run(const SweepOptions& options, Console& console) {
     require_distinct_names(options.scenes);
     std::vector<SweepSummary> summaries;
-    bool is_whole = true;
-    for (const std::string& scene : options.scenes) {
-        const std::unique_ptr<SweepJob> job = make_job(options, scene, folder_of(options, scene), console);
-        summaries.push_back(run_sweep(job->params, job->callbacks));
-        is_whole = is_whole && job->params.shard.count == 1;
-    }
+    for (const std::string& scene : options.scenes)
+        summaries.push_back(run_sweep(sweep_request(options, scene), sweep_talk(console)));
     // A shard sums up nothing: `sweep report` does once all are done.
+    const bool is_whole = is_whole_sweep(options.shard);
     const std::string report = is_whole ? options.output + "/report.html" : "";
     if (is_whole && summaries.size() > 1) write_sweep_gallery(options.output, summaries);
     return answer_of(summaries, report);
@@ -217,10 +151,9 @@ Answer plan(const SweepOptions& options, Console& console) {
     Answer answer;
     require_distinct_names(options.scenes);
     for (const std::string& scene : options.scenes) {
-        const std::unique_ptr<SweepJob> job = make_job(options, scene, folder_of(options, scene), console);
-        plan_sweep(job->params, job->callbacks);
-        answer.text += job->params.folder + "/plan.jsonl\n";
-        answer.fields["plans"].push_back(job->params.folder + "/plan.jsonl");
+        const std::string file = plan_sweep(sweep_request(options, scene), sweep_talk(console));
+        answer.text += file + "\n";
+        answer.fields["plans"].push_back(file);
     }
     return answer;
 }

@@ -1,13 +1,12 @@
 // What the command says on stderr: progress, warnings, errors; never on stdout.
 #pragma once
 
+#include <trilens/error.h>
 #include <atomic>
 #include <chrono>
 #include <mutex>
 #include <string>
 #include <vector>
-
-#include "base/progress.h"
 
 namespace trilens {
 

@@ -1,7 +1,5 @@
 #include "cli/explain.h"
 
-#include "base/error.h"
-
 namespace trilens {
 namespace {
 
@@ -13,55 +11,46 @@ Json ray_json(const Ray& ray) {
     return {{"origin", vector_json(ray.origin)}, {"direction", vector_json(ray.direction)}};
 }
 
-Json hit_json(const World& world, const Hit& hit) {
+Json hit_json(const Renderer& renderer, const Hit& hit) {
     if (!hit.seen()) return nullptr;
-    const Id object = world.objects.object[hit.triangle];
-    return {{"object", object},
-            {"name", world.names[object]},
-            {"primitive", world.objects.primitive[hit.triangle]},
+    const SeenTriangle seen = renderer.seen_triangle(hit);
+    return {{"object", seen.object},
+            {"name", renderer.scene().meshes[seen.object].name},
+            {"primitive", seen.primitive},
             {"t", json_number(hit.t)},
             {"barycentric", {json_number(hit.barycentric.x), json_number(hit.barycentric.y)}},
-            {"position", vector_json(position(world.objects, hit))}};
+            {"position", vector_json(seen.position)}};
 }
 
-Json secondary_json(const World& world, const SecondaryView& view) {
-    if (!view.has_ray) return nullptr;
-    return {{"ray", ray_json(view.ray)}, {"sees", hit_json(world, view.hit)}};
+Json end_json(const Renderer& renderer, const PathEnd* end) {
+    if (!end) return nullptr;
+    return {{"ray", ray_json(end->ray)}, {"sees", hit_json(renderer, end->hit)}};
 }
 
 }  // namespace
 
-Json explain_pixel(const World& world, const PictureRequest& request, int x, int y, Console& console) {
-    const Film& film = world.scene.film;
-    if (x < 0 || y < 0 || x >= film.width || y >= film.height)
-        throw UsageError("--pixel " + std::to_string(x) + "," + std::to_string(y) + " is outside the " +
-                         std::to_string(film.width) + " x " + std::to_string(film.height) + " film");
-    const Viewer viewer = make_viewer(world, request.camera, request.engine, console.warner());
-    std::vector<SampleView> views(1);
-    viewer({x, y, x + 1, y + 1, 1}, views);
-
-    const SampleView& view = views[0];
-    const SampleColour colour = shade_view(world, view);
+Json explanation_json(const Renderer& renderer, const EngineChoice& engine, const PixelExplanation& pixel) {
+    const SampleView& view = pixel.view();
     Json fields;
-    fields["pixel"] = {x, y};
-    fields["engine"] = engine_name(request.engine.engine);
+    fields["pixel"] = {pixel.x, pixel.y};
+    fields["engine"] = engine_name(engine.engine);
     fields["ray"] = ray_json(view.ray);
     fields["depth"] = json_number(view.depth);
-    fields["sees"] = hit_json(world, view.hit);
+    fields["sees"] = hit_json(renderer, view.hit);
     if (view.optic != kNone) {
-        const Optic& optic = world.optics[view.optic];
-        fields["optic"] = {{"object", optic.mesh},
-                           {"name", world.names[optic.mesh]},
+        const OpticInfo optic = renderer.optics()[view.optic];
+        fields["optic"] = {{"object", optic.object},
+                           {"name", optic.name},
                            {"facet", view.facet},
                            {"uv", {json_number(view.uv.x), json_number(view.uv.y)}},
-                           {"cos_incident", json_number(view.cos_incident)},
-                           {"front", view.front}};
-        fields["reflect"] = secondary_json(world, view.reflect);
-        fields["refract"] = secondary_json(world, view.refract);
+                           {"cos_incident", json_number(view.incidence.cosine)},
+                           {"front", view.incidence.front}};
+        for (const Path path : {Path::kReflect, Path::kRefract})
+            fields[path_name(path)] = end_json(renderer, pixel.views.find(view, path));
     }
-    fields["colour"] = {{"direct", vector_json(colour.direct)},
-                        {"reflect", vector_json(colour.reflect)},
-                        {"refract", vector_json(colour.refract)}};
+    fields["colour"] = {{"direct", vector_json(pixel.colour.direct)},
+                        {"reflect", vector_json(pixel.colour.reflect)},
+                        {"refract", vector_json(pixel.colour.refract)}};
     return fields;
 }
 

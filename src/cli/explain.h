@@ -1,12 +1,13 @@
-// One pixel explained: every ray, hit and weight behind it, as JSON.
+// One pixel explained, as JSON.
 #pragma once
 
+#include <trilens/render.h>
+
 #include "cli/json.h"
-#include "cli/picture.h"
 
 namespace trilens {
 
-/// What the centre of pixel (x, y) shows and how. Throws UsageError outside the film.
-Json explain_pixel(const World& world, const PictureRequest& request, int x, int y, Console& console);
+/// What the centre of the pixel shows, and how.
+Json explanation_json(const Renderer& renderer, const EngineChoice& engine, const PixelExplanation& pixel);
 
 }  // namespace trilens

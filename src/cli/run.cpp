@@ -1,24 +1,21 @@
 // Parsing, dispatch, and the one place where failures become exit codes.
+#include <trilens/files.h>
+#include <trilens/text.h>
+#include <trilens/version.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <new>
 
-#include "base/parallel.h"
 #include "cli/command.h"
-#include "cli/version.h"
-#include "image/image_io.h"
-#include "scene/nearest.h"
-#include "sweep/files.h"
-#include "truth/tracer.h"
 
 namespace trilens {
 
 Json json_number(double value) {
-    if (std::isnan(value)) return "nan";
-    if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-    return value;
+    if (std::isfinite(value)) return value;
+    return shortest_text(value);
 }
 
 namespace {
@@ -69,12 +66,6 @@ std::vector<std::string> spelled_out(int argc, const char* const* argv) {
     std::vector<std::string> words;
     for (int i = 1; i < argc; ++i) words.push_back(std::string(argv[i]) == "--json" ? "--json=-" : argv[i]);
     return words;
-}
-
-void set_threads_everywhere(int threads) {
-    set_thread_count(threads);
-    set_tracer_threads(threads);
-    set_image_threads(threads);
 }
 
 Json answer_object(const std::string& command, ExitCode code, const Console& console) {
@@ -164,7 +155,7 @@ int run_command_line(int argc, const char* const* argv) {
     CLI::App app{"trilens draws what curved mirrors and glass show, by projection, and measures its error.",
                  "trilens"};
     app.require_subcommand(1);
-    app.set_version_flag("--version", std::string("trilens ") + kVersion);
+    app.set_version_flag("--version", "trilens " + version());
     app.set_help_flag("-h,--help", "print this help");
     CommonOptions common;
     add_common(app, common);
@@ -199,7 +190,7 @@ int run_command_line(int argc, const char* const* argv) {
     common.console.wants_json = !common.json.empty();
     Console console(common.console);
     try {
-        set_threads_everywhere(common.threads);
+        set_threads(common.threads);
         const Answer answer = chosen.body(console);
         give_answer(chosen, common, console, answer);
         return static_cast<int>(answer.code);

@@ -1,13 +1,13 @@
 // The options that say what to draw: shared by every command that loads a scene.
 #pragma once
 
-#include <memory>
+#include <trilens/render.h>
+#include <trilens/scene.h>
+#include <trilens/sweep.h>
 #include <string>
 #include <vector>
 
 #include "cli/console.h"
-#include "cli/layers.h"
-#include "cli/world.h"
 
 namespace CLI {
 class App;
@@ -34,17 +34,20 @@ void add_scene_overrides(CLI::App& command, SceneOptions& options);
 /// Adds --crop and --aov.
 void add_window_options(CLI::App& command, SceneOptions& options);
 
-/// Loads the scene with the overrides and builds its world. Warnings go to the console.
-std::unique_ptr<World> load_world(const SceneOptions& options, Console& console);
+/// The options as the library takes them. Throws UsageError for texts that say nothing.
+SceneRequest scene_request(const SceneOptions& options);
 
-/// The same from an already loaded scene.
-Scene load_scene_with(const SceneOptions& options, Console& console);
+/// The scene, with its warnings told.
+Scene load_scene(const SceneOptions& options, Console& console);
 
-/// The camera named by the options, or the first. Throws UsageError with the nearest name.
-std::size_t chosen_camera(const SceneOptions& options, const Scene& scene);
+/// The scene made ready for drawing.
+Renderer load_renderer(const SceneOptions& options, Console& console);
 
-/// The window and layers asked for. Throws UsageError where they do not fit the film.
-LayerRequest layer_request(const SceneOptions& options, const Film& film);
+/// The window and layers asked for. Throws UsageError for texts that say none.
+LayerRequest layer_request(const SceneOptions& options);
+
+/// A sweep that talks on the console.
+SweepTalk sweep_talk(Console& console);
 
 /// Integers separated by `separator`. Throws UsageError naming `option` unless there are exactly `count`.
 std::vector<int> parse_integers(const std::string& text, char separator, std::size_t count,

@@ -12,8 +12,9 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "image/file_bytes.h"
+#include "base/file_bytes.h"
 #include "image/image_io.h"
+#include "image/library_reason.h"
 
 namespace trilens {
 namespace {
@@ -177,7 +178,7 @@ Image read_all(OIIO::ImageInput& in, const std::string& file, std::size_t file_s
         const std::size_t columns = static_cast<std::size_t>(spec.width);
         std::vector<char> packed(static_cast<std::size_t>(rows) * columns * spec.pixel_bytes(true));
         if (!read_rows(in, spec.y + row, spec.y + row + rows, packed) || in.has_error())
-            throw InputError(file, "", "is truncated or damaged: " + one_line(in.geterror()));
+            throw InputError(file, "", "is truncated or damaged: " + library_reason(in.geterror()));
         unpack(spec, packed, static_cast<std::size_t>(row) * columns, image);
     }
     return image;
@@ -191,7 +192,8 @@ std::vector<unsigned char> encode_exr(const std::string& name, const Image& imag
     OIIO::Filesystem::IOVecOutput proxy(bytes);
     const OIIO::ImageSpec spec = spec_of(name, image);
     const auto out = OIIO::ImageOutput::create("openexr", &proxy);
-    if (!out) throw OutputError(name, "OpenImageIO cannot write OpenEXR: " + one_line(OIIO::geterror()));
+    if (!out)
+        throw OutputError(name, "OpenImageIO cannot write OpenEXR: " + library_reason(OIIO::geterror()));
 
     bool good = out->open("image.exr", spec);
     for (int row = 0; good && row < image.data_height; row += kBandRows) {
@@ -199,7 +201,8 @@ std::vector<unsigned char> encode_exr(const std::string& name, const Image& imag
         const std::vector<std::uint32_t> packed = pack_rows(image, row, end);
         good = out->write_scanlines(spec.y + row, spec.y + end, 0, OIIO::TypeUnknown, packed.data());
     }
-    if (!(good && out->close())) throw OutputError(name, "cannot be encoded: " + one_line(out->geterror()));
+    if (!(good && out->close()))
+        throw OutputError(name, "cannot be encoded: " + library_reason(out->geterror()));
     return bytes;
 }
 
@@ -210,10 +213,11 @@ void write_exr(const std::string& file, const Image& image) {
 Image read_exr(const std::string& file) {
     const std::size_t size = readable_size(file);
     const auto in = OIIO::ImageInput::create("openexr");
-    if (!in) throw InputError(file, "", "OpenImageIO cannot read OpenEXR: " + one_line(OIIO::geterror()));
+    if (!in)
+        throw InputError(file, "", "OpenImageIO cannot read OpenEXR: " + library_reason(OIIO::geterror()));
     OIIO::ImageSpec spec;
     if (!in->open(file, spec))
-        throw InputError(file, "", "is no OpenEXR image, or is damaged: " + one_line(in->geterror()));
+        throw InputError(file, "", "is no OpenEXR image, or is damaged: " + library_reason(in->geterror()));
     try {
         return read_all(*in, file, size);
     } catch (const std::bad_alloc&) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/appearance.h"
-#include "image/image.h"
+#include "base/image.h"
 
 namespace trilens {
 

@@ -12,8 +12,9 @@
 
 #include "base/check.h"
 #include "base/error.h"
-#include "image/file_bytes.h"
+#include "base/file_bytes.h"
 #include "image/image_io.h"
+#include "image/library_reason.h"
 
 namespace trilens {
 namespace {
@@ -99,7 +100,7 @@ std::shared_ptr<const Texture> read_open(OIIO::ImageInput& in, const std::string
         std::vector<float> values(static_cast<std::size_t>(spec.image_pixels()) *
                                   static_cast<std::size_t>(spec.nchannels));
         if (!in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, values.data()) || in.has_error())
-            throw InputError(name, "", "is truncated or damaged: " + one_line(in.geterror()));
+            throw InputError(name, "", "is truncated or damaged: " + library_reason(in.geterror()));
         for (const float value : values)
             if (!std::isfinite(value)) throw InputError(name, "", "holds a value that is not finite");
         return texture_of(spec, values);
@@ -147,9 +148,9 @@ std::vector<unsigned char> encode_named_png(const std::string& name, int width, 
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeUInt8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     const auto out = OIIO::ImageOutput::create("png", &proxy);
-    if (!out) throw OutputError(name, "OpenImageIO cannot write PNG: " + one_line(OIIO::geterror()));
+    if (!out) throw OutputError(name, "OpenImageIO cannot write PNG: " + library_reason(OIIO::geterror()));
     if (!(out->open("image.png", spec) && out->write_image(OIIO::TypeUInt8, stored.data()) && out->close()))
-        throw OutputError(name, "cannot be encoded: " + one_line(out->geterror()));
+        throw OutputError(name, "cannot be encoded: " + library_reason(out->geterror()));
     return bytes;
 }
 
@@ -159,7 +160,7 @@ std::shared_ptr<const Texture> read_texture(const std::string& file) {
     const std::size_t size = readable_size(file);
     const OIIO::ImageSpec hints = reading_hints();
     const auto in = OIIO::ImageInput::open(file, &hints);
-    if (!in) throw InputError(file, "", "is no picture, or is damaged: " + one_line(OIIO::geterror()));
+    if (!in) throw InputError(file, "", "is no picture, or is damaged: " + library_reason(OIIO::geterror()));
     return read_open(*in, file, size);
 }
 
@@ -173,7 +174,7 @@ std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> enc
     OIIO::ImageSpec hints = reading_hints();
     hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     const auto in = OIIO::ImageInput::open(format, &hints);
-    if (!in) throw InputError(name, "", "is damaged: " + one_line(OIIO::geterror()));
+    if (!in) throw InputError(name, "", "is damaged: " + library_reason(OIIO::geterror()));
     return read_open(*in, name, encoded.size());
 }
 

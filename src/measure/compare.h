@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/ids.h"
-#include "image/image.h"
+#include "base/image.h"
 
 namespace trilens {
 

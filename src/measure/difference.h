@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/ids.h"
-#include "image/image.h"
+#include "base/image.h"
 #include "measure/displacement.h"
 
 namespace trilens {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/ids.h"
-#include "image/image.h"
+#include "base/image.h"
 
 namespace trilens {
 

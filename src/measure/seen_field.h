@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/ids.h"
+#include "base/image.h"
 #include "base/vec.h"
-#include "image/image.h"
 
 namespace trilens {
 

@@ -21,14 +21,14 @@ double size_of(const Vec3& v) {
 }
 
 double reach(const Box& box) {
-    return size_of(glm::max(glm::abs(box.lo), glm::abs(box.hi)));
+    return size_of(glm::max(glm::abs(box.low), glm::abs(box.high)));
 }
 
 /// The largest normal . x over the box; at least the computed normal . x of each of its points.
 double highest(const Box& box, const Vec3& normal) {
-    return std::max(normal.x * box.lo.x, normal.x * box.hi.x) +
-           std::max(normal.y * box.lo.y, normal.y * box.hi.y) +
-           std::max(normal.z * box.lo.z, normal.z * box.hi.z);
+    return std::max(normal.x * box.low.x, normal.x * box.high.x) +
+           std::max(normal.y * box.low.y, normal.y * box.high.y) +
+           std::max(normal.z * box.low.z, normal.z * box.high.z);
 }
 
 double lowest(const Box& box, const Vec3& normal) {

@@ -14,13 +14,13 @@ constexpr std::size_t kSmallLeaf = 4, kLargeLeaf = 16;
 constexpr double kNodeCost = 0.5;  // of testing a node's box against a beam, in units of testing one triangle
 
 double half_area(const Box& box) {
-    const Vec3 size = glm::max(box.hi - box.lo, Vec3(0));
+    const Vec3 size = glm::max(box.high - box.low, Vec3(0));
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
 /// Twice the centre: only comparisons are made with it.
 Vec3 centre(const Box& box) {
-    return box.lo + box.hi;
+    return box.low + box.high;
 }
 
 struct Cut {
@@ -33,8 +33,8 @@ struct Cut {
 struct Binning {
     double low = 0, scale = 0;
 
-    Binning(const Box& centres, int axis) : low(centres.lo[axis]) {
-        const double extent = centres.hi[axis] - low;
+    Binning(const Box& centres, int axis) : low(centres.low[axis]) {
+        const double extent = centres.high[axis] - low;
         scale = extent > 0 ? static_cast<double>(kBins) / extent : 0;
     }
     bool usable() const { return scale > 0 && scale < std::numeric_limits<double>::infinity(); }

@@ -16,6 +16,7 @@
 #include "projector/classic_fill.h"
 #include "projector/first_hits.h"
 #include "projector/prepared_scene.h"
+#include "trilinear/outline.h"
 
 namespace trilens {
 namespace {
@@ -153,7 +154,7 @@ void FacetDrawing::draw() {
     while (!waiting.empty()) {
         const BvhNode& node = scene_.bvh.nodes[waiting.back()];
         waiting.pop_back();
-        if (beam.misses({node.box.lo - block.centre, node.box.hi - block.centre})) continue;
+        if (beam.misses({node.box.low - block.centre, node.box.high - block.centre})) continue;
         for (Id i = node.first; i < node.first + node.count; ++i) draw_triangle(i);
         if (node.count == 0) waiting.insert(waiting.end(), {node.first, node.first + 1});
     }

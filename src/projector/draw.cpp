@@ -64,7 +64,7 @@ void BlockDrawing::draw_range(std::size_t first, std::size_t last) {
 
 void BlockDrawing::push_if_reached(Id node, std::vector<Waiting>& stack) const {
     const Box& world = scene_.bvh.nodes[node].box;
-    const Box box{world.lo - block_.centre, world.hi - block_.centre};
+    const Box box{world.low - block_.centre, world.high - block_.centre};
     if (!beam_.misses(box)) stack.push_back({node, beam_.nearest(box)});
 }
 

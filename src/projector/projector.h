@@ -28,12 +28,6 @@ class PreparedScene {
     std::unique_ptr<Data> data_;
 };
 
-/// The facets' samples by the top-left rule on the screen: a sample on an edge or a corner that facets share
-/// belongs to exactly one of them, also where corners are duplicated and where some lie behind the camera (w
-/// <= 0). For meshes that do not fold over on the screen (cameras); where they do, the facet with the smaller
-/// index wins. Facets without rays or without area on the screen own nothing.
-FacetSamples rasterize_facets(const RayMesh& mesh, const SampleGrid& grid);
-
 /// For every sample that `owned` gives to a facet with rays and an area on the screen: the first triangle
 /// along the facet's interpolated ray (t >= 0), written to hits[sample]; other entries of `hits` are left
 /// alone. hits.size() == grid.size(). A sample need not lie inside its facet: the weights are extrapolated.

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "projector/side_of_edge.h"
+#include "base/side_of_edge.h"
 
 namespace trilens {
 namespace {

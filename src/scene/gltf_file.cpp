@@ -23,13 +23,6 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
     return true;
 }
 
-std::string one_line(std::string text) {
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-    for (char& letter : text)
-        if (std::iscntrl(static_cast<unsigned char>(letter))) letter = ' ';
-    return text;
-}
-
 [[noreturn]] void fail(const std::string& file, const std::string& bytes, const std::string& reason) {
     // Compressed accessors have no buffer view, which is all that the library says of them.
     const bool draco = bytes.find("\"KHR_draco_mesh_compression\"") != std::string::npos;

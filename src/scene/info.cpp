@@ -7,50 +7,38 @@
 namespace trilens {
 namespace {
 
-void grow(Bounds& bounds, const Vec3& point) {
-    bounds.low = bounds.empty ? point : glm::min(bounds.low, point);
-    bounds.high = bounds.empty ? point : glm::max(bounds.high, point);
-    bounds.empty = false;
-}
-
-void grow(Bounds& bounds, const Bounds& other) {
-    if (other.empty) return;
-    grow(bounds, other.low);
-    grow(bounds, other.high);
-}
-
 /// The box of a disk: its half-width along e is radius * sqrt(1 - (axis . e)^2).
-void grow_by_disk(Bounds& bounds, const Vec3& center, const Vec3& axis, double radius) {
+void grow_by_disk(Box& box, const Vec3& center, const Vec3& axis, double radius) {
     Vec3 half;
     for (int k = 0; k < 3; ++k) half[k] = radius * std::sqrt(std::max(0.0, 1 - axis[k] * axis[k]));
-    grow(bounds, center - half);
-    grow(bounds, center + half);
+    box.include(center - half);
+    box.include(center + half);
 }
 
-Bounds primitive_bounds(const Primitive& p) {
-    Bounds bounds;
+Box primitive_box(const Primitive& p) {
+    Box box;
     switch (p.type) {
         case Primitive::Type::kSphere:
-            grow(bounds, p.center - Vec3(p.radius));
-            grow(bounds, p.center + Vec3(p.radius));
+            box.include(p.center - Vec3(p.radius));
+            box.include(p.center + Vec3(p.radius));
             break;
         case Primitive::Type::kParaboloid:
             // Apex and rim; between them the surface lies in the box of the solid cylinder around it.
-            grow_by_disk(bounds, p.center, p.axis, p.radius);
-            grow_by_disk(bounds, p.center + p.radius * p.radius / (4 * p.focal_length) * p.axis, p.axis,
+            grow_by_disk(box, p.center, p.axis, p.radius);
+            grow_by_disk(box, p.center + p.radius * p.radius / (4 * p.focal_length) * p.axis, p.axis,
                          p.radius);
             break;
         case Primitive::Type::kCylinder:
-            grow_by_disk(bounds, p.center - 0.5 * p.height * p.axis, p.axis, p.radius);
-            grow_by_disk(bounds, p.center + 0.5 * p.height * p.axis, p.axis, p.radius);
+            grow_by_disk(box, p.center - 0.5 * p.height * p.axis, p.axis, p.radius);
+            grow_by_disk(box, p.center + 0.5 * p.height * p.axis, p.axis, p.radius);
             break;
         case Primitive::Type::kPlane: {
             const Vec3 u = 0.5 * p.size.x * p.tangent, v = 0.5 * p.size.y * cross(p.axis, p.tangent);
-            for (const Vec3& corner : {u + v, u - v, -u + v, -u - v}) grow(bounds, p.center + corner);
+            for (const Vec3& corner : {u + v, u - v, -u + v, -u - v}) box.include(p.center + corner);
             break;
         }
     }
-    return bounds;
+    return box;
 }
 
 std::string shape_name(const Mesh& mesh) {
@@ -87,8 +75,8 @@ MeshInfo make_mesh_info(const Mesh& mesh, const Scene& scene) {
     info.corners = mesh.cage.corner_indices.size();
     info.holes = mesh.cage.hole_indices.size();
     info.resolution = is_object ? 0 : mesh.resolution;
-    if (mesh.primitive) info.bounds = primitive_bounds(*mesh.primitive);
-    for (const Vec3& point : points) grow(info.bounds, point);
+    if (mesh.primitive) info.bounds = primitive_box(*mesh.primitive);
+    for (const Vec3& point : points) info.bounds.include(point);
     return info;
 }
 
@@ -117,7 +105,7 @@ SceneInfo make_scene_info(const Scene& scene) {
         info.meshes.push_back(make_mesh_info(mesh, scene));
         ++(mesh.role == Role::kObject ? info.objects : info.optics);
         info.triangles += info.meshes.back().triangles;
-        grow(info.bounds, info.meshes.back().bounds);
+        info.bounds.include(info.meshes.back().bounds);
     }
     for (Id i = 0; i < scene.materials.size(); ++i) info.materials.push_back(make_material_info(i, scene));
     info.lights = scene.lights.size();

@@ -5,15 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "base/box.h"
 #include "scene/scene.h"
 
 namespace trilens {
-
-/// An axis-parallel box, world frame. `empty` until a point is in it.
-struct Bounds {
-    bool empty = true;
-    Vec3 low{0}, high{0};
-};
 
 struct MeshInfo {
     std::string name;
@@ -26,8 +21,8 @@ struct MeshInfo {
     std::size_t triangles = 0;  // of an object
     std::size_t creases = 0, corners = 0, holes = 0;  // of a cage: crease edges, corner points, hole faces
     int resolution = 0;                               // of an optic
-    Bounds bounds;  // an optic's: of its cage, which holds its limit surface; of a primitive: exact or a
-                    // little larger
+    Box bounds;  // an optic's: of its cage, which holds its limit surface; of a primitive: exact or a
+                 // little larger
 };
 
 struct MaterialInfo {
@@ -43,7 +38,7 @@ struct SceneInfo {
     std::vector<MaterialInfo> materials;
     std::size_t lights = 0;
     std::size_t objects = 0, optics = 0, triangles = 0;
-    Bounds bounds;
+    Box bounds;
 };
 
 SceneInfo make_scene_info(const Scene& scene);

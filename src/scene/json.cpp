@@ -117,12 +117,6 @@ Json parse_json(const std::string& text, const std::string& file) {
     return builder.take();
 }
 
-std::string one_line(std::string text) {
-    for (char& letter : text)
-        if (std::iscntrl(static_cast<unsigned char>(letter))) letter = ' ';
-    return text;
-}
-
 void fail_at(const std::string& file, const std::string& place, const std::string& message) {
     throw InputError(file, one_line(place), one_line(message));
 }

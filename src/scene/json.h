@@ -29,7 +29,6 @@ std::string describe(double number);
 /// Throws InputError; control characters that place or message quote from the document become spaces, so that
 /// the message is one line.
 [[noreturn]] void fail_at(const std::string& file, const std::string& place, const std::string& message);
-std::string one_line(std::string text);
 
 /// A value of a checked document together with its place, so that every reader can say where it failed.
 struct Node {

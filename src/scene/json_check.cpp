@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "base/check.h"
+#include "base/nearest.h"
 #include "scene/load.h"
-#include "scene/nearest.h"
 
 namespace trilens {
 namespace {

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <vector>
 
+#include "base/nearest.h"
 #include "scene/json_check.h"
-#include "scene/nearest.h"
 
 namespace trilens {
 namespace {

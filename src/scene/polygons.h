@@ -13,9 +13,6 @@
 
 namespace trilens {
 
-/// Coordinates beyond this are taken for mistakes: products of four still fit in a double.
-inline constexpr double kLargestCoordinate = 1e30;
-
 /// Cage fields with what only objects need. Indices are in range.
 struct PolygonMesh {
     Cage cage;

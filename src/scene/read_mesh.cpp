@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/nearest.h"
+#include "base/nearest.h"
 #include "scene/reading.h"
 
 namespace trilens {

@@ -10,7 +10,6 @@ namespace trilens {
 namespace {
 
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
-constexpr long long kMostPixels = 1LL << 28;
 constexpr double kSamePoint =
     1e-12;  // eye and at closer than this share of their distance from the origin: no direction
 constexpr double kParallel = 1e-9;  // sine of an angle that counts as none

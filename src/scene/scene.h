@@ -14,6 +14,13 @@
 
 namespace trilens {
 
+/// What a scene may ask for at most.
+inline constexpr long long kMostPixels = 1LL << 28;  // of a film
+/// Coordinates beyond this are taken for mistakes: products of four still fit in a double.
+inline constexpr double kLargestCoordinate = 1e30;
+inline constexpr int kMaxSpp = 64;
+inline constexpr int kMaxResolution = 1024;
+
 struct Film {
     int width = 640, height = 480;
     int spp = 1;  // S: S x S samples per pixel

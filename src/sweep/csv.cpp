@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sweep/text.h"
+#include "report/text.h"
 
 namespace trilens {
 namespace {

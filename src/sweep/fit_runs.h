@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sweep/plot.h"
+#include "report/plot.h"
 #include "sweep/results.h"
 
 namespace trilens {

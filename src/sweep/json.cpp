@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sweep/text.h"
+#include "report/text.h"
 
 namespace trilens {
 

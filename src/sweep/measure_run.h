@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.h"
+#include "base/image.h"
 #include "sweep/results.h"
 
 namespace trilens {

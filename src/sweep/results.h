@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/ids.h"
+#include "report/facts.h"
 #include "sweep/axis.h"
-#include "sweep/page.h"
 
 namespace trilens {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "sweep/files.h"
+#include "base/files.h"
 #include "sweep/json.h"
 
 namespace trilens {

@@ -2,7 +2,6 @@
 #include "sweep/sweep.h"
 
 #include <charconv>
-#include <chrono>
 #include <cstddef>
 #include <map>
 #include <new>
@@ -11,32 +10,23 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/files.h"
+#include "base/hash.h"
+#include "base/stopwatch.h"
 #include "image/image_io.h"
+#include "report/text.h"
 #include "sweep/csv.h"
-#include "sweep/files.h"
 #include "sweep/fit_runs.h"
-#include "sweep/hash.h"
 #include "sweep/measure_run.h"
 #include "sweep/results_json.h"
 #include "sweep/run_files.h"
 #include "sweep/sweep_report.h"
-#include "sweep/text.h"
 
 namespace trilens {
 namespace {
 
 constexpr const char* kFormat =
     "trilens.sweep/1";  // part of every hash: raise it when what a run stores changes
-
-class Stopwatch {
-  public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Hash of parts such that no two lists of parts read the same.
 std::string hash_parts(const std::vector<std::string>& parts) {

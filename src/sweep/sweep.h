@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "base/image.h"
 #include "base/progress.h"
-#include "image/image.h"
 #include "sweep/results.h"
 
 namespace trilens {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "report/plot.h"
 #include "sweep/fit_runs.h"
-#include "sweep/plot.h"
 
 namespace trilens {
 namespace {

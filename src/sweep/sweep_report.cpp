@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "image/image_io.h"
-#include "sweep/files.h"
+#include "report/html.h"
+#include "report/text.h"
 #include "sweep/fit_runs.h"
-#include "sweep/html.h"
 #include "sweep/measure_run.h"
 #include "sweep/sweep_plots.h"
-#include "sweep/text.h"
 
 namespace trilens {
 namespace {

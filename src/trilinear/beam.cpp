@@ -13,9 +13,9 @@ constexpr double kRounding = 1e-13;
 
 }  // namespace
 
-Beam make_beam(const Coplanarity& facet) {
+FacetBeam make_facet_beam(const Coplanarity& facet) {
     const Vec3 d0 = facet.direction, d1 = d0 + facet.f1, d2 = d0 + facet.f2;
-    Beam beam;
+    FacetBeam beam;
     beam.axis = normalize_or_zero(normalize_or_zero(d0) + normalize_or_zero(d1) + normalize_or_zero(d2));
     beam.along = {dot(d0, beam.axis), dot(d1, beam.axis), dot(d2, beam.axis)};
     // Nearly across the axis, t would hang on rounding.
@@ -26,7 +26,7 @@ Beam make_beam(const Coplanarity& facet) {
     return beam;
 }
 
-bool may_hold(const Coplanarity& facet, const Beam& beam, const Vec3& point) {
+bool may_hold(const Coplanarity& facet, const FacetBeam& beam, const Vec3& point) {
     if (beam.axis == Vec3(0)) return true;
     const Vec3 x = point - facet.origin;
     const Vec3 d0 = facet.direction, d1 = d0 + facet.f1, d2 = d0 + facet.f2;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/box.h"
 #include "base/parallel.h"
 
 namespace trilens {
@@ -30,12 +31,6 @@ Vec3 mean_direction(const RayMesh& mesh, Id facet) {
     return normalize_or_zero(sum);
 }
 
-struct Box {
-    Vec3 low{INFINITY}, high{-INFINITY};
-    void add(const Vec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
-    Vec3 size() const { return glm::max(high - low, Vec3(0)); }
-};
-
 }  // namespace
 
 MeshPointImages::MeshPointImages(const RayMesh& mesh) : corners_(mesh.facets), screen_(mesh.screen) {
@@ -48,7 +43,7 @@ MeshPointImages::MeshPointImages(const RayMesh& mesh) : corners_(mesh.facets), s
     beam_.reserve(facet_.size());
     for (const Id f : facet_) {
         coplanarity_.push_back(make_coplanarity(trilinear_facet(mesh, f)));
-        beam_.push_back(make_beam(coplanarity_.back()));
+        beam_.push_back(make_facet_beam(coplanarity_.back()));
     }
 }
 
@@ -57,7 +52,7 @@ MeshPointImages::Node MeshPointImages::cone(const RayMesh& mesh, std::span<const
     Box origins;
     Vec3 axis(0);
     for (const Id f : facets) {
-        for (const Id c : mesh.facets[f]) origins.add(mesh.rays[c].origin);
+        for (const Id c : mesh.facets[f]) origins.include(mesh.rays[c].origin);
         axis += mean_direction(mesh, f);
     }
     Node node;
@@ -89,7 +84,8 @@ std::uint32_t MeshPointImages::build(const RayMesh& mesh, std::uint32_t first, s
         // distance.
         Box places, directions;
         for (std::uint32_t i = first; i < end; ++i) {
-            places.add(centroid_origin(mesh, facet_[i])), directions.add(mean_direction(mesh, facet_[i]));
+            places.include(centroid_origin(mesh, facet_[i])),
+                directions.include(mean_direction(mesh, facet_[i]));
         }
         const double reach = 2 * node_[0].radius;
         const Vec3 wide_place = places.size(), wide_direction = reach * directions.size();

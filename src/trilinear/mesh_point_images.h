@@ -64,7 +64,7 @@ class MeshPointImages {
     std::vector<Node> node_;                // depth first
     std::vector<Id> facet_;                 // in the order of the leaves
     std::vector<Coplanarity> coplanarity_;  // of facet_[i]
-    std::vector<Beam> beam_;                // of facet_[i]
+    std::vector<FacetBeam> beam_;           // of facet_[i]
     std::vector<IdTriple> corners_;         // of the mesh's facet
     std::vector<Vec3> screen_;              // of the mesh's corners
 };

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "trilinear/curves.h"
 #include "trilinear/scene_edge.h"
 
 namespace trilens {
@@ -11,22 +12,6 @@ namespace trilens {
 /// the barycentrics are not linear: t = n . (a - o) / (n . d) for the triangle's plane.
 struct Outline {
     std::vector<ImageVertex> vertex;
-};
-
-/// How curved edges between projected vertices are drawn.
-enum class Curves {
-    kStraight,    // as straight lines
-    kSlices,      // with points at further levels of t (section 4.5.2): `pieces` parts of each edge's stretch of t
-    kTessellate,  // the scene triangle as pieces^2 triangles, each straight (section 4.5.1)
-    kArcs,        // along the exact conics, within `tolerance`
-};
-
-/// What of the image outside the facet is cut away.
-enum class Clip {
-    kUnclipped,  // nothing
-    kScreen,     // the polygons, at the facet's edges (section 5.1)
-    kScene,  // the scene's edges, where they cross the surfaces that the facet's edges sweep (section 5.2):
-             // facets that share an edge share these points, so that pictures are continuous across them
 };
 
 struct ShapeParams {

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "image/file_bytes.h"
+#include "base/file_bytes.h"
 #include "image/image_io.h"
 #include "support/test.h"
 

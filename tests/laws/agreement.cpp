@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "cli/facet_viewer.h"
+#include "render/facet_engine.h"
 
 using namespace trilens;
 
@@ -17,10 +17,10 @@ struct Seen {
     bool operator==(const Seen&) const = default;
 };
 
-Seen seen(const SampleView& view) {
-    return {view.hit.triangle, view.optic, view.facet,
-            view.reflect.has_ray ? view.reflect.hit.triangle : kNone,
-            view.refract.has_ray ? view.refract.hit.triangle : kNone};
+Seen seen(const SampleViews& views, std::size_t sample) {
+    const SampleView& view = views.samples[sample];
+    return {view.hit.triangle, view.optic, view.facet, views.hit(view, Path::kReflect).triangle,
+            views.hit(view, Path::kRefract).triangle};
 }
 
 bool covers_same(const Seen& a, const Seen& b) {
@@ -57,13 +57,14 @@ void close_edge_ties(const World& world, std::vector<Differing>& open) {
                            Vec2(c, -c), Vec2(-c, -c)}) {
         if (open.empty()) return;
         const CameraRays camera = shifted(make_camera_rays(world.scene, 0), by);
-        const Viewer project = make_facet_viewer(world, camera, Engine::kExact, ignore);
-        const Viewer trace = make_facet_viewer(world, camera, Engine::kFacetsTruth, ignore);
+        const Frame frame = make_frame(world, camera, 0, ignore);
+        const Viewer project = make_facet_viewer(world, frame, Engine::kExact);
+        const Viewer trace = make_facet_viewer(world, frame, Engine::kFacetsTruth);
         std::erase_if(open, [&](const Differing& pixel) {
-            std::vector<SampleView> a(1), b(1);
+            SampleViews a, b;
             project({pixel.x, pixel.y, pixel.x + 1, pixel.y + 1, 1}, a);
             trace({pixel.x, pixel.y, pixel.x + 1, pixel.y + 1, 1}, b);
-            return seen(a[0]) == pixel.traced || seen(b[0]) == pixel.projected;
+            return seen(a, 0) == pixel.traced || seen(b, 0) == pixel.projected;
         });
     }
 }
@@ -73,20 +74,22 @@ void close_edge_ties(const World& world, std::vector<Differing>& open) {
 Agreement compare_engines(const World& world) {
     const Film& film = world.scene.film;
     const SampleGrid grid{0, 0, film.width, film.height, 1};
-    std::vector<SampleView> projected(grid.size()), traced(grid.size());
-    make_viewer(world, 0, Engine::kExact, ignore)(grid, projected);
-    make_viewer(world, 0, Engine::kFacetsTruth, ignore)(grid, traced);
+    SampleViews projected, traced;
+    make_viewer(world, {}, Engine::kExact, ignore)(grid, projected);
+    make_viewer(world, {}, Engine::kFacetsTruth, ignore)(grid, traced);
 
     Agreement result;
     result.pixels = grid.size();
     std::vector<Differing> open;
     for (std::size_t p = 0; p < grid.size(); ++p) {
-        const Seen a = seen(projected[p]), b = seen(traced[p]);
+        const Seen a = seen(projected, p), b = seen(traced, p);
         result.optic_pixels += a.optic != kNone;
         if (a == b) {
-            result.worst_t = std::max({result.worst_t, relative_t(projected[p].hit, traced[p].hit),
-                                       relative_t(projected[p].reflect.hit, traced[p].reflect.hit),
-                                       relative_t(projected[p].refract.hit, traced[p].refract.hit)});
+            const SampleView &x = projected.samples[p], &y = traced.samples[p];
+            result.worst_t = std::max(result.worst_t, relative_t(x.hit, y.hit));
+            for (const Path path : {Path::kReflect, Path::kRefract})
+                result.worst_t =
+                    std::max(result.worst_t, relative_t(projected.hit(x, path), traced.hit(y, path)));
             continue;
         }
         ++(covers_same(a, b) ? result.seen : result.coverage);

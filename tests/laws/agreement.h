@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cli/world.h"
+#include "render/world.h"
 
 namespace trilens_test {
 

@@ -1,10 +1,11 @@
 // Laws of the classic engine on whole scenes: it comes to the exact engine's picture as its outlines get
 // finer, and clipping in the scene leaves a closed room closed.
 #include <algorithm>
+#include <array>
 
 #include "base/parallel.h"
-#include "cli/views.h"
 #include "laws/worlds.h"
+#include "render/engine.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -14,11 +15,11 @@ namespace {
 
 void ignore(const std::string&) {}
 
-std::vector<SampleView> look(const World& world, const EngineChoice& engine) {
+SampleViews look(const World& world, const EngineChoice& engine) {
     const Film& film = world.scene.film;
     const SampleGrid grid{0, 0, film.width, film.height, 1};
-    std::vector<SampleView> views(grid.size());
-    make_viewer(world, 0, engine, ignore)(grid, views);
+    SampleViews views;
+    make_viewer(world, {}, engine, ignore)(grid, views);
     return views;
 }
 
@@ -28,17 +29,22 @@ struct Difference {
     double share() const { return static_cast<double>(differing) / static_cast<double>(pixels); }
 };
 
-void add(Difference& sum, const std::vector<SampleView>& exact, const std::vector<SampleView>& classic) {
-    for (std::size_t p = 0; p < exact.size(); ++p) {
-        const SampleView &a = exact[p], &b = classic[p];
-        const Id before[] = {a.hit.triangle, a.reflect.hit.triangle, a.refract.hit.triangle};
-        const Id after[] = {b.hit.triangle, b.reflect.hit.triangle, b.refract.hit.triangle};
+/// The triangles that the sample shows directly, reflected and refracted.
+std::array<Id, 3> seen(const SampleViews& views, const SampleView& view) {
+    return {view.hit.triangle, views.hit(view, Path::kReflect).triangle,
+            views.hit(view, Path::kRefract).triangle};
+}
+
+void add(Difference& sum, const SampleViews& exact, const SampleViews& classic) {
+    for (std::size_t p = 0; p < exact.samples.size(); ++p) {
+        const SampleView &a = exact.samples[p], &b = classic.samples[p];
+        const std::array<Id, 3> before = seen(exact, a), after = seen(classic, b);
         REQUIRE(a.optic == b.optic);
         REQUIRE(a.facet == b.facet);
         bool lost = false;
-        for (int k = 0; k < 3; ++k) lost |= before[k] != kNone && after[k] == kNone;
+        for (std::size_t k = 0; k < 3; ++k) lost |= before[k] != kNone && after[k] == kNone;
         ++sum.pixels;
-        sum.differing += !std::equal(before, before + 3, after);
+        sum.differing += before != after;
         sum.uncovered += lost;
     }
 }
@@ -100,14 +106,15 @@ TEST_CASE("a mirror in a closed room shows the room in every pixel", "[laws][cla
     std::size_t open = 0;
     for (const int n : {1, 2, 5, 16}) {
         const auto world = shipped_world("closed", n, 200, 150);
-        const std::vector<SampleView> exact = look(*world, Engine::kExact);
+        const SampleViews exact = look(*world, Engine::kExact);
         const auto uncovered = [&](Curves curves, Clip clip, int k) {
             Difference d;
             add(d, exact, look(*world, ClassicParams{curves, clip, k}));
             return d.uncovered;
         };
         INFO("n " << n);
-        for (const SampleView& view : exact) REQUIRE((view.hit.seen() || view.reflect.hit.seen()));
+        for (const SampleView& view : exact.samples)
+            REQUIRE((view.hit.seen() || exact.hit(view, Path::kReflect).seen()));
         CHECK(uncovered(Curves::kArcs, Clip::kScene, 1) == 0);
         CHECK(uncovered(Curves::kStraight, Clip::kScene, 1) == 0);
         CHECK(uncovered(Curves::kTessellate, Clip::kScene, 2) == 0);
@@ -123,17 +130,18 @@ TEST_CASE("the classic engine shows the same with any number of threads", "[laws
     const auto world = shipped_world("torus", 4, 120, 90);
     for (const ClassicParams& params : {ClassicParams{}, ClassicParams{Curves::kSlices, Clip::kScreen, 3}}) {
         set_thread_count(1);
-        const std::vector<SampleView> one = look(*world, params);
+        const SampleViews one = look(*world, params);
         set_thread_count(2);
-        const std::vector<SampleView> two = look(*world, params);
+        const SampleViews two = look(*world, params);
         set_thread_count(0);
         const auto same = [](const Hit& a, const Hit& b) {
             return a.triangle == b.triangle && a.t == b.t && a.barycentric == b.barycentric;
         };
-        CHECK(std::equal(one.begin(), one.end(), two.begin(), two.end(),
+        CHECK(std::equal(one.samples.begin(), one.samples.end(), two.samples.begin(), two.samples.end(),
                          [&](const SampleView& a, const SampleView& b) {
-                             return same(a.hit, b.hit) && same(a.reflect.hit, b.reflect.hit) &&
-                                    same(a.refract.hit, b.refract.hit);
+                             return same(a.hit, b.hit) &&
+                                    same(one.hit(a, Path::kReflect), two.hit(b, Path::kReflect)) &&
+                                    same(one.hit(a, Path::kRefract), two.hit(b, Path::kRefract));
                          }));
     }
 }

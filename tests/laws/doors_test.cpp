@@ -83,9 +83,9 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"nlohmann/", {"src/scene/json.h", "src/sweep/json.h", "src/cli/json.h"}},
     {"OpenImageIO/", {"src/image/"}},
     {"OpenEXR/", {"src/image/"}},
-    {"embree", {"src/truth/"}},
+    {"embree", {"src/intersect/"}},
     {"CLI/", {"src/cli/"}},
-    {"fmt/", {}},
+    {"fmt/", {"src/base/format.h"}},
     {"Imath/", {"src/image/"}},
 };
 
@@ -121,8 +121,12 @@ TEST_CASE("every outside library is included through its one door", "[laws]") {
 
 TEST_CASE("no header of ours brings an outside library with it, but for the vocabulary", "[laws]") {
     const std::set<std::string> vocabulary{
-        "src/base/vec.h", "src/scene/json.h", "src/sweep/json.h", "src/cli/json.h",
-        "src/truth/embree_device.h"};  // the last is the door's own, for that room's .cpp files
+        "src/base/vec.h",
+        "src/base/format.h",
+        "src/scene/json.h",
+        "src/sweep/json.h",
+        "src/cli/json.h",
+        "src/intersect/embree_device.h"};  // the last is the door's own, for that room's .cpp files
     for (const std::string& folder : kFolders) {
         for (const Include& include : includes_under(folder)) {
             if (include.file.size() < 2 || include.file.substr(include.file.size() - 2) != ".h") continue;

@@ -7,11 +7,11 @@
 
 #include "camera/perspective.h"
 #include "cli/command_line.h"
-#include "cli/project.h"
-#include "cli/views.h"
+#include "intersect/tracer.h"
 #include "laws/worlds.h"
+#include "render/engine.h"
+#include "render/project.h"
 #include "support/test.h"
-#include "truth/tracer.h"
 
 using namespace trilens;
 using namespace trilens_test;
@@ -42,8 +42,8 @@ TEST_CASE("a flat mirror shows what a second camera behind it sees, at any resol
         const auto world = shipped_world("flat", n, 96, 72);
         const Film& film = world->scene.film;
         const SampleGrid grid{0, 0, film.width, film.height, 1};
-        std::vector<SampleView> views(grid.size());
-        make_viewer(*world, 0, Engine::kExact, ignore)(grid, views);
+        SampleViews views;
+        make_viewer(*world, {}, Engine::kExact, ignore)(grid, views);
 
         // The virtual eye, from the mirror's own plane.
         const SurfacePoint plane = world->optics[0].surface->eval(0, Vec2(0.5));
@@ -51,20 +51,21 @@ TEST_CASE("a flat mirror shows what a second camera behind it sees, at any resol
         const Vec3 virtual_eye = eye - 2 * dot(eye - plane.position, plane.normal) * plane.normal;
         const Tracer tracer(world->objects);
         std::size_t seen = 0, other = 0;
-        for (const SampleView& view : views) {
-            if (!view.reflect.has_ray) continue;
-            const Vec3 on_mirror = view.reflect.ray.origin;
+        for (const SampleView& view : views.samples) {
+            const PathEnd* reflected = views.find(view, Path::kReflect);
+            if (!reflected) continue;
+            const Vec3 on_mirror = reflected->ray.origin;
             const Hit hit = tracer.first_hit({virtual_eye, on_mirror - virtual_eye}, 1.0);
             ++seen;
-            if (hit.triangle != view.reflect.hit.triangle) {
+            if (hit.triangle != reflected->hit.triangle) {
                 ++other;
                 continue;
             }
             if (hit.seen())
-                CHECK(length(position(world->objects, hit) - position(world->objects, view.reflect.hit)) <
+                CHECK(length(position(world->objects, hit) - position(world->objects, reflected->hit)) <
                       1e-12);
             // Every corner ray meets in the virtual eye at t = -1.
-            CHECK(length(view.reflect.ray.origin - view.reflect.ray.direction - virtual_eye) < 1e-13);
+            CHECK(length(reflected->ray.origin - reflected->ray.direction - virtual_eye) < 1e-13);
         }
         CHECK(seen > 500);
         CHECK(other <= seen / 1000);
@@ -87,7 +88,7 @@ TEST_CASE("project agrees with Alhazen's problem on the sphere to 1e-9 of the fi
     double worst = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         for (const WorldImage& image : images[i]) {
-            if (image.path != LightPath::kReflect || !image.refined) continue;
+            if (image.path != Path::kReflect || !image.refined) continue;
             const Vec3 screen = screen_from_world(linear, alhazen_point(camera.eye, points[i]));
             worst = std::max(worst, length(image.pixel - Vec2(screen.x, screen.y) / screen.z));
             ++checked;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/box.h"
 #include "base/error.h"
 #include "image/image_io.h"
 #include "support/test.h"
@@ -22,10 +23,6 @@ std::unique_ptr<World> finish(Scene scene, int n) {
     return make_world(std::move(scene), ignore);
 }
 
-struct Box {
-    Vec3 low{1e300}, high{-1e300};
-};
-
 /// Bounds of an OBJ's vertices.
 Box obj_bounds(const std::string& file) {
     std::ifstream in(file);
@@ -35,8 +32,7 @@ Box obj_bounds(const std::string& file) {
         if (word == "v") {
             Vec3 p;
             in >> p.x >> p.y >> p.z;
-            box.low = glm::min(box.low, p);
-            box.high = glm::max(box.high, p);
+            box.include(p);
         }
         in.ignore(1 << 20, '\n');
     }

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/console.h"
-#include "cli/world.h"
+#include "render/world.h"
 #include "scene/load.h"
 
 namespace trilens_test {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "image/image.h"
+#include "base/image.h"
 #include "measure/compare.h"
 
 namespace trilens_test {

@@ -6,8 +6,8 @@
 #include <functional>
 #include <optional>
 
+#include "base/image.h"
 #include "base/vec.h"
-#include "image/image.h"
 
 namespace trilens_test {
 

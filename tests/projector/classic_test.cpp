@@ -1,5 +1,6 @@
 // Laws of the classic engine: the exact engine's picture within its tolerance, no gaps, no order of work.
 #include "projector/classic.h"
+#include "base/rasterize.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/rasterize.h"
 #include "film_mesh.h"
 #include "projector/draw_options.h"
 #include "projector/projector.h"

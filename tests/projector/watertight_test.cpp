@@ -2,6 +2,7 @@
 #include <array>
 
 #include "base/parallel.h"
+#include "base/rasterize.h"
 #include "brute_force.h"
 #include "projector/draw_options.h"
 #include "projector/projector.h"

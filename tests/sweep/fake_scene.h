@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.h"
+#include "base/image.h"
 #include "sweep/sweep.h"
 
 namespace trilens_test {

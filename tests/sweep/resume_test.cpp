@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/files.h"
 #include "sweep/sweep.h"
 
 using namespace trilens;

@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/files.h"
+#include "base/hash.h"
 #include "image/image_io.h"
+#include "report/xml.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/files.h"
 #include "sweep/fit_runs.h"
-#include "sweep/hash.h"
 #include "sweep/json.h"
-#include "sweep/xml.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;

@@ -47,7 +47,7 @@ TEST_CASE("beam: what the cubic images is never turned away, for every kind of f
         const auto kind = static_cast<FacetKind>(random.below(static_cast<int>(FacetKind::kCount)));
         const TrilinearFacet facet = moved(random_facet(random, kind), scale, offset);
         const Coplanarity coplanarity = make_coplanarity(facet);
-        const Beam beam = make_beam(coplanarity);
+        const FacetBeam beam = make_facet_beam(coplanarity);
         for (const Vec3& point : {beam_point(random, facet), offset + scale * random.in_box(4)}) {
             if (point_images(coplanarity, point).count == 0) continue;
             ++imaged;
@@ -69,7 +69,7 @@ TEST_CASE("beam: of a fine mirror's points without an image nine in ten are turn
             facet.corner[k].direction = glm::mix(facet.corner[0].direction, facet.corner[k].direction, 0.05);
         }
         const Coplanarity coplanarity = make_coplanarity(facet);
-        const Beam beam = make_beam(coplanarity);
+        const FacetBeam beam = make_facet_beam(coplanarity);
         for (int i = 0; i < 20; ++i) {
             // Near the beam, where the tree over facets leaves doubt.
             const Ray& ray = facet.corner[0];

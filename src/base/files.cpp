@@ -1,0 +1,41 @@
+// Text files that are either the old ones or the new ones, never half of one.
+#include "base/files.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/file_bytes.h"
+
+namespace trilens {
+namespace fs = std::filesystem;
+
+void replace_text_file(const std::string& file, const std::string& text) {
+    replace_file(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+std::optional<std::string> read_whole_file(const std::string& file) {
+    std::error_code failure;
+    if (!fs::is_regular_file(file, failure)) return std::nullopt;
+    std::ifstream in(file, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (!in) return std::nullopt;
+    return text;
+}
+
+void make_folder(const std::string& folder) {
+    std::error_code failure;
+    fs::create_directories(folder, failure);
+    if (failure) throw OutputError(folder, "cannot be made: " + failure.message());
+    if (!fs::is_directory(folder, failure)) throw OutputError(folder, "is not a folder");
+}
+
+void remove_file(const std::string& file) {
+    std::error_code failure;
+    fs::remove(file, failure);
+    if (failure) throw OutputError(file, "cannot be removed: " + failure.message());
+}
+
+}  // namespace trilens

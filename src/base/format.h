@@ -1,0 +1,4 @@
+// Text with values in it: the door to libfmt.
+#pragma once
+
+#include <fmt/core.h>

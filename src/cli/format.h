@@ -1,0 +1,4 @@
+// The command room's door to libfmt.
+#pragma once
+
+#include <fmt/core.h>

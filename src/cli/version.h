@@ -1,8 +1,0 @@
-// The program's version.
-#pragma once
-
-namespace trilens {
-
-inline constexpr const char* kVersion = TRILENS_VERSION;
-
-}  // namespace trilens

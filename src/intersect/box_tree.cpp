@@ -1,0 +1,169 @@
+// THE door to Embree for truth: boxes as user geometry, one ray at a time, robust traversal.
+#include "intersect/box_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "base/check.h"
+#include "intersect/embree_device.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The way from the world to Embree's frame: centre at the origin, half diagonal 1.
+struct LocalFrame {
+    Vec3 centre{0};
+    double scale = 1;  // local length = scale * world length
+
+    Vec3 from_world(const Vec3& point) const { return (point - centre) * scale; }
+};
+
+/// A ray as Embree gets it: local frame, unit direction, started where it reaches the scene.
+struct LocalRay {
+    Vec3 origin{0}, direction{0};
+    double t_start = 0;       // world t of local s = 0
+    double local_from_t = 0;  // s = local_from_t * (t - t_start)
+    double s_max = 0;
+    bool meets_scene = false;
+};
+
+/// What travels through Embree to on_box and back.
+struct Query : EmbreeContext {
+    double (*callback)(void* state, Id box) = nullptr;
+    void* state = nullptr;
+    double t_start = 0, local_from_t = 0;
+};
+
+LocalFrame make_frame(std::span<const Box> boxes) {
+    Vec3 low(kInfinity), high(-kInfinity);
+    for (const Box& box : boxes) low = glm::min(low, box.low), high = glm::max(high, box.high);
+    // Halves first: the sum of two large corners may overflow.
+    const Vec3 half = 0.5 * high - 0.5 * low;
+    const double radius = length(half);
+    return {low + half, radius > 0 && std::isfinite(radius) ? 1 / radius : 1.0};
+}
+
+LocalRay make_local(const LocalFrame& frame, const Ray& ray, double t_min, double t_max) {
+    LocalRay local;
+    local.direction = normalize_or_zero(ray.direction);
+    const double speed = dot(local.direction, ray.direction) * frame.scale;
+    const Vec3 origin = frame.from_world(ray.origin);
+    if (!(speed > 0) || !std::isfinite(speed) || !std::isfinite(dot(origin, origin))) return local;
+
+    // The stretch of the ray inside the scene's ball, with room for rounding of far origins.
+    const double radius = 1 + 8 * kBoxMargin + 1e-14 * length(origin);
+    const double s_nearest = -dot(origin, local.direction);
+    const Vec3 nearest = origin + s_nearest * local.direction;
+    const double half_chord_2 = radius * radius - dot(nearest, nearest);
+    if (!(half_chord_2 > 0)) return local;
+    const double half_chord = std::sqrt(half_chord_2);
+    const double s_enter = std::max(s_nearest - half_chord, t_min * speed);
+    const double s_leave = std::min(s_nearest + half_chord, t_max * speed);
+    if (!(s_enter <= s_leave)) return local;
+
+    local.origin = nearest + (s_enter - s_nearest) * local.direction;
+    local.local_from_t = speed;
+    local.t_start = s_enter / speed;
+    local.s_max = s_leave - s_enter;
+    local.meets_scene = true;
+    return local;
+}
+
+/// A float that is not below `s` plus the margin of the boxes.
+float rounded_up(double s) {
+    return std::nextafter(static_cast<float>(s + 4 * kBoxMargin), std::numeric_limits<float>::infinity());
+}
+
+void on_bounds(const RTCBoundsFunctionArguments* arguments) {
+    *arguments->bounds_o = static_cast<const RTCBounds*>(arguments->geometryUserPtr)[arguments->primID];
+}
+
+// Embree offers a box: ask the visitor, and shorten the ray to what still matters.
+void on_box(const RTCIntersectFunctionNArguments* arguments) noexcept {
+    if (!arguments->valid[0]) return;
+    const Query& query = *static_cast<const Query*>(arguments->context);
+    RTCRayHit& hit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
+    const double t_far = query.callback(query.state, arguments->primID);
+    const double s_far = (t_far - query.t_start) * query.local_from_t;
+    if (!(s_far < hit.ray.tfar)) return;
+    const float tfar =
+        s_far < 0 && std::isinf(s_far) ? -std::numeric_limits<float>::infinity() : rounded_up(s_far);
+    if (tfar >= hit.ray.tfar) return;
+    hit.ray.tfar = tfar;
+    hit.hit.primID = arguments->primID;
+    hit.hit.geomID = arguments->geomID;
+}
+
+RTCBounds local_bounds(const LocalFrame& frame, const Box& box) {
+    const Vec3 low = frame.from_world(box.low) - kBoxMargin, high = frame.from_world(box.high) + kBoxMargin;
+    RTCBounds bounds{};
+    bounds.lower_x = static_cast<float>(low.x), bounds.upper_x = static_cast<float>(high.x);
+    bounds.lower_y = static_cast<float>(low.y), bounds.upper_y = static_cast<float>(high.y);
+    bounds.lower_z = static_cast<float>(low.z), bounds.upper_z = static_cast<float>(high.z);
+    return bounds;
+}
+
+}  // namespace
+
+struct BoxTree::Data : EmbreeTree {
+    using EmbreeTree::EmbreeTree;
+    LocalFrame frame;
+};
+
+BoxTree::BoxTree(std::span<const Box> boxes, const std::string& isa) : data_(std::make_unique<Data>(isa)) {
+    if (boxes.empty()) return;
+    TRILENS_CHECK(boxes.size() < kNone, "boxes are numbered with 32 bits");
+    data_->frame = make_frame(boxes);
+    std::vector<RTCBounds> bounds;
+    bounds.reserve(boxes.size());
+    for (const Box& box : boxes) bounds.push_back(local_bounds(data_->frame, box));
+
+    RTCGeometry geometry = rtcNewGeometry(data_->device.get(), RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(bounds.size()));
+    rtcSetGeometryUserData(geometry, bounds.data());
+    rtcSetGeometryBoundsFunction(geometry, &on_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, &on_box);
+    rtcCommitGeometry(geometry);
+    data_->scene = rtcNewScene(data_->device.get());
+    rtcSetSceneFlags(data_->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcAttachGeometry(data_->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(data_->scene);
+    data_->device.check("building the tree");
+}
+
+BoxTree::~BoxTree() = default;
+BoxTree::BoxTree(BoxTree&&) noexcept = default;
+BoxTree& BoxTree::operator=(BoxTree&&) noexcept = default;
+
+void BoxTree::visit_with(const Ray& ray, const Interval& interval, Callback callback, void* state) const {
+    if (!data_->scene) return;
+    const LocalRay local = make_local(data_->frame, ray, interval.t_min, interval.t_max);
+    if (!local.meets_scene) return;
+
+    Query query;
+    init_context(&query);
+    query.callback = callback;
+    query.state = state;
+    query.t_start = local.t_start;
+    query.local_from_t = local.local_from_t;
+
+    RTCRayHit embree{};
+    embree.ray.org_x = static_cast<float>(local.origin.x),
+    embree.ray.dir_x = static_cast<float>(local.direction.x);
+    embree.ray.org_y = static_cast<float>(local.origin.y),
+    embree.ray.dir_y = static_cast<float>(local.direction.y);
+    embree.ray.org_z = static_cast<float>(local.origin.z),
+    embree.ray.dir_z = static_cast<float>(local.direction.z);
+    embree.ray.tfar = rounded_up(local.s_max);
+    embree.ray.mask = ~0u;
+    embree.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    intersect_one(data_->scene, &query, &embree);
+}
+
+}  // namespace trilens

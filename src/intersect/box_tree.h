@@ -1,0 +1,58 @@
+// Which of many boxes a ray may meet: Embree's tree and traversal, with what is inside the boxes left to the
+// caller.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+
+#include "base/box.h"
+#include "base/ids.h"
+#include "base/ray.h"
+
+namespace trilens {
+
+/// Embree's tree over boxes. Embree works in float; here the scene is moved to the origin and scaled to order
+/// one, every ray is brought to the scene in double before it is rounded, and boxes are widened by
+/// kBoxMargin, so that no box that the double ray meets is missed. Thread-safe to read.
+class BoxTree {
+  public:
+    /// `isa`: Embree's instruction set ("sse2" .. "avx512"), or empty for the best.
+    /// Boxes are finite and not empty. Throws UsageError on another name, ComputationError where Embree
+    /// fails.
+    explicit BoxTree(std::span<const Box> boxes, const std::string& isa = "");
+    ~BoxTree();
+    BoxTree(BoxTree&&) noexcept;
+    BoxTree& operator=(BoxTree&&) noexcept;
+
+    /// Calls visitor(box) for every box that the ray meets within [t_min, t_max], some that it just misses,
+    /// roughly from near to far but in no promised order, each once. The visitor returns the t beyond which
+    /// boxes no longer matter (minus infinity to stop); it must not throw. A ray that is not finite, or has
+    /// no direction, meets nothing.
+    template <typename Visitor>
+    void visit(const Ray& ray, double t_min, double t_max, Visitor&& visitor) const {
+        static_assert(std::is_invocable_r_v<double, Visitor&, Id>);
+        using Plain = std::remove_reference_t<Visitor>;
+        const Callback callback = [](void* state, Id box) { return (*static_cast<Plain*>(state))(box); };
+        visit_with(ray, {t_min, t_max}, callback, &visitor);
+    }
+
+  private:
+    struct Data;
+    struct Interval {
+        double t_min, t_max;
+    };
+    using Callback = double (*)(void* state, Id box);
+    void visit_with(const Ray& ray, const Interval& interval, Callback callback, void* state) const;
+
+    std::unique_ptr<Data> data_;
+};
+
+/// How much wider boxes are on each side than asked for, as a share of the half diagonal of all boxes
+/// together. A ray rounded to float strays from the double one by at most 2^-25 per component at its start
+/// and as much again along its way of at most 2; Embree's own box test adds a few units in the last place:
+/// together below 2^-22.
+inline constexpr double kBoxMargin = 1.0 / (1 << 20);
+
+}  // namespace trilens

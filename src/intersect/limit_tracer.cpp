@@ -1,0 +1,251 @@
+// Candidates from the tree in a fixed order, Newton on each, until no candidate can be nearer.
+#include "intersect/limit_tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "intersect/box_tree.h"
+#include "intersect/surface_newton.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSelfHit = 1e-9;
+constexpr std::size_t kFacetsPerTask = 256, kRaysPerTask = 64;
+
+// How many times farther than at the samples the surface may stray from a facet. A quadratic patch strays 4/3
+// as far inside a facet as at the middles of its edges; the rest is for terms of higher order.
+constexpr double kStraySafety = 2;
+
+// A patch that strays s from a facet of size h turns by about 4 s / h from its middle to its ends; the stray
+// kept is twice what was seen, and rays within twice that angle of the surface may meet the patch twice.
+constexpr double kGrazing = 4;
+
+/// A facet of the fine grid with the patch of surface that it stands for.
+struct Patch {
+    std::array<Vec3, 3> corner;
+    std::array<Vec2, 3> uv;
+    Id face = kNone;
+    double stray = 0;  // the surface lies within this distance of the facet
+    double size = 0;   // longest edge
+    double reach = 0;  // largest extent in u or v
+};
+
+/// A patch that the ray may meet.
+struct Candidate {
+    double t_near = 0;  // it meets none before this
+    Id patch = kNone;
+    Vec3 weights{0};                              // of the facet's point nearest to the ray
+    int nearest_corner = 0, farthest_corner = 0;  // along the ray
+};
+
+double largest(const Vec3& v) {
+    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+}
+
+Patch make_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t facet) {
+    Patch patch;
+    patch.face = grid.facet_face[facet];
+    patch.uv = grid.facet_uv[facet];
+    for (int k = 0; k < 3; ++k) patch.corner[k] = grid.points[grid.corner_point[grid.facets[facet][k]]];
+
+    constexpr double third = 1.0 / 3;
+    constexpr std::array<std::array<double, 3>, 4> samples{
+        {{0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {third, third, third}}};
+    for (const auto& [a, b, c] : samples) {
+        const Vec3 chord = a * patch.corner[0] + b * patch.corner[1] + c * patch.corner[2];
+        const Vec2 uv = a * patch.uv[0] + b * patch.uv[1] + c * patch.uv[2];
+        patch.stray = std::max(patch.stray, length(surface.eval(patch.face, uv).position - chord));
+    }
+    for (int k = 0; k < 3; ++k) {
+        const Vec2 edge = glm::abs(patch.uv[k] - patch.uv[(k + 1) % 3]);
+        patch.size = std::max(patch.size, length(patch.corner[k] - patch.corner[(k + 1) % 3]));
+        patch.reach = std::max({patch.reach, edge.x, edge.y});
+    }
+    patch.stray = kStraySafety * patch.stray + kSurfaceResidual * largest(patch.corner[0]);
+    return patch;
+}
+
+Box box_of(const Patch& patch) {
+    const auto& [a, b, c] = patch.corner;
+    return {glm::min(a, glm::min(b, c)) - patch.stray, glm::max(a, glm::max(b, c)) + patch.stray};
+}
+
+Vec3 chord_normal(const Patch& patch) {
+    return normalize_or_zero(cross(patch.corner[1] - patch.corner[0], patch.corner[2] - patch.corner[0]));
+}
+
+/// The point of a triangle in the plane that is nearest to the origin.
+struct Nearest {
+    Vec3 weights{0};
+    double distance = kInfinity;
+};
+
+Nearest nearest_to_origin(const std::array<Vec2, 3>& p) {
+    const auto area = [](const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; };
+    const Vec3 areas(area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1]));
+    const double sum = areas.x + areas.y + areas.z;
+    const Vec3 weights = areas / sum;
+    if (sum != 0 && weights.x >= 0 && weights.y >= 0 && weights.z >= 0) return {weights, 0};
+
+    Nearest best;
+    for (int k = 0; k < 3; ++k) {
+        const Vec2 a = p[k], edge = p[(k + 1) % 3] - a;
+        const double size_2 = dot(edge, edge);
+        const double share = size_2 > 0 ? std::clamp(-dot(a, edge) / size_2, 0.0, 1.0) : 0.0;
+        const double distance = length(a + share * edge);
+        if (distance < best.distance) {
+            best = {Vec3(0), distance};
+            best.weights[k] = 1 - share;
+            best.weights[(k + 1) % 3] = share;
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+struct LimitTracer::Data {
+    const Surface& surface;
+    std::vector<Patch> patches;
+    double size = 0;  // half diagonal of a box about every face's corners and middle
+    BoxTree tree;
+
+    Data(const Surface& exact, const SurfaceGrid& fine, const std::string& isa)
+        : surface(exact),
+          patches(make_patches(exact, fine)),
+          size(half_diagonal(exact)),
+          tree(boxes(), isa) {}
+
+    static std::vector<Patch> make_patches(const Surface& surface, const SurfaceGrid& fine) {
+        if (surface.has_closed_form()) return {};
+        std::vector<Patch> patches(fine.facets.size());
+        parallel_for(patches.size(), kFacetsPerTask, [&](std::size_t first, std::size_t last) {
+            for (std::size_t f = first; f < last; ++f) patches[f] = make_patch(surface, fine, f);
+        });
+        return patches;
+    }
+    static double half_diagonal(const Surface& surface) {
+        Vec3 low(kInfinity), high(-kInfinity);
+        for (Id face = 0; face < surface.face_count(); ++face) {
+            for (const Vec2& uv : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(0.5, 0.5)}) {
+                const Vec3 p = surface.eval(face, uv).position;
+                low = glm::min(low, p), high = glm::max(high, p);
+            }
+        }
+        return surface.face_count() > 0 ? 0.5 * length(high - low) : 0;
+    }
+    std::vector<Box> boxes() const {
+        std::vector<Box> result;
+        result.reserve(patches.size());
+        for (const Patch& patch : patches) result.push_back(box_of(patch));
+        return result;
+    }
+
+    std::optional<Candidate> candidate(const RayFrame& frame, Id index, double t_min) const;
+    std::vector<Candidate> candidates(const Ray& ray, const RayFrame& frame, double t_min) const;
+    template <typename Use>
+    void for_each_hit(const Ray& ray, const RayFrame& frame, const Candidate& candidate, Use&& use) const;
+};
+
+// Keeps the patch if the ray passes within its stray, and some of it lies after t_min.
+std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, Id index, double t_min) const {
+    const Patch& patch = patches[index];
+    std::array<Vec2, 3> seen;
+    Vec3 z;
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 local = frame.from_world(patch.corner[k]);
+        seen[k] = {local.x, local.y};
+        z[k] = local.z;
+    }
+    const int low = z.x <= z.y && z.x <= z.z ? 0 : z.y <= z.z ? 1 : 2;
+    const int high = z.x >= z.y && z.x >= z.z ? 0 : z.y >= z.z ? 1 : 2;
+    if (!((z[high] + patch.stray) / frame.speed > t_min)) return std::nullopt;
+    const Nearest nearest = nearest_to_origin(seen);
+    if (!(nearest.distance <= patch.stray)) return std::nullopt;
+    return Candidate{(z[low] - patch.stray) / frame.speed, index, nearest.weights, low, high};
+}
+
+std::vector<Candidate> LimitTracer::Data::candidates(const Ray& ray, const RayFrame& frame,
+                                                     double t_min) const {
+    std::vector<Candidate> found;
+    tree.visit(ray, t_min, kInfinity, [&](Id index) {
+        if (const auto one = candidate(frame, index, t_min)) found.push_back(*one);
+        return kInfinity;
+    });
+    // The order of Embree's visits depends on the machine; this order does not.
+    std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
+        return a.t_near != b.t_near ? a.t_near < b.t_near : a.patch < b.patch;
+    });
+    return found;
+}
+
+// Calls use(hit) for the hits that Newton's method reaches in the candidate's patch, with any t, some perhaps
+// twice.
+template <typename Use>
+void LimitTracer::Data::for_each_hit(const Ray& ray, const RayFrame& frame, const Candidate& candidate,
+                                     Use&& use) const {
+    const Patch& patch = patches[candidate.patch];
+    const auto solve = [&](const Vec2& uv) {
+        const auto hit = solve_surface_hit(surface, frame, {patch.face, uv, patch.reach});
+        if (hit) use(*hit);
+        return hit;
+    };
+    const Vec3& w = candidate.weights;
+    const auto hit = solve(w.x * patch.uv[0] + w.y * patch.uv[1] + w.z * patch.uv[2]);
+    const bool steep =
+        hit && std::fabs(dot(hit->point.normal, frame.z)) * patch.size > kGrazing * patch.stray;
+    if (steep) return;
+
+    // Near a silhouette a patch is met twice, and the hit found may be the farther one.
+    const auto second = hit ? predict_second_hit(*hit, ray.direction) : std::nullopt;
+    if (second && std::fabs(second->t_step) * frame.speed <= 2 * patch.size) solve(second->uv);
+    solve(patch.uv[candidate.nearest_corner]);
+    solve(patch.uv[candidate.farthest_corner]);
+}
+
+LimitTracer::LimitTracer(const Surface& surface, const SurfaceGrid& fine, const std::string& isa)
+    : data_(std::make_unique<Data>(surface, fine, isa)) {}
+LimitTracer::~LimitTracer() = default;
+LimitTracer::LimitTracer(LimitTracer&&) noexcept = default;
+LimitTracer& LimitTracer::operator=(LimitTracer&&) noexcept = default;
+
+std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) const {
+    const Surface& surface = data_->surface;
+    if (surface.has_closed_form()) return surface.intersect(ray, t_min);
+    const std::optional<RayFrame> frame = make_ray_frame(ray);
+    if (!frame) return std::nullopt;
+
+    std::optional<SurfaceHit> first;
+    for (const Candidate& candidate : data_->candidates(ray, *frame, t_min)) {
+        if (first && candidate.t_near > first->t) break;
+        const Patch& patch = data_->patches[candidate.patch];
+        data_->for_each_hit(ray, *frame, candidate, [&](const SurfaceHit& hit) {
+            if (!(hit.t > t_min) || (first && !(hit.t < first->t))) return;
+            first = hit;
+            if (hit.point.normal == Vec3(0)) first->point.normal = chord_normal(patch);
+        });
+    }
+    return first;
+}
+
+double LimitTracer::self_hit_t_min(const Ray& ray) const {
+    const double speed = length(ray.direction);
+    return speed > 0 ? kSelfHit * data_->size / speed : 0;
+}
+
+void trace_limit(const LimitTracer& tracer, std::span<const Ray> rays, double t_min,
+                 std::span<std::optional<SurfaceHit>> hits) {
+    TRILENS_CHECK(hits.size() == rays.size(), "one hit per ray");
+    parallel_for(rays.size(), kRaysPerTask, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) hits[i] = tracer.first_hit(rays[i], t_min);
+    });
+}
+
+}  // namespace trilens

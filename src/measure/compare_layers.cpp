@@ -1,0 +1,36 @@
+#include "measure/compare_layers.h"
+
+namespace trilens {
+
+std::vector<LayerComparison> compare_layers(const Image& reference, const Image& test,
+                                            const DisplacementOptions& options) {
+    std::vector<LayerComparison> layers;
+    for (const char* name : {"reflect", "refract"}) {
+        if (!reference.find(std::string(name) + ".object")) continue;
+        layers.push_back({name, compare_seen(reference, test, name, options.mask_object),
+                          measure_displacement(reference, test, name, options)});
+    }
+    return layers;
+}
+
+SeenMismatch total_seen(const std::vector<LayerComparison>& layers) {
+    SeenMismatch total;
+    for (const LayerComparison& layer : layers) {
+        if (!layer.seen) continue;
+        total.pixels += layer.seen->pixels;
+        total.object_mismatch += layer.seen->object_mismatch;
+        total.primitive_mismatch += layer.seen->primitive_mismatch;
+        total.coverage_mismatch += layer.seen->coverage_mismatch;
+    }
+    return total;
+}
+
+const LayerComparison* main_layer(const std::vector<LayerComparison>& layers, const std::string& asked) {
+    for (const LayerComparison& layer : layers)
+        if (layer.layer == asked && layer.displacement) return &layer;
+    for (const LayerComparison& layer : layers)
+        if (layer.displacement && layer.displacement->pixels + layer.displacement->lost > 0) return &layer;
+    return nullptr;
+}
+
+}  // namespace trilens

@@ -1,0 +1,31 @@
+// What two pictures show through their optics, layer by layer: the same things, and in the same places?
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "measure/displacement.h"
+#include "measure/seen.h"
+
+namespace trilens {
+
+/// One layer of both images.
+struct LayerComparison {
+    std::string layer;  // "reflect", "refract"
+    std::optional<SeenMismatch> seen;
+    std::optional<Displacement> displacement;
+};
+
+/// The layers that the reference has. Throws InputError where the images cannot be compared.
+std::vector<LayerComparison> compare_layers(const Image& reference, const Image& test,
+                                            const DisplacementOptions& options = {});
+
+/// Sums over the layers.
+SeenMismatch total_seen(const std::vector<LayerComparison>& layers);
+
+/// The layer that stands for the whole: `asked` where it was measured, else the first that shows something;
+/// null where none does.
+const LayerComparison* main_layer(const std::vector<LayerComparison>& layers, const std::string& asked);
+
+}  // namespace trilens

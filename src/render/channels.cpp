@@ -1,0 +1,109 @@
+#include "render/channels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace trilens {
+namespace {
+
+/// Depth of a pixel that sees nothing.
+constexpr float kFarDepth = 1e30f;
+
+constexpr std::array kPaths{Path::kDirect, Path::kReflect, Path::kRefract};
+constexpr std::array kColours{"R", "G", "B", "A"};
+
+}  // namespace
+
+const std::vector<std::string>& layer_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all{"Z", "optic"};
+        for (const Path path : kPaths) all.push_back(path_name(path));
+        return all;
+    }();
+    return names;
+}
+
+std::size_t Canvas::add_floats(const std::string& name) {
+    image_.channels.push_back({name, std::vector<float>(image_.pixels())});
+    return image_.channels.size() - 1;
+}
+
+std::size_t Canvas::add_ids(const std::string& name) {
+    image_.channels.push_back({name, std::vector<Id>(image_.pixels())});
+    return image_.channels.size() - 1;
+}
+
+Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std::move(image)) {
+    const auto wanted = [&](const std::string& layer) {
+        return layers.empty() || std::find(layers.begin(), layers.end(), layer) != layers.end();
+    };
+    for (std::size_t c = 0; c < 4; ++c) rgba_[c] = add_floats(kColours[c]);
+    if (wanted("Z")) depth_ = add_floats("Z");
+    if (wanted("optic")) {
+        optic_object_ = add_ids("optic.object");
+        optic_facet_ = add_ids("optic.facet");
+        optic_u_ = add_floats("optic.U");
+        optic_v_ = add_floats("optic.V");
+    }
+    for (std::size_t p = 0; p < kPaths.size(); ++p) {
+        const std::string layer = path_name(kPaths[p]);
+        parts_[p].fill(kNone);
+        if (!wanted(layer)) continue;
+        for (std::size_t c = 0; c < 3; ++c) parts_[p][c] = add_floats(layer + "." + kColours[c]);
+    }
+    for (const Path path : kPaths) {
+        const std::string layer = path_name(path);
+        if (path == Path::kDirect || !wanted(layer)) continue;
+        EndChannels end{path};
+        end.object = add_ids(layer + ".object");
+        end.primitive = add_ids(layer + ".primitive");
+        end.x = add_floats(layer + ".X");
+        end.y = add_floats(layer + ".Y");
+        end.z = add_floats(layer + ".Z");
+        end.length = add_floats(layer + ".length");
+        ends_.push_back(end);
+    }
+}
+
+void Canvas::put_colour(const SampleColour& mean, std::size_t pixel) {
+    const Vec3 beauty = mean.direct + mean.reflect + mean.refract;
+    const std::array<const Vec3*, 3> parts{&mean.direct, &mean.reflect, &mean.refract};
+    for (int c = 0; c < 3; ++c) {
+        const std::size_t k = static_cast<std::size_t>(c);
+        if (!std::isfinite(beauty[c])) throw ComputationError("a pixel's colour is not finite");
+        floats(rgba_[k])[pixel] = static_cast<float>(beauty[c]);
+        for (std::size_t p = 0; p < parts.size(); ++p)
+            if (parts_[p][k] != kNone) floats(parts_[p][k])[pixel] = static_cast<float>((*parts[p])[c]);
+    }
+    floats(rgba_[3])[pixel] = static_cast<float>(mean.coverage);
+}
+
+void Canvas::put_end(const World& world, const PathEnd* end, const EndChannels& channels, std::size_t pixel) {
+    const bool seen = end && end->hit.seen();
+    const Vec3 point = seen ? position(world.objects, end->hit) : Vec3(0);
+    ids(channels.object)[pixel] = seen ? world.objects.object[end->hit.triangle] : kNone;
+    ids(channels.primitive)[pixel] = seen ? world.objects.primitive[end->hit.triangle] : kNone;
+    floats(channels.x)[pixel] = static_cast<float>(point.x);
+    floats(channels.y)[pixel] = static_cast<float>(point.y);
+    floats(channels.z)[pixel] = static_cast<float>(point.z);
+    floats(channels.length)[pixel] = seen ? static_cast<float>(path_length(*end)) : 0.0f;
+}
+
+void Canvas::put_centre(const World& world, const SampleViews& views, const SampleView& view,
+                        std::size_t pixel) {
+    const bool optic = view.optic != kNone;
+    if (depth_ != kNone)
+        floats(depth_)[pixel] = view.hit.seen() || optic ? static_cast<float>(view.depth) : kFarDepth;
+    if (optic_object_ != kNone) {
+        ids(optic_object_)[pixel] = optic ? world.optics[view.optic].mesh : kNone;
+        ids(optic_facet_)[pixel] = optic ? view.facet : kNone;
+        floats(optic_u_)[pixel] = static_cast<float>(view.uv.x);
+        floats(optic_v_)[pixel] = static_cast<float>(view.uv.y);
+    }
+    for (const EndChannels& channels : ends_)
+        put_end(world, views.find(view, channels.path), channels, pixel);
+}
+
+}  // namespace trilens

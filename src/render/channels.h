@@ -1,0 +1,49 @@
+// The channels of a picture: which layers it has, and what a pixel writes into each.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "render/request.h"
+#include "render/sample_colour.h"
+
+namespace trilens {
+
+/// An image under work, with its channels by what they hold. Names: interface, "Images".
+class Canvas {
+  public:
+    /// `image`: with its windows set, without channels. `layers`: those to keep beside RGBA; empty: all.
+    Canvas(Image image, const std::vector<std::string>& layers);
+
+    /// Throws ComputationError where the colour is not finite.
+    void put_colour(const SampleColour& mean, std::size_t pixel);
+    /// What the pixel's centre shows.
+    void put_centre(const World& world, const SampleViews& views, const SampleView& view, std::size_t pixel);
+
+    const Image& image() const { return image_; }
+    Image take() { return std::move(image_); }
+
+  private:
+    /// Indices into the image's channels; kNone: not asked for.
+    struct EndChannels {
+        Path path = Path::kReflect;
+        std::size_t object = kNone, primitive = kNone, x = kNone, y = kNone, z = kNone, length = kNone;
+    };
+
+    std::size_t add_floats(const std::string& name);
+    std::size_t add_ids(const std::string& name);
+    std::vector<float>& floats(std::size_t channel) { return image_.channels[channel].floats(); }
+    std::vector<Id>& ids(std::size_t channel) { return image_.channels[channel].ids(); }
+    void put_end(const World& world, const PathEnd* end, const EndChannels& channels, std::size_t pixel);
+
+    Image image_;
+    std::array<std::size_t, 4> rgba_{};
+    std::array<std::array<std::size_t, 3>, 3> parts_{};  // direct, reflect, refract
+    std::size_t depth_ = kNone;
+    std::size_t optic_object_ = kNone, optic_facet_ = kNone, optic_u_ = kNone, optic_v_ = kNone;
+    std::vector<EndChannels> ends_;
+};
+
+}  // namespace trilens

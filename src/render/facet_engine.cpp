@@ -1,0 +1,215 @@
+#include "render/facet_engine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/rasterize.h"
+#include "projector/classic.h"
+
+namespace trilens {
+namespace {
+
+/// The engine's work on one RayMesh: the nearest triangles along the rays of the owned samples.
+using DrawMesh = std::function<void(const RayMesh&, const FacetSamples&, const SampleGrid&, std::span<Hit>)>;
+
+DrawMesh project_through(const PreparedScene& scene) {
+    return [&scene](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                    std::span<Hit> hits) { draw(scene, mesh, owned, grid, hits); };
+}
+
+DrawMesh trace_through(const Tracer& tracer) {
+    return [&tracer](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                     std::span<Hit> hits) { trace_facets(tracer, mesh, owned, grid, hits); };
+}
+
+DrawMesh classic_through(const PreparedScene& scene, const ClassicParams& params) {
+    return [&scene, params](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                            std::span<Hit> hits) { draw_classic(scene, mesh, owned, grid, hits, params); };
+}
+
+/// One path of one optic, drawn.
+struct DrawnPath {
+    const PathMesh* path = nullptr;
+    FacetSamples owned;
+    std::vector<Hit> hits;  // per sample
+};
+
+/// All facet engines: the projectors and Embree on the same rays.
+struct FacetViewer {
+    const World* world = nullptr;
+    Frame frame;
+    DrawMesh draw_first;                // objects, for what lies before what
+    DrawMesh draw_objects;              // objects, as the engine shows them
+    std::vector<DrawMesh> draw_optics;  // each optic's facets
+    bool redraws_direct = false;        // draw_objects is another engine than draw_first
+
+    void operator()(const SampleGrid& grid, SampleViews& views) const;
+
+  private:
+    void view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
+    void view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
+                    SampleViews& views) const;
+    void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
+    void describe_optic(std::size_t index, const Hit& hit, SampleView& view) const;
+    std::vector<DrawnPath> draw_paths(const SampleGrid& grid, const SampleViews& views) const;
+};
+
+Vec3 corner_weights(const Hit& hit) {
+    return {1 - hit.barycentric.x - hit.barycentric.y, hit.barycentric.x, hit.barycentric.y};
+}
+
+void FacetViewer::describe_optic(std::size_t index, const Hit& hit, SampleView& view) const {
+    const SurfaceGrid& grid = frame.optics[index].facets->grid();
+    view.hit = {};
+    view.depth = hit.t;
+    view.optic = static_cast<Id>(index);
+    view.facet = hit.triangle;
+    view.uv = Vec2(0);
+    const Vec3 weights = corner_weights(hit);
+    const IdTriple& corner = grid.facets[view.facet];
+    Vec3 normal(0);
+    for (int k = 0; k < 3; ++k) {
+        const std::size_t c = static_cast<std::size_t>(k);
+        normal += weights[k] * grid.corner_normal[corner[c]];
+        view.uv += weights[k] * grid.facet_uv[view.facet][c];
+    }
+
+    // The side is the facet's own; the angle that of the interpolated normal, grazing where it turned away.
+    view.incidence.front = faces_front(grid, corner, view.ray.direction);
+    const Vec3 unit = normalize_or_zero(normal) * (view.incidence.front ? 1.0 : -1.0);
+    view.incidence.cosine = std::clamp(-dot(normalize_or_zero(view.ray.direction), unit), 0.0, 1.0);
+}
+
+void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const {
+    std::vector<Hit> hits(grid.size());
+    draw_first(frame.camera.mesh, owned, grid, hits);
+    for (std::size_t s = 0; s < hits.size(); ++s) {
+        if (!hits[s].seen()) continue;
+        views.samples[s].hit = hits[s];
+        views.samples[s].depth = hits[s].t;
+    }
+}
+
+void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
+                             SampleViews& views) const {
+    std::vector<Hit> hits(grid.size());
+    draw_optics[index](frame.camera.mesh, owned, grid, hits);
+    const Id own = world->optics[index].mesh;
+    parallel_for(hits.size(), 1024, [&](std::size_t from, std::size_t to) {
+        for (std::size_t s = from; s < to; ++s) {
+            SampleView& view = views.samples[s];
+            if (!hits[s].seen()) continue;
+            const bool sees_optic = view.optic != kNone, sees_object = view.hit.seen();
+            if (sees_optic || sees_object) {
+                const Id other =
+                    sees_optic ? world->optics[view.optic].mesh : world->objects.object[view.hit.triangle];
+                if (!comes_before(hits[s].t, own, view.depth, other)) continue;
+            }
+            describe_optic(index, hits[s], view);
+        }
+    });
+}
+
+/// Where no optic is first, what the engine itself shows of the objects.
+void FacetViewer::redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const {
+    std::vector<Hit> hits(grid.size());
+    draw_objects(frame.camera.mesh, owned, grid, hits);
+    for (std::size_t s = 0; s < hits.size(); ++s) {
+        SampleView& view = views.samples[s];
+        if (view.optic != kNone) continue;
+        view.hit = hits[s];
+        view.depth = hits[s].seen() ? hits[s].t : SampleView().depth;
+    }
+}
+
+std::vector<DrawnPath> FacetViewer::draw_paths(const SampleGrid& grid, const SampleViews& views) const {
+    std::vector<DrawnPath> drawn;
+    std::vector<Id> owner(grid.size());
+    for (std::size_t i = 0; i < frame.optics.size(); ++i) {
+        bool any = false;
+        for (std::size_t s = 0; s < owner.size(); ++s) {
+            const SampleView& view = views.samples[s];
+            owner[s] = view.optic == i ? view.facet : kNone;
+            any = any || view.optic == i;
+        }
+        if (!any) continue;
+        for (const PathMesh& path : frame.optics[i].paths) {
+            DrawnPath one{&path, group_by_facet(owner, path.mesh.facets.size()),
+                          std::vector<Hit>(grid.size())};
+            draw_objects(path.mesh, one.owned, grid, one.hits);
+            drawn.push_back(std::move(one));
+        }
+    }
+    return drawn;
+}
+
+/// Calls body(facet, weights) for the facets through which samples have a ray, in parallel.
+template <typename Body>
+void for_each_facet_with_rays(const DrawnPath& drawn, const Body& body) {
+    const RayMesh& mesh = drawn.path->mesh;
+    parallel_for(mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
+        for (std::size_t f = from; f < to; ++f) {
+            if (!mesh.has_rays(f) || drawn.owned.of(f).empty()) continue;
+            const FacetWeights weights = facet_weights(mesh, f);
+            if (!weights.edge_on) body(f, weights);
+        }
+    });
+}
+
+/// Writes the ends of all paths: first how many each sample has, then where each sample's begin, then they.
+void collect_ends(const std::vector<DrawnPath>& drawn, const SampleGrid& grid, SampleViews& views) {
+    for (const DrawnPath& one : drawn)
+        for_each_facet_with_rays(one, [&](std::size_t f, const FacetWeights&) {
+            for (const Id s : one.owned.of(f)) ++views.samples[s].end_count;
+        });
+    std::size_t total = 0;
+    for (SampleView& view : views.samples) {
+        view.first_end = total;
+        total += view.end_count;
+        view.end_count = 0;
+    }
+    views.ends.resize(total);
+    for (const DrawnPath& one : drawn)
+        for_each_facet_with_rays(one, [&](std::size_t f, const FacetWeights& weights) {
+            for (const Id s : one.owned.of(f)) {
+                SampleView& view = views.samples[s];
+                PathEnd& end = views.ends[view.first_end + view.end_count++];
+                end.path = one.path->path;
+                end.ray = sample_ray(one.path->mesh, f, weights, grid.position(s));
+                end.hit = one.hits[s];
+            }
+        });
+}
+
+void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
+    views.reset(grid.size());
+    const FacetSamples owned = rasterize_facets(frame.camera.mesh, grid);
+    set_camera_rays(frame.camera.mesh, owned, grid, views.samples);
+    view_objects(owned, grid, views);
+    for (std::size_t i = 0; i < frame.optics.size(); ++i) view_optic(i, owned, grid, views);
+    if (redraws_direct) redraw_direct(owned, grid, views);
+    collect_ends(draw_paths(grid, views), grid, views);
+}
+
+}  // namespace
+
+Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine) {
+    auto viewer = std::make_shared<FacetViewer>();
+    viewer->world = &world;
+    viewer->frame = std::move(frame);
+    const bool traces = engine.engine == Engine::kFacetsTruth;
+    viewer->draw_first =
+        traces ? trace_through(object_tracer(world)) : project_through(prepared_objects(world));
+    viewer->draw_objects = viewer->draw_first;
+    for (const FramedOptic& optic : viewer->frame.optics)
+        viewer->draw_optics.push_back(traces ? trace_through(optic.facets->tracer())
+                                             : project_through(optic.facets->prepared()));
+    if (engine.engine == Engine::kClassic) {
+        viewer->draw_objects = classic_through(prepared_objects(world), engine.classic);
+        viewer->redraws_direct = true;
+    }
+    return [viewer](const SampleGrid& grid, SampleViews& views) { (*viewer)(grid, views); };
+}
+
+}  // namespace trilens

@@ -1,0 +1,13 @@
+// Views through facets: the two projectors, and Embree on the rays of the same facets.
+#pragma once
+
+#include "render/engine.h"
+
+namespace trilens {
+
+/// A viewer in which every optic is its N x N grid. `engine`: kExact, kClassic or kFacetsTruth. With
+/// kClassic, too, the exact projector finds which facet each sample sees; the classic one draws the objects
+/// there, and those that the camera sees itself.
+Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine);
+
+}  // namespace trilens

@@ -1,0 +1,46 @@
+// What is built from a world's geometry: trees and grids, each made once, when it is first asked for.
+#pragma once
+
+#include <memory>
+
+#include "base/lazy.h"
+#include "base/surface.h"
+#include "intersect/limit_tracer.h"
+#include "intersect/tracer.h"
+#include "projector/projector.h"
+#include "render/world.h"
+
+namespace trilens {
+
+/// An optic's grid at one resolution. Its facets as a scene: triangle f is facet f, its object the optic's.
+class OpticFacets {
+  public:
+    OpticFacets(SurfaceGrid grid, Id object) : grid_(std::move(grid)), object_(object) {}
+
+    const SurfaceGrid& grid() const { return grid_; }
+    TriangleScene scene() const;
+    const PreparedScene& prepared() const;
+    const Tracer& tracer() const;
+
+  private:
+    SurfaceGrid grid_;
+    Id object_ = kNone;
+    Lazy<PreparedScene> prepared_;
+    Lazy<Tracer> tracer_;
+};
+
+/// Makes room for what is built later; called once, when the world has all its optics.
+void prepare_geometry(World& world);
+
+/// The objects for the projector, and for rays.
+const PreparedScene& prepared_objects(const World& world);
+const Tracer& object_tracer(const World& world);
+
+/// The exact surface of an optic for rays.
+const LimitTracer& limit_tracer(const World& world, std::size_t optic);
+
+/// The optic's facets at resolution n. The last resolution of each optic is kept, so that a new camera finds
+/// it.
+std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t optic, int n);
+
+}  // namespace trilens

@@ -1,0 +1,17 @@
+// From views to an image, band by band: shading, the box filter, and the channels.
+#pragma once
+
+#include "base/image.h"
+#include "base/progress.h"
+#include "render/engine.h"
+#include "render/request.h"
+
+namespace trilens {
+
+/// Draws the window, which lies on the film and is not empty, band by band. Colours are the mean over the
+/// samples of a pixel; ids, positions and depths are those of the pixel's centre, whatever the number of
+/// samples. Throws Interrupted, and ComputationError when a pixel is not finite.
+Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& request,
+                  const Progress& progress, LayerStatistics* statistics = nullptr);
+
+}  // namespace trilens

@@ -1,0 +1,104 @@
+#include "render/picture.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/format.h"
+#include "base/nearest.h"
+#include "base/stopwatch.h"
+#include "base/version.h"
+#include "render/engine.h"
+#include "render/layers.h"
+
+namespace trilens {
+namespace {
+
+std::string resolution_text(const World& world, int asked) {
+    std::string text;
+    for (const Optic& optic : world.optics)
+        text += (text.empty() ? "" : ",") + std::to_string(grid_resolution(optic, asked));
+    return text;
+}
+
+void tell(const World& world, const LayerRequest& window, const LayerStatistics& statistics,
+          const Warn& warn) {
+    const Film& film = world.scene.film;
+    if (window.x1 - window.x0 == film.width && window.y1 - window.y0 == film.height) {
+        if (world.optics.empty())
+            warn("the scene has no optic: only the direct view is drawn");
+        else if (statistics.optic_pixels == 0)
+            warn("no pixel sees an optic: they are off screen, behind the camera, or hidden");
+        if (world.objects.size() == 0) warn("the scene has no objects: rays see only the background");
+    }
+    if (statistics.pixels_without_ray > 0)
+        warn(
+            fmt::format("{} pixels see a facet without rays (total internal reflection at a corner, or no "
+                        "normal); that path is black there",
+                        statistics.pixels_without_ray));
+}
+
+/// The window as it is drawn: the whole film where none is asked for.
+LayerRequest checked_layers(const World& world, LayerRequest asked) {
+    const Film& film = world.scene.film;
+    if (asked.x0 == 0 && asked.y0 == 0 && asked.x1 == 0 && asked.y1 == 0)
+        asked.x1 = film.width, asked.y1 = film.height;
+    if (asked.x0 < 0 || asked.y0 < 0 || asked.x1 > film.width || asked.y1 > film.height ||
+        asked.x0 >= asked.x1 || asked.y0 >= asked.y1)
+        throw UsageError(fmt::format("{},{},{},{} is not a window of the {} x {} film", asked.x0, asked.y0,
+                                     asked.x1, asked.y1, film.width, film.height));
+    for (const std::string& layer : asked.layers)
+        if (std::find(layer_names().begin(), layer_names().end(), layer) == layer_names().end())
+            throw UsageError("there is no layer \"" + layer + "\"" + suggestion(layer, layer_names()));
+    return asked;
+}
+
+/// Refuses a film whose layers alone would fill the machine's memory: the system would end the program
+/// without a word.
+void check_film_fits(const World& world, const LayerRequest& window) {
+    constexpr double kBytesPerPixel = 2 * 34 * 4;  // up to 34 channels, once more while they are encoded
+    const double needed = kBytesPerPixel * (window.x1 - window.x0) * (window.y1 - window.y0);
+    const double memory =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed < memory) return;
+    throw InputError(
+        world.scene.file, "/film",
+        fmt::format("an image of {} x {} pixels needs about {:.0f} GiB; this machine has {:.0f}",
+                    window.x1 - window.x0, window.y1 - window.y0, needed / (1 << 30), memory / (1 << 30)));
+}
+
+void describe(const World& world, const PictureRequest& request, Image& image) {
+    const Engine engine = request.engine.engine;
+    auto& header = image.metadata;
+    header["trilens:version"] = kVersion;
+    header["trilens:command"] = engine == Engine::kExact || engine == Engine::kClassic ? "render" : "trace";
+    header["trilens:engine"] = engine_name(engine);
+    if (engine == Engine::kClassic) header["trilens:classic"] = classic_name(request.engine.classic);
+    header["trilens:camera"] = world.scene.cameras[request.frame.camera].name;
+    header["trilens:resolution"] = resolution_text(world, request.frame.resolution);
+    header["trilens:facets"] = std::to_string(facet_count(world, request.frame.resolution));
+    header["trilens:scene"] = world.scene.resolved;
+    header["trilens:folder"] = world.scene.folder;
+}
+
+}  // namespace
+
+Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
+                     const Warn& warn) {
+    const LayerRequest layers = checked_layers(world, request.layers);
+    check_film_fits(world, layers);
+    Picture picture;
+    const Stopwatch preparing;
+    const Viewer viewer = make_viewer(world, request.frame, request.engine, warn);
+    picture.prepare_seconds = preparing.seconds();
+
+    const Stopwatch drawing;
+    picture.image = draw_layers(world, viewer, layers, progress, &picture.statistics);
+    picture.draw_seconds = drawing.seconds();
+    describe(world, request, picture.image);
+    if (warn) tell(world, layers, picture.statistics, warn);
+    return picture;
+}
+
+}  // namespace trilens

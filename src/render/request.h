@@ -1,0 +1,66 @@
+// What a picture is asked to be, and what is known of it once it is drawn.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "projector/classic_params.h"
+
+namespace trilens {
+
+/// What a picture's rays depend on.
+struct FrameParams {
+    std::size_t camera = 0;  // index into Scene::cameras
+    int resolution = 0;      // of every optic's grid, 1..1024; 0: each optic's own
+};
+
+/// kExact: the projector. kClassic: the thesis' engine. kFacetsTruth: Embree on the rays of the same facets.
+/// kLimitTruth: Embree on the exact surfaces.
+enum class Engine { kExact, kClassic, kFacetsTruth, kLimitTruth };
+
+/// An engine with its settings.
+struct EngineChoice {
+    Engine engine = Engine::kExact;
+    ClassicParams classic;  // of kClassic
+
+    EngineChoice() = default;
+    EngineChoice(Engine chosen) : engine(chosen) {}
+    EngineChoice(const ClassicParams& params) : engine(Engine::kClassic), classic(params) {}
+};
+
+/// "exact", "classic", "facets", "limit".
+std::string engine_name(Engine engine);
+
+/// How the classic engine draws: "arcs", "slices 4, clip screen".
+std::string classic_name(const ClassicParams& params);
+
+/// The window of the film that is drawn, in pixels [x0, x1) x [y0, y1), and its layers.
+struct LayerRequest {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
+    std::vector<std::string> layers;     // names to keep beside RGBA, of layer_names(); empty: all
+};
+
+struct PictureRequest {
+    FrameParams frame;
+    EngineChoice engine;
+    LayerRequest layers;
+};
+
+/// Counts of what the user would want to know.
+struct LayerStatistics {
+    std::size_t optic_pixels = 0;
+    std::size_t pixels_without_ray = 0;  // pixels on an optic that lack a ray a path asked for
+};
+
+struct Picture {
+    Image image;  // with the header fields of the interface
+    LayerStatistics statistics;
+    double prepare_seconds = 0, draw_seconds = 0;
+};
+
+/// The layers that may be asked for beside R G B A: "Z", "optic", "direct", and the paths' names.
+const std::vector<std::string>& layer_names();
+
+}  // namespace trilens

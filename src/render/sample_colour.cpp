@@ -1,0 +1,35 @@
+#include "render/sample_colour.h"
+
+namespace trilens {
+
+double path_length(const PathEnd& end) {
+    return end.hit.t * length(end.ray.direction);
+}
+
+SampleColour sample_colour(const World& world, const SampleViews& views, const SampleView& view) {
+    const RenderSettings& settings = world.scene.render;
+    SampleColour colour;
+    colour.coverage = view.hit.seen() || view.optic != kNone ? 1 : 0;
+    if (view.optic == kNone) {
+        if (settings.direct) colour.direct = shade_ray(world.shading, view.hit, view.ray);
+        return colour;
+    }
+    const Material& material = world.scene.materials[world.optics[view.optic].material];
+    const OpticWeights weights = optic_weights(material, view.incidence, settings.fresnel);
+    for (const PathEnd& end : views.ends_of(view)) {
+        const bool reflected = end.path == Path::kReflect;
+        const Vec3 weight = reflected ? weights.reflect : weights.refract;
+        if (weight == Vec3(0)) continue;
+        const Vec3 light = shade_ray(world.shading, end.hit, end.ray);
+        if (reflected) {
+            colour.reflect += weight * light;
+        } else {
+            const auto distance = end.hit.seen() ? std::optional(path_length(end)) : std::nullopt;
+            colour.refract +=
+                weight * (light * refracted_transmittance(material, view.incidence.front, distance));
+        }
+    }
+    return colour;
+}
+
+}  // namespace trilens

@@ -1,0 +1,54 @@
+// What every sample shows, found by projection or by ray tracing: one record for all engines.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "paths/path.h"
+#include "shade/optic_weights.h"
+
+namespace trilens {
+
+/// What one sample shows first, and where the ends of its paths over optics are.
+struct SampleView {
+    Ray ray;              // the camera's
+    Hit hit;              // of World::objects; unset where an optic is nearer
+    double depth = 1e30;  // t along `ray` of whatever is first; distance along the view axis
+
+    Id optic = kNone;     // index into World::optics
+    Id facet = kNone;     // of the optic's grid; limit truth: face of the surface
+    Vec2 uv{0};           // in the facet's face
+    Incidence incidence;  // of `ray` at the optic
+
+    std::size_t first_end = 0;  // of SampleViews::ends
+    std::size_t end_count = 0;  // 0: no optic, or no path from there has a ray
+};
+
+/// Colours of one sample, linear Rec.709; the three parts add up to the beauty.
+struct SampleColour {
+    Vec3 direct{0}, reflect{0}, refract{0};
+    double coverage = 0;  // 1 where a mesh is seen, 0 on the background
+};
+
+/// What the samples of a grid show.
+struct SampleViews {
+    std::vector<SampleView> samples;  // one per sample
+    std::vector<PathEnd> ends;        // of all samples, those of one side by side; parents before children
+
+    std::span<const PathEnd> ends_of(const SampleView& sample) const {
+        return {ends.data() + sample.first_end, sample.end_count};
+    }
+    /// The sample's end on this path that no other goes on from; null where it has none.
+    const PathEnd* find(const SampleView& sample, Path path) const;
+
+    /// What that end sees; an unset hit where there is no such end.
+    Hit hit(const SampleView& sample, Path path) const {
+        const PathEnd* end = find(sample, path);
+        return end ? end->hit : Hit();
+    }
+
+    /// `count` samples that show nothing.
+    void reset(std::size_t count);
+};
+
+}  // namespace trilens

@@ -1,0 +1,29 @@
+// The frame of every HTML page that is written: one file, readable without scripts and without a network.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/facts.h"
+#include "report/pictures.h"
+
+namespace trilens {
+
+/// A page around `body` (markup). The title is text.
+std::string html_page(const std::string& title, const std::string& body);
+
+/// A row of pictures with captions, side by side. Hovering over the first shows the second in its place; a
+/// click enlarges.
+std::string html_pictures(const std::vector<Thumbnail>& pictures);
+
+/// A two-column list.
+std::string html_facts(const Facts& facts);
+
+/// A table; every row has as many cells as there are columns. All is text.
+std::string html_table(const std::vector<std::string>& columns,
+                       const std::vector<std::vector<std::string>>& rows);
+
+/// One element around text: html_text("h2", "Runs & warnings").
+std::string html_text(const std::string& element, const std::string& text);
+
+}  // namespace trilens

@@ -1,0 +1,22 @@
+#include "scene/set_resolution.h"
+
+#include "base/error.h"
+#include "scene/json.h"
+
+namespace trilens {
+
+void set_resolution(Scene& scene, int resolution) {
+    if (resolution < 1 || resolution > kMaxResolution)
+        throw InputError(scene.file, "/meshes",
+                         "a resolution of " + std::to_string(resolution) + " is not in 1.." +
+                             std::to_string(kMaxResolution));
+    for (Mesh& mesh : scene.meshes)
+        if (mesh.role == Role::kOptic) mesh.resolution = resolution;
+    if (scene.resolved.empty()) return;
+    Json resolved = Json::parse(scene.resolved);
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+        if (scene.meshes[m].role == Role::kOptic) resolved["meshes"][m]["resolution"] = resolution;
+    scene.resolved = resolved.dump();
+}
+
+}  // namespace trilens

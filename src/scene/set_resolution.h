@@ -1,0 +1,12 @@
+// One resolution for every optic of a scene.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace trilens {
+
+/// Gives every optic this resolution, in the scene and in its resolved JSON. Throws InputError unless it is
+/// in 1..1024.
+void set_resolution(Scene& scene, int resolution);
+
+}  // namespace trilens

@@ -1,0 +1,83 @@
+#include "sweep/gallery.h"
+
+#include <filesystem>
+
+#include "image/image_io.h"
+#include "report/html.h"
+#include "report/pictures.h"
+#include "report/text.h"
+#include "sweep/fit_runs.h"
+#include "sweep/sweep_plots.h"
+
+namespace trilens {
+namespace {
+
+/// The finest run that was finished.
+const RunRecord* finest_run(const SweepSummary& summary) {
+    const RunRecord* finest = nullptr;
+    for (const RunRecord& run : summary.runs)
+        if (run.state == RunState::kDone && (!finest || run.plan.n > finest->plan.n)) finest = &run;
+    return finest;
+}
+
+Facts facts_of(const SweepSummary& summary, const RunRecord& run) {
+    Facts facts;
+    for (const OpticDisplacement& one : run.displacement) {
+        const auto mean = one.metrics.find("disp_mean_px"), lost = one.metrics.find("disp_lost");
+        if (one.optic != "all" || mean == one.metrics.end()) continue;
+        facts.emplace_back(one.layer + ", mean displacement", rounded_text(mean->second, 3) + " px");
+        if (lost != one.metrics.end() && lost->second > 0)
+            facts.emplace_back(one.layer + ", lost pixels", rounded_text(lost->second, 6));
+    }
+    for (const SweepFit& fit : summary.fits)
+        if (fit.optic == "all" && fit.metric == "disp_mean_px" && fit.order)
+            facts.emplace_back(fit.layer + ", order of convergence", rounded_text(*fit.order, 3));
+    for (const std::string& layer : layers_of(summary))
+        if (const SweepFit* off = find_fit_off_folds(summary.fits, layer, "all"); off && off->order)
+            facts.emplace_back(layer + ", order off the folds", rounded_text(*off->order, 3));
+    return facts;
+}
+
+GalleryEntry entry_of(const SweepSummary& summary) {
+    const std::string& title = summary.manifest.subject.title;
+    GalleryEntry entry;
+    entry.title = title;
+    entry.link = title + "/report.html";
+    for (const NamedPlot& plot : make_plots(summary))
+        if (entry.plot.empty()) entry.plot = plot.svg;
+    const RunRecord* run = finest_run(summary);
+    if (!run) {
+        entry.text = "No run was finished.";
+        return entry;
+    }
+    entry.text = "n = " + std::to_string(run->plan.n) + ", optics: " + summary.manifest.subject.mesh;
+    entry.metrics = facts_of(summary, *run);
+    const Image image = read_exr(run_folder(summary.folder, run->plan.id) + "/image.exr");
+    const Image truth = read_exr(truth_file(summary.folder, summary.manifest.truth_hash));
+    const auto p99 = run->metrics.find("rgb_p99");
+    const double scale = difference_scale(p99 == run->metrics.end() ? 0 : p99->second);
+    entry.pictures = {beauty_picture(image, "projected"), beauty_picture(truth, "ray-traced truth"),
+                      difference_picture(image, truth, scale, "difference x " + rounded_text(scale, 4))};
+    return entry;
+}
+
+}  // namespace
+
+void write_sweep_gallery(const std::string& folder, std::span<const SweepSummary> summaries) {
+    Gallery gallery;
+    gallery.title = "trilens: curved mirrors and glass by projection";
+    gallery.text =
+        "Each scene as projected at its finest resolution, as ray traced on the exact surfaces, their "
+        "difference, and how the "
+        "displacement of what is seen falls with the resolution. A click on a title leads to all runs of the "
+        "scene.";
+    for (const SweepSummary& summary : summaries) {
+        gallery.entries.push_back(entry_of(summary));
+        for (const std::string& command : summary.manifest.subject.commands)
+            gallery.commands.push_back(command);
+    }
+    if (!summaries.empty()) gallery.versions = summaries.front().manifest.subject.versions;
+    write_gallery(folder + "/report.html", gallery);
+}
+
+}  // namespace trilens

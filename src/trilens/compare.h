@@ -1,0 +1,14 @@
+// How far two pictures are apart: pixel by pixel, and in what their optics show.
+//
+//     const trilens::Image truth = trilens::read_image("truth.exr"), image =
+//     trilens::read_image("projected.exr"); const trilens::Comparison comparison = trilens::compare(truth,
+//     image); std::printf("rmse %g\n", comparison.metrics.rmse); for (const trilens::LayerComparison& layer :
+//     trilens::compare_layers(truth, image))
+//         if (layer.displacement) std::printf("%s moved by %g px\n", layer.layer.c_str(),
+//         layer.displacement->mean);
+#pragma once
+
+#include "measure/compare.h"
+#include "measure/compare_layers.h"
+#include "measure/difference.h"
+#include "measure/fit.h"

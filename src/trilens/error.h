@@ -1,0 +1,14 @@
+// What the library throws, how it says what it does, and how it is stopped.
+//
+// Every function of the public headers throws trilens::Error, or std::bad_alloc, and nothing else; none ends
+// the program over a caller's data. "No answer" is no error: it is an empty optional or an empty list.
+//
+//     try {
+//         const trilens::Scene scene = trilens::load_scene({"scene.json"});
+//     } catch (const trilens::InputError& error) {
+//         std::fprintf(stderr, "%s\n", error.what());  // scene.json: /meshes/0/file: ...
+//     }
+#pragma once
+
+#include "base/error.h"
+#include "base/progress.h"

@@ -1,0 +1,68 @@
+#include "trilens/image.h"
+
+#include <set>
+
+#include "base/error.h"
+#include "image/image_io.h"
+
+namespace trilens {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+    return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+void write_beauty(const std::string& file, const Image& image) {
+    std::vector<float> rgb(3 * image.pixels());
+    int c = 0;
+    for (const char* name : {"R", "G", "B"}) {
+        const Channel* channel = image.find(name);
+        if (!channel || channel->is_id()) throw InputError("", name, "a picture needs R, G and B");
+        const std::vector<float>& values = channel->floats();
+        for (std::size_t p = 0; p < values.size(); ++p) rgb[3 * p + static_cast<std::size_t>(c)] = values[p];
+        ++c;
+    }
+    write_png(file, image.data_width, image.data_height, rgb);
+}
+
+}  // namespace
+
+void check_image(const Image& image) {
+    if (image.width <= 0 || image.height <= 0 || image.data_width <= 0 || image.data_height <= 0)
+        throw InputError("", "", "an image has pixels");
+    if (image.channels.empty()) throw InputError("", "channels", "an image has channels");
+    std::set<std::string> names;
+    for (const Channel& channel : image.channels) {
+        if (channel.name.empty()) throw InputError("", "channels", "a channel has a name");
+        if (!names.insert(channel.name).second) throw InputError("", channel.name, "is there twice");
+        const std::size_t size = channel.is_id() ? channel.ids().size() : channel.floats().size();
+        if (size != image.pixels())
+            throw InputError("", channel.name, "has not one value per pixel of the data window");
+    }
+    for (const auto& [name, value] : image.metadata)
+        if (name.rfind("trilens:", 0) != 0)
+            throw InputError("", name, "names of metadata start with \"trilens:\"");
+}
+
+Image read_image(const std::string& file) {
+    return read_exr(file);
+}
+
+void write_image(const std::string& file, const Image& image) {
+    if (ends_with(file, ".exr")) return write_image_as(file, image, ImageFormat::kExr);
+    if (ends_with(file, ".png")) return write_image_as(file, image, ImageFormat::kPng);
+    throw UsageError("the image \"" + file + "\" must end in .exr (all channels) or .png (the beauty, sRGB)");
+}
+
+void write_image_as(const std::string& file, const Image& image, ImageFormat format) {
+    check_image(image);
+    if (format == ImageFormat::kPng) return write_beauty(file, image);
+    write_exr(file, image);
+}
+
+std::vector<unsigned char> encode_image(const Image& image) {
+    check_image(image);
+    return encode_exr("image", image);
+}
+
+}  // namespace trilens

@@ -1,0 +1,39 @@
+// Pictures with named channels, in memory and in files.
+//
+//     trilens::Image image = trilens::read_image("picture.exr");
+//     const trilens::Channel* red = image.find("R");
+//     if (red) std::printf("%g\n", red->floats()[0]);
+//     trilens::write_image("picture.png", image);
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+
+namespace trilens {
+
+/// Reads every channel of an OpenEXR file in its own type (half becomes float). Throws InputError where the
+/// file cannot be used.
+Image read_image(const std::string& file);
+
+/// Writes OpenEXR, all channels to the last bit (a name that ends in ".exr"), or the beauty R G B as 8-bit
+/// sRGB
+/// (".png"); beside the name, then renamed. Metadata is kept where its name starts with "trilens:". Throws
+/// UsageError for other endings, InputError for an image that is none (see check_image), OutputError where
+/// the file cannot be written.
+void write_image(const std::string& file, const Image& image);
+
+enum class ImageFormat { kExr, kPng };
+
+/// The same, whatever the name ends in.
+void write_image_as(const std::string& file, const Image& image, ImageFormat format);
+
+/// The bytes of that OpenEXR file.
+std::vector<unsigned char> encode_image(const Image& image);
+
+/// Throws InputError unless the data window lies on the film and holds pixels, channels have distinct names
+/// and one value per pixel, and metadata names start with "trilens:".
+void check_image(const Image& image);
+
+}  // namespace trilens

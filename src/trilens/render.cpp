@@ -1,0 +1,111 @@
+#include "trilens/render.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/format.h"
+#include "render/frame.h"
+#include "render/picture.h"
+#include "render/world_digest.h"
+#include "scene/check_scene.h"
+#include "vector/drawing.h"
+
+namespace trilens {
+namespace {
+
+std::unique_ptr<World> make_checked_world(Scene scene, const Warn& warn) {
+    check_scene(scene);
+    return make_world(std::move(scene), warn);
+}
+
+void check_frame(const World& world, const FrameParams& frame) {
+    if (frame.camera >= world.scene.cameras.size())
+        throw UsageError(fmt::format("there is no camera number {}; the scene has {}", frame.camera,
+                                     world.scene.cameras.size()));
+    if (frame.resolution < 0 || frame.resolution > kMaxResolution)
+        throw UsageError(fmt::format("a resolution of {} is not in 1..{}", frame.resolution, kMaxResolution));
+}
+
+void check_engine(const EngineChoice& engine) {
+    if (engine.classic.pieces < 1 || engine.classic.pieces > 1024 || !(engine.classic.tolerance > 0))
+        throw UsageError("the classic engine needs 1..1024 pieces and a positive tolerance");
+}
+
+}  // namespace
+
+Renderer::Renderer(Scene scene, const Warn& warn) : world_(make_checked_world(std::move(scene), warn)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+const Scene& Renderer::scene() const {
+    return world_->scene;
+}
+
+std::vector<OpticInfo> Renderer::optics() const {
+    std::vector<OpticInfo> optics;
+    for (const Optic& optic : world_->optics)
+        optics.push_back({optic.mesh, world_->names[optic.mesh], optic.mirror, optic.resolution,
+                          optic.surface->face_count()});
+    return optics;
+}
+
+std::size_t Renderer::triangle_count() const {
+    return world_->objects.size();
+}
+
+std::size_t Renderer::facet_count(int resolution) const {
+    check_frame(*world_, {0, resolution});
+    return trilens::facet_count(*world_, resolution);
+}
+
+void Renderer::check(const FrameParams& frame) const {
+    check_frame(*world_, frame);
+    make_camera_rays(world_->scene, frame.camera);
+    check_facet_count(*world_, frame.resolution);
+}
+
+Picture Renderer::draw(const PictureRequest& request, const Progress& progress, const Warn& warn) const {
+    check_frame(*world_, request.frame);
+    check_engine(request.engine);
+    return draw_picture(*world_, request, progress, warn);
+}
+
+PixelExplanation Renderer::explain(const PictureRequest& request, int x, int y) const {
+    check_frame(*world_, request.frame);
+    check_engine(request.engine);
+    return explain_pixel(*world_, request, x, y);
+}
+
+SeenTriangle Renderer::seen_triangle(const Hit& hit) const {
+    const TriangleScene& objects = world_->objects;
+    if (hit.triangle >= objects.size()) throw UsageError("the hit is none of this scene's");
+    return {objects.object[hit.triangle], objects.primitive[hit.triangle], position(objects, hit)};
+}
+
+std::vector<std::vector<WorldImage>> Renderer::project(std::span<const Vec3> points,
+                                                       const ProjectRequest& request) const {
+    check_frame(*world_, request.frame);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y) || !std::isfinite(points[i].z))
+            throw InputError("", fmt::format("points/{}", i), "is not finite");
+    return project_points(*world_, request, points);
+}
+
+LineDrawing Renderer::draw_lines(const FrameParams& frame, bool wire, const Warn& warn) const {
+    check_frame(*world_, frame);
+    const std::unique_ptr<Drawing> drawing = make_drawing(*world_, frame, wire, warn);
+    LineDrawing lines;
+    lines.svg = drawing_svg(*drawing, *world_);
+    for (const auto& layer : drawing->layers) {
+        lines.curves += layer->curves.size();
+        for (const EdgeCurve& curve : layer->curves) lines.arcs += curve.arcs.size();
+    }
+    return lines;
+}
+
+std::string Renderer::digest() const {
+    return world_digest(*world_);
+}
+
+}  // namespace trilens

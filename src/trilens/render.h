@@ -1,0 +1,96 @@
+// Pictures of scenes: projected, or ray traced as the truth.
+//
+//     const trilens::Renderer renderer(trilens::load_scene({"scene.json"}));
+//     trilens::PictureRequest request;
+//     request.frame.resolution = 16;
+//     trilens::write_image("projected.exr", renderer.draw(request).image);
+//     request.engine = trilens::Engine::kLimitTruth;
+//     trilens::write_image("truth.exr", renderer.draw(request).image);
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "render/explain.h"
+#include "render/project.h"
+#include "render/request.h"
+#include "scene/scene.h"
+
+namespace trilens {
+
+struct World;
+
+/// An optic as callers know it.
+struct OpticInfo {
+    Id object = kNone;  // its index in Scene::meshes, as in the channel optic.object
+    std::string name;
+    bool mirror = true;  // else glass
+    int resolution = 8;  // the scene's
+    std::size_t faces = 0;
+};
+
+/// A triangle of the scene, as images name it.
+struct SeenTriangle {
+    Id object = kNone, primitive = kNone;
+    Vec3 position{0};  // the world point that is seen
+};
+
+/// The outlines of what a camera and its optics show.
+struct LineDrawing {
+    std::string svg;                   // one document; see the command's help for its attributes
+    std::size_t curves = 0, arcs = 0;  // of it
+};
+
+/// A scene with what is built from it, each part once: surfaces, trees, grids. Pictures of one renderer may
+/// be drawn from several threads at once.
+class Renderer {
+  public:
+    /// Throws InputError where the scene is none (check_scene) or a cage has no limit surface. `warn` is told
+    /// of what cages leave out.
+    explicit Renderer(Scene scene, const Warn& warn = {});
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    const Scene& scene() const;
+    std::vector<OpticInfo> optics() const;
+    std::size_t triangle_count() const;                 // of the objects
+    std::size_t facet_count(int resolution = 0) const;  // of the optics' grids; 0: at the scene's resolutions
+
+    /// Throws what draw would for this camera and resolution, without drawing.
+    void check(const FrameParams& frame) const;
+
+    /// One picture, the same pixels for any number of threads. Throws UsageError for a window, layer or
+    /// camera that the scene does not have, InputError where it does not fit in memory, ComputationError for
+    /// pixels that are not finite, Interrupted once `progress` says so.
+    Picture draw(const PictureRequest& request, const Progress& progress = {}, const Warn& warn = {}) const;
+
+    /// How one pixel comes about.
+    PixelExplanation explain(const PictureRequest& request, int x, int y) const;
+
+    /// What a hit of an explanation is. Throws UsageError for one that is unset or of another scene.
+    SeenTriangle seen_triangle(const Hit& hit) const;
+
+    /// Where world points appear: for each point its images, direct and over every optic. Throws InputError
+    /// for points that are not finite.
+    std::vector<std::vector<WorldImage>> project(std::span<const Vec3> points,
+                                                 const ProjectRequest& request = {}) const;
+
+    /// The picture as lines. `wire`: hidden edges too.
+    LineDrawing draw_lines(const FrameParams& frame, bool wire = false, const Warn& warn = {}) const;
+
+    /// A digest (16 hexadecimal digits) of what the scene loaded from all its files: equal digests, equal
+    /// pictures of equal scene texts.
+    std::string digest() const;
+
+    /// What the renderer is made of; its type is no part of the public headers.
+    const World& world() const { return *world_; }
+
+  private:
+    std::unique_ptr<World> world_;
+};
+
+}  // namespace trilens

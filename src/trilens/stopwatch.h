@@ -1,0 +1,7 @@
+// Seconds of wall-clock time, for programs that say how long they took.
+//
+//     const trilens::Stopwatch watch;
+//     std::printf("%g s\n", watch.seconds());
+#pragma once
+
+#include "base/stopwatch.h"

@@ -1,0 +1,105 @@
+#include "trilens/sweep.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+#include "base/error.h"
+#include "sweep/sweep.h"
+#include "trilens/render.h"
+#include "trilens/version.h"
+
+namespace trilens {
+namespace {
+
+/// Everything one sweep needs, alive while it runs.
+struct SweepJob {
+    std::unique_ptr<Renderer> renderer;
+    SweepParams params;
+    SweepCallbacks callbacks;
+};
+
+Engine truth_engine(const std::string& truth) {
+    if (truth == "limit") return Engine::kLimitTruth;
+    if (truth == "facets") return Engine::kFacetsTruth;
+    throw UsageError("the truth is \"limit\" or \"facets\", not \"" + truth + "\"");
+}
+
+Shard shard_of(const std::string& text) {
+    return parse_shard(text, [](const char* name) { return std::getenv(name); });
+}
+
+SweepSubject subject_of(const SweepRequest& request, const Renderer& renderer, std::size_t camera) {
+    const std::vector<std::string> libraries = library_versions();
+    SweepSubject subject;
+    subject.title =
+        request.title.empty() ? std::filesystem::path(request.scene.file).stem().string() : request.title;
+    subject.scene = request.scene.file;
+    subject.camera = renderer.scene().cameras[camera].name;
+    subject.method = engine_name(Engine::kExact);
+    subject.truth = request.truth;
+    subject.spp = renderer.scene().film.spp;
+    for (const OpticInfo& optic : renderer.optics()) {
+        subject.optics.push_back({optic.object, optic.name});
+        subject.mesh += (subject.mesh.empty() ? "" : " ") + optic.name;
+    }
+    if (!request.command.empty()) subject.commands = {request.command};
+    subject.versions = {{"trilens", version()},
+                        {"ray tracing", libraries[0]},
+                        {"surfaces", libraries[1]},
+                        {"images", libraries[2]}};
+    return subject;
+}
+
+std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk& talk) {
+    const Engine truth = truth_engine(request.truth);
+    auto job = std::make_unique<SweepJob>();
+    job->params.folder = request.folder;
+    job->params.axis = parse_axis(request.over);
+    job->params.shard = shard_of(request.shard);
+
+    Scene scene = load_scene(request.scene);
+    if (talk.warn)
+        for (const std::string& warning : scene.warnings) talk.warn(warning);
+    const std::size_t camera = find_camera(scene, request.camera);
+    job->renderer = std::make_unique<Renderer>(std::move(scene), talk.warn);
+    if (job->renderer->optics().empty())
+        throw InputError(request.scene.file, "/meshes",
+                         "a sweep needs an optic whose resolution it can vary");
+
+    job->params.subject = subject_of(request, *job->renderer, camera);
+    if (talk.progress) job->params.progress = talk.progress("sweep of " + job->params.subject.title);
+    const auto draw = [renderer = job->renderer.get(), camera, talk](Engine engine, int n) {
+        PictureRequest picture;
+        picture.frame = {camera, n};
+        picture.engine = engine;
+        Progress progress;
+        if (talk.progress) progress = talk.progress(engine == Engine::kExact ? "render" : "trace");
+        return renderer->draw(picture, progress, talk.warn).image;
+    };
+    job->callbacks.render = [draw](int n) { return draw(Engine::kExact, n); };
+    job->callbacks.trace = [draw, truth] { return draw(truth, 0); };
+    job->callbacks.job_key = version() + "\n" + job->params.subject.camera + "\n" +
+                             job->renderer->scene().resolved + "\n" + job->renderer->digest();
+    job->callbacks.truth_key = job->callbacks.job_key + "\n" + request.truth;
+    return job;
+}
+
+}  // namespace
+
+SweepSummary run_sweep(const SweepRequest& request, const SweepTalk& talk) {
+    const std::unique_ptr<SweepJob> job = make_job(request, talk);
+    return run_sweep(job->params, job->callbacks);
+}
+
+bool is_whole_sweep(const std::string& shard) {
+    return shard_of(shard).count == 1;
+}
+
+std::string plan_sweep(const SweepRequest& request, const SweepTalk& talk) {
+    const std::unique_ptr<SweepJob> job = make_job(request, talk);
+    plan_sweep(job->params, job->callbacks);
+    return job->params.folder + "/plan.jsonl";
+}
+
+}  // namespace trilens

@@ -1,0 +1,8 @@
+// Text as the library writes it: numbers in every locale alike, and "did you mean".
+//
+//     std::puts(trilens::shortest_text(0.1).c_str());                 // 0.1
+//     std::puts(trilens::suggestion("mian", names).c_str());          // ; did you mean 'main'?
+#pragma once
+
+#include "base/nearest.h"
+#include "report/text.h"

@@ -1,0 +1,17 @@
+// All of trilens: see the headers below, each with an example.
+#pragma once
+
+#include <trilens/compare.h>
+#include <trilens/engine_study.h>
+#include <trilens/error.h>
+#include <trilens/files.h>
+#include <trilens/image.h>
+#include <trilens/project.h>
+#include <trilens/ray_mesh.h>
+#include <trilens/render.h>
+#include <trilens/scene.h>
+#include <trilens/stopwatch.h>
+#include <trilens/surface.h>
+#include <trilens/sweep.h>
+#include <trilens/text.h>
+#include <trilens/version.h>

@@ -1,0 +1,248 @@
+#include "vector/view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/facet_samples.h"
+#include "base/facets_around.h"
+#include "base/parallel.h"
+#include "trilinear/clip.h"
+#include "trilinear/conic_arc.h"
+#include "trilinear/outline.h"
+#include "trilinear/view_plane.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kStep = 0.4;      // pixels between tests along an arc
+constexpr int kMostSteps = 8000;   // on one arc; longer ones lie mostly off the film
+constexpr double kBefore = 1e-3;   // a surface nearer than the edge by this share of t hides it
+constexpr double kOutside = 1e-9;  // how far weights may leave [0, 1] on the facet's border
+constexpr double kShortest =
+    1.0;  // pixels: visible pieces and hidden gaps below this are rounding of the test
+
+/// Samples as a lattice of rows.
+struct Lattice {
+    const SampleGrid& grid;
+    int columns() const { return grid.width() * grid.side; }
+    int rows() const { return grid.height() * grid.side; }
+    bool holds(int column, int row) const {
+        return column >= 0 && row >= 0 && column < columns() && row < rows();
+    }
+    std::size_t sample(int column, int row) const {
+        const int s = grid.side;
+        return grid.first_sample(grid.x0 + column / s, grid.y0 + row / s) +
+               static_cast<std::size_t>(row % s * s + column % s);
+    }
+    int column(std::size_t sample) const {
+        return static_cast<int>(std::lround((grid.position(sample).x - grid.x0) * grid.side - 0.5));
+    }
+    int row(std::size_t sample) const {
+        return static_cast<int>(std::lround((grid.position(sample).y - grid.y0) * grid.side - 0.5));
+    }
+};
+
+/// One facet at work.
+class FacetPen {
+  public:
+    FacetPen(const VectorView& view, Id facet, std::vector<Id> ring)
+        : view_(view),
+          facet_(facet),
+          ring_(std::move(ring)),
+          rays_(trilinear_facet(view.mesh, facet)),
+          cubic_(make_coplanarity(rays_)) {
+        for (int k = 0; k < 3; ++k)
+            screen_[k] = view.mesh.screen[view.mesh.facets[facet][static_cast<std::size_t>(k)]];
+    }
+
+    /// Edges whose images this facet may show, ascending.
+    std::vector<Id> candidates(std::span<const Id> samples) const;
+    void draw(const DrawnEdge& edge, std::vector<EdgeCurve>& curves) const;
+
+  private:
+    struct Edge {
+        const DrawnEdge& drawn;
+        Vec3 a, b;
+    };
+
+    SceneTriangle triangle(Id index) const {
+        const IdTriple& c = view_.scene.triangles[index];
+        return {{view_.scene.points[c[0]], view_.scene.points[c[1]], view_.scene.points[c[2]]}};
+    }
+    std::vector<Section> sections(const SceneTriangle& scene_triangle) const;
+    void cut(const Edge& edge, const ConicArc& arc, std::vector<EdgeCurve>& curves) const;
+    bool shows(const Edge& edge, const Vec3& weights) const;
+    bool unhidden(const Edge& edge, const Vec3& weights, const Vec2& at) const;
+
+    const VectorView& view_;
+    Id facet_;
+    std::vector<Id> ring_;
+    TrilinearFacet rays_;
+    Coplanarity cubic_;
+    Mat3 screen_{0};
+};
+
+std::vector<Id> FacetPen::candidates(std::span<const Id> samples) const {
+    std::vector<Id> found;
+    if (view_.wire) {
+        for (Id e = 0; e < view_.edges.edge.size(); ++e) found.push_back(e);
+        return found;
+    }
+    // What is seen at the facet's samples and beside them, and the edges around it.
+    const Lattice lattice{view_.grid};
+    std::vector<Id> seen;
+    for (const Id s : samples) {
+        const int column = lattice.column(s), row = lattice.row(s);
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx) {
+                if (!lattice.holds(column + dx, row + dy)) continue;
+                const Id triangle_there = view_.triangle[lattice.sample(column + dx, row + dy)];
+                if (triangle_there != kNone && (seen.empty() || seen.back() != triangle_there))
+                    seen.push_back(triangle_there);
+            }
+    }
+    std::sort(seen.begin(), seen.end());
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+    for (const Id t : seen)
+        for (const Id vertex : view_.edges.vertex_of[t])
+            for (const Id e : view_.edges.at(vertex)) found.push_back(e);
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
+
+/// Pieces of the triangle's edges inside the facet, t >= 0.
+std::vector<Section> FacetPen::sections(const SceneTriangle& scene_triangle) const {
+    std::vector<Shape> shapes;
+    for (const Window& window : view_windows(cubic_, scene_triangle))
+        for (Shape& shape : make_shapes(cubic_, scene_triangle, window)) shapes.push_back(std::move(shape));
+    const ClippedShapes clipped = clip_in_scene({rays_, cubic_, scene_triangle}, shapes);
+    std::vector<Section> sections;
+    if (clipped.clean) {
+        for (const auto& ring : clipped.closed) sections.insert(sections.end(), ring.begin(), ring.end());
+        for (const auto& chain : clipped.chains) sections.insert(sections.end(), chain.begin(), chain.end());
+        return sections;
+    }
+    // A touching case: whole edges, which the tests along them cut at the border.
+    for (const Shape& shape : shapes)
+        for (std::size_t i = 0; i < shape.size(); ++i)
+            sections.push_back({shape[i].at, shape[(i + 1) % shape.size()].at, shape[i].edge});
+    return sections;
+}
+
+void FacetPen::draw(const DrawnEdge& drawn, std::vector<EdgeCurve>& curves) const {
+    const SceneTriangle scene_triangle = triangle(drawn.triangle);
+    if (!may_image(rays_, scene_triangle)) return;
+    const Edge edge{drawn, scene_triangle.from(drawn.edge), scene_triangle.to(drawn.edge)};
+    for (const Section& section : sections(scene_triangle)) {
+        if (section.edge != static_cast<int>(drawn.edge) || section.from.t == section.to.t) continue;
+        const double t0 = std::min(section.from.t, section.to.t), t1 = std::max(section.from.t, section.to.t);
+        for (const ConicArc& arc : edge_arcs(cubic_, scene_triangle, drawn.edge, t0, t1))
+            cut(edge, arc, curves);
+    }
+}
+
+/// Appends the arc's shown pieces; a piece that begins where the last curve ended continues it.
+void FacetPen::cut(const Edge& edge, const ConicArc& arc, std::vector<EdgeCurve>& curves) const {
+    const ScreenArc screen = on_screen(arc, screen_);
+    if (!(screen[0].z > 0 && screen[1].z > 0 && screen[2].z > 0)) return;  // partly behind the camera
+    const auto pixel = [](const Vec3& p) { return Vec2(p.x / p.z, p.y / p.z); };
+    const double around =
+        length(pixel(screen[1]) - pixel(screen[0])) + length(pixel(screen[2]) - pixel(screen[1]));
+    const int steps = static_cast<int>(std::clamp(around / kStep, 4.0, static_cast<double>(kMostSteps)));
+    std::vector<char> shown(static_cast<std::size_t>(steps));
+    for (int i = 0; i < steps; ++i)
+        shown[static_cast<std::size_t>(i)] = shows(edge, arc.weights((i + 0.5) / steps));
+
+    // Gaps shorter than the test can tell are closed; then runs become pieces.
+    const int least = static_cast<int>(std::ceil(kShortest * steps / std::max(around, kShortest)));
+    const auto run_end = [&](int from) {
+        int end = from;
+        while (end < steps && shown[static_cast<std::size_t>(end)] == shown[static_cast<std::size_t>(from)])
+            ++end;
+        return end;
+    };
+    for (int i = 0, end = 0; i < steps; i = end) {
+        end = run_end(i);
+        if (!shown[static_cast<std::size_t>(i)] && i > 0 && end < steps && end - i < least)
+            std::fill(shown.begin() + i, shown.begin() + end, 1);
+    }
+    for (int i = 0, end = 0; i < steps; i = end) {
+        end = run_end(i);
+        const bool whole = i == 0 && end == steps;
+        if (!shown[static_cast<std::size_t>(i)] || (!whole && i > 0 && end < steps && end - i < least))
+            continue;
+        const ScreenArc piece = whole ? screen : piece_of(screen, 1.0 * i / steps, 1.0 * end / steps);
+        const bool joins = i == 0 && !curves.empty() && curves.back().triangle == edge.drawn.triangle &&
+                           length(point_of(curves.back().arcs.back(), 1) - point_of(piece, 0)) < 1e-6;
+        if (!joins) curves.push_back({edge.drawn.triangle, facet_, {}});
+        curves.back().arcs.push_back(piece);
+    }
+}
+
+bool FacetPen::shows(const Edge& edge, const Vec3& weights) const {
+    if (std::min({weights.x, weights.y, weights.z}) < -kOutside) return false;
+    const Vec3 homogeneous = screen_ * weights;
+    const Vec2 at(homogeneous.x / homogeneous.z, homogeneous.y / homogeneous.z);
+    const SampleGrid& grid = view_.grid;
+    if (!(at.x >= grid.x0 && at.x <= grid.x1 && at.y >= grid.y0 && at.y <= grid.y1)) return false;
+    if (!edge.drawn.always && !is_silhouette(view_.edges, edge.drawn, rays_.direction(weights))) return false;
+    return view_.wire || unhidden(edge, weights, at);
+}
+
+bool FacetPen::unhidden(const Edge& edge, const Vec3& weights, const Vec2& at) const {
+    // Where the ray passes the edge: closest approach, with the edge's own direction taken out.
+    const Vec3 along = edge.b - edge.a, origin = rays_.origin(weights) - edge.a,
+               direction = rays_.direction(weights);
+    const Vec3 across = direction - along * (dot(direction, along) / dot(along, along));
+    const double t = -dot(across, origin) / dot(across, direction);
+
+    const SampleGrid& grid = view_.grid;
+    const int column = static_cast<int>(std::floor((at.x - grid.x0) * grid.side - 0.5));
+    const int row = static_cast<int>(std::floor((at.y - grid.y0) * grid.side - 0.5));
+    const Lattice lattice{grid};
+    for (int k = 0; k < 4; ++k) {
+        if (!lattice.holds(column + k % 2, row + k / 2)) continue;
+        const std::size_t s = lattice.sample(column + k % 2, row + k / 2);
+        if (!std::binary_search(ring_.begin(), ring_.end(), view_.facet[s])) continue;
+        const Id seen = view_.triangle[s];
+        if (seen == kNone || seen == edge.drawn.triangle || seen == edge.drawn.other) return true;
+        const std::optional<ImageVertex> plane = plane_hit(rays_, triangle(seen), weights);
+        if (plane && (plane->t < 0 || plane->t >= t * (1 - kBefore))) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+ScreenArc piece_of(const ScreenArc& arc, double u0, double u1) {
+    const auto blossom = [&](double u, double v) {
+        return (1 - u) * (1 - v) * arc[0] + (u * (1 - v) + v * (1 - u)) * arc[1] + u * v * arc[2];
+    };
+    return {blossom(u0, u0), blossom(u0, u1), blossom(u1, u1)};
+}
+
+Vec2 point_of(const ScreenArc& arc, double u) {
+    const Vec3 p = (1 - u) * (1 - u) * arc[0] + 2 * u * (1 - u) * arc[1] + u * u * arc[2];
+    return {p.x / p.z, p.y / p.z};
+}
+
+std::vector<EdgeCurve> edge_curves(const VectorView& view) {
+    const FacetSamples owned = group_by_facet(view.facet, view.mesh.facets.size());
+    const FacetsAround around = facets_around(view.mesh.facets, view.mesh.rays.size());
+    std::vector<std::vector<EdgeCurve>> of_facet(view.mesh.facets.size());
+    parallel_for(view.mesh.facets.size(), 4, [&](std::size_t from, std::size_t to) {
+        for (std::size_t f = from; f < to; ++f) {
+            if (!view.mesh.has_rays(f) || owned.of(f).empty()) continue;
+            const FacetPen pen(view, static_cast<Id>(f), around.ring(view.mesh.facets[f]));
+            for (const Id e : pen.candidates(owned.of(f))) pen.draw(view.edges.edge[e], of_facet[f]);
+        }
+    });
+    std::vector<EdgeCurve> curves;
+    for (std::vector<EdgeCurve>& some : of_facet)
+        for (EdgeCurve& curve : some) curves.push_back(std::move(curve));
+    return curves;
+}
+
+}  // namespace trilens

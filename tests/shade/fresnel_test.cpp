@@ -1,0 +1,101 @@
+// Snell's law and the Fresnel equations for one ray: textbook values, reversibility, limits.
+#include "shade/fresnel.h"
+
+#include <cmath>
+#include <random>
+
+#include "support/test.h"
+
+using namespace trilens;
+
+namespace {
+
+struct Draw {
+    std::mt19937_64 engine{32};
+    double uniform(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(engine);
+    }
+    double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
+    Vec3 unit() { return normalize(Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) + Vec3(0, 0, 1e-9)); }
+};
+
+/// A ray that arrives at `angle` on the plane y = 0 from above.
+Vec3 arriving(double angle) {
+    return {std::sin(angle), -std::cos(angle), 0};
+}
+const Vec3 kUp{0, 1, 0};
+
+// Intensities by Fresnel's sine and tangent formulas: a second way to write the equations, good away from 0
+// and pi/2.
+double reflected_perpendicular(double in, double out) {
+    return std::pow(std::sin(in - out) / std::sin(in + out), 2);
+}
+double reflected_parallel(double in, double out) {
+    return std::pow(std::tan(in - out) / std::tan(in + out), 2);
+}
+
+}  // namespace
+
+TEST_CASE("reflectance: 4 percent for glass head on, all at grazing, sums of tangents and sines between") {
+    CHECK(fresnel_reflectance(1, 1 / 1.5) == Approx(0.04).epsilon(1e-14));
+    CHECK(fresnel_reflectance(1, 1.5) == Approx(0.04).epsilon(1e-14));
+    CHECK(fresnel_reflectance(1, 1 / 1.33) == Approx(std::pow(0.33 / 2.33, 2)).epsilon(1e-13));
+    CHECK(fresnel_reflectance(0, 1 / 1.5) == 1);
+    CHECK(fresnel_reflectance(0.3, 1) == Approx(0).margin(1e-30));
+
+    Draw draw;
+    for (int i = 0; i < 2000; ++i) {
+        const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0.01, 1.5);
+        if (eta * std::sin(in) >= 0.999 || std::fabs(eta - 1) < 1e-3) continue;
+        const double out = std::asin(eta * std::sin(in));
+        const double expected = 0.5 * (reflected_perpendicular(in, out) + reflected_parallel(in, out));
+        const double reflectance = fresnel_reflectance(std::cos(in), eta);
+        CHECK(reflectance == Approx(expected).epsilon(1e-8).margin(1e-14));
+        CHECK(reflectance >= 0);
+        CHECK(reflectance <= 1);
+    }
+}
+
+TEST_CASE("at Brewster's angle the part parallel to the plane of incidence is not reflected") {
+    for (const double ior : {1.1, 1.33, 1.5, 2.4}) {
+        const double brewster = std::atan(ior), out = M_PI / 2 - brewster;
+        const double perpendicular = reflected_perpendicular(brewster, out);
+        CHECK(fresnel_reflectance(std::cos(brewster), 1 / ior) == Approx(0.5 * perpendicular).epsilon(1e-12));
+        CHECK(perpendicular == Approx(std::pow((ior * ior - 1) / (ior * ior + 1), 2)).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy") {
+    // Transmitted intensity from the amplitudes of transmission, weighted by index and cosine.
+    Draw draw;
+    for (int i = 0; i < 2000; ++i) {
+        const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0, 1.55);
+        const double sin_out = eta * std::sin(in);
+        if (sin_out >= 1) continue;
+        const double ci = std::cos(in), co = std::sqrt(1 - sin_out * sin_out);
+        const double ts = 2 * eta * ci / (eta * ci + co), tp = 2 * eta * ci / (ci + eta * co);
+        const double transmitted = co / (eta * ci) * 0.5 * (ts * ts + tp * tp);
+        CHECK(fresnel_reflectance(ci, eta) + transmitted == Approx(1).epsilon(1e-10));
+    }
+}
+
+TEST_CASE("the interface reflects alike from both sides") {
+    Draw draw;
+    for (int i = 0; i < 2000; ++i) {
+        const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0, 1.5);
+        const double sin_out = eta * std::sin(in);
+        if (sin_out >= 0.999) continue;
+        const double cos_out = std::sqrt(1 - sin_out * sin_out);
+        CHECK(fresnel_reflectance(std::cos(in), eta) ==
+              Approx(fresnel_reflectance(cos_out, 1 / eta)).epsilon(1e-9).margin(1e-14));
+    }
+}
+
+TEST_CASE("total internal reflection reflects all, from the critical angle on") {
+    for (const double ior : {1.1, 1.33, 1.5, 2.4}) {
+        const double critical = std::asin(1 / ior);
+        CHECK(fresnel_reflectance(std::cos(critical + 1e-9), ior) == 1);
+        CHECK(fresnel_reflectance(std::cos(critical - 1e-12), ior) == Approx(1).margin(1e-4));
+        CHECK(fresnel_reflectance(std::cos(critical - 1e-3), ior) < 1);
+    }
+}
