@@ -2,31 +2,30 @@
 # links what it may see publicly and its outside libraries privately, so no other room finds their headers.
 include(CMakeParseArguments)
 
-add_library(trilens_options INTERFACE)
-target_include_directories(trilens_options INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/src)
 # Contraction off: the same source gives the same last bit on every machine.
+add_library(trilens_options INTERFACE)
 target_compile_options(trilens_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off
   $<$<BOOL:${TRILENS_WERROR}>:-Werror>
   # GCC 12 sees overruns and overreads in std::string's own copies and, sanitized, uninitialized bytes in std::regex; there are none.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,14>>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict>
+  $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>
   $<$<BOOL:${TRILENS_SANITIZE}>:-Wno-maybe-uninitialized>
   $<$<BOOL:${TRILENS_SANITIZE}>:-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer>)
 target_link_options(trilens_options INTERFACE
   $<$<BOOL:${TRILENS_SANITIZE}>:-fsanitize=address,undefined>)
 
+# The rooms' own headers, for the rooms and their tests.
+add_library(trilens_sources INTERFACE)
+target_include_directories(trilens_sources INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
+
 function(trilens_room name folder)
   cmake_parse_arguments(ROOM "" "" "SEES;DOORS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.cpp)
-  if(NOT sources)
-    return()
-  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   add_library(trilens_${name} STATIC ${sources})
-  target_link_libraries(trilens_${name} PUBLIC trilens_options)
+  target_link_libraries(trilens_${name} PUBLIC trilens_options trilens_sources)
   foreach(room IN LISTS ROOM_SEES)
-    if(TARGET trilens_${room})
-      target_link_libraries(trilens_${name} PUBLIC trilens_${room})
-    endif()
+    target_link_libraries(trilens_${name} PUBLIC trilens_${room})
   endforeach()
   foreach(door IN LISTS ROOM_DOORS)
     # GLM and libfmt are vocabulary: base passes them on. Every other library stays behind its door.
@@ -36,4 +35,36 @@ function(trilens_room name folder)
       target_link_libraries(trilens_${name} PRIVATE ${door})
     endif()
   endforeach()
+  set_property(TARGET trilens_${name} PROPERTY TRILENS_DOORS "${ROOM_DOORS}")
+endfunction()
+
+# trilens_library(TARGET ROOMS rooms... [ON target]): a shared library made of whole rooms. Only GLM is passed on, which
+# stands in the public headers.
+function(trilens_library target)
+  cmake_parse_arguments(LIB "" "ON" "ROOMS" ${ARGN})
+  add_library(${target} SHARED)
+  foreach(room IN LISTS LIB_ROOMS)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:trilens_${room}>)
+    get_target_property(doors trilens_${room} TRILENS_DOORS)
+    if(doors)
+      target_link_libraries(${target} PRIVATE ${doors})
+    endif()
+  endforeach()
+  target_link_libraries(${target} PUBLIC glm::glm ${LIB_ON} PRIVATE $<BUILD_INTERFACE:trilens_options>)
+  set_target_properties(${target} PROPERTIES
+    LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  target_compile_features(${target} INTERFACE cxx_std_20)
+  target_include_directories(${target} INTERFACE
+    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+endfunction()
+
+# trilens_client(NAME FOLDER [DOORS libraries...]): a room that stands on the public headers alone, as they are
+# installed.
+function(trilens_client name folder)
+  cmake_parse_arguments(CLIENT "" "" "DOORS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+  add_library(trilens_${name} STATIC ${sources})
+  target_include_directories(trilens_${name} BEFORE PUBLIC ${PROJECT_BINARY_DIR}/include)
+  target_include_directories(trilens_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(trilens_${name} PUBLIC trilens PRIVATE trilens_options ${CLIENT_DOORS})
 endfunction()

@@ -11,9 +11,6 @@ namespace {
 bool is_finite(double x) {
     return std::isfinite(x);
 }
-bool is_finite(const Vec2& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y);
-}
 bool is_finite(const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }

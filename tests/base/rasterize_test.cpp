@@ -4,8 +4,7 @@
 
 #include "base/rasterize.h"
 #include "base/side_of_edge.h"
-#include "projector/projector.h"
-#include "random_cases.h"
+#include "projector/random_cases.h"
 #include "support/test.h"
 
 using namespace trilens;

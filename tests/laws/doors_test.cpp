@@ -53,7 +53,7 @@ std::map<std::string, Room> rooms() {
     std::stringstream text;
     text << in.rdbuf();
     const std::string all = text.str();
-    static const std::regex kRoom(R"(trilens_room\(\s*(\w+)\s+([\w/]+)([^)]*)\))");
+    static const std::regex kRoom(R"(trilens_(?:room|client)\(\s*(\w+)\s+([\w/]+)([^)]*)\))");
     std::map<std::string, Room> result;
     for (std::sregex_iterator it(all.begin(), all.end(), kRoom), end; it != end; ++it) {
         Room room;

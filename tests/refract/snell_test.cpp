@@ -1,4 +1,4 @@
-// Snell's law and the Fresnel equations for one ray: textbook values, reversibility, limits.
+// Snell's law for one ray: textbook values, reversibility, limits.
 #include "refract/snell.h"
 
 #include <cmath>
@@ -24,15 +24,6 @@ Vec3 arriving(double angle) {
     return {std::sin(angle), -std::cos(angle), 0};
 }
 const Vec3 kUp{0, 1, 0};
-
-// Intensities by Fresnel's sine and tangent formulas: a second way to write the equations, good away from 0
-// and pi/2.
-double reflected_perpendicular(double in, double out) {
-    return std::pow(std::sin(in - out) / std::sin(in + out), 2);
-}
-double reflected_parallel(double in, double out) {
-    return std::pow(std::tan(in - out) / std::tan(in + out), 2);
-}
 
 }  // namespace
 

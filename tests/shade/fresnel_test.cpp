@@ -1,4 +1,4 @@
-// Snell's law and the Fresnel equations for one ray: textbook values, reversibility, limits.
+// The Fresnel equations: textbook values, both sides alike, energy.
 #include "shade/fresnel.h"
 
 #include <cmath>
@@ -16,14 +16,7 @@ struct Draw {
         return std::uniform_real_distribution<double>(low, high)(engine);
     }
     double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-    Vec3 unit() { return normalize(Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) + Vec3(0, 0, 1e-9)); }
 };
-
-/// A ray that arrives at `angle` on the plane y = 0 from above.
-Vec3 arriving(double angle) {
-    return {std::sin(angle), -std::cos(angle), 0};
-}
-const Vec3 kUp{0, 1, 0};
 
 // Intensities by Fresnel's sine and tangent formulas: a second way to write the equations, good away from 0
 // and pi/2.

@@ -1,4 +1,4 @@
-#include "trilens/ray_mesh.h"
+#include "core/ray_mesh.h"
 
 #include <cmath>
 

@@ -1,0 +1,30 @@
+# What cmake --install puts where: headers, libraries, command, CMake package, pkg-config.
+include(CMakePackageConfigHelpers)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/trilens)
+set(targets trilens_core_library)
+if(NOT TRILENS_CORE_ONLY)
+  list(APPEND targets trilens)
+  # The command finds the libraries beside it, wherever the whole is moved.
+  file(RELATIVE_PATH to_libraries ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+  set_target_properties(trilens_command PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries}")
+  set_target_properties(trilens PROPERTIES INSTALL_RPATH "$ORIGIN")
+  install(TARGETS trilens_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(TARGETS ${targets} EXPORT trilens_targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY ${PROJECT_BINARY_DIR}/include/trilens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+install(EXPORT trilens_targets NAMESPACE trilens:: FILE trilens-targets.cmake DESTINATION ${package_folder})
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/trilens-config.cmake.in
+  ${PROJECT_BINARY_DIR}/trilens-config.cmake INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/trilens-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/trilens-config.cmake ${PROJECT_BINARY_DIR}/trilens-config-version.cmake
+  DESTINATION ${package_folder})
+
+set(pc_library trilens)
+if(TRILENS_CORE_ONLY)
+  set(pc_library trilens_core)
+endif()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/trilens.pc.in ${PROJECT_BINARY_DIR}/trilens.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/trilens.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
