@@ -44,15 +44,22 @@ Json seen_json(const SeenMismatch& s) {
             {"coverage_mismatch", s.coverage_mismatch}};
 }
 
+/// Null is "nothing was measured".
 Json displacement_json(const Displacement& d) {
-    return {{"mean", json_number(d.mean)},
-            {"p50", json_number(d.p50)},
-            {"p95", json_number(d.p95)},
-            {"p99", json_number(d.p99)},
-            {"max", json_number(d.max)},
+    const auto statistic = [&](double Summary::*which) {
+        return d.summary ? json_number((*d.summary).*which) : Json(nullptr);
+    };
+    return {{"mean", statistic(&Summary::mean)},
+            {"p50", statistic(&Summary::p50)},
+            {"p95", statistic(&Summary::p95)},
+            {"p99", statistic(&Summary::p99)},
+            {"max", statistic(&Summary::max)},
             {"pixels", d.pixels},
             {"lost", d.lost},
-            {"mean_off_folds", json_number(d.mean_off_folds)},
+            {"beyond_radius", d.beyond_radius},
+            {"missing", d.missing},
+            {"coverage", d.coverage ? json_number(*d.coverage) : Json(nullptr)},
+            {"mean_off_folds", d.mean_off_folds ? json_number(*d.mean_off_folds) : Json(nullptr)},
             {"near_folds", d.near_folds}};
 }
 
@@ -75,7 +82,7 @@ const SecondaryComparison* main_layer(const std::vector<SecondaryComparison>& la
     for (const SecondaryComparison& layer : layers)
         if (layer.layer == asked && layer.displacement) return &layer;
     for (const SecondaryComparison& layer : layers)
-        if (layer.displacement && layer.displacement->pixels + layer.displacement->lost > 0) return &layer;
+        if (layer.displacement && layer.displacement->coverage) return &layer;
     return nullptr;
 }
 
@@ -83,6 +90,20 @@ std::string line(const char* format, auto... values) {
     char text[400];
     std::snprintf(text, sizeof text, format, values...);
     return std::string(text) + "\n";
+}
+
+std::string displacement_text(const std::string& layer, const Displacement& d) {
+    std::string text =
+        d.summary
+            ? line("%-8s displacement mean %.4g  p50 %.4g  p95 %.4g  p99 %.4g  max %.4g px over %zu pixels",
+                   layer.c_str(), d.summary->mean, d.summary->p50, d.summary->p95, d.summary->p99,
+                   d.summary->max, d.pixels)
+            : line("%-8s displacement: nothing could be measured", layer.c_str());
+    text += line(
+        "%-8s measured %.2f %% of what either shows: %zu lost (%zu of them farther than the radius), %zu "
+        "missing",
+        layer.c_str(), 100 * d.coverage.value_or(0), d.lost, d.beyond_radius, d.missing);
+    return text;
 }
 
 std::string summary_text(const Comparison& comparison, const std::vector<SecondaryComparison>& layers) {
@@ -102,13 +123,8 @@ std::string summary_text(const Comparison& comparison, const std::vector<Seconda
                 line("%-8s seen %zu pixels: %zu other object, %zu other triangle, %zu covered in one only",
                      layer.layer.c_str(), layer.seen->pixels, layer.seen->object_mismatch,
                      layer.seen->primitive_mismatch, layer.seen->coverage_mismatch);
-        if (layer.displacement && layer.displacement->pixels + layer.displacement->lost > 0)
-            text += line(
-                "%-8s displacement mean %.4g  p50 %.4g  p95 %.4g  p99 %.4g  max %.4g px over %zu pixels, %zu "
-                "lost",
-                layer.layer.c_str(), layer.displacement->mean, layer.displacement->p50,
-                layer.displacement->p95, layer.displacement->p99, layer.displacement->max,
-                layer.displacement->pixels, layer.displacement->lost);
+        if (layer.displacement && layer.displacement->coverage)
+            text += displacement_text(layer.layer, *layer.displacement);
     }
     for (const std::string& reason : comparison.reasons) text += reason + "\n";
     return text +
@@ -170,11 +186,10 @@ Answer run(CompareCommand command, Console& console) {
 
     std::vector<SecondaryComparison> layers;
     for (const char* name : {"reflect", "refract"}) {
-        if (!reference.find(std::string(name) + ".object")) continue;
         SecondaryComparison layer{
             name, compare_seen(reference, test, name, command.options.mask_object),
             measure_displacement(reference, test, name, {command.radius, command.options.mask_object})};
-        layers.push_back(std::move(layer));
+        if (layer.seen) layers.push_back(std::move(layer));
     }
     if (!command.diff.empty()) {
         const SecondaryComparison* main = main_layer(layers, command.options.layer);
