@@ -1,6 +1,7 @@
 #include "measure/displacement.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
@@ -16,8 +17,12 @@ std::size_t count(const std::vector<Shift>& states, Shift wanted) {
     return static_cast<std::size_t>(std::count(states.begin(), states.end(), wanted));
 }
 
-/// The shifts of all pixels of the finder's test; of the statistics only the losses.
-Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8_t>& mask, double radius) {
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
+/// The shifts of all pixels of the finder's test; of the statistics only the losses. Places are looked for up
+/// to `reach` pixels away, at least the radius.
+Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8_t>& mask, double radius,
+                         double reach) {
     const SeenField& field = finder.test();
     Displacement result;
     result.state.assign(mask.size(), Shift::kNothing);
@@ -29,7 +34,7 @@ Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8
             if (!mask[i] || !field.shows_layer(i)) continue;
             result.state[i] = Shift::kLost;
             if (!field.sees(i)) continue;
-            const std::optional<Vec2> shift = finder.find(field.seen_point(i));
+            const std::optional<Vec2> shift = finder.find(field.seen_point(i), reach);
             if (!shift) continue;
             is_beyond[i] = glm::length(*shift) > radius;
             if (is_beyond[i]) continue;
@@ -77,9 +82,9 @@ std::optional<Displacement> measure_displacement(const Image& reference, const I
     if (!reference_field || !test_field) return std::nullopt;
 
     const ImageFinder finder(*reference_field, *test_field);
-    Displacement result = find_shifts(finder, mask, options.radius);
+    Displacement result = find_shifts(finder, mask, options.radius, kAnywhere);
     collect_statistics(near_folds(finder.reference()), result);
-    result.missing = find_shifts({*test_field, *reference_field}, mask, options.radius).lost;
+    result.missing = find_shifts({*test_field, *reference_field}, mask, options.radius, options.radius).lost;
     const std::size_t shown = count_shown(*reference_field, *test_field, mask);
     if (shown > 0) result.coverage = static_cast<double>(result.pixels) / static_cast<double>(shown);
     return result;

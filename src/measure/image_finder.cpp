@@ -20,6 +20,8 @@ constexpr double kWholeMargin = 0.35, kPartMargin = 4;
 /// count as farther away, so that the better answer wins where two say nearly the same. Never less than the
 /// distance.
 constexpr double kOvershootPenalty = 2, kOtherPrimitivePenalty = 0.25;
+constexpr double kMostPenalty = 1;  // more than both together
+static_assert(kOvershootPenalty * kOvershoot + kOtherPrimitivePenalty < kMostPenalty);
 
 /// Pixels. Two images of one point this near to each other are the two sides of one fold.
 constexpr double kSurelyNearest = 0.25;
@@ -265,7 +267,7 @@ double ImageFinder::farthest(const SeenPoint& wanted) const {
     return least;
 }
 
-std::optional<Vec2> ImageFinder::find(const SeenPoint& wanted) const {
+std::optional<Vec2> ImageFinder::find(const SeenPoint& wanted, double reach) const {
     // The same pixel shows the same point, to the last bit.
     const std::size_t here = field_.index(wanted.column, wanted.row);
     const bool is_shown = field_.shows(here, {wanted.object, wanted.optic, std::nullopt});
@@ -274,7 +276,7 @@ std::optional<Vec2> ImageFinder::find(const SeenPoint& wanted) const {
     // Only the four cells round the pixel reach nearer than one pixel: a hit there that is nearer ends the
     // search. The likeliest comes first; within a quarter of a pixel it is not asked whether another image
     // lies nearer still.
-    Best best{std::numeric_limits<double>::infinity(), std::nullopt};
+    Best best{reach + kMostPenalty, std::nullopt};
     const auto [side_x, side_y] = likely_side(wanted);
     for (const int dy : {side_y, -side_y}) {
         for (const int dx : {side_x, -side_x}) {

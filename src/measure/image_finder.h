@@ -25,11 +25,12 @@ class ImageFinder {
     const SeenField& test() const { return test_; }
 
     /// The screen vector from the pixel to the nearest place where the reference shows the point that `test`
-    /// sees there; nothing where there is none. Pixels of the point's own triangle are preferred to others of
-    /// its object. Where the reference shows nearly the point at the pixel or next to it, but cannot say
-    /// where, a place farther away than the slopes there allow is another image of the point (a curved mirror
-    /// may show it several times) and no answer.
-    std::optional<Vec2> find(const SeenPoint& wanted) const;
+    /// sees there; nothing where there is none. A place more than `reach` pixels away need not be found.
+    /// Pixels of the point's own triangle are preferred to others of its object. Where the reference shows
+    /// nearly the point at the pixel or next to it, but cannot say where, a place farther away than the
+    /// slopes there allow is another image of the point (a curved mirror may show it several times) and no
+    /// answer.
+    std::optional<Vec2> find(const SeenPoint& wanted, double reach) const;
 
   private:
     struct Box {
