@@ -17,8 +17,24 @@ constexpr double kShadowOffset = 1e-5;
 
 struct Frame {
     Vec3 position, geometric_normal, normal;  // unit, both on the viewer's side
+    Vec3 shadow_start;                        // of shadow rays: off the surface, on the viewer's side
     Vec3 weights;
+    bool smooth = false;  // whether `normal` comes from the mesh's corner normals
 };
+
+/// Where the smooth surface that the corner normals promise runs over a point of the triangle: the point's
+/// projections onto the corners' tangent planes, averaged by its weights. Corners whose tangent plane it is
+/// already in front of leave it where it is, so a hollow surface stays as it is.
+/// Source: Hanika, Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4, 2021.
+Vec3 lifted_to_tangent_planes(const Vec3& point, const std::array<Vec3, 3>& corner,
+                              const std::array<Vec3, 3>& normal, const Vec3& weights) {
+    Vec3 lifted = point;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double depth = std::min(0.0, dot(point - corner[k], normal[k]));
+        lifted -= weights[static_cast<int>(k)] * depth * normal[k];
+    }
+    return lifted;
+}
 
 Frame frame_at(const ShadeScene& scene, const Hit& hit, const Vec3& toward_surface) {
     const IdTriple& corner = scene.triangles->triangles[hit.triangle];
@@ -32,12 +48,20 @@ Frame frame_at(const ShadeScene& scene, const Hit& hit, const Vec3& toward_surfa
 
     // Smooth normals where the mesh has them, turned to the side that is looked at.
     frame.normal = frame.geometric_normal;
+    Vec3 surface = frame.position;
     if (hit.triangle < scene.normals.size()) {
-        const auto& n = scene.normals[hit.triangle];
+        std::array<Vec3, 3> n = scene.normals[hit.triangle];
         const Vec3 smooth =
             normalize_or_zero(frame.weights.x * n[0] + frame.weights.y * n[1] + frame.weights.z * n[2]);
-        if (smooth != Vec3(0)) frame.normal = dot(smooth, frame.geometric_normal) < 0 ? -smooth : smooth;
+        if (smooth != Vec3(0)) {
+            const double side = dot(smooth, frame.geometric_normal) < 0 ? -1 : 1;
+            for (Vec3& normal : n) normal *= side;
+            frame.smooth = true;
+            frame.normal = side * smooth;
+            surface = lifted_to_tangent_planes(frame.position, {a, b, c}, n, frame.weights);
+        }
     }
+    frame.shadow_start = surface + kShadowOffset * scene.size * frame.geometric_normal;
     return frame;
 }
 
@@ -57,10 +81,10 @@ Vec3 light_arriving(const ShadeScene& scene, const Light& light, const Frame& fr
     const double cosine = dot(frame.normal, toward_light);
     if (cosine <= 0) return Vec3(0);
     if (light.shadows && scene.occluded) {
-        // Light that arrives from behind the flat triangle is in the triangle's own shadow.
-        if (dot(frame.geometric_normal, toward_light) <= 0) return Vec3(0);
-        if (scene.occluded(frame.position + kShadowOffset * scene.size * frame.geometric_normal, target))
-            return Vec3(0);
+        // Light that arrives from behind a flat triangle is in the triangle's own shadow. On a smooth one it
+        // may still pass over the surface that the triangle stands for.
+        if (!frame.smooth && dot(frame.geometric_normal, toward_light) <= 0) return Vec3(0);
+        if (scene.occluded(frame.shadow_start, target)) return Vec3(0);
     }
     return kInversePi * irradiance * cosine * light.color;
 }

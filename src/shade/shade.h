@@ -30,7 +30,8 @@ struct ShadeScene {
 
 /// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided
 /// and diffuse (radiance = base colour times irradiance over pi, plus ambient), or show their base colour if
-/// unlit.
+/// unlit. Where a triangle has corner normals its shadow rays start above it, on the smooth surface that they
+/// promise (Hanika 2021), so that the edge of a round body's own shadow does not follow its triangles.
 Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray);
 
 /// Radiance of the background along `direction` (any length, world).
