@@ -17,11 +17,14 @@ namespace {
 /// decides how little of a silhouette is missed.
 constexpr std::size_t kFineFacets = 400'000;
 constexpr int kMinFine = 4, kMaxFine = 256;
+/// Cages of so many faces that kMinFine goes beyond this have small faces, which need less: about 1 GB here.
+constexpr std::size_t kMostFineFacets = 2'000'000;
 
 int fine_resolution(const Surface& surface) {
     const double per_face = static_cast<double>(kFineFacets) /
                             (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
-    return std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFine, kMaxFine);
+    const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFine, kMaxFine);
+    return resolution_within(surface, n, kMostFineFacets);
 }
 
 struct LimitViewer {

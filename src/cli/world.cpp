@@ -11,8 +11,9 @@
 namespace trilens {
 namespace {
 
-/// Resolution of the surfaces that only cast shadows.
+/// Resolution of the surfaces that only cast shadows, lower on those that would have too many facets.
 constexpr int kShadowResolution = 16;
+constexpr std::size_t kMostShadowFacets = 1'000'000;
 
 void append_object(World& world, Id id, const Mesh& mesh) {
     const Id first_point = static_cast<Id>(world.objects.points.size());
@@ -69,7 +70,9 @@ bool has_shadows(const Scene& scene) {
 TriangleScene shadow_casters(const World& world) {
     TriangleScene casters = world.objects;
     for (const Optic& optic : world.optics) {
-        if (optic.mirror) append_facets(make_grid(*optic.surface, kShadowResolution), optic.mesh, casters);
+        if (!optic.mirror) continue;
+        const int n = resolution_within(*optic.surface, kShadowResolution, kMostShadowFacets);
+        append_facets(make_grid(*optic.surface, n), optic.mesh, casters);
     }
     return casters;
 }
