@@ -3,6 +3,7 @@
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/bfr/surface.h>
+#include <opensubdiv/far/topologyRefiner.h>
 #include <opensubdiv/version.h>
 
 #include <algorithm>
@@ -24,6 +25,7 @@ namespace trilens {
 namespace {
 
 namespace Bfr = OpenSubdiv::Bfr;
+namespace Far = OpenSubdiv::Far;
 
 // --- Trees: what patches of equal topology share
 // -------------------------------------------------------------
@@ -105,7 +107,7 @@ struct LimitPatches::Impl {
 
     explicit Impl(PatchMesh made)
         : mesh(std::move(made)),
-          factory(*mesh.refiner, options()),
+          factory(*static_cast<const Far::TopologyRefiner*>(mesh.refiner.get()), options()),
           patches(static_cast<std::size_t>(factory.GetNumFaces()), kPatchBudget) {}
 
     Bfr::SurfaceFactory::Options options() {

@@ -240,7 +240,7 @@ std::size_t PatchMesh::bytes() const {
 
     // Far::TopologyLevel: indices of 4 bytes, places of 2 bytes in the lists of neighbours, sharpness and
     // tags.
-    const Far::TopologyLevel level = refiner->GetLevel(0);
+    const auto level = static_cast<const Far::TopologyRefiner*>(refiner.get())->GetLevel(0);
     const auto times = [](int count, std::size_t bytes) { return static_cast<std::size_t>(count) * bytes; };
     return sum + times(level.GetNumFaces(), 9) + times(level.GetNumFaceVertices(), 20) +
            times(level.GetNumEdges(), 34) + times(level.GetNumVertices(), 22);

@@ -1,8 +1,6 @@
 // The mesh that limit patches are made of: the cage after as many uniform refinements as patches need.
 #pragma once
 
-#include <opensubdiv/far/topologyRefiner.h>
-
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -21,9 +19,10 @@ inline constexpr int kDeepest = 10;
 inline constexpr std::size_t kMostPatchBytes = std::size_t{576} << 20;
 
 struct PatchMesh {
-    FaceTree tree;                                              // the uniform refinements
-    std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner;  // the last level alone
-    std::vector<Vec3> points;                                   // of the last level
+    FaceTree tree;             // the uniform refinements
+    std::vector<Vec3> points;  // of the last level
+    /// The last level alone: an OpenSubdiv::Far::TopologyRefiner, whose header no header here may show.
+    std::shared_ptr<const void> refiner;
 
     int levels() const { return static_cast<int>(tree.levels.size()); }
     /// What it holds: the arrays here, and OpenSubdiv's as counted from its headers.
