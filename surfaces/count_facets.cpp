@@ -27,4 +27,9 @@ std::size_t count_facets(const Surface& surface, int n) {
     return count;
 }
 
+int resolution_within(const Surface& surface, int n, std::size_t most_facets) {
+    while (n > 1 && count_facets(surface, n) > most_facets) --n;
+    return n;
+}
+
 }  // namespace trilens

@@ -2,6 +2,7 @@
 // OpenSubdiv.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -10,15 +11,17 @@
 
 namespace trilens {
 
-/// Limit patches of every face of a cage, ready for evaluation from any thread.
+/// Limit patches of the faces of a cage, made when a face is first evaluated, from any thread. A bounded
+/// number of them is kept; they are the same bit for bit whenever they are made.
 ///
 /// Exactness: patches are exact (bicubic, or quartic for Loop) outside a region of 2^-10 of a face around
 /// each extraordinary vertex and along creases of a sharpness near 10; inside it OpenSubdiv fits Gregory
 /// patches to the limit.
 class LimitPatches {
   public:
-    /// Throws InputError(name, ...) where OpenSubdiv refuses the topology.
-    LimitPatches(const CheckedCage& cage, const std::string& name);
+    /// Throws InputError(name, ...) where OpenSubdiv refuses the topology, and where more than `memory` bytes
+    /// are needed.
+    LimitPatches(const CheckedCage& cage, const std::string& name, double memory);
     ~LimitPatches();
 
     /// Whether all of the face has a limit surface: false for holes, and near boundaries that are not
@@ -36,9 +39,12 @@ class LimitPatches {
     /// centre to the middle of edge k - 1.
     Point eval(int face, int sub_face, const Vec2& uv) const;
 
+    /// What is held now, in bytes; see Surface::bytes_held.
+    std::size_t bytes() const;
+
   private:
     struct Impl;
-    std::unique_ptr<const Impl> impl_;
+    std::unique_ptr<Impl> impl_;  // none for a cage without faces
 };
 
 }  // namespace trilens

@@ -102,9 +102,9 @@ Vec2 clamp_to_domain(FaceDomain domain, const Vec2& uv) {
 
 class LimitSurface final : public Surface {
   public:
-    LimitSurface(const CheckedCage& cage, const std::string& name, const Warn& warn)
+    LimitSurface(const CheckedCage& cage, const std::string& name, const Warn& warn, double memory)
         : domain_(cage.scheme == SubdivisionScheme::kLoop ? FaceDomain::kTriangle : FaceDomain::kSquare),
-          patches_(cage, name) {
+          patches_(cage, name, memory) {
         std::vector<bool> is_hole(static_cast<std::size_t>(cage.face_count()), false);
         for (int hole : cage.holes) is_hole[static_cast<std::size_t>(hole)] = true;
 
@@ -125,6 +125,9 @@ class LimitSurface final : public Surface {
     std::size_t face_count() const override { return faces_.size(); }
     FaceDomain domain(Id) const override { return domain_; }
     FaceBorder border(Id face) const override { return faces_[face].border; }
+    std::size_t bytes_held() const override {
+        return faces_.capacity() * sizeof(SurfaceFace) + patches_.bytes();
+    }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override {
         const Vec2 inside = clamp_to_domain(domain_, uv);
@@ -163,8 +166,9 @@ class LimitSurface final : public Surface {
 
 }  // namespace
 
-std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string& name, const Warn& warn) {
-    return std::make_unique<LimitSurface>(check_cage(cage, name, warn), name, warn);
+std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string& name, const Warn& warn,
+                                            double memory) {
+    return std::make_unique<LimitSurface>(check_cage(cage, name, warn), name, warn, memory);
 }
 
 }  // namespace trilens

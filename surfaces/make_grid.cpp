@@ -206,6 +206,10 @@ SurfaceGrid make_grid(const Surface& surface, int n) {
     SurfaceGrid grid;
     grid.points.resize(numbers.count());
     evaluate(surface, faces, grid.points);
+    const std::size_t count = count_facets(surface, n);
+    grid.facets.reserve(count);
+    grid.facet_face.reserve(count);
+    grid.facet_uv.reserve(count);
     CornerNumbers corners(grid.points.size());
     for (Id f = 0; f < faces.size(); ++f) add_facets(faces[f], f, corners, grid);
     corners.finish(grid);

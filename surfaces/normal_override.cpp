@@ -83,6 +83,8 @@ class BorrowedNormals final : public Surface {
 
     SurfacePoint eval(Id face, const Vec2& uv) const override { return turned(surface_->eval(face, uv)); }
 
+    std::size_t bytes_held() const override { return surface_->bytes_held(); }
+
     bool has_closed_form() const override { return surface_->has_closed_form(); }
     std::optional<SurfaceHit> intersect(const Ray& ray, double t_min) const override {
         std::optional<SurfaceHit> hit = surface_->intersect(ray, t_min);

@@ -7,6 +7,7 @@
 #include "base/cage.h"
 #include "base/progress.h"
 #include "base/surface.h"
+#include "surfaces/machine_memory.h"
 
 namespace trilens {
 
@@ -24,10 +25,16 @@ namespace trilens {
 /// of two faces), the normal is that of the place a share of 2^-20 (if need be 2^-12, 2^-6) towards the
 /// middle of the face.
 ///
-/// Throws InputError where the cage cannot be used at all: no faces, indices out of range, arrays that do not
+/// Patches are made when a face is first evaluated, and a bounded number of them is kept: bytes_held() grows
+/// to no more than what the topology of the cage takes (about 200 bytes per quad after refinement) and 600
+/// MB.
+///
+/// Throws InputError where more than `memory` bytes would be needed while it is made, with the estimate, and
+/// where the cage cannot be used at all: no faces, indices out of range, arrays that do not
 /// fit together, faces of fewer than 3 or more than 255 corners, non-finite points, negative sharpness, Loop
 /// on faces that are not triangles.
-std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string& name, const Warn& warn);
+std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string& name, const Warn& warn,
+                                            double memory = machine_memory());
 
 /// The surface of a primitive, exact, with intersect(). Faces: sphere 6 (a cube mapped onto it, equal
 /// angles), cylinder 4 quarters, paraboloid 5 (a square and four sides mapped onto its disk; no singular
@@ -54,6 +61,9 @@ SurfaceGrid make_grid(const Surface& surface, int n);
 
 /// make_grid(surface, n).facets.size(), without the grid; n >= 1.
 std::size_t count_facets(const Surface& surface, int n);
+
+/// The largest resolution of 1 .. n whose grid has at most `most_facets`; 1 where none has. n >= 1.
+int resolution_within(const Surface& surface, int n, std::size_t most_facets);
 
 /// "OpenSubdiv 3.5.0": for `trilens info`.
 std::string surface_library_version();

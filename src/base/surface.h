@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,6 +63,9 @@ class Surface {
     /// The first hit with t > t_min in closed form, for surfaces that have one; `has_closed_form` says which.
     virtual bool has_closed_form() const { return false; }
     virtual std::optional<SurfaceHit> intersect(const Ray&, double /*t_min*/) const { return std::nullopt; }
+
+    /// Bytes that it holds now, but for the allocator's own and what does not grow with the surface.
+    virtual std::size_t bytes_held() const { return 0; }
 };
 
 /// An N x N grid on a surface: facets whose corners lie on the surface. Points on edges that faces share

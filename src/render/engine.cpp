@@ -7,6 +7,7 @@ namespace trilens {
 
 Viewer make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
                    const Warn& warn) {
+    prepare_shadows(world);
     if (engine.engine == Engine::kLimitTruth)
         return make_limit_viewer(world, make_camera_rays(world.scene, frame.camera));
     return make_facet_viewer(world, make_frame(world, frame, warn), engine);

@@ -14,11 +14,14 @@ namespace {
 /// decides how little of a silhouette is missed.
 constexpr std::size_t kFineFacets = 400'000;
 constexpr int kMinFine = 4, kMaxFine = 256;
+/// Cages of so many faces that kMinFine goes beyond this have small faces, which need less: about 1 GB here.
+constexpr std::size_t kMostFineFacets = 2'000'000;
 
 int fine_resolution(const Surface& surface) {
     const double per_face = static_cast<double>(kFineFacets) /
                             (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
-    return std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFine, kMaxFine);
+    const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFine, kMaxFine);
+    return resolution_within(surface, n, kMostFineFacets);
 }
 
 }  // namespace
@@ -74,6 +77,28 @@ const LimitTracer& limit_tracer(const World& world, std::size_t optic) {
             surface.has_closed_form() ? SurfaceGrid{} : make_grid(surface, fine_resolution(surface));
         return std::make_unique<LimitTracer>(surface, fine);
     });
+}
+
+bool has_shadows(const World& world) {
+    return std::any_of(world.scene.lights.begin(), world.scene.lights.end(),
+                       [](const Light& light) { return light.shadows; });
+}
+
+bool casts_shadow(const World& world, const Ray& segment) {
+    if (object_tracer(world).occluded(segment, 0.0, 1.0)) return true;
+    for (std::size_t i = 0; i < world.optics.size(); ++i) {
+        if (!world.optics[i].mirror) continue;
+        const std::optional<SurfaceHit> hit = limit_tracer(world, i).first_hit(segment);
+        if (hit && hit->t < 1) return true;
+    }
+    return false;
+}
+
+void prepare_shadows(const World& world) {
+    if (!has_shadows(world)) return;
+    object_tracer(world);
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        if (world.optics[i].mirror) limit_tracer(world, i);
 }
 
 std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t optic, int n) {

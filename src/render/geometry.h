@@ -39,6 +39,16 @@ const Tracer& object_tracer(const World& world);
 /// The exact surface of an optic for rays.
 const LimitTracer& limit_tracer(const World& world, std::size_t optic);
 
+/// Whether any light asks what lies between it and a point.
+bool has_shadows(const World& world);
+
+/// Whether an object, or the exact surface of a mirror, meets the open segment from the ray's origin to its tip
+/// (t < 1). Glass lets the light through.
+bool casts_shadow(const World& world, const Ray& segment);
+
+/// Builds what casts_shadow asks, where the scene has shadows: before many threads do.
+void prepare_shadows(const World& world);
+
 /// The optic's facets at resolution n. The last resolution of each optic is kept, so that a new camera finds
 /// it.
 std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t optic, int n);

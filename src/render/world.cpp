@@ -4,21 +4,19 @@
 
 #include "base/box.h"
 #include "base/error.h"
-#include "base/facet_scene.h"
 #include "render/geometry.h"
 #include "shade/optic_weights.h"
+#include "surfaces/machine_memory.h"
 #include "surfaces/normal_override.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
-
 namespace {
 
 /// More facets than this over all optics are refused: they would not fit in memory.
 constexpr std::size_t kMaxFacets = 100'000'000;
-
-/// Resolution of the surfaces that only cast shadows.
-constexpr int kShadowResolution = 16;
+/// What drawing holds per facet of a mirror at its most: measured, rounded up.
+constexpr double kBytesPerFacet = 350;
 
 void append_object(World& world, Id id, const Mesh& mesh) {
     const Id first_point = static_cast<Id>(world.objects.points.size());
@@ -65,21 +63,6 @@ Optic make_optic(const Scene& scene, Id id, const Warn& warn) {
     return optic;
 }
 
-/// Whether any light asks what lies between it and a point.
-bool has_shadows(const Scene& scene) {
-    return std::any_of(scene.lights.begin(), scene.lights.end(),
-                       [](const Light& light) { return light.shadows; });
-}
-
-/// Objects and mirrors cast shadows; glass lets the light through.
-TriangleScene shadow_casters(const World& world) {
-    TriangleScene casters = world.objects;
-    for (const Optic& optic : world.optics) {
-        if (optic.mirror) append_facets(make_grid(*optic.surface, kShadowResolution), optic.mesh, casters);
-    }
-    return casters;
-}
-
 double diagonal(const TriangleScene& scene) {
     Box box;
     for (const Vec3& p : scene.points) box.include(p);
@@ -102,6 +85,9 @@ void check_facet_count(const World& world, int resolution) {
         throw InputError(world.scene.file, "/meshes",
                          "the optics have " + std::to_string(total) + " facets, more than " +
                              std::to_string(kMaxFacets) + "; lower their resolution");
+    check_memory({kBytesPerFacet * static_cast<double>(total),
+                  "drawing the optics' " + std::to_string(total) + " facets", "lower their resolution"},
+                 {machine_memory(), world.scene.file});
 }
 
 std::unique_ptr<World> make_world(Scene scene, const Warn& warn) {
@@ -124,12 +110,10 @@ std::unique_ptr<World> make_world(Scene scene, const Warn& warn) {
     world->shading.lights = world->scene.lights;
     world->shading.background = world->scene.background;
     world->shading.size = diagonal(world->objects);
-    if (has_shadows(world->scene)) {
-        const auto tracer = std::make_shared<Tracer>(shadow_casters(*world));
-        world->shading.occluded = [tracer](const Vec3& from, const Vec3& to) {
-            return tracer->occluded({from, to - from}, 0.0, 1.0);
+    if (has_shadows(*world))
+        world->shading.occluded = [self = world.get()](const Vec3& from, const Vec3& to) {
+            return casts_shadow(*self, {from, to - from});
         };
-    }
     return world;
 }
 

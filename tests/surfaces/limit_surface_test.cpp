@@ -82,6 +82,16 @@ TEST_CASE("A limit surface is what a second implementation of subdivision conver
     }
 }
 
+TEST_CASE("Limit surfaces at vertices of 2 to 12 faces are what subdivision converges to", "[surfaces]") {
+    for (const auto& [name, cage] : made_cages()) {
+        CAPTURE(name);
+        const Comparison result = compare_with_reference(cage, 3);
+        CAPTURE(result.compared, result.skipped);
+        CHECK(result.worst < 1e-11);
+        CHECK(result.compared > 4 * result.skipped);
+    }
+}
+
 TEST_CASE("The limit surfaces of the shapes on file are what subdivision converges to", "[surfaces]") {
     TRILENS_NEEDS_DATA("cages/catmark_cube.obj");
     for (const std::string& name : cage_files()) {

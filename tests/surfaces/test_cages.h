@@ -178,4 +178,59 @@ inline std::vector<std::pair<std::string, Cage>> small_cages() {
     return cages;
 }
 
+/// A vertex of n quads, bent: n = 2 folds them onto each other's edges.
+inline Cage wheel(int n) {
+    std::vector<Vec3> points = {{0, 0, 0.4}};
+    std::vector<std::vector<int>> faces;
+    for (int i = 0; i < 2 * n; ++i) {
+        const double angle = 3.14159265358979 * i / n, r = i % 2 ? 1.3 : 1;
+        points.emplace_back(r * std::cos(angle), r * std::sin(angle), 0.2 * std::cos(2 * angle));
+    }
+    for (int i = 0; i < n; ++i) faces.push_back({0, 1 + 2 * i, 2 + 2 * i, 1 + (2 * i + 2) % (2 * n)});
+    return make_cage(points, faces);
+}
+
+/// Two vertices of n triangles each over a polygon.
+inline Cage bipyramid(int n) {
+    std::vector<Vec3> points = {{0, 0, 1}, {0, 0, -1.2}};
+    std::vector<std::vector<int>> faces;
+    for (int i = 0; i < n; ++i) {
+        const double angle = 2 * 3.14159265358979 * i / n;
+        points.emplace_back(std::cos(angle), std::sin(angle), 0.1 * std::sin(3 * angle));
+        const int a = 2 + i, b = 2 + (i + 1) % n;
+        faces.insert(faces.end(), {{0, a, b}, {1, b, a}});
+    }
+    return make_cage(points, faces);
+}
+
+/// What the shapes on file have, made here: vertices of 2 to 12 faces, creases, corners, holes, boundaries,
+/// triangles under Loop.
+inline std::vector<std::pair<std::string, Cage>> made_cages() {
+    std::vector<std::pair<std::string, Cage>> cages;
+    for (int n = 2; n <= 12; ++n) cages.emplace_back("wheel " + std::to_string(n), wheel(n));
+    for (int n = 3; n <= 12; ++n) {
+        cages.emplace_back("bipyramid " + std::to_string(n), bipyramid(n));
+        cages.emplace_back("loop bipyramid " + std::to_string(n), bipyramid(n));
+        cages.back().second.scheme = trilens::SubdivisionScheme::kLoop;
+    }
+    Cage holed = sheet(4, 4);
+    holed.hole_indices = {5, 10};
+    Cage creased = bipyramid(7);
+    add_crease(creased, {2, 3, 4, 5, 6, 7, 8, 2}, 10);
+    Cage loop_creased = creased;
+    loop_creased.scheme = trilens::SubdivisionScheme::kLoop;
+    Cage cornered = wheel(5);
+    cornered.corner_indices = {0, 2};
+    cornered.corner_sharpnesses = {10, 10};
+    Cage crossed = sheet(4, 4);
+    add_crease(crossed, {10, 11, 12, 13, 14}, 10);
+    add_crease(crossed, {2, 7, 12, 17, 22}, 3);
+    cages.insert(cages.end(), {{"holed", holed},
+                               {"creased bipyramid", creased},
+                               {"loop creased bipyramid", loop_creased},
+                               {"cornered wheel", cornered},
+                               {"crossed creases", crossed}});
+    return cages;
+}
+
 }  // namespace trilens_test

@@ -1,0 +1,166 @@
+// Dense triangle cages: a bounded number of bytes, the same points, and a refusal before it is too much.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "reference_subdivision.h"
+#include "support/test.h"
+#include "surfaces/surfaces.h"
+#include "test_cages.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+/// A sphere with bumps of 20 * 4^levels triangles: an icosahedron of which each triangle is cut into four.
+Cage bumpy_sphere(int levels) {
+    const double a = 0.5257311121191336, b = 0.8506508083520399;
+    std::vector<Vec3> points = {{-a, b, 0},  {a, b, 0},  {-a, -b, 0}, {a, -b, 0}, {0, -a, b},  {0, a, b},
+                                {0, -a, -b}, {0, a, -b}, {b, 0, -a},  {b, 0, a},  {-b, 0, -a}, {-b, 0, a}};
+    std::vector<std::vector<int>> faces = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                           {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                           {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                           {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+    for (int level = 0; level < levels; ++level) {
+        std::map<std::pair<int, int>, int> middles;
+        const auto middle = [&](int p, int q) {
+            const auto [place, is_new] =
+                middles.try_emplace(std::minmax(p, q), static_cast<int>(points.size()));
+            if (is_new) points.push_back(normalize(points[p] + points[q]));
+            return place->second;
+        };
+        std::vector<std::vector<int>> finer;
+        for (const auto& f : faces) {
+            const int m0 = middle(f[0], f[1]), m1 = middle(f[1], f[2]), m2 = middle(f[2], f[0]);
+            finer.insert(finer.end(), {{f[0], m0, m2}, {f[1], m1, m0}, {f[2], m2, m1}, {m0, m1, m2}});
+        }
+        faces = std::move(finer);
+    }
+    for (Vec3& p : points)
+        p *= 1 + 0.05 * std::sin(11 * p.x) * std::sin(13 * p.y + 1) * std::sin(12 * p.z + 2);
+    return make_cage(points, faces);
+}
+
+/// A cone over a polygon of n sides.
+Cage cone(int n) {
+    std::vector<Vec3> points = {{0, 0, 1}};
+    std::vector<std::vector<int>> faces;
+    for (int i = 0; i < n; ++i) {
+        const double angle = 2 * 3.14159265358979 * i / n;
+        points.emplace_back(std::cos(angle), std::sin(angle), 0);
+        faces.push_back({0, i + 1, (i + 1) % n + 1});
+    }
+    return make_cage(points, faces);
+}
+
+std::string refusal(const Cage& cage, double memory) {
+    try {
+        make_limit_surface(cage, "dense", {}, memory);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+constexpr std::array<Vec2, 4> kCorners = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
+
+}  // namespace
+
+TEST_CASE("A cage of 20,480 triangles is evaluated everywhere in less than 500 MB", "[surfaces]") {
+    const Cage cage = bumpy_sphere(5);
+    REQUIRE(cage.face_vertex_counts.size() == 20480);
+    constexpr double kMost = 500e6;
+    const auto surface = make_limit_surface(cage, "sphere", {}, 700e6);
+    REQUIRE(surface->face_count() == 3 * 20480);
+    CHECK(surface->bytes_held() < 25e6);  // nothing is made before it is asked for
+
+    // The reference refined once has the sub-faces' corners as its vertices.
+    const ReferenceMesh mesh = refine(reference_mesh(cage));
+    std::vector<Vec3> limits;
+    for (int v = 0; v < static_cast<int>(mesh.points.size()); ++v) limits.push_back(*limit_point(mesh, v));
+    REQUIRE(mesh.faces.size() == surface->face_count());
+
+    double worst = 0;
+    std::vector<SurfacePoint> first_time;
+    for (Id face = 0; face < surface->face_count(); ++face) {
+        const ReferenceMesh::Face& of = mesh.faces[face];
+        REQUIRE(static_cast<Id>(3 * of.cage_face + of.sub_face) == face);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const SurfacePoint point = surface->eval(face, of.uv[k]);
+            worst = std::max(worst, length(point.position - limits[of.vertices[k]]));
+        }
+        first_time.push_back(surface->eval(face, Vec2(0.3, 0.6)));
+        if (face % 4096 == 0) REQUIRE(static_cast<double>(surface->bytes_held()) < kMost);
+    }
+    CHECK(worst < 1e-12);
+    const double held = static_cast<double>(surface->bytes_held());
+    CHECK(held < kMost);
+    CHECK(held > 470e6);  // all patches together would be above the budget: it was full
+
+    // Patches that are made once more are the same bit for bit.
+    for (Id face = 0; face < surface->face_count(); face += 17) {
+        const SurfacePoint again = surface->eval(face, Vec2(0.3, 0.6)), &before = first_time[face];
+        const bool same = again.position == before.position && again.du == before.du &&
+                          again.dv == before.dv && again.duu == before.duu && again.duv == before.duv &&
+                          again.dvv == before.dvv && again.normal == before.normal;
+        REQUIRE(same);
+    }
+    CHECK(static_cast<double>(surface->bytes_held()) < kMost);
+}
+
+TEST_CASE("What would not fit is refused with the estimate and what to do", "[surfaces]") {
+    const std::string dense = refusal(bumpy_sphere(4), 200e6);
+    CAPTURE(dense);
+    CHECK(dense.rfind("dense: the limit surface of 5120 faces needs about 0.56", 0) == 0);
+    CHECK(dense.find(" GiB of memory, and there are 0.186 GiB; use a cage of fewer faces") !=
+          std::string::npos);
+    CHECK(refusal(bumpy_sphere(4), 700e6).empty());
+
+    const std::string fan = refusal(cone(4000), 4e9);
+    CAPTURE(fan);
+    CHECK(fan.rfind("dense: the limit surface around a vertex of 4000 faces needs about 5.", 0) == 0);
+    CHECK(fan.find("; split that vertex") != std::string::npos);
+    CHECK(refusal(cone(60), 700e6).empty());
+
+    Cage linear = cone(4000);  // has no patches to refine
+    linear.scheme = SubdivisionScheme::kBilinear;
+    CHECK(refusal(linear, 1e9).empty());
+}
+
+TEST_CASE("What is not refused holds no more than the memory that it was given", "[surfaces]") {
+    for (const auto& [name, cage] : small_cages()) {
+        CAPTURE(name);
+        // The least memory that is accepted is the estimate.
+        double low = 1, high = 1e9;
+        REQUIRE(refusal(cage, high).empty());
+        while (high > 1.05 * low) {
+            const double middle = std::sqrt(low * high);
+            (refusal(cage, middle).empty() ? high : low) = middle;
+        }
+        const auto surface = make_limit_surface(cage, name, {}, high);
+        for (Id face = 0; face < surface->face_count(); ++face)
+            for (const Vec2& corner : kCorners) surface->eval(face, corner);
+        CAPTURE(surface->bytes_held(), high);
+        CHECK(static_cast<double>(surface->bytes_held()) < high);
+        CHECK(surface->bytes_held() > 0);
+    }
+}
+
+TEST_CASE("A resolution is lowered until its grid has few enough facets", "[surfaces]") {
+    for (const auto& [name, cage] : small_cages()) {
+        CAPTURE(name);
+        const auto surface = make_limit_surface(cage, name, {});
+        for (const std::size_t most : {std::size_t{1}, std::size_t{100}, std::size_t{2000}}) {
+            const int n = resolution_within(*surface, 16, most);
+            CAPTURE(most, n);
+            CHECK((n == 1 || count_facets(*surface, n) <= most));
+            CHECK((n == 16 || count_facets(*surface, n + 1) > most));
+        }
+    }
+}
