@@ -7,6 +7,7 @@
 #include "surfaces/checked_cage.h"
 #include "surfaces/edge_numbers.h"
 #include "surfaces/limit_patches.h"
+#include "surfaces/polynomial_bounds.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
@@ -132,6 +133,10 @@ class LimitSurface final : public Surface {
         here.point.normal = normal_of(here);
         if (here.point.normal == Vec3(0)) here.point.normal = normal_near(face, inside);
         return here.point;
+    }
+
+    std::unique_ptr<const SurfaceBounder> make_bounder() const override {
+        return make_polynomial_bounder(*this);
     }
 
   private:
