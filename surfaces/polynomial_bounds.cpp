@@ -15,6 +15,10 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
+/// Radii of the quantities, then of the normal.
+constexpr std::size_t kNormal = kQuantities;
+using Radii = std::array<double, kQuantities + 1>;
+
 struct Box {
     Vec2 low, high;
 };
@@ -95,10 +99,10 @@ class PolynomialBounder final : public SurfaceBounder {
         } else {
             result.middle = surface_.eval(face, middle);
         }
-        std::array<double, kQuantities> radius{};
+        Radii radius{};
         for (const FacePart* part : parts) widen(*part, {low, high}, result.middle, radius);
         // Continued beyond the face, several parts are not one smooth surface.
-        if (beyond && parts.size() > 1) std::fill(radius.begin() + 3, radius.end(), kInfinite);
+        if (beyond && parts.size() > 1) std::fill_n(radius.begin() + 3, 3, kInfinite);
 
         result.position_radius = radius[0];
         result.du_radius = radius[1];
@@ -106,7 +110,7 @@ class PolynomialBounder final : public SurfaceBounder {
         result.duu_radius = radius[3];
         result.duv_radius = radius[4];
         result.dvv_radius = radius[5];
-        result.normal_radius = normal_radius(result);
+        result.normal_radius = std::min(radius[kNormal], 2.0);
         result.is_finest = parts.size() == 1 && !parts.front()->is_polynomial;
         return result;
     }
@@ -136,27 +140,37 @@ class PolynomialBounder final : public SurfaceBounder {
     }
 
     /// Widens the radii about `middle` by one part's values within the box.
-    static void widen(const FacePart& part, const Box& box, const SurfacePoint& middle,
-                      std::array<double, kQuantities>& radius) {
-        if (!part.is_polynomial) {
-            for (std::size_t q = 0; q < kQuantities; ++q) {
-                const double off = length(part.middle.*kQuantity[q] - middle.*kQuantity[q]);
-                radius[q] = std::max(radius[q], off + part.slack[q]);
-            }
+    static void widen(const FacePart& part, const Box& box, const SurfacePoint& middle, Radii& radius) {
+        if (part.is_polynomial) {
+            widen_by_hulls(part, box, middle, radius);
             return;
         }
+        for (std::size_t q = 0; q < kQuantities; ++q) {
+            const double off = length(part.middle.*kQuantity[q] - middle.*kQuantity[q]);
+            radius[q] = std::max(radius[q], off + part.slack[q]);
+        }
+        const double turn = length(part.middle.normal - middle.normal) + part.normal_spread;
+        radius[kNormal] = std::max(radius[kNormal], turn);
+    }
+
+    static void widen_by_hulls(const FacePart& part, const Box& box, const SurfacePoint& middle,
+                               Radii& radius) {
         const Vec2 low = glm::max(box.low, part.shape.low()), high = glm::min(box.high, part.shape.high());
         const Vec2 a = (low - part.shape.corner) / part.shape.size;
         const Vec2 b = (high - part.shape.corner) / part.shape.size;
         const double scale = 1 / part.shape.size;
-        const std::array<BezierNet, kQuantities> nets = part_nets(part.net);
+        std::array<BezierNet, kQuantities> nets = part_nets(part.net);
         for (std::size_t q = 0; q < kQuantities; ++q) {
             const double unit = q == 0 ? 1 : q < 3 ? scale : scale * scale;
             const Vec3 about = middle.*kQuantity[q] - (q == 0 ? part.origin : Vec3(0));
-            const BezierNet inside = restricted(nets[q], a, b);
-            for (const Vec3& control : inside.points())
-                radius[q] = std::max(radius[q], length(unit * control - about) + part.slack[q]);
+            nets[q] = restricted(nets[q], a, b);
+            for (std::size_t k = 0; k < nets[q].points().size(); ++k) {
+                nets[q].point[k] *= unit;
+                radius[q] = std::max(radius[q], length(nets[q].point[k] - about) + part.slack[q]);
+            }
         }
+        const TangentHulls hulls{nets[1].points(), nets[2].points(), part.slack[1], part.slack[2]};
+        radius[kNormal] = std::max(radius[kNormal], normal_radius(hulls, middle.normal));
     }
 
     const Surface& surface_;

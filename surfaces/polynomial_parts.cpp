@@ -134,6 +134,7 @@ void sample(const Surface& surface, Id face, FacePart& part) {
     const bool triangle = surface.domain(face) == FaceDomain::kTriangle;
     part.middle = surface.eval(face, at(part.shape, Vec2(triangle ? 1.0 / 3 : 0.5)));
     part.slack.fill(0);
+    part.normal_spread = 0;
     for (int j = 0; j <= kSteps; ++j) {
         for (int i = 0; i <= (triangle ? kSteps - j : kSteps); ++i) {
             const Vec2 t = Vec2(i, j) / static_cast<double>(kSteps);
@@ -142,6 +143,8 @@ void sample(const Surface& surface, Id face, FacePart& part) {
                 const double off = length(point.*kQuantity[q] - part.middle.*kQuantity[q]);
                 part.slack[q] = std::max(part.slack[q], kSampleFactor * off);
             }
+            const double turn = kSampleFactor * length(point.normal - part.middle.normal);
+            part.normal_spread = std::max(part.normal_spread, turn);
         }
     }
     // Derivatives that are approximations have no second ones that bound their change.

@@ -33,7 +33,8 @@ struct FacePart {
     BezierNet net;  // the position - origin, over t with (u, v) = shape.corner + shape.size t; a polynomial's
     bool is_polynomial = false;             // else known by samples alone
     std::array<double, kQuantities> slack{};  // of a polynomial: rounding; else the spread about `middle`
-    SurfacePoint middle;                      // of samples: the part's middle
+    SurfacePoint middle;        // of samples: the part's middle
+    double normal_spread = 2;   // of samples: of the unit normal about the middle's
 };
 
 /// The nets of the six quantities, derivatives by the net's own parameters.
