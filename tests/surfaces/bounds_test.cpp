@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "support/test.h"
 #include "surfaces/polynomial_bounds.h"
@@ -109,6 +112,14 @@ Primitive primitive_of(Primitive::Type type) {
 constexpr std::array<Primitive::Type, 4> kTypes = {Primitive::Type::kSphere, Primitive::Type::kParaboloid,
                                                    Primitive::Type::kCylinder, Primitive::Type::kPlane};
 
+/// An octahedron as a Loop cage: all its vertices have four faces, so none is regular.
+Cage octahedron() {
+    Cage cage = make_cage({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1.3}},
+                          {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}});
+    cage.scheme = SubdivisionScheme::kLoop;
+    return cage;
+}
+
 }  // namespace
 
 TEST_CASE("no point of a primitive lies outside its bounds") {
@@ -123,7 +134,9 @@ TEST_CASE("no point of a primitive lies outside its bounds") {
 
 TEST_CASE("no point of a limit surface lies outside its bounds") {
     unsigned seed = 10;
-    for (const auto& [name, cage] : small_cages()) {
+    auto cages = small_cages();
+    cages.emplace_back("octahedron", octahedron());
+    for (const auto& [name, cage] : cages) {
         const auto surface = make_limit_surface(cage, name, {});
         const Outside outside = points_outside(*surface, ++seed, 500);
         CAPTURE(name, outside.worst);
@@ -139,5 +152,58 @@ TEST_CASE("no point of the outside data's cages lies outside its bounds") {
         const Outside outside = points_outside(*surface, ++seed, 300);
         CAPTURE(name, outside.worst);
         CHECK(outside.outside == 0);
+    }
+}
+
+TEST_CASE("bounds shrink at least in proportion to the box") {
+    auto cages = small_cages();
+    cages.emplace_back("octahedron", octahedron());
+    std::vector<std::pair<std::string, std::unique_ptr<Surface>>> surfaces;
+    for (const auto& [name, cage] : cages) {
+        if (name == "sheet" || name == "cube" || name == "prism 5" || name == "octahedron")
+            surfaces.emplace_back(name, make_limit_surface(cage, name, {}));
+    }
+    for (const Primitive::Type type : kTypes)
+        surfaces.emplace_back("primitive", make_primitive_surface(primitive_of(type)));
+    REQUIRE(surfaces.size() == 8);
+
+    Boxes boxes(77);
+    for (const auto& [name, surface] : surfaces) {
+        const auto bounder = surface->make_bounder();
+        for (int k = 0; k < 200; ++k) {
+            // Away from corners, where extraordinary vertices lie.
+            const Vec2 middle(boxes.uniform(0.15, 0.4), boxes.uniform(0.15, 0.4));
+            const Id face = boxes.face(*surface);
+            const auto around = [&](double half) { return bounder->bounds(face, middle - half, middle + half); };
+            const SurfaceBounds wide = around(0x1p-4), narrow = around(0x1p-9);
+            CAPTURE(name, face, middle.x, middle.y);
+            CHECK(narrow.position_radius <= wide.position_radius / 16 + 1e-9);
+            CHECK(narrow.du_radius <= wide.du_radius / 16 + 1e-9);
+            CHECK(narrow.dv_radius <= wide.dv_radius / 16 + 1e-9);
+            CHECK(narrow.normal_radius <= wide.normal_radius / 16 + 1e-9);
+            // Nor are they much too wide: of the first order, a ball around a parallelogram.
+            const double reach = (length(narrow.middle.du) + length(narrow.middle.dv)) * 0x1p-9;
+            CHECK(narrow.position_radius <= 4 * reach + 1e-9);
+        }
+    }
+}
+
+TEST_CASE("second derivatives of limit surfaces are the first ones' derivatives, in turned triangles too") {
+    Boxes boxes(78);
+    for (const auto& cage : {octahedron(), cube()}) {
+        const auto surface = make_limit_surface(cage, "cage", {});
+        for (int k = 0; k < 1000; ++k) {
+            const Id face = boxes.face(*surface);
+            const Vec2 uv(boxes.uniform(0.03, 0.48), boxes.uniform(0.03, 0.48));
+            constexpr double kStep = 1e-6;
+            const auto change = [&](const Vec2& step, Vec3 SurfacePoint::*first) {
+                return (surface->eval(face, uv + step).*first - surface->eval(face, uv - step).*first) / (2 * kStep);
+            };
+            const SurfacePoint point = surface->eval(face, uv);
+            // Third derivatives jump between patches, so a step across shows in second order at most.
+            CHECK(length(change({kStep, 0}, &SurfacePoint::du) - point.duu) < 1e-3);
+            CHECK(length(change({0, kStep}, &SurfacePoint::du) - point.duv) < 1e-3);
+            CHECK(length(change({0, kStep}, &SurfacePoint::dv) - point.dvv) < 1e-3);
+        }
     }
 }
