@@ -1,5 +1,5 @@
-// De Casteljau's algorithm as products of linear polynomials in the shift operator (Farin, Curves and Surfaces
-// for CAGD, chapter 5).
+// De Casteljau's algorithm as products of linear polynomials in the shift operator (Farin, Curves and
+// Surfaces for CAGD, chapter 5).
 #include "surfaces/bezier_net.h"
 
 #include <cmath>
@@ -35,7 +35,8 @@ struct Rows {
 
 /// New control points along one direction as sums of the old ones.
 BezierNet combined(const BezierNet& net, const Rows& along_u, const Rows& along_v) {
-    const std::size_t wide = static_cast<std::size_t>(net.nu) + 1, high = static_cast<std::size_t>(net.nv) + 1;
+    const std::size_t wide = static_cast<std::size_t>(net.nu) + 1,
+                      high = static_cast<std::size_t>(net.nv) + 1;
     BezierNet half = net, result = net;
     for (std::size_t j = 0; j < high; ++j) {
         for (std::size_t i = 0; i < wide; ++i) {

@@ -148,8 +148,8 @@ class LimitSurface final : public Surface {
         return patches_.eval(faces_[face].cage_face, faces_[face].sub_face, uv);
     }
 
-    /// OpenSubdiv up to 3.6 gives the second derivatives with the wrong sign where a triangle's patch is turned
-    /// by half a turn, which it does not tell: the first ones a little nearer to the middle do.
+    /// OpenSubdiv 3.5 gives the second derivatives with the wrong sign where a triangle's patch is
+    /// turned by half a turn, which it does not tell: the first ones a little nearer to the middle do.
     void turn_second_derivatives(Id face, const Vec2& uv, SurfacePoint& point) const {
         const Vec2 step = kStepForSign * (Vec2(1.0 / 3) - uv + Vec2(0x1p-8, 0x1p-9));
         const SurfacePoint ahead = eval_patch(face, uv + step).point;

@@ -30,7 +30,8 @@ double normal_radius(const TangentHulls& hulls, const Vec3& normal) {
     const Reach u = reach_of(hulls.du, hulls.du_slack, normal);
     const Reach v = reach_of(hulls.dv, hulls.dv_slack, normal);
 
-    // (a + alpha n) x (b + beta n), a and b across n, is a x b along n and beta a x n + alpha n x b across it.
+    // (a + alpha n) x (b + beta n), a and b across n, is a x b along n and beta a x n + alpha n x b across
+    // it.
     const double moved = length(u.middle) * v.radius + length(v.middle) * u.radius + u.radius * v.radius;
     const double upright = dot(cross(u.middle, v.middle), normal) - moved;
     const double tangent = (v.along * u.longest + u.along * v.longest) / upright;

@@ -65,7 +65,8 @@ Face take_apart(const Surface& surface, Id id) {
     return face;
 }
 
-/// Whether the box and the shape share more than a border; a box without extent along a parameter may lie on it.
+/// Whether the box and the shape share more than a border; a box without extent along a parameter may lie on
+/// it.
 bool overlap(const PartShape& shape, FaceDomain domain, const Box& box) {
     for (int axis = 0; axis < 2; ++axis) {
         const double low = std::max(box.low[axis], shape.low()[axis]);

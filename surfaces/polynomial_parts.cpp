@@ -8,8 +8,8 @@
 namespace trilens {
 namespace {
 
-/// Interpolation and comparison disagree by this share of the part's size if it is a polynomial (some thousand
-/// rounding errors); derivatives by these, in units of the part's own parameters.
+/// Interpolation and comparison disagree by this share of the part's size if it is a polynomial (some
+/// thousand rounding errors); derivatives by these, in units of the part's own parameters.
 constexpr double kFitTolerance = 1e-11;
 constexpr std::array<double, kQuantities> kMoreTolerance = {1, 10, 10, 100, 100, 100};
 /// The same as a share of the coordinates, whose rounding the surface's own evaluation carries.
@@ -86,8 +86,8 @@ std::vector<Vec2> probes(FaceDomain domain) {
 void add_border_probes(FaceDomain domain, const PartShape& shape, std::vector<Vec2>& points) {
     const auto add = [&](const Vec2& uv) {
         const Vec2 t = (uv - shape.corner) / shape.size;
-        const bool inside = t.x >= 0 && t.y >= 0 &&
-                            (domain == FaceDomain::kSquare ? t.x <= 1 && t.y <= 1 : t.x + t.y <= 1);
+        const bool inside =
+            t.x >= 0 && t.y >= 0 && (domain == FaceDomain::kSquare ? t.x <= 1 && t.y <= 1 : t.x + t.y <= 1);
         if (inside) points.push_back(t);
     };
     const Vec2 low = shape.low(), size = shape.high() - low;

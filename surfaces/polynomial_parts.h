@@ -29,12 +29,12 @@ inline const std::array<Vec3 SurfacePoint::*, kQuantities> kQuantity = {
 /// One part of a face.
 struct FacePart {
     PartShape shape;
-    Vec3 origin{0};                         // world frame: what the control points are relative to
+    Vec3 origin{0};  // world frame: what the control points are relative to
     BezierNet net;  // the position - origin, over t with (u, v) = shape.corner + shape.size t; a polynomial's
-    bool is_polynomial = false;             // else known by samples alone
+    bool is_polynomial = false;               // else known by samples alone
     std::array<double, kQuantities> slack{};  // of a polynomial: rounding; else the spread about `middle`
-    SurfacePoint middle;        // of samples: the part's middle
-    double normal_spread = 2;   // of samples: of the unit normal about the middle's
+    SurfacePoint middle;                      // of samples: the part's middle
+    double normal_spread = 2;                 // of samples: of the unit normal about the middle's
 };
 
 /// The nets of the six quantities, derivatives by the net's own parameters.

@@ -48,15 +48,15 @@ struct SurfaceHit {
     SurfacePoint point;
 };
 
-/// What a surface does over a box of a face's parameters: each quantity q at every point of the box (and of the
-/// face) lies within its radius of middle.q, |q - middle.q| <= q_radius. An infinite radius says nothing.
+/// What a surface does over a box of a face's parameters: each quantity q at every point of the box (and of
+/// the face) lies within its radius of middle.q, |q - middle.q| <= q_radius. An infinite radius says nothing.
 struct SurfaceBounds {
     SurfacePoint middle;  // at the box's middle; where that lies outside a triangle, of the face continued
     double position_radius = std::numeric_limits<double>::infinity();
     double du_radius = position_radius, dv_radius = position_radius;
     double duu_radius = position_radius, duv_radius = position_radius, dvv_radius = position_radius;
-    double normal_radius = 2;   // of the unit normals; 2 says nothing
-    bool is_finest = false;     // boxes inside this one have no better bounds
+    double normal_radius = 2;  // of the unit normals; 2 says nothing
+    bool is_finest = false;    // boxes inside this one have no better bounds
 };
 
 /// Bounds of a surface, each good to rounding and shrinking at least in proportion to the box wherever the

@@ -12,11 +12,11 @@ namespace {
 
 /// Directions from the eye (or the point) to a ball of positions.
 struct Sight {
-    Vec3 direction{0};     // unit, to the ball's middle
-    double turn = 0;       // no direction differs by more
-    double sine = 0;       // of the largest angle
+    Vec3 direction{0};       // unit, to the ball's middle
+    double turn = 0;         // no direction differs by more
+    double sine = 0;         // of the largest angle
     double by_distance = 0;  // 1 / distance of the middle
-    double stretch = 0;    // no 1 / distance differs by more
+    double stretch = 0;      // no 1 / distance differs by more
 };
 
 /// False where the ball holds the place itself.
@@ -93,9 +93,8 @@ Vec2 absolute_product(const Mat2& m, const Vec2& v) {
 /// What rounding leaves of the gradient at a zero, per length of the tangent.
 double rounding_of_law(const SpecularQuery& query, const Light& light, const Vec3& position) {
     constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
-    const double coordinate =
-        std::max({largest_coordinate(position), largest_coordinate(query.point),
-                  query.camera.parallel ? 0 : largest_coordinate(query.camera.eye)});
+    const double coordinate = std::max({largest_coordinate(position), largest_coordinate(query.point),
+                                        query.camera.parallel ? 0 : largest_coordinate(query.camera.eye)});
     return kRounding * (light.n.eye * (1 + coordinate * light.eye.by_distance) +
                         light.n.point * (1 + coordinate * light.point.by_distance));
 }

@@ -21,8 +21,8 @@ PlaceBounds place_of(const SurfaceBounds& bounds);
 bool holds_no_image(const SpecularQuery& query, const PlaceBounds& place);
 
 /// The interval Newton operator in Krawczyk's form (Neumaier, Interval Methods for Systems of Equations,
-/// chapter 5) on a cell of a face, in parameters from the cell's middle: every zero of (h . du, h . dv) in the
-/// cell lies within `spread` of `step`.
+/// chapter 5) on a cell of a face, in parameters from the cell's middle: every zero of (h . du, h . dv) in
+/// the cell lies within `spread` of `step`.
 struct NewtonBounds {
     bool known = false;  // else the bounds say nothing
     Vec2 step{0};        // Newton's step from the middle

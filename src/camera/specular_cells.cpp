@@ -46,7 +46,8 @@ std::pair<CellBox, CellBox> halves_of(const CellBox& box, const SurfacePoint& mi
     const Vec2 half = box.half();
     // Sides differ by no more than 2^6, however the derivatives do (both zero, at worst).
     const double u = length(middle.du) * half.x, v = length(middle.dv) * half.y;
-    const bool across_u = half.x > 64 * half.y || (half.y <= 64 * half.x && (u == v ? half.x >= half.y : u > v));
+    const bool across_u =
+        half.x > 64 * half.y || (half.y <= 64 * half.x && (u == v ? half.x >= half.y : u > v));
     const int axis = across_u ? 0 : 1;
     std::pair<CellBox, CellBox> halves{box, box};
     halves.first.high[axis] = halves.second.low[axis] = box.middle()[axis];

@@ -47,9 +47,9 @@ struct SpecularPoint {
 };
 
 /// The image nearest to `start`, or none where the iteration ends elsewhere: no solution nearby, one outside
-/// this face (start again on the neighbour), a point of the wrong kind (a "reflection" through the surface, or
-/// seen from another side than `viewed`), or one behind the camera. Occlusion is not looked at: whether the light reaches the surface and the eye is
-/// for a tracer to say.
+/// this face (start again on the neighbour), a point of the wrong kind (a "reflection" through the surface,
+/// or seen from another side than `viewed`), or one behind the camera. Occlusion is not looked at: whether
+/// the light reaches the surface and the eye is for a tracer to say.
 ///
 /// The law, for both kinds: h = n1 e + n2 x is parallel to the normal, where e and x are the unit directions
 /// from the camera and from the point to the surface (a mirror has n1 = n2 = 1). For own normals, h . du = h

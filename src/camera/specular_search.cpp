@@ -113,12 +113,14 @@ Verdict Walk::settle(const CellBox& box, const SurfacePoint& middle, const Newto
     const Vec2 step = -(newton.inverse * law), share = newton.spread / half;
     const double contraction = largest(share), far = largest(step / half) / (1 - contraction);
     for (int axis = 0; axis < 2; ++axis) {
-        const double out = uv[axis] >= box.high[axis] ? step[axis] : uv[axis] <= box.low[axis] ? -step[axis] : 0;
+        const double out = uv[axis] >= box.high[axis]  ? step[axis]
+                           : uv[axis] <= box.low[axis] ? -step[axis]
+                                                       : 0;
         if (out - contraction * far * half[axis] > kBorder + newton.rounding[axis]) return Verdict::kEmpty;
     }
     // At rest on the border by rounding alone: a zero there is one.
-    const bool rounding = std::fabs(step.x) <= kBorder + newton.rounding.x &&
-                          std::fabs(step.y) <= kBorder + newton.rounding.y;
+    const bool rounding =
+        std::fabs(step.x) <= kBorder + newton.rounding.x && std::fabs(step.y) <= kBorder + newton.rounding.y;
     if (!rounding) return Verdict::kSplit;
     if (!in_domain(box.face, uv)) return Verdict::kEmpty;
     return add_image({box.face, uv}, point) ? Verdict::kSettled : Verdict::kSplit;

@@ -21,7 +21,7 @@ struct SpecularSearch {
     std::vector<SpecularPoint> images;  // each once, by ascending t
     bool complete = false;              // proven: there are no others
     std::size_t cells = 0;              // looked at
-    std::size_t undecided = 0;          // of them neither excluded nor proven to hold one zero of the law at most
+    std::size_t undecided = 0;  // of them neither excluded nor proven to hold one zero of the law at most
 };
 
 /// Searches one surface for the images of many points. Thread-safe to read; the surface must live longer.
@@ -30,9 +30,9 @@ struct SpecularSearch {
 /// where interval Newton proves at most one zero of the law is settled by Newton's method; others are halved.
 /// Cells that are undecided at the smallest size make the list incomplete: points on a caustic (where two
 /// images merge, so that no cell has one zero), points or eyes on the surface itself, images within the last
-/// 2^-10 of a face around an extraordinary vertex. Images that refining finds from undecided cells are listed,
-/// too. "Proven" is up to rounding: radii hold the rounding of evaluation, but the arithmetic on them does not
-/// round outward.
+/// 2^-10 of a face around an extraordinary vertex. Images that refining finds from undecided cells are
+/// listed, too. "Proven" is up to rounding: radii hold the rounding of evaluation, but the arithmetic on them
+/// does not round outward.
 ///
 /// Surfaces that give no bounds and queries with overridden normals are searched from regular starts; such a
 /// list is never complete.

@@ -37,7 +37,8 @@ Lattice lattice_of(const Surface& surface, int n) {
     return lattice;
 }
 
-/// All images that refining from each lattice point finds where the law is violated least among its neighbours.
+/// All images that refining from each lattice point finds where the law is violated least among its
+/// neighbours.
 std::vector<SpecularPoint> brute_force(const Surface& surface, const Lattice& lattice,
                                        const SpecularQuery& query) {
     const int n = lattice.n, row = n + 1;
@@ -69,8 +70,7 @@ std::vector<SpecularPoint> brute_force(const Surface& surface, const Lattice& la
 double law_miss(const Surface& surface, const SpecularQuery& query, const SpecularPoint& image) {
     const SurfacePoint at = surface.eval(image.at.face, image.at.uv);
     const Vec3 e = normalize(at.position - query.camera.eye), x = normalize(query.point - at.position);
-    if (query.event == SpecularEvent::kReflect)
-        return length(e - 2.0 * dot(e, at.normal) * at.normal - x);
+    if (query.event == SpecularEvent::kReflect) return length(e - 2.0 * dot(e, at.normal) * at.normal - x);
     const Vec3 sine_e = cross(at.normal, e), sine_x = cross(at.normal, x);
     const bool same_way = dot(e, at.normal) * dot(x, at.normal) > 0;
     return length(query.eye_index * sine_e - query.point_index * sine_x) + (same_way ? 0 : 2);
@@ -93,7 +93,8 @@ Counts compare_with_brute_force(const Case& test, unsigned seed) {
     const SpecularSearcher searcher(surface);
     const Lattice lattice = lattice_of(surface, test.fineness);
     Vec3 low = lattice.points[0].position, high = low;
-    for (const SurfacePoint& p : lattice.points) low = glm::min(low, p.position), high = glm::max(high, p.position);
+    for (const SurfacePoint& p : lattice.points)
+        low = glm::min(low, p.position), high = glm::max(high, p.position);
     const Vec3 middle = 0.5 * (low + high);
     const double size = length(high - low);
 
@@ -162,7 +163,8 @@ Cage icosahedron() {
             for (int c = b + 1; c < 12; ++c) {
                 if (!near(a, b) || !near(b, c) || !near(a, c)) continue;
                 const bool outward = triple(cage.points[a], cage.points[b], cage.points[c]) > 0;
-                for (const int k : {a, outward ? b : c, outward ? c : b}) cage.face_vertex_indices.push_back(k);
+                for (const int k : {a, outward ? b : c, outward ? c : b})
+                    cage.face_vertex_indices.push_back(k);
                 cage.face_vertex_counts.push_back(3);
             }
     return cage;
@@ -182,7 +184,8 @@ TEST_CASE("search: no image is missing on the torus mirror") {
 
 TEST_CASE("search: no image is missing through the torus as glass") {
     std::unique_ptr<World> world;
-    check(compare_with_brute_force({optic_of("torus", world), SpecularEvent::kRefract, 1.5, 50, 300}, 3), 150);
+    check(compare_with_brute_force({optic_of("torus", world), SpecularEvent::kRefract, 1.5, 50, 300}, 3),
+          150);
 }
 
 TEST_CASE("search: no image is missing on a piece with creases and extraordinary vertices") {
@@ -200,8 +203,8 @@ TEST_CASE("search: no image is missing on primitives") {
     Primitive primitive;
     primitive.axis = {0.2, 1, 0.1};
     unsigned seed = 10;
-    for (const auto type : {Primitive::Type::kSphere, Primitive::Type::kParaboloid, Primitive::Type::kCylinder,
-                            Primitive::Type::kPlane}) {
+    for (const auto type : {Primitive::Type::kSphere, Primitive::Type::kParaboloid,
+                            Primitive::Type::kCylinder, Primitive::Type::kPlane}) {
         primitive.type = type;
         const auto surface = make_primitive_surface(primitive);
         check(compare_with_brute_force({*surface, SpecularEvent::kReflect, 1, 80, 150}, ++seed), 20);

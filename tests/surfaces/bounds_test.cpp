@@ -88,9 +88,9 @@ Outside points_outside(const Surface& surface, unsigned seed, int box_count) {
                 if (pairs[q][0] <= pairs[q][1]) continue;
                 ++result.outside;
                 result.worst = std::max(result.worst, pairs[q][0] - pairs[q][1]);
-                UNSCOPED_INFO("quantity " << q << " face " << face << " box " << box[0].x << " " << box[0].y << " "
-                                   << box[1].x << " " << box[1].y << ": " << pairs[q][0] << " > "
-                                   << pairs[q][1]);
+                UNSCOPED_INFO("quantity " << q << " face " << face << " box " << box[0].x << " " << box[0].y
+                                          << " " << box[1].x << " " << box[1].y << ": " << pairs[q][0]
+                                          << " > " << pairs[q][1]);
             }
         }
     }
@@ -114,8 +114,9 @@ constexpr std::array<Primitive::Type, 4> kTypes = {Primitive::Type::kSphere, Pri
 
 /// An octahedron as a Loop cage: all its vertices have four faces, so none is regular.
 Cage octahedron() {
-    Cage cage = make_cage({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1.3}},
-                          {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}});
+    Cage cage =
+        make_cage({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1.3}},
+                  {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}});
     cage.scheme = SubdivisionScheme::kLoop;
     return cage;
 }
@@ -174,7 +175,9 @@ TEST_CASE("bounds shrink at least in proportion to the box") {
             // Away from corners, where extraordinary vertices lie.
             const Vec2 middle(boxes.uniform(0.15, 0.4), boxes.uniform(0.15, 0.4));
             const Id face = boxes.face(*surface);
-            const auto around = [&](double half) { return bounder->bounds(face, middle - half, middle + half); };
+            const auto around = [&](double half) {
+                return bounder->bounds(face, middle - half, middle + half);
+            };
             const SurfaceBounds wide = around(0x1p-4), narrow = around(0x1p-9);
             CAPTURE(name, face, middle.x, middle.y);
             CHECK(narrow.position_radius <= wide.position_radius / 16 + 1e-9);
@@ -197,7 +200,8 @@ TEST_CASE("second derivatives of limit surfaces are the first ones' derivatives,
             const Vec2 uv(boxes.uniform(0.03, 0.48), boxes.uniform(0.03, 0.48));
             constexpr double kStep = 1e-6;
             const auto change = [&](const Vec2& step, Vec3 SurfacePoint::*first) {
-                return (surface->eval(face, uv + step).*first - surface->eval(face, uv - step).*first) / (2 * kStep);
+                return (surface->eval(face, uv + step).*first - surface->eval(face, uv - step).*first) /
+                       (2 * kStep);
             };
             const SurfacePoint point = surface->eval(face, uv);
             // Third derivatives jump between patches, so a step across shows in second order at most.
