@@ -7,6 +7,7 @@
 #include "surfaces/checked_cage.h"
 #include "surfaces/edge_numbers.h"
 #include "surfaces/limit_patches.h"
+#include "surfaces/polynomial_bounds.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
@@ -19,6 +20,9 @@ constexpr double kNormalNoise = 1e-12;
 /// Where the normal vanishes (collapsed edges, folded neighbourhoods) it is taken this share of the way
 /// towards the middle of the face; the later ones serve derivatives that vanish to higher order.
 constexpr std::array<double, 3> kStepsInward = {0x1p-20, 0x1p-12, 0x1p-6};
+
+/// A step this share of the way to the middle: far below the smallest patches, far above rounding.
+constexpr double kStepForSign = 0x1p-16;
 
 struct SurfaceFace {
     int cage_face;
@@ -132,14 +136,30 @@ class LimitSurface final : public Surface {
     SurfacePoint eval(Id face, const Vec2& uv) const override {
         const Vec2 inside = clamp_to_domain(domain_, uv);
         LimitPatches::Point here = eval_patch(face, inside);
+        if (domain_ == FaceDomain::kTriangle) turn_second_derivatives(face, inside, here.point);
         here.point.normal = normal_of(here);
         if (here.point.normal == Vec3(0)) here.point.normal = normal_near(face, inside);
         return here.point;
     }
 
+    std::unique_ptr<const SurfaceBounder> make_bounder() const override {
+        return make_polynomial_bounder(*this);
+    }
+
   private:
     LimitPatches::Point eval_patch(Id face, const Vec2& uv) const {
         return patches_.eval(faces_[face].cage_face, faces_[face].sub_face, uv);
+    }
+
+    /// OpenSubdiv 3.5 gives the second derivatives with the wrong sign where a triangle's patch is
+    /// turned by half a turn, which it does not tell: the first ones a little nearer to the middle do.
+    void turn_second_derivatives(Id face, const Vec2& uv, SurfacePoint& point) const {
+        const Vec2 step = kStepForSign * (Vec2(1.0 / 3) - uv + Vec2(0x1p-8, 0x1p-9));
+        const SurfacePoint ahead = eval_patch(face, uv + step).point;
+        const Vec3 by_u = step.x * point.duu + step.y * point.duv;
+        const Vec3 by_v = step.x * point.duv + step.y * point.dvv;
+        if (dot(ahead.du - point.du, by_u) + dot(ahead.dv - point.dv, by_v) >= 0) return;
+        for (Vec3* second : {&point.duu, &point.duv, &point.dvv}) *second = -*second;
     }
 
     static Vec3 normal_of(const LimitPatches::Point& at) {

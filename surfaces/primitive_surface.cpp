@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "surfaces/primitive_bounds.h"
 #include "surfaces/primitive_shapes.h"
 #include "surfaces/surfaces.h"
 
@@ -34,7 +35,8 @@ std::array<double, 2> solve(const std::array<double, 3>& c) {
 class PrimitiveSurface final : public Surface {
   public:
     PrimitiveSurface(const Primitive& primitive, const Mat3& world_from_local)
-        : shape_(make_primitive_shape(primitive)),
+        : primitive_(primitive),
+          shape_(make_primitive_shape(primitive)),
           center_(primitive.center),
           world_from_local_(world_from_local) {}
 
@@ -42,6 +44,9 @@ class PrimitiveSurface final : public Surface {
     FaceDomain domain(Id) const override { return FaceDomain::kSquare; }
     FaceBorder border(Id face) const override { return shape_->border(face); }
     bool has_closed_form() const override { return true; }
+    std::unique_ptr<const SurfaceBounder> make_bounder() const override {
+        return make_primitive_bounder(primitive_, *this);
+    }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override {
         const auto clamp = [](double x) { return x > 0 ? std::min(x, 1.0) : 0.0; };
@@ -75,6 +80,7 @@ class PrimitiveSurface final : public Surface {
     }
 
   private:
+    Primitive primitive_;
     std::unique_ptr<PrimitiveShape> shape_;
     Vec3 center_;
     Mat3 world_from_local_;  // columns: tangent, axis x tangent, axis

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +49,28 @@ struct SurfaceHit {
     SurfacePoint point;
 };
 
+/// What a surface does over a box of a face's parameters: each quantity q at every point of the box (and of
+/// the face) lies within its radius of middle.q, |q - middle.q| <= q_radius. An infinite radius says nothing.
+struct SurfaceBounds {
+    SurfacePoint middle;  // at the box's middle; where that lies outside a triangle, of the face continued
+    double position_radius = std::numeric_limits<double>::infinity();
+    double du_radius = position_radius, dv_radius = position_radius;
+    double duu_radius = position_radius, duv_radius = position_radius, dvv_radius = position_radius;
+    double normal_radius = 2;  // of the unit normals; 2 says nothing
+    bool is_finest = false;    // boxes inside this one have no better bounds
+};
+
+/// Bounds of a surface, each good to rounding and shrinking at least in proportion to the box wherever the
+/// surface is smooth. Thread-safe to read; refers to its surface, which must live longer.
+class SurfaceBounder {
+  public:
+    virtual ~SurfaceBounder() = default;
+
+    /// 0 <= low <= high <= 1, and low inside the domain. A box may be one point: the radii are then what
+    /// rounding leaves.
+    virtual SurfaceBounds bounds(Id face, const Vec2& low, const Vec2& high) const = 0;
+};
+
 /// A surface of numbered faces in the world frame: the limit of a cage, or a primitive. Thread-safe to read.
 class Surface {
   public:
@@ -66,6 +90,9 @@ class Surface {
 
     /// Bytes that it holds now, but for the allocator's own and what does not grow with the surface.
     virtual std::size_t bytes_held() const { return 0; }
+
+    /// What bounds this surface's parts, or null where none are known. Prepares all faces, so ask once.
+    virtual std::unique_ptr<const SurfaceBounder> make_bounder() const { return nullptr; }
 };
 
 /// An N x N grid on a surface: facets whose corners lie on the surface. Points on edges that faces share

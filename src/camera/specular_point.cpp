@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/check.h"
+#include "camera/specular_law.h"
 
 namespace trilens {
 namespace {
@@ -24,39 +25,6 @@ constexpr double kParameterTolerance =
 constexpr double kLastStep = 1e-6;  // in (u, v): Newton's error after it is below rounding
 constexpr double kDifferenceStep = 1e-5;  // cube root of the rounding unit, for central differences in (u, v)
 
-/// The light's path over one point of the surface.
-struct Path {
-    Vec3 from_eye{0}, from_point{0};              // unit: e and x
-    double eye_distance = 0, point_distance = 0;  // eye_distance infinite for parallel cameras
-    Vec3 bend{0};                                 // h = n1 e + n2 x
-};
-
-struct Indices {
-    double eye = 1, point = 1;
-};
-
-Indices indices(const SpecularQuery& query) {
-    if (query.event == SpecularEvent::kReflect) return {1, 1};
-    return {query.eye_index, query.point_index};
-}
-
-Path path_over(const SpecularQuery& query, const Vec3& position) {
-    Path path;
-    const Vec3 incident = incident_direction(query.camera, position), back = position - query.point;
-    path.from_eye = normalize_or_zero(incident);
-    path.from_point = normalize_or_zero(back);
-    path.eye_distance = query.camera.parallel ? std::numeric_limits<double>::infinity() : length(incident);
-    path.point_distance = length(back);
-    const Indices n = indices(query);
-    path.bend = n.eye * path.from_eye + n.point * path.from_point;
-    return path;
-}
-
-/// How the unit direction to P from a fixed point changes as P moves by `step`.
-Vec3 turn(const Vec3& direction, double distance, const Vec3& step) {
-    return (step - dot(direction, step) * direction) / distance;
-}
-
 /// The two tangents that the law is tested along.
 std::array<Vec3, 2> tangents(const SpecularQuery& query, const SurfacePoint& point) {
     if (query.own_normals) return {point.du, point.dv};
@@ -65,25 +33,9 @@ std::array<Vec3, 2> tangents(const SpecularQuery& query, const SurfacePoint& poi
 }
 
 Vec2 gradient(const SpecularQuery& query, const SurfacePoint& point) {
-    const Path path = path_over(query, point.position);
+    const SpecularPath path = specular_path(query, point.position);
     const std::array<Vec3, 2> along = tangents(query, point);
     return {dot(path.bend, along[0]), dot(path.bend, along[1])};
-}
-
-/// The Hessian of the optical path: the turning of e and x along the tangents, plus h along the surface's
-/// bending.
-Mat2 path_hessian(const SpecularQuery& query, const SurfacePoint& point) {
-    const Path path = path_over(query, point.position);
-    const Indices n = indices(query);
-    auto bend_change = [&](const Vec3& step) {
-        return n.eye * turn(path.from_eye, path.eye_distance, step) +
-               n.point * turn(path.from_point, path.point_distance, step);
-    };
-    const Vec3 change_u = bend_change(point.du), change_v = bend_change(point.dv);
-    const double uu = dot(change_u, point.du) + dot(path.bend, point.duu);
-    const double uv = dot(change_u, point.dv) + dot(path.bend, point.duv);
-    const double vv = dot(change_v, point.dv) + dot(path.bend, point.dvv);
-    return {Vec2(uu, uv), Vec2(uv, vv)};
 }
 
 Vec2 clamped(FaceDomain domain, Vec2 uv) {
@@ -175,7 +127,7 @@ double rounding_floor(const Iterate& iterate, const Mat2& jacobian, const Specul
     const double coordinate = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), std::fabs(x.x),
                                         std::fabs(x.y), std::fabs(x.z), length(query.camera.eye)});
     const double moved = kRoundingErrors * std::numeric_limits<double>::epsilon() * coordinate;
-    const Indices n = indices(query);
+    const PathIndices n = path_indices(query);
     return kAngleTolerance * (n.eye + n.point) + moved * std::sqrt(squared_size(jacobian));
 }
 
@@ -232,12 +184,6 @@ Rest solve_law(const Surface& surface, const SurfaceParameter& start, const Spec
     return rest;
 }
 
-/// Whether eye and point lie on the sides of the surface that the event asks for.
-bool sides_fit(const SpecularQuery& query, const Path& path, const Vec3& normal) {
-    const double sides = dot(path.from_eye, normal) * dot(path.from_point, normal);
-    return query.event == SpecularEvent::kReflect ? sides > 0 : sides < 0;
-}
-
 }  // namespace
 
 std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
@@ -247,7 +193,7 @@ std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const
     if (!rest.solved) return std::nullopt;
 
     const SurfacePoint& point = rest.iterate.point;
-    const Path path = path_over(query, point.position);
+    const SpecularPath path = specular_path(query, point.position);
     const Vec3 screen = screen_from_world(query.camera, point.position);
     if (!sides_fit(query, path, point.normal) || !(screen.z > 0)) return std::nullopt;
 

@@ -12,6 +12,9 @@ namespace trilens {
 
 enum class SpecularEvent { kReflect, kRefract };
 
+/// Which side of the surface the camera is to look at.
+enum class ViewedSide { kEither, kFront, kBack };
+
 /// One question: by which points of a surface does light go from `point` to the camera with one reflection or
 /// refraction?
 struct SpecularQuery {
@@ -22,6 +25,7 @@ struct SpecularQuery {
            point_index = 1;  // kRefract: refractive indices of the media that camera and point lie in, > 0
     bool own_normals =
         true;  // the surface's normals are along du x dv; false where a normal field overrides them
+    ViewedSide viewed = ViewedSide::kEither;  // images on another side do not count
 };
 
 /// A parameter position of a surface.
@@ -43,9 +47,9 @@ struct SpecularPoint {
 };
 
 /// The image nearest to `start`, or none where the iteration ends elsewhere: no solution nearby, one outside
-/// this face (start again on the neighbour), a point of the wrong kind (a "reflection" through the surface),
-/// or one behind the camera. Occlusion is not looked at: whether the light reaches the surface and the eye is
-/// for a tracer to say.
+/// this face (start again on the neighbour), a point of the wrong kind (a "reflection" through the surface,
+/// or seen from another side than `viewed`), or one behind the camera. Occlusion is not looked at: whether
+/// the light reaches the surface and the eye is for a tracer to say.
 ///
 /// The law, for both kinds: h = n1 e + n2 x is parallel to the normal, where e and x are the unit directions
 /// from the camera and from the point to the surface (a mirror has n1 = n2 = 1). For own normals, h . du = h

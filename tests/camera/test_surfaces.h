@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <memory>
 #include <utility>
 
 #include "base/surface.h"
@@ -15,6 +17,27 @@ inline void set_normal(SurfacePoint& point, const Vec3& front) {
     const Vec3 normal = normalize_or_zero(cross(point.du, point.dv));
     point.normal = dot(normal, front) < 0 ? -normal : normal;
 }
+
+/// Bounds by the largest lengths of the first, second and third derivatives over a whole face.
+struct SlopeBounder : SurfaceBounder {
+    const Surface& surface;
+    std::array<double, 3> slope;
+    double normal_slope;
+
+    SlopeBounder(const Surface& s, const std::array<double, 3>& slopes, double normal)
+        : surface(s), slope(slopes), normal_slope(normal) {}
+    SurfaceBounds bounds(Id face, const Vec2& low, const Vec2& high) const override {
+        const double way = 0.5 * (high.x - low.x + high.y - low.y);
+        const double rounding = 1e-13 * slope[0];
+        SurfaceBounds bounds;
+        bounds.middle = surface.eval(face, 0.5 * (low + high));
+        bounds.position_radius = slope[0] * way + rounding;
+        bounds.du_radius = bounds.dv_radius = slope[1] * way + rounding;
+        bounds.duu_radius = bounds.duv_radius = bounds.dvv_radius = slope[2] * way + rounding;
+        bounds.normal_radius = normal_slope * way + 1e-14;
+        return bounds;
+    }
+};
 
 /// A sphere from a cube: face f is (u, v) in [-1, 1]^2 on one side of the cube, pushed out to the sphere.
 struct CubeSphere : Surface {
@@ -51,6 +74,10 @@ struct CubeSphere : Surface {
         set_normal(point, n);
         return point;
     }
+    /// The largest derivatives lie at the middle of the face, where a great circle is arctan: 2, 4 and 24.
+    std::unique_ptr<const SurfaceBounder> make_bounder() const override {
+        return std::make_unique<SlopeBounder>(*this, std::array{2 * radius, 4 * radius, 24 * radius}, 2);
+    }
 };
 
 /// One face z = bend (x^2 + y^2) over a square of the plane z = 0 around `center`: a plane, or a paraboloid
@@ -72,6 +99,13 @@ struct Patch : Surface {
         point.duu = point.dvv = Vec3(0, 0, 2 * bend * scale * scale);
         set_normal(point, Vec3(0, 0, 1));
         return point;
+    }
+    /// Along (-2 bend x, -2 bend y, 1), which is never shorter than 1, the normal turns by 2 bend per length.
+    std::unique_ptr<const SurfaceBounder> make_bounder() const override {
+        const double scale = 2 * half_side, steep = std::hypot(1, scale * bend);
+        return std::make_unique<SlopeBounder>(
+            *this, std::array{scale * steep, 2 * std::fabs(bend) * scale * scale, 0.0},
+            2 * std::fabs(bend) * scale);
     }
 };
 

@@ -1,0 +1,65 @@
+// A surface as a tree of cells with bounds, so that most of it is excluded at a glance.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/surface.h"
+#include "camera/specular_bounds.h"
+
+namespace trilens {
+
+/// A box of a face's parameters.
+struct CellBox {
+    Id face = kNone;
+    Vec2 low{0}, high{1};
+
+    Vec2 middle() const { return 0.5 * (low + high); }
+    Vec2 half() const { return 0.5 * (high - low); }
+};
+
+/// A cell with its bounds; its two halves stand next to each other.
+struct SurfaceCell {
+    CellBox box;
+    SurfaceBounds bounds;
+    std::size_t halves = 0;  // index of the first; 0: none are stored
+};
+
+/// Several cells or groups within one bound.
+struct CellGroup {
+    PlaceBounds place;
+    std::size_t first = 0, second = 0;  // groups; or, for a leaf, cell `first`
+    bool leaf = false;
+};
+
+/// Whether a box has nothing of the face's domain.
+bool is_outside(FaceDomain domain, const CellBox& box);
+
+/// The halves of a cell, across its side that is longer in the world.
+std::pair<CellBox, CellBox> halves_of(const CellBox& box, const SurfacePoint& middle);
+
+/// The tree: groups over the faces, the faces' cells halved down to where their normals hardly turn.
+/// Deterministic; thread-safe to read. The surface must live longer.
+class SurfaceCells {
+  public:
+    explicit SurfaceCells(const Surface& surface);
+
+    /// Null where the surface has no bounds: then there are no cells.
+    const SurfaceBounder* bounder() const { return bounder_.get(); }
+    std::span<const CellGroup> groups() const { return groups_; }  // the last is the whole surface
+    std::span<const SurfaceCell> cells() const { return cells_; }
+
+  private:
+    void add_halves(std::size_t from, std::size_t to);
+    std::size_t add_groups(std::span<std::size_t> faces);
+
+    const Surface& surface_;
+    std::unique_ptr<const SurfaceBounder> bounder_;
+    std::vector<SurfaceCell> cells_;
+    std::vector<CellGroup> groups_;
+};
+
+}  // namespace trilens

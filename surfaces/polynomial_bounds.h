@@ -1,0 +1,20 @@
+// Bounds of surfaces that are polynomials over dyadic parts of their faces, as limit surfaces are.
+#pragma once
+
+#include <memory>
+
+#include "base/surface.h"
+
+namespace trilens {
+
+/// How often a face is halved in the search for parts that are one polynomial. What is left then (the last
+/// 2^-10 of a face around an extraordinary vertex) has bounds by samples.
+inline constexpr int kFinestPart = 10;
+
+/// Bounds by convex hulls of Bezier control points (Farin, Curves and Surfaces for CAGD). Each face is taken
+/// apart into dyadic squares (or triangles, where its domain is one) on which it is one polynomial: of degree
+/// 3 in u and in v on squares, of total degree 4 on triangles. That a part is one is found by interpolating
+/// and comparing with the surface at other points; the difference, which is rounding, widens the bounds.
+std::unique_ptr<const SurfaceBounder> make_polynomial_bounder(const Surface& surface);
+
+}  // namespace trilens

@@ -1,0 +1,144 @@
+// The mean value theorem with the largest derivatives over each whole face.
+#include "surfaces/primitive_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trilens {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kQuarter = kPi / 2;  // all angles run over quarter turns
+
+/// Rounding of one evaluation, as a share of the largest value of its kind.
+constexpr double kRounding = 1e-14;
+
+/// The largest lengths of the position's derivatives over a face.
+struct Slopes {
+    double u = 0, v = 0, uu = 0, uv = 0, vv = 0, uuu = 0, uuv = 0, uvv = 0, vvv = 0;
+    double normal_u = 0, normal_v = 0;  // of the unit normal's
+};
+
+/// The cube's face on the sphere. The largest values lie at the face's corners, but for the first
+/// derivatives: (pi/2)^k times 1, sqrt(32/27), sqrt(16/27), 16/9 and 2.35178, here rounded up.
+Slopes sphere_slopes(double radius) {
+    const double first = kQuarter, second = first * kQuarter, third = second * kQuarter;
+    Slopes s;
+    s.u = s.v = radius * first;
+    s.uu = s.vv = radius * 1.08867 * second;
+    s.uv = radius * 0.76981 * second;
+    s.uuu = s.vvv = radius * 1.77778 * third;
+    s.uuv = s.uvv = radius * 2.35179 * third;
+    s.normal_u = s.normal_v = first;
+    return s;
+}
+
+Slopes cylinder_slopes(const Primitive& primitive) {
+    Slopes s;
+    s.u = primitive.radius * kQuarter;
+    s.uu = s.u * kQuarter;
+    s.uuu = s.uu * kQuarter;
+    s.v = primitive.height;
+    s.normal_u = kQuarter;
+    return s;
+}
+
+/// The paraboloid's disk. Its inner square: r/2 (tan a, tan b), whose tangents have derivatives up to pi,
+/// pi^2 and 2 pi^3 at the corners. Its sides: (1 - u) r/2 (1, tan b) + u r (cos b, sin b).
+Slopes disk_slopes(double rim, bool inner) {
+    const double half = rim / 2;
+    Slopes s;
+    if (inner) {
+        s.u = s.v = half * kPi;
+        s.uu = s.vv = half * kPi * kPi;
+        s.uuu = s.vvv = half * 2 * kPi * kPi * kPi;
+        return s;
+    }
+    s.u = half;
+    s.v = std::max(half * kPi, rim * kQuarter);
+    s.uv = half * kPi + rim * kQuarter;
+    s.vv = std::max(half * kPi * kPi, rim * kQuarter * kQuarter);
+    s.uvv = half * kPi * kPi + rim * kQuarter * kQuarter;
+    s.vvv = std::max(half * 2 * kPi * kPi * kPi, rim * kQuarter * kQuarter * kQuarter);
+    return s;
+}
+
+/// Lifts the disk by |p|^2 / (4 focal length), by the product rule.
+Slopes paraboloid_slopes(const Primitive& primitive, bool inner) {
+    const Slopes p = disk_slopes(primitive.radius, inner);
+    const double far = primitive.radius, lift = 1 / (2 * primitive.focal_length);
+    Slopes s;
+    s.u = std::hypot(p.u, lift * far * p.u);
+    s.v = std::hypot(p.v, lift * far * p.v);
+    s.uu = std::hypot(p.uu, lift * (p.u * p.u + far * p.uu));
+    s.uv = std::hypot(p.uv, lift * (p.u * p.v + far * p.uv));
+    s.vv = std::hypot(p.vv, lift * (p.v * p.v + far * p.vv));
+    s.uuu = std::hypot(p.uuu, lift * (3 * p.u * p.uu + far * p.uuu));
+    s.uuv = std::hypot(p.uuv, lift * (2 * p.u * p.uv + p.v * p.uu + far * p.uuv));
+    s.uvv = std::hypot(p.uvv, lift * (2 * p.v * p.uv + p.u * p.vv + far * p.uvv));
+    s.vvv = std::hypot(p.vvv, lift * (3 * p.v * p.vv + far * p.vvv));
+
+    // The normal is along (-2 p, 4 focal length), and directions of vectors longer than 4 f turn by no more
+    // than their change over 4 f.
+    s.normal_u = lift * p.u;
+    s.normal_v = lift * p.v;
+    return s;
+}
+
+Slopes plane_slopes(const Primitive& primitive) {
+    Slopes s;
+    s.u = primitive.size.x;
+    s.v = primitive.size.y;
+    return s;
+}
+
+Slopes slopes_of(const Primitive& primitive, Id face) {
+    switch (primitive.type) {
+        case Primitive::Type::kSphere:
+            break;
+        case Primitive::Type::kParaboloid:
+            return paraboloid_slopes(primitive, face == 4);
+        case Primitive::Type::kCylinder:
+            return cylinder_slopes(primitive);
+        case Primitive::Type::kPlane:
+            return plane_slopes(primitive);
+    }
+    return sphere_slopes(primitive.radius);
+}
+
+class PrimitiveBounder final : public SurfaceBounder {
+  public:
+    PrimitiveBounder(const Primitive& primitive, const Surface& surface)
+        : primitive_(primitive), surface_(surface) {}
+
+    SurfaceBounds bounds(Id face, const Vec2& low, const Vec2& high) const override {
+        const Slopes s = slopes_of(primitive_, face);
+        const Vec2 way = 0.5 * (high - low);
+        const auto within = [&](double by_u, double by_v, double size) {
+            return by_u * way.x + by_v * way.y + kRounding * size;
+        };
+        SurfaceBounds result;
+        result.middle = surface_.eval(face, 0.5 * (low + high));
+        result.position_radius = within(s.u, s.v, s.u + s.v + length(result.middle.position));
+        result.du_radius = within(s.uu, s.uv, s.u);
+        result.dv_radius = within(s.uv, s.vv, s.v);
+        result.duu_radius = within(s.uuu, s.uuv, s.uu);
+        result.duv_radius = within(s.uuv, s.uvv, s.uv);
+        result.dvv_radius = within(s.uvv, s.vvv, s.vv);
+        result.normal_radius = std::min(within(s.normal_u, s.normal_v, 1), 2.0);
+        return result;
+    }
+
+  private:
+    Primitive primitive_;
+    const Surface& surface_;
+};
+
+}  // namespace
+
+std::unique_ptr<const SurfaceBounder> make_primitive_bounder(const Primitive& primitive,
+                                                             const Surface& surface) {
+    return std::make_unique<PrimitiveBounder>(primitive, surface);
+}
+
+}  // namespace trilens

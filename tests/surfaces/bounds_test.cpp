@@ -1,0 +1,213 @@
+// Laws of bounds: nothing of the surface lies outside of them, and they shrink with the box.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/test.h"
+#include "surfaces/polynomial_bounds.h"
+#include "surfaces/surfaces.h"
+#include "test_cages.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+class Boxes {
+  public:
+    explicit Boxes(unsigned seed) : engine_(seed) {}
+
+    double uniform(double low, double high) {
+        return low + (high - low) * (static_cast<double>(engine_()) / 4294967296.0);
+    }
+    Id face(const Surface& surface) { return static_cast<Id>(engine_() % surface.face_count()); }
+
+    /// Some dyadic, as a search has them, some not, some elongated, some beyond a triangle's long side.
+    std::array<Vec2, 2> box(FaceDomain domain) {
+        for (;;) {
+            Vec2 low, high;
+            for (int axis = 0; axis < 2; ++axis) {
+                const int level = static_cast<int>(engine_() % 13);
+                const double size = std::ldexp(1, -level);
+                const double start = std::floor(uniform(0, 1) / size) * size;
+                const bool dyadic = engine_() % 3 != 0;
+                low[axis] = dyadic ? start : uniform(0, 1 - size);
+                high[axis] = std::min(1.0, low[axis] + size);
+            }
+            // Every fourth box lies at a corner of the domain, where extraordinary vertices are.
+            if (engine_() % 4 == 0) high -= low, low = Vec2(0);
+            if (domain == FaceDomain::kSquare || low.x + low.y < 1) return {low, high};
+        }
+    }
+    Vec2 inside(const std::array<Vec2, 2>& box, FaceDomain domain) {
+        for (;;) {
+            Vec2 t(uniform(0, 1), uniform(0, 1));
+            for (int axis = 0; axis < 2; ++axis)
+                if (engine_() % 4 == 0) t[axis] = std::round(t[axis]);
+            const Vec2 uv = glm::mix(box[0], box[1], t);
+            if (domain == FaceDomain::kSquare || uv.x + uv.y <= 1) return uv;
+        }
+    }
+
+  private:
+    std::mt19937 engine_;
+};
+
+struct Outside {
+    int points = 0, outside = 0;
+    double worst = 0;
+};
+
+/// Random boxes, random points in each.
+Outside points_outside(const Surface& surface, unsigned seed, int box_count) {
+    const auto bounder = surface.make_bounder();
+    REQUIRE(bounder);
+    Boxes boxes(seed);
+    Outside result;
+    for (int k = 0; k < box_count; ++k) {
+        const Id face = boxes.face(surface);
+        const auto box = boxes.box(surface.domain(face));
+        const SurfaceBounds b = bounder->bounds(face, box[0], box[1]);
+        for (int n = 0; n < 12; ++n) {
+            const SurfacePoint p = surface.eval(face, boxes.inside(box, surface.domain(face)));
+            const std::array<std::array<double, 2>, 7> pairs = {
+                {{length(p.position - b.middle.position), b.position_radius},
+                 {length(p.du - b.middle.du), b.du_radius},
+                 {length(p.dv - b.middle.dv), b.dv_radius},
+                 {length(p.duu - b.middle.duu), b.duu_radius},
+                 {length(p.duv - b.middle.duv), b.duv_radius},
+                 {length(p.dvv - b.middle.dvv), b.dvv_radius},
+                 {length(p.normal - b.middle.normal), b.normal_radius}}};
+            for (std::size_t q = 0; q < pairs.size(); ++q) {
+                ++result.points;
+                if (pairs[q][0] <= pairs[q][1]) continue;
+                ++result.outside;
+                result.worst = std::max(result.worst, pairs[q][0] - pairs[q][1]);
+                UNSCOPED_INFO("quantity " << q << " face " << face << " box " << box[0].x << " " << box[0].y
+                                          << " " << box[1].x << " " << box[1].y << ": " << pairs[q][0]
+                                          << " > " << pairs[q][1]);
+            }
+        }
+    }
+    return result;
+}
+
+Primitive primitive_of(Primitive::Type type) {
+    Primitive primitive;
+    primitive.type = type;
+    primitive.center = {3, -2, 0.5};
+    primitive.axis = {0.3, 0.8, -0.4};
+    primitive.radius = 1.7;
+    primitive.focal_length = 0.6;
+    primitive.height = 4;
+    primitive.size = {3, 0.7};
+    return primitive;
+}
+
+constexpr std::array<Primitive::Type, 4> kTypes = {Primitive::Type::kSphere, Primitive::Type::kParaboloid,
+                                                   Primitive::Type::kCylinder, Primitive::Type::kPlane};
+
+/// An octahedron as a Loop cage: all its vertices have four faces, so none is regular.
+Cage octahedron() {
+    Cage cage =
+        make_cage({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1.3}},
+                  {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}});
+    cage.scheme = SubdivisionScheme::kLoop;
+    return cage;
+}
+
+}  // namespace
+
+TEST_CASE("no point of a primitive lies outside its bounds") {
+    for (const Primitive::Type type : kTypes) {
+        const auto surface = make_primitive_surface(primitive_of(type));
+        const Outside outside = points_outside(*surface, 1 + static_cast<unsigned>(type), 4000);
+        CAPTURE(static_cast<int>(type), outside.worst);
+        CHECK(outside.outside == 0);
+        CHECK(outside.points > 300000);
+    }
+}
+
+TEST_CASE("no point of a limit surface lies outside its bounds") {
+    unsigned seed = 10;
+    auto cages = small_cages();
+    cages.emplace_back("octahedron", octahedron());
+    for (const auto& [name, cage] : cages) {
+        const auto surface = make_limit_surface(cage, name, {});
+        const Outside outside = points_outside(*surface, ++seed, 500);
+        CAPTURE(name, outside.worst);
+        CHECK(outside.outside == 0);
+    }
+}
+
+TEST_CASE("no point of the outside data's cages lies outside its bounds") {
+    TRILENS_NEEDS_DATA("cages");
+    unsigned seed = 100;
+    for (const std::string& name : cage_files()) {
+        const auto surface = make_limit_surface(read_cage(name), name, {});
+        const Outside outside = points_outside(*surface, ++seed, 300);
+        CAPTURE(name, outside.worst);
+        CHECK(outside.outside == 0);
+    }
+}
+
+TEST_CASE("bounds shrink at least in proportion to the box") {
+    auto cages = small_cages();
+    cages.emplace_back("octahedron", octahedron());
+    std::vector<std::pair<std::string, std::unique_ptr<Surface>>> surfaces;
+    for (const auto& [name, cage] : cages) {
+        if (name == "sheet" || name == "cube" || name == "prism 5" || name == "octahedron")
+            surfaces.emplace_back(name, make_limit_surface(cage, name, {}));
+    }
+    for (const Primitive::Type type : kTypes)
+        surfaces.emplace_back("primitive", make_primitive_surface(primitive_of(type)));
+    REQUIRE(surfaces.size() == 8);
+
+    Boxes boxes(77);
+    for (const auto& [name, surface] : surfaces) {
+        const auto bounder = surface->make_bounder();
+        for (int k = 0; k < 200; ++k) {
+            // Away from corners, where extraordinary vertices lie.
+            const Vec2 middle(boxes.uniform(0.15, 0.4), boxes.uniform(0.15, 0.4));
+            const Id face = boxes.face(*surface);
+            const auto around = [&](double half) {
+                return bounder->bounds(face, middle - half, middle + half);
+            };
+            const SurfaceBounds wide = around(0x1p-4), narrow = around(0x1p-9);
+            CAPTURE(name, face, middle.x, middle.y);
+            CHECK(narrow.position_radius <= wide.position_radius / 16 + 1e-9);
+            CHECK(narrow.du_radius <= wide.du_radius / 16 + 1e-9);
+            CHECK(narrow.dv_radius <= wide.dv_radius / 16 + 1e-9);
+            CHECK(narrow.normal_radius <= wide.normal_radius / 16 + 1e-9);
+            // Nor are they much too wide: of the first order, a ball around a parallelogram.
+            const double reach = (length(narrow.middle.du) + length(narrow.middle.dv)) * 0x1p-9;
+            CHECK(narrow.position_radius <= 4 * reach + 1e-9);
+        }
+    }
+}
+
+TEST_CASE("second derivatives of limit surfaces are the first ones' derivatives, in turned triangles too") {
+    Boxes boxes(78);
+    for (const auto& cage : {octahedron(), cube()}) {
+        const auto surface = make_limit_surface(cage, "cage", {});
+        for (int k = 0; k < 1000; ++k) {
+            const Id face = boxes.face(*surface);
+            const Vec2 uv(boxes.uniform(0.03, 0.48), boxes.uniform(0.03, 0.48));
+            constexpr double kStep = 1e-6;
+            const auto change = [&](const Vec2& step, Vec3 SurfacePoint::*first) {
+                return (surface->eval(face, uv + step).*first - surface->eval(face, uv - step).*first) /
+                       (2 * kStep);
+            };
+            const SurfacePoint point = surface->eval(face, uv);
+            // Third derivatives jump between patches, so a step across shows in second order at most.
+            CHECK(length(change({kStep, 0}, &SurfacePoint::du) - point.duu) < 1e-3);
+            CHECK(length(change({0, kStep}, &SurfacePoint::du) - point.duv) < 1e-3);
+            CHECK(length(change({0, kStep}, &SurfacePoint::dv) - point.dvv) < 1e-3);
+        }
+    }
+}
