@@ -12,7 +12,7 @@ namespace trilens {
 
 /// One channel: float or 32-bit id, one value per pixel of the data window, rows from the top.
 struct Channel {
-    std::string name;  // as in the file: "R", "reflect.object"
+    std::string name;  // as in the file: "R", "reflectID.object"
     std::variant<std::vector<float>, std::vector<Id>> values;
 
     bool is_id() const { return values.index() == 1; }

@@ -3,6 +3,7 @@
 #include <trilens/stopwatch.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -19,6 +20,7 @@ struct ProjectOptions {
     SceneOptions scene;
     std::vector<std::string> point;
     std::string points;
+    std::string search = "complete";
     std::string refine = "exact";
     bool no_visibility = false;
 };
@@ -114,11 +116,14 @@ Json image_json(const Renderer& renderer, const WorldImage& image) {
 }
 
 Json points_json(const Renderer& renderer, std::span<const Vec3> points,
-                 std::span<const std::vector<WorldImage>> images) {
+                 std::span<const PointProjection> images) {
     Json list = Json::array();
     for (std::size_t p = 0; p < points.size(); ++p) {
-        Json entry{{"point", {points[p].x, points[p].y, points[p].z}}, {"images", Json::array()}};
-        for (const WorldImage& image : images[p]) entry["images"].push_back(image_json(renderer, image));
+        Json entry{{"point", {points[p].x, points[p].y, points[p].z}},
+                   {"complete", images[p].complete},
+                   {"images", Json::array()}};
+        for (const WorldImage& image : images[p].images)
+            entry["images"].push_back(image_json(renderer, image));
         list.push_back(std::move(entry));
     }
     return list;
@@ -136,18 +141,28 @@ Answer run(const ProjectOptions& options, Console& console) {
     const Renderer renderer = load_renderer(options.scene, console);
     ProjectRequest request;
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
+    request.search = options.search == "complete" ? ImageSearch::kComplete : ImageSearch::kFacets;
     request.refine = options.refine == "exact";
+    if (!request.refine) request.search = ImageSearch::kFacets;
     request.visibility = !options.no_visibility;
     const Stopwatch watch;
     const auto images = renderer.project(points, request);
     const double seconds = watch.seconds();
 
+    const auto open =
+        std::count_if(images.begin(), images.end(), [](const PointProjection& point) { return !point.complete; });
+    if (open > 0)
+        console.warn(fmt::format("{} of {} points may have images that are not listed{}", open, points.size(),
+                                 request.search == ImageSearch::kFacets
+                                     ? "; --search complete looks for all"
+                                     : " (near a caustic, on the optic itself, or in overridden normals)"));
     Answer answer;
     answer.fields["seconds"] = seconds;
+    answer.fields["incomplete"] = open;
     if (console.wants_json()) answer.fields["points"] = points_json(renderer, points, images);
     answer.text = "point,x,y,t,path,optic,facet,inside,visible,refined\n";
     for (std::size_t p = 0; p < points.size(); ++p)
-        for (const WorldImage& image : images[p]) answer.text += text_line(renderer, p, image);
+        for (const WorldImage& image : images[p].images) answer.text += text_line(renderer, p, image);
     console.note(std::to_string(points.size()) + " points in " + std::to_string(seconds) + " s");
     return answer;
 }
@@ -167,8 +182,14 @@ void register_project(const CommandRegistry& registry) {
     command->add_option("--points", options->points, "a file of x,y,z per line; a header line is allowed")
         ->type_name("FILE.csv");
     command
+        ->add_option(
+            "--search", options->search,
+            "complete: every part of the exact surfaces is searched or excluded; facets: only near what "
+            "the facets show, faster, may miss images")
+        ->check(CLI::IsMember({"complete", "facets"}));
+    command
         ->add_option("--refine", options->refine,
-                     "exact: on the exact surface by Newton; none: as the facets have it")
+                     "exact: on the exact surface; none: as the facets have it (with --search facets)")
         ->check(CLI::IsMember({"exact", "none"}));
     command->add_flag("--no-visibility", options->no_visibility, "do not ask what hides the images");
     registry.add(command, "project", [options](Console& console) { return run(*options, console); });

@@ -57,12 +57,12 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
         const std::string layer = path_name(path);
         if (path == Path::kDirect || !wanted(layer)) continue;
         EndChannels end{path};
-        end.object = add_ids(layer + ".object");
-        end.primitive = add_ids(layer + ".primitive");
-        end.x = add_floats(layer + ".X");
-        end.y = add_floats(layer + ".Y");
-        end.z = add_floats(layer + ".Z");
-        end.length = add_floats(layer + ".length");
+        end.object = add_ids(layer + "ID.object");
+        end.primitive = add_ids(layer + "ID.primitive");
+        end.x = add_floats(layer + "P.X");
+        end.y = add_floats(layer + "P.Y");
+        end.z = add_floats(layer + "P.Z");
+        end.length = add_floats(layer + "P.length");
         ends_.push_back(end);
     }
 }
@@ -82,7 +82,10 @@ void Canvas::put_colour(const SampleColour& mean, std::size_t pixel) {
 
 void Canvas::put_end(const World& world, const PathEnd* end, const EndChannels& channels, std::size_t pixel) {
     const bool seen = end && end->hit.seen();
-    const Vec3 point = seen ? position(world.objects, end->hit) : Vec3(0);
+    // Where the path ends in the environment, its direction stands in the place of the point.
+    const Vec3 point = seen  ? position(world.objects, end->hit)
+                       : end ? normalize_or_zero(end->ray.direction)
+                             : Vec3(0);
     ids(channels.object)[pixel] = seen ? world.objects.object[end->hit.triangle] : kNone;
     ids(channels.primitive)[pixel] = seen ? world.objects.primitive[end->hit.triangle] : kNone;
     floats(channels.x)[pixel] = static_cast<float>(point.x);

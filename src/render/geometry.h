@@ -42,8 +42,8 @@ const LimitTracer& limit_tracer(const World& world, std::size_t optic);
 /// Whether any light asks what lies between it and a point.
 bool has_shadows(const World& world);
 
-/// Whether an object, or the exact surface of a mirror, meets the open segment from the ray's origin to its tip
-/// (t < 1). Glass lets the light through.
+/// Whether an object, or the exact surface of a mirror, meets the open segment from the ray's origin to its
+/// tip (t < 1). Glass lets the light through.
 bool casts_shadow(const World& world, const Ray& segment);
 
 /// Builds what casts_shadow asks, where the scene has shadows: before many threads do.

@@ -1,15 +1,10 @@
 #include "render/project.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <memory>
 
-#include "base/facets_around.h"
 #include "base/parallel.h"
-#include "camera/specular_point.h"
-#include "render/frame.h"
-#include "trilinear/mesh_point_images.h"
+#include "camera/specular_search.h"
+#include "render/facet_images.h"
 
 namespace trilens {
 namespace {
@@ -21,60 +16,81 @@ constexpr double kFreeShare = 1e-6;
 /// there.
 constexpr double kLeastDepth = 1e-12;
 
-/// A refined image further than this from its facet's image belongs to another one, in multiples of the
-/// facet's size on the screen.
-constexpr double kRefineReach = 2;
+/// The facet of the grid that holds the parameter position; kNone where rounding leaves it in none.
+Id facet_at(const SurfaceGrid& grid, std::span<const Id> facets_of_face, const Vec2& uv) {
+    constexpr double kOutside = 1e-9;
+    for (const Id f : facets_of_face) {
+        const auto& [a, b, c] = grid.facet_uv[f];
+        const auto side = [](const Vec2& p, const Vec2& q, const Vec2& r) {
+            return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+        };
+        const double area = side(a, b, c);
+        if (area == 0) continue;
+        if (side(a, b, uv) / area >= -kOutside && side(b, c, uv) / area >= -kOutside &&
+            side(c, a, uv) / area >= -kOutside)
+            return f;
+    }
+    return kNone;
+}
 
-/// One RayMesh that may image points.
-struct ImagingMesh {
-    Path path = Path::kDirect;
+/// One path over one optic, ready to image points.
+struct OpticPath {
+    Path path = Path::kReflect;
     Id optic = kNone;
-    const RayMesh* mesh = nullptr;
-    std::unique_ptr<MeshPointImages> images;
+    std::unique_ptr<FacetImages> facets;
 };
 
 class PointProjector {
   public:
     PointProjector(const World& world, const ProjectRequest& request);
-    std::vector<WorldImage> images(const Vec3& point) const;
+    PointProjection images(const Vec3& point) const;
 
   private:
-    void add_optic(Id index);
-    void add_direct(const Vec3& point, std::vector<WorldImage>& images) const;
-    void add_through(const ImagingMesh& path, const Vec3& point, std::vector<WorldImage>& images) const;
-    bool own_optic_hides(const ImagingMesh& path, const MeshPointImage& image) const;
-    std::optional<SpecularPoint> refined(const ImagingMesh& path, const MeshPointImage& image,
-                                         const Vec3& point) const;
+    void add_optic(std::size_t index);
+    void add_direct(const Vec3& point, PointProjection& result) const;
+    void add_camera_mesh(const Vec3& point, PointProjection& result) const;
+    void add_optic_path(const OpticPath& path, const Vec3& point, PointProjection& result) const;
+    SpecularSearch search(const OpticPath& path, const Vec3& point) const;
     bool on_film(const Vec2& pixel) const;
-    bool is_free(const Vec3& from, const Vec3& to) const;
-
-    const SurfaceGrid& grid(Id optic) const { return frame_.optics[optic].facets->grid(); }
+    bool is_free_of_objects(const Vec3& from, const Vec3& to) const;
+    bool is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const;
+    bool sees(const Vec3& from, const Vec3& to) const;
 
     const World& world_;
     ProjectRequest request_;
     Frame frame_;
     const CameraRays& camera_ = frame_.camera;
-    std::vector<FacetsAround> around_;  // per optic: facets at each point of its grid
-    std::vector<ImagingMesh> paths_;
+    std::unique_ptr<MeshPointImages> camera_mesh_;             // of a camera that is not linear
+    std::vector<std::unique_ptr<SpecularSearcher>> searcher_;  // per optic; kComplete
+    std::vector<FacetsAround> facets_of_face_;  // per optic: facets at each face of its surface
+    std::vector<OpticPath> paths_;
 };
 
 PointProjector::PointProjector(const World& world, const ProjectRequest& request)
     : world_(world), request_(request), frame_(make_frame(world, request.frame, {})) {
+    object_tracer(world);
     if (!camera_.linear) {
-        paths_.push_back(
-            {Path::kDirect, kNone, &camera_.mesh, std::make_unique<MeshPointImages>(camera_.mesh)});
+        camera_mesh_ = std::make_unique<MeshPointImages>(camera_.mesh);
         return;
     }
-    for (Id i = 0; i < frame_.optics.size(); ++i) add_optic(i);
+    for (std::size_t i = 0; i < frame_.optics.size(); ++i) add_optic(i);
 }
 
-void PointProjector::add_optic(Id index) {
-    const SurfaceGrid& surface = grid(index);
-    around_.push_back(facets_around(surface.facets, surface.points.size(),
-                                    [&](Id corner) { return surface.corner_point[corner]; }));
+void PointProjector::add_optic(std::size_t index) {
+    const OpticFacets& facets = *frame_.optics[index].facets;
+    const SurfaceGrid& grid = facets.grid();
+    facets.tracer();
+    if (request_.search == ImageSearch::kComplete) {
+        limit_tracer(world_, index);
+        searcher_.push_back(std::make_unique<SpecularSearcher>(*world_.optics[index].surface));
+        std::vector<IdTriple> face(grid.facets.size());
+        for (std::size_t f = 0; f < face.size(); ++f) face[f] = {grid.facet_face[f], kNone, kNone};
+        facets_of_face_.push_back(facets_around(face, world_.optics[index].surface->face_count()));
+    }
     for (const PathMesh& path : frame_.optics[index].paths)
         if (!path.mesh.facets.empty())
-            paths_.push_back({path.path, index, &path.mesh, std::make_unique<MeshPointImages>(path.mesh)});
+            paths_.push_back({path.path, static_cast<Id>(index),
+                              std::make_unique<FacetImages>(world_, frame_, index, path)});
 }
 
 bool PointProjector::on_film(const Vec2& pixel) const {
@@ -82,11 +98,27 @@ bool PointProjector::on_film(const Vec2& pixel) const {
            pixel.y <= world_.scene.film.height;
 }
 
-bool PointProjector::is_free(const Vec3& from, const Vec3& to) const {
+bool PointProjector::is_free_of_objects(const Vec3& from, const Vec3& to) const {
     return !object_tracer(world_).occluded({from, to - from}, kFreeShare, 1 - kFreeShare);
 }
 
-void PointProjector::add_direct(const Vec3& point, std::vector<WorldImage>& images) const {
+bool PointProjector::is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const {
+    const Ray segment{from, to - from};
+    if (request_.search == ImageSearch::kFacets)
+        return !frame_.optics[optic].facets->tracer().occluded(segment, kFreeShare, 1 - kFreeShare);
+    const std::optional<SurfaceHit> hit = limit_tracer(world_, optic).first_hit(segment, kFreeShare);
+    return !hit || hit->t >= 1 - kFreeShare;
+}
+
+/// Whether nothing at all lies between the camera and a place.
+bool PointProjector::sees(const Vec3& from, const Vec3& to) const {
+    if (!is_free_of_objects(from, to)) return false;
+    for (std::size_t i = 0; i < world_.optics.size(); ++i)
+        if (!is_free_of_optic(from, to, i)) return false;
+    return true;
+}
+
+void PointProjector::add_direct(const Vec3& point, PointProjection& result) const {
     const Vec3 screen = screen_from_world(*camera_.linear, point);
     // Nor has the eye itself an image, which rounding may put in front of it.
     const double depth = kLeastDepth * (length(camera_.linear->eye) + length(point));
@@ -97,129 +129,86 @@ void PointProjector::add_direct(const Vec3& point, std::vector<WorldImage>& imag
     image.length = length(point - camera_.linear->eye);
     image.inside = on_film(image.pixel);
     image.refined = true;
-    if (request_.visibility) {
-        image.visible = image.inside && is_free(camera_.linear->eye, point);
-        for (const FramedOptic& optic : frame_.optics)
-            if (optic.facets->tracer().occluded({camera_.linear->eye, point - camera_.linear->eye},
-                                                kFreeShare, 1 - kFreeShare))
-                image.visible = false;
-    }
-    images.push_back(image);
+    image.visible = request_.visibility && image.inside && sees(camera_.linear->eye, point);
+    result.images.push_back(image);
 }
 
-bool PointProjector::own_optic_hides(const ImagingMesh& path, const MeshPointImage& image) const {
-    const SurfaceGrid& surface = grid(path.optic);
-    const IdTriple& corner = surface.facets[image.facet];
-    Vec3 on_facet(0);
-    for (int k = 0; k < 3; ++k)
-        on_facet +=
-            image.weights[k] * surface.points[surface.corner_point[corner[static_cast<std::size_t>(k)]]];
-    const Ray sight{camera_.linear->eye, on_facet - camera_.linear->eye};
-    return frame_.optics[path.optic].facets->tracer().occluded(sight, kFreeShare, 1 - kFreeShare);
-}
-
-std::optional<SpecularPoint> PointProjector::refined(const ImagingMesh& path, const MeshPointImage& image,
-                                                     const Vec3& point) const {
-    const Optic& optic = world_.optics[path.optic];
-    const SurfaceGrid& surface = grid(path.optic);
-    const IdTriple& corner = surface.facets[image.facet];
-    Vec2 uv(0), low(std::numeric_limits<double>::max()), high(-low);
-    for (int k = 0; k < 3; ++k) {
-        const std::size_t c = static_cast<std::size_t>(k);
-        uv += image.weights[k] * surface.facet_uv[image.facet][c];
-        const Vec3 s = path.mesh->screen[path.mesh->facets[image.facet][c]];
-        low = glm::min(low, Vec2(s.x, s.y) / s.z);
-        high = glm::max(high, Vec2(s.x, s.y) / s.z);
-    }
-
-    SpecularQuery query;
-    query.camera = *camera_.linear;
-    query.point = point;
-    query.event = path.path == Path::kReflect ? SpecularEvent::kReflect : SpecularEvent::kRefract;
-    query.own_normals = world_.scene.meshes[optic.mesh].normals.type == NormalOverride::Type::kSmooth;
-    if (query.event == SpecularEvent::kRefract) {
-        const Vec3& at = surface.points[surface.corner_point[corner[0]]];
-        const bool front = faces_front(surface, corner, incident_direction(query.camera, at));
-        const double ior = world_.scene.materials[optic.material].ior;
-        query.eye_index = front ? 1 : ior;
-        query.point_index = front ? ior : 1;
-    }
-
-    // From the facet's own image; else from the facets around it, since the exact image may lie on a
-    // neighbouring face.
-    const double reach = kRefineReach * std::max(length(high - low), 1.0);
-    const auto near = [&](const std::optional<SpecularPoint>& found) {
-        return found && length(found->pixel - image.screen) <= reach;
-    };
-    std::optional<SpecularPoint> best =
-        refine_specular_point(*optic.surface, {surface.facet_face[image.facet], uv}, query);
-    if (near(best)) return best;
-    best.reset();
-    for (const Id c : corner) {
-        for (const Id f : around_[path.optic].of(surface.corner_point[c])) {
-            const auto& uvs = surface.facet_uv[f];
-            const auto found = refine_specular_point(
-                *optic.surface, {surface.facet_face[f], (uvs[0] + uvs[1] + uvs[2]) / 3.0}, query);
-            if (near(found) &&
-                (!best || length(found->pixel - image.screen) < length(best->pixel - image.screen)))
-                best = found;
-        }
-    }
-    return best;
-}
-
-void PointProjector::add_through(const ImagingMesh& path, const Vec3& point,
-                                 std::vector<WorldImage>& images) const {
-    std::vector<SpecularPoint> taken;
-    for (const MeshPointImage& found : path.images->images(point)) {
+void PointProjector::add_camera_mesh(const Vec3& point, PointProjection& result) const {
+    for (const MeshPointImage& found : camera_mesh_->images(point)) {
+        const Ray ray = interpolated_ray(camera_.mesh, found.facet, found.weights);
         WorldImage image;
-        image.path = path.path;
-        image.optic = path.optic;
-        if (path.optic != kNone) image.object = world_.optics[path.optic].mesh;
         image.facet = found.facet;
         image.pixel = found.screen;
         image.t = found.t;
-        const Ray ray = interpolated_ray(*path.mesh, found.facet, found.weights);
         image.length = found.t * length(ray.direction);
-        Vec3 from = ray.origin;
-        if (path.optic != kNone) {
-            if (own_optic_hides(path, found)) continue;
-            if (const auto exact = request_.refine ? refined(path, found, point) : std::nullopt) {
-                // Two facets may lead to one exact image.
-                taken.push_back(*exact);
-                if (distinct_images(taken).size() < taken.size()) {
-                    taken.pop_back();
-                    continue;
-                }
-                image.pixel = exact->pixel;
-                image.t = exact->t;
-                image.length = exact->distance;
-                image.refined = true;
-                from = exact->position;
-            }
-        }
         image.inside = on_film(image.pixel);
-        if (request_.visibility)
-            image.visible = image.inside && is_free(from, point) &&
-                            (path.optic == kNone || is_free(camera_.linear->eye, from));
-        images.push_back(image);
+        image.visible = request_.visibility && image.inside && is_free_of_objects(ray.origin, point);
+        result.images.push_back(image);
     }
 }
 
-std::vector<WorldImage> PointProjector::images(const Vec3& point) const {
-    std::vector<WorldImage> images;
-    if (camera_.linear && world_.scene.render.direct) add_direct(point, images);
-    for (const ImagingMesh& path : paths_) add_through(path, point, images);
-    return images;
+SpecularSearch PointProjector::search(const OpticPath& path, const Vec3& point) const {
+    SpecularQuery query = specular_query(world_, path.optic, path.path, *camera_.linear);
+    query.point = point;
+    const SpecularSearcher& searcher = *searcher_[path.optic];
+    return path.path == Path::kRefract ? searcher.find_in_body(query) : searcher.find(query);
+}
+
+void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, PointProjection& result) const {
+    std::vector<OpticImage> found;
+    if (request_.search == ImageSearch::kComplete) {
+        const SpecularSearch searched = search(path, point);
+        const SurfaceGrid& grid = frame_.optics[path.optic].facets->grid();
+        for (const SpecularPoint& exact : searched.images)
+            found.push_back({facet_at(grid, facets_of_face_[path.optic].of(exact.at.face), exact.at.uv),
+                             exact.pixel, exact.t, exact.distance, exact.position, true});
+        if (!searched.complete) {
+            result.complete = false;
+            const std::vector<OpticImage> more = path.facets->images(point, true, searched.images);
+            found.insert(found.end(), more.begin(), more.end());
+        }
+    } else {
+        result.complete = false;
+        found = path.facets->images(point, request_.refine);
+    }
+
+    const Vec3& eye = camera_.linear->eye;
+    for (const OpticImage& one : found) {
+        if (request_.search == ImageSearch::kComplete && one.refined &&
+            !is_free_of_optic(eye, one.from, path.optic))
+            continue;
+        WorldImage image;
+        image.path = path.path;
+        image.optic = path.optic;
+        image.object = world_.optics[path.optic].mesh;
+        image.facet = one.facet;
+        image.pixel = one.pixel;
+        image.t = one.t;
+        image.length = one.length;
+        image.refined = one.refined;
+        image.inside = on_film(image.pixel);
+        image.visible =
+            request_.visibility && image.inside && is_free_of_objects(one.from, point) && sees(eye, one.from);
+        result.images.push_back(image);
+    }
+}
+
+PointProjection PointProjector::images(const Vec3& point) const {
+    PointProjection result;
+    result.complete = true;
+    if (camera_mesh_) add_camera_mesh(point, result);
+    if (camera_.linear && world_.scene.render.direct) add_direct(point, result);
+    for (const OpticPath& path : paths_) add_optic_path(path, point, result);
+    return result;
 }
 
 }  // namespace
 
-std::vector<std::vector<WorldImage>> project_points(const World& world, const ProjectRequest& request,
-                                                    std::span<const Vec3> points) {
+std::vector<PointProjection> project_points(const World& world, const ProjectRequest& request,
+                                            std::span<const Vec3> points) {
     const PointProjector projector(world, request);
-    std::vector<std::vector<WorldImage>> result(points.size());
-    parallel_for(points.size(), 64, [&](std::size_t from, std::size_t to) {
+    std::vector<PointProjection> result(points.size());
+    parallel_for(points.size(), 16, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) result[i] = projector.images(points[i]);
     });
     return result;

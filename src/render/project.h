@@ -1,5 +1,4 @@
-// Where world points appear: directly, and by every optic; first through its facets, then on the exact
-// surface.
+// Where world points appear: directly, and by every optic on the exact surface.
 #pragma once
 
 #include <span>
@@ -27,17 +26,28 @@ struct WorldImage {
     bool refined = false;  // on the exact surface; else the facets' image
 };
 
+/// All images of one point.
+struct PointProjection {
+    std::vector<WorldImage> images;
+    bool complete = false;  // proven: no optic has another one
+};
+
+/// kComplete: every part of the exact surfaces is searched or excluded. kFacets: images through the facets
+/// are starting points of Newton's method, so that images which no facet has are missed; several times
+/// faster.
+enum class ImageSearch { kComplete, kFacets };
+
 struct ProjectRequest {
     FrameParams frame;
-    bool refine = true;
+    ImageSearch search = ImageSearch::kComplete;
+    bool refine = true;      // kFacets: else images are left as the facets have them
     bool visibility = true;  // else `visible` stays false
 };
 
-/// All images of every point, through all facets of all optics (thesis chapter 3), each then refined on the
-/// exact surface by Newton where there is an exact image near it. Images that the optic itself hides from the
-/// camera (the back of a closed body) are left out. Exact images that no facet has are not looked for: raise
-/// the resolution.
-std::vector<std::vector<WorldImage>> project_points(const World& world, const ProjectRequest& request,
-                                                    std::span<const Vec3> points);
+/// The images of every point: direct, and after one event at each optic. Images that the optic itself hides
+/// from the camera (the back of a closed body) are left out. A list that is not complete (points near a
+/// caustic, overridden normals, kFacets) holds what the facets lead to as well.
+std::vector<PointProjection> project_points(const World& world, const ProjectRequest& request,
+                                            std::span<const Vec3> points);
 
 }  // namespace trilens

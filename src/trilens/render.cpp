@@ -83,8 +83,8 @@ SeenTriangle Renderer::seen_triangle(const Hit& hit) const {
     return {objects.object[hit.triangle], objects.primitive[hit.triangle], position(objects, hit)};
 }
 
-std::vector<std::vector<WorldImage>> Renderer::project(std::span<const Vec3> points,
-                                                       const ProjectRequest& request) const {
+std::vector<PointProjection> Renderer::project(std::span<const Vec3> points,
+                                               const ProjectRequest& request) const {
     check_frame(*world_, request.frame);
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y) || !std::isfinite(points[i].z))

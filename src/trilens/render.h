@@ -76,8 +76,8 @@ class Renderer {
 
     /// Where world points appear: for each point its images, direct and over every optic. Throws InputError
     /// for points that are not finite.
-    std::vector<std::vector<WorldImage>> project(std::span<const Vec3> points,
-                                                 const ProjectRequest& request = {}) const;
+    std::vector<PointProjection> project(std::span<const Vec3> points,
+                                         const ProjectRequest& request = {}) const;
 
     /// The picture as lines. `wire`: hidden edges too.
     LineDrawing draw_lines(const FrameParams& frame, bool wire = false, const Warn& warn = {}) const;

@@ -164,8 +164,8 @@ TEST_CASE("outlines in a sphere lie where the picture's ids change", "[cli][vect
     REQUIRE(run_trilens("render " + scene + " --size 320x240 -o " + folder + "/out.exr").exit_code == 0);
     const std::vector<Tag> tags = parse_tags(bytes_of(folder + "/out.svg"));
     const Image image = read_exr(folder + "/out.exr");
-    const std::vector<Id>&object = image.find("reflect.object")->ids(),
-          &primitive = image.find("reflect.primitive")->ids();
+    const std::vector<Id>&object = image.find("reflectID.object")->ids(),
+          &primitive = image.find("reflectID.primitive")->ids();
 
     const auto id = [&](int x, int y) {
         const std::size_t p = static_cast<std::size_t>(y) * 320 + static_cast<std::size_t>(x);

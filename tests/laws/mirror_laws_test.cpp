@@ -87,7 +87,7 @@ TEST_CASE("project agrees with Alhazen's problem on the sphere to 1e-9 of the fi
     std::size_t checked = 0;
     double worst = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        for (const WorldImage& image : images[i]) {
+        for (const WorldImage& image : images[i].images) {
             if (image.path != Path::kReflect || !image.refined) continue;
             const Vec3 screen = screen_from_world(linear, alhazen_point(camera.eye, points[i]));
             worst = std::max(worst, length(image.pixel - Vec2(screen.x, screen.y) / screen.z));

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "intersect/limit_tracer.h"
-#include "random_scene.h"
+#include "intersect/random_scene.h"
 #include "support/test.h"
 #include "test_surfaces.h"
 
