@@ -12,3 +12,5 @@
 #include "measure/compare_layers.h"
 #include "measure/difference.h"
 #include "measure/fit.h"
+#include "trilens/compare_inputs.h"
+#include "trilens/compare_limits.h"
