@@ -3,6 +3,8 @@
 
 #include <trilens/version.h>
 
+#include <algorithm>
+
 #include "cli/examples.h"
 #include "cli/option.h"
 
@@ -11,6 +13,26 @@ namespace {
 
 /// When the words of the commands were last gone over.
 constexpr const char* kDate = "2026-11-21";
+
+/// Breaks lines at spaces, as manual sources are written.
+std::string wrapped(const std::string& text) {
+    constexpr std::size_t kColumns = 72;
+    std::string lines;
+    std::size_t column = 0;
+    for (std::size_t from = 0; from < text.size();) {
+        const std::size_t end = std::min(text.find(' ', from), text.size());
+        if (column > 0 && column + (end - from) > kColumns) {
+            lines += '\n';
+            column = 0;
+        } else if (column > 0) {
+            lines += ' ';
+        }
+        lines += text.substr(from, end - from);
+        column += end - from + 1;
+        from = end + 1;
+    }
+    return lines;
+}
 
 /// Text as roff takes it: backslashes and dashes as themselves, no line that starts as a request.
 std::string roff(const std::string& text) {
@@ -55,14 +77,14 @@ std::string synopsis(const NamedCommand& named) {
 std::string option_text(const Option& option) {
     std::string names;
     for (const std::string& name : option_names(option))
-        names += std::string(names.empty() ? "" : ", ") + (is_argument(option) ? "\\fI" : "\\fB") + roff(name) + "\\fR";
+        names += std::string(names.empty() ? "" : ", ") + (is_argument(option) ? "\\fI" : "\\fB") +
+                 roff(name) + "\\fR";
     if (!is_argument(option) && !is_flag(option))
         names += std::string(option.value_follows ? "" : " ") + "\\fI" + roff(value_name(option)) + "\\fR";
-    std::string text = ".TP\n" + names + "\n" + roff(option.help);
+    const std::string text = ".TP\n" + names + "\n";
     const std::string taken = takes(option);
     const bool says_more = !is_flag(option) && taken != value_name(option) && !option.value_follows;
-    if (says_more) text += " (" + roff(taken) + ")";
-    return text + "\n";
+    return text + roff(wrapped(option.help + (says_more ? " (" + taken + ")" : ""))) + "\n";
 }
 
 std::string options_text(const Command& command, bool is_common) {
@@ -77,14 +99,15 @@ std::string commands_text(const NamedCommand& group) {
     std::string text = ".SH COMMANDS\n";
     for (const Command& command : group.command->commands)
         text += ".TP\n.BR " + roff(page_name(group.called + " " + command.name)) + " (1)\n" +
-                roff(command.summary) + "\n";
+                roff(wrapped(command.summary)) + "\n";
     return text;
 }
 
 std::string examples_text(const std::string& called) {
     std::string text;
     for (const Example& example : examples_of(called))
-        text += ".PP\n" + roff(example.what) + ":\n.PP\n.RS\n.nf\n" + roff(example.line) + "\n.fi\n.RE\n";
+        text += (text.empty() ? "" : ".PP\n") + roff(example.what) + ":\n.PP\n.RS\n.nf\n" +
+                roff(example.line) + "\n.fi\n.RE\n";
     return text.empty() ? "" : ".SH EXAMPLES\n" + text;
 }
 
@@ -133,8 +156,8 @@ ManualPage page_of(const NamedCommand& named, const std::vector<NamedCommand>& a
         if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
     std::string text =
         ".TH " + roff(upper) + " 1 " + kDate + " \"trilens " + version() + "\" \"User Commands\"\n";
-    text += ".SH NAME\n" + roff(name) + " \\- " + roff(named.command->summary) + "\n";
-    text += synopsis(named) + ".SH DESCRIPTION\n" + roff(named.command->summary) + "\n";
+    text += ".SH NAME\n" + roff(wrapped(name + " - " + named.command->summary)) + "\n";
+    text += synopsis(named) + ".SH DESCRIPTION\n" + roff(wrapped(named.command->summary)) + "\n";
     text += commands_text(named);
     const std::string own = options_text(*named.command, false);
     if (!own.empty()) text += ".SH OPTIONS\n" + own;

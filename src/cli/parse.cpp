@@ -27,9 +27,9 @@ void add_options(const Command& command, CLI::App& app, Given& given) {
                 return true;
             };
             added = app.add_option(option.names, take, option.help);
-            added->type_name(value_name(option));
+            added->type_name(is_argument(option) ? "" : value_name(option));
             added->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
-            if (is_argument(option) && takes_many(option)) added->expected(1, -1);
+            if (is_argument(option) && takes_many(option)) added->allow_extra_args()->expected(1, -1);
         }
         if (option.is_common) added->group("Common");
         if (is_argument(option) && option.is_required) added->option_text("(required)");
@@ -41,6 +41,24 @@ void set_up(CLI::App& app) {
     app.allow_extras();
 }
 
+/// A suggestion where something is near; else where to look.
+std::string nearest_or_help(const std::string& word, const std::vector<std::string>& known,
+                            const Located& located) {
+    const std::string nearest = suggestion(word, known);
+    return nearest.find("did you mean") != std::string::npos ? nearest
+                                                             : "; see " + located.called() + " --help";
+}
+
+/// Throws where a flag is given a value; CLI11 would take some of them.
+void check_flags(const Located& located) {
+    for (const std::string& word : located.rest) {
+        const std::size_t equals = word.find('=');
+        const Option* option = find_option(located.command(), word.substr(0, equals));
+        if (equals != std::string::npos && option && is_flag(*option))
+            throw UsageError(spoken_name(*option) + " takes no value");
+    }
+}
+
 /// The last word must be an option that lacks its value: CLI11 lets an option eat whatever follows.
 UsageError missing_value(const Located& located, const CLI::ParseError& complaint) {
     const std::string last = located.rest.empty() ? "" : located.rest.back();
@@ -48,12 +66,6 @@ UsageError missing_value(const Located& located, const CLI::ParseError& complain
     const Option* option = find_option(located.command(), is_bundle ? std::string("-") + last.back() : last);
     if (option && !is_flag(*option))
         return UsageError(spoken_name(*option) + " takes " + takes(*option) + ", but nothing follows it");
-    for (const std::string& word : located.rest) {
-        const std::size_t equals = word.find('=');
-        if (equals == std::string::npos) continue;
-        const Option* flag = find_option(located.command(), word.substr(0, equals));
-        if (flag && is_flag(*flag)) return UsageError(spoken_name(*flag) + " takes no value");
-    }
     return UsageError("the command line cannot be read: " + std::string(complaint.get_name()));
 }
 
@@ -64,9 +76,7 @@ UsageError unknown_word(const Located& located, const std::vector<std::string>& 
     for (const std::string& word : extras) {
         if (word.size() < 2 || word[0] != '-') continue;
         const std::string name = word.substr(0, word.find('='));
-        if (const Option* flag = find_option(located.command(), name); flag && is_flag(*flag))
-            return UsageError(spoken_name(*flag) + " takes no value");
-        return UsageError("there is no option \"" + name + "\"" + suggestion(name, known));
+        return UsageError("there is no option \"" + name + "\"" + nearest_or_help(name, known, located));
     }
     return UsageError(located.called() + " takes no further argument \"" + extras[0] + "\"");
 }
@@ -134,6 +144,7 @@ UsageError unknown_command(const Located& located) {
 
 void parse_options(const Located& located) {
     const Command& command = located.command();
+    check_flags(located);
     CLI::App app;
     set_up(app);
     Given given;

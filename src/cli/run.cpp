@@ -222,10 +222,8 @@ int run_command(const Run& run, Console& console) {
 
 /// Every command that there is.
 Command make_root() {
-    Command root{
-        .name = "trilens",
-        .summary =
-            "trilens draws what curved mirrors and glass show, by projection, and measures its error."};
+    Command root{.name = "trilens",
+                 .summary = "draw what curved mirrors and glass show, by projection, and measure its error"};
     root.commands = render_commands();
     for (Command& command : std::vector<Command>{compare_command(), sweep_command(), project_command(),
                                                  scene_command(), info_command()})
