@@ -90,6 +90,19 @@ Answer draw(const RenderOptions& options, const std::string& format, const Pictu
     return answer;
 }
 
+/// Throws UsageError with the option's name for a window or a pixel that the film does not have.
+void check_on_film(const RenderOptions& options, const LayerRequest& window, const Film& film) {
+    const std::string size = fmt::format("the film of {} x {} pixels", film.width, film.height);
+    const bool fits = window.x0 >= 0 && window.y0 >= 0 && window.x1 <= film.width &&
+                      window.y1 <= film.height && window.x0 < window.x1 && window.y0 < window.y1;
+    if (!options.scene.crop.empty() && !fits)
+        throw UsageError("--crop " + options.scene.crop + " is no window of " + size);
+    if (options.pixel.empty()) return;
+    const std::vector<int> pixel = parse_integers(options.pixel, ',', 2, "--pixel");
+    if (pixel[0] < 0 || pixel[1] < 0 || pixel[0] >= film.width || pixel[1] >= film.height)
+        throw UsageError("--pixel " + options.pixel + " is not on " + size);
+}
+
 Answer run(const RenderOptions& options, const std::string& command, const EngineChoice& engine,
            Console& console) {
     if (options.pixel.empty() && options.output.empty())
@@ -105,6 +118,7 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
     request.layers = layer_request(options.scene);
     const Renderer renderer = load_renderer(options.scene, console);
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
+    check_on_film(options, request.layers, renderer.scene().film);
     if (options.pixel.empty())
         return format == "svg" ? run_vector(options, renderer, console)
                                : draw(options, format, request, renderer, console, command);
