@@ -1,17 +1,18 @@
-// What a command is to the program: options in, one answer out.
+// The command line as data: commands with their options, from which parsing, help, manual pages and
+// completion are made; and what a command gives back.
 #pragma once
 
 #include <trilens/error.h>
 #include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cli/console.h"
 #include "cli/json.h"
-
-namespace CLI {
-class App;
-}
 
 namespace trilens {
 
@@ -19,26 +20,63 @@ namespace trilens {
 struct Answer {
     std::string text;
     Json fields = Json::object();
-    std::vector<std::string> errors;  // for the JSON's `errors`: of jobs that could not run
+    std::vector<std::string> errors = {};  // for the JSON's `errors`: of jobs that could not run
     ExitCode code = ExitCode::kDone;
+    bool is_report = false;  // the text says what was done, and the files and the exit code say it too:
+                             // --quiet leaves it out
 };
 
 using CommandBody = std::function<Answer(Console&)>;
 
-/// Where commands register: each adds its sub-command with its options to `app` and calls `on_chosen` with
-/// its body. `name` is what the JSON schema field says: "trilens.<name>/1".
-struct CommandRegistry {
-    CLI::App* app = nullptr;
-    std::function<void(CLI::App* command, const std::string& name, CommandBody body)> add;
+/// The numbers an option takes, both ends included.
+struct Range {
+    double least = -std::numeric_limits<double>::infinity();
+    double most = std::numeric_limits<double>::infinity();
 };
 
-void register_render(const CommandRegistry& registry);  // render and trace
-void register_compare(const CommandRegistry& registry);
-void register_sweep(const CommandRegistry& registry);
-void register_sweep_engines(const CommandRegistry& registry, CLI::App& sweep);
-void register_project(const CommandRegistry& registry);
-void register_scene(const CommandRegistry& registry);
-void register_info(const CommandRegistry& registry);
+/// Where an option's value goes. A bool makes a flag, a list takes any number of values.
+using OptionTarget =
+    std::variant<bool*, int*, long long*, std::size_t*, double*, std::string*, std::vector<std::string>*>;
+
+/// What a shell offers for a value.
+enum class Offer { kNothing, kScene, kImage, kFile, kFolder, kExample, kCommand };
+
+/// An option, or an argument.
+struct Option {
+    std::string names;  // "-o,--output"; an argument's has no dash: "SCENE"
+    OptionTarget target;
+    std::string help;
+    std::string value = "";  // what help calls the value: "WxH"; empty for arguments, choices and numbers
+    std::vector<std::string> choices = {};  // nothing else is taken
+    Range range = {};
+    Offer offer = Offer::kNothing;
+    bool is_required = false;
+    std::string excludes = "";   // the long name of an option that must not be given beside it
+    bool is_common = false;      // every command has it
+    bool is_answer = false;      // --help and --version: nothing else counts
+    bool value_follows = false;  // its value stands behind "=" or is left out: --json
+};
+
+/// A command, or a group of commands.
+struct Command {
+    std::string name;
+    std::string summary;  // one line
+    std::vector<Option> options = {};
+    std::vector<Command> commands = {};  // of a group
+    std::string schema = "";             // the JSON's schema field is "trilens.<schema>/1"; empty for groups
+    CommandBody body = {};
+};
+
+std::vector<Command> render_commands();  // render and trace
+Command compare_command();
+Command sweep_command();
+Command sweep_engines_command();
+Command project_command();
+Command scene_command();
+Command info_command();
+
+/// `help`, `man` and `completion` of the whole tree `root`, which must outlive them.
+std::vector<Command> manual_commands(const Command& root);
 
 /// The whole program: parses, runs one command, prints, and returns the exit code. Never throws.
 int run_command_line(int argc, const char* const* argv);

@@ -2,205 +2,224 @@
 #include <trilens/compare.h>
 #include <trilens/files.h>
 #include <trilens/image.h>
+#include <trilens/stopwatch.h>
+#include <trilens/text.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
+#include <utility>
 
-#include "cli/command.h"
+#include "cli/compare_report.h"
 #include "cli/format.h"
+#include "cli/option.h"
 
 namespace trilens {
 namespace {
 
+/// The command line's words.
 struct CompareCommand {
-    std::string reference, test, diff;
+    CompareRequest request;
+    std::vector<std::string> limits;  // "METRIC=VALUE"
     long long mask = -1;
-    double radius = DisplacementOptions{}.radius;
-    CompareOptions options;
 };
 
-Json metrics_json(const Metrics& m) {
+bool is_png(const std::string& file) {
+    return std::filesystem::path(file).extension() == ".png";
+}
+
+/// Throws UsageError for what is no METRIC=VALUE, and for metrics that do not exist.
+std::vector<MetricLimit> limits_of(const CompareCommand& command) {
+    const std::vector<std::string> known = metric_names();
+    std::vector<MetricLimit> limits;
+    for (const std::string& text : command.limits) {
+        const std::size_t equals = std::min(text.find('='), text.size());
+        const std::string metric = text.substr(0, equals);
+        if (std::find(known.begin(), known.end(), metric) == known.end())
+            throw UsageError("--max: there is no metric \"" + metric + "\"" + suggestion(metric, known));
+        double value = 0;
+        const char* end = text.data() + text.size();
+        const char* begin = text.data() + std::min(equals + 1, text.size());
+        const auto [stop, error] = std::from_chars(begin, end, value);
+        if (error != std::errc() || stop != end || !std::isfinite(value))
+            throw UsageError("--max takes METRIC=VALUE with a finite number, not \"" + text + "\"");
+        limits.push_back({metric, value});
+    }
+    return limits;
+}
+
+Image read_input(const CompareRequest& request, bool is_reference, Console& console) {
+    const Stopwatch watch;
+    const std::string& file = is_reference ? request.reference : request.test;
+    Image image = request.strict ? read_image(file)
+                                 : read_compared_image(file, is_reference ? request.layer_of_reference
+                                                                          : request.layer_of_test);
+    console.note_stage(
+        fmt::format("read {}: {} x {}, {} channels", file, image.width, image.height, image.channels.size()),
+        watch);
+    return image;
+}
+
+/// The difference as a file: all of it as .exr, its magnitude times the scale as .png.
+void write_difference(const CompareRequest& request, const ComparedInputs& inputs, Console& console) {
+    const Stopwatch watch;
+    const LayerComparison* main = main_layer(inputs.layers, request.options.layer);
+    Image difference = make_difference(
+        inputs.images.reference, inputs.images.test,
+        {request.options.layer, request.options.mask_object, main ? &*main->displacement : nullptr});
+    if (is_png(request.difference)) {
+        for (const char* colour : {"R", "G", "B"}) {
+            std::vector<float>& values = difference.find(colour)->floats();
+            for (float& value : values) value = static_cast<float>(request.scale * std::abs(value));
+        }
+    }
+    write_image(request.difference, difference);
+    console.note_stage("wrote " + request.difference, watch);
+}
+
+void check_options(const CompareRequest& request, Console& console) {
+    const std::string ending = std::filesystem::path(request.difference).extension().string();
+    if (!request.difference.empty() && ending != ".exr" && ending != ".png")
+        throw UsageError("a difference is written as .exr or .png, not \"" + request.difference + "\"");
+    if (request.scale != 1 && !is_png(request.difference))
+        throw UsageError("--scale is for a difference in .png: add -o DIFF.png");
+    if (request.strict && !(request.layer_of_reference + request.layer_of_test).empty())
+        throw UsageError("--strict compares files as they are, without --ref-layer and --test-layer");
+    console.files().reads({request.reference, request.test});
+    console.files().writes(request.difference);
+}
+
+ComparedInputs read_inputs(const CompareRequest& request, Console& console) {
+    Image reference = read_input(request, true, console), test = read_input(request, false, console);
+    if (request.strict) return {{std::move(reference), std::move(test), {}, {}}, {}, {}};
+    return {keep_common_channels(std::move(reference), std::move(test)), {}, {}};
+}
+
+/// A broken limit is a failure, beside whatever else is.
+void judge_limits(const CompareRequest& request, ComparedInputs& inputs) {
+    Comparison& comparison = inputs.comparison;
+    for (std::string& reason : broken_limits(request.limits, named_metrics(comparison, inputs.layers))) {
+        comparison.verdict = Verdict::kFailure;
+        comparison.reasons.push_back(std::move(reason));
+    }
+}
+
+Answer run(const CompareRequest& request, Console& console) {
+    check_options(request, console);
+    ComparedInputs inputs = read_inputs(request, console);
+    const Stopwatch watch;
+    const CommonChannels& images = inputs.images;
+    inputs.comparison = compare(images.reference, images.test, request.options);
+    inputs.layers =
+        compare_layers(images.reference, images.test, {request.radius, request.options.mask_object});
+    judge_limits(request, inputs);
+    console.note_stage(fmt::format("compared {} channels", images.reference.channels.size()), watch);
+    if (!request.difference.empty()) write_difference(request, inputs, console);
+    if (inputs.comparison.verdict == Verdict::kWarning)
+        for (const std::string& reason : inputs.comparison.reasons) console.warn(reason);
+    return compare_answer(request, inputs);
+}
+
+Answer run(const CompareCommand& command, Console& console) {
+    CompareRequest request = command.request;
+    request.limits = limits_of(command);
+    if (command.mask >= 0) request.options.mask_object = static_cast<Id>(command.mask);
+    return run(request, console);
+}
+
+std::vector<Option> image_options(CompareCommand& command) {
+    return {{.names = "REF",
+             .target = &command.request.reference,
+             .help = "the reference: .exr, .png or any other picture",
+             .offer = Offer::kImage,
+             .is_required = true},
+            {.names = "TEST",
+             .target = &command.request.test,
+             .help = "the image in question",
+             .offer = Offer::kImage,
+             .is_required = true},
+            {.names = "-o,--output",
+             .target = &command.request.difference,
+             .help = "difference to write: .exr (signed, magnitude, shifts) or .png (magnitude, sRGB)",
+             .value = "DIFF",
+             .offer = Offer::kImage},
+            {.names = "--scale",
+             .target = &command.request.scale,
+             .help = ".png: so many times the difference",
+             .value = "S",
+             .range = {0}},
+            {.names = "--layer",
+             .target = &command.request.options.layer,
+             .help = "compare this layer instead of the beauty: direct, reflect, refract",
+             .value = "L"},
+            {.names = "--ref-layer",
+             .target = &command.request.layer_of_reference,
+             .help = "the reference's channels L.R, L.G, L.B, or its part L, are its beauty",
+             .value = "L"},
+            {.names = "--test-layer",
+             .target = &command.request.layer_of_test,
+             .help = "the same of the test",
+             .value = "L"},
+            {.names = "--strict",
+             .target = &command.request.strict,
+             .help = "channels must match by name and type, and files have one part"},
+            {.names = "--mask-object",
+             .target = &command.mask,
+             .help = "only pixels whose optic.object is this id",
+             .value = "ID",
+             .range = {0, 4294967294.0}}};
+}
+
+std::vector<Option> tolerance_options(CompareCommand& command) {
+    CompareOptions& o = command.request.options;
     return {
-        {"mae", json_number(m.mae)},   {"rmse", json_number(m.rmse)},       {"relmse", json_number(m.relmse)},
-        {"relmse_eps", 0.01},          {"psnr_db", json_number(m.psnr_db)}, {"psnr_peak", 1},
-        {"ssim", json_number(m.ssim)}, {"max", json_number(m.max)},         {"p50", json_number(m.p50)},
-        {"p95", json_number(m.p95)},   {"p99", json_number(m.p99)}};
-}
-
-Json seen_json(const SeenMismatch& s) {
-    return {{"pixels", s.pixels},
-            {"object_mismatch", s.object_mismatch},
-            {"primitive_mismatch", s.primitive_mismatch},
-            {"coverage_mismatch", s.coverage_mismatch}};
-}
-
-/// Null is "nothing was measured".
-Json displacement_json(const Displacement& d) {
-    const auto statistic = [&](double Summary::*which) {
-        return d.summary ? json_number((*d.summary).*which) : Json(nullptr);
-    };
-    return {{"mean", statistic(&Summary::mean)},
-            {"p50", statistic(&Summary::p50)},
-            {"p95", statistic(&Summary::p95)},
-            {"p99", statistic(&Summary::p99)},
-            {"max", statistic(&Summary::max)},
-            {"pixels", d.pixels},
-            {"lost", d.lost},
-            {"beyond_radius", d.beyond_radius},
-            {"missing", d.missing},
-            {"coverage", d.coverage ? json_number(*d.coverage) : Json(nullptr)},
-            {"mean_off_folds", d.mean_off_folds ? json_number(*d.mean_off_folds) : Json(nullptr)},
-            {"near_folds", d.near_folds}};
-}
-
-std::string displacement_text(const std::string& layer, const Displacement& d) {
-    std::string text = fmt::format("{:<8} displacement: nothing could be measured\n", layer);
-    if (const auto& s = d.summary)
-        text = fmt::format(
-            "{:<8} displacement mean {:.4g}  p50 {:.4g}  p95 {:.4g}  p99 {:.4g}  max {:.4g} px over {} "
-            "pixels\n",
-            layer, s->mean, s->p50, s->p95, s->p99, s->max, d.pixels);
-    return text + fmt::format(
-                      "{:<8} measured {:.2f} % of what either shows: {} lost ({} of them farther than the "
-                      "radius), {} missing\n",
-                      layer, 100 * d.coverage.value_or(0), d.lost, d.beyond_radius, d.missing);
-}
-
-std::string summary_text(const Comparison& comparison, const std::vector<LayerComparison>& layers) {
-    const Metrics& m = comparison.metrics;
-    const CompareCounts& c = comparison.counts;
-    std::string text = fmt::format("pixels        {} ({} beyond fail, {} beyond hardfail, {} beyond warn)\n",
-                                   c.pixels, c.fail, c.hard, c.warn);
-    text += fmt::format("error         mae {:.6g}  rmse {:.6g}  relmse {:.6g}  max {:.6g}\n", m.mae, m.rmse,
-                        m.relmse, m.max);
-    text += fmt::format("likeness      psnr {:.2f} dB  ssim {:.6f}\n", m.psnr_db, m.ssim);
-    if (const WorstPixel& worst = comparison.worst; !worst.channel.empty())
-        text += fmt::format("worst         pixel {},{} channel {}: {:.6g}, reference {:.6g}\n", worst.x,
-                            worst.y, worst.channel, worst.test, worst.reference);
-    for (const LayerComparison& layer : layers) {
-        if (const auto& seen = layer.seen; seen && seen->pixels > 0)
-            text += fmt::format(
-                "{:<8} seen {} pixels: {} other object, {} other triangle, {} covered in one only\n",
-                layer.layer, seen->pixels, seen->object_mismatch, seen->primitive_mismatch,
-                seen->coverage_mismatch);
-        if (const auto& d = layer.displacement; d && d->coverage) text += displacement_text(layer.layer, *d);
-    }
-    for (const std::string& reason : comparison.reasons) text += reason + "\n";
-    return text +
-           (comparison.verdict == Verdict::kFailure   ? "FAILURE"
-            : comparison.verdict == Verdict::kWarning ? "WARNING"
-                                                      : "PASS") +
-           "\n";
-}
-
-Answer answer_of(const CompareCommand& command, const Comparison& comparison,
-                 const std::vector<LayerComparison>& layers) {
-    Answer answer;
-    const CompareCounts& c = comparison.counts;
-    const CompareOptions& o = command.options;
-    answer.fields["ref"] = {{"file", command.reference}};
-    answer.fields["test"] = {{"file", command.test}};
-    answer.fields["thresholds"] = {{"fail", o.fail},
-                                   {"failpercent", o.failpercent},
-                                   {"hardfail", o.hardfail},
-                                   {"failrelative", o.failrelative},
-                                   {"allowfailures", o.allowfailures},
-                                   {"warn", o.warn},
-                                   {"warnpercent", o.warnpercent}};
-    answer.fields["counts"] = {{"pixels", c.pixels},   {"fail", c.fail},         {"warn", c.warn},
-                               {"hard", c.hard},       {"nan_ref", c.nan_ref},   {"nan_test", c.nan_test},
-                               {"inf_ref", c.inf_ref}, {"inf_test", c.inf_test}, {"masked", c.masked}};
-    answer.fields["metrics"]["RGB"] = metrics_json(comparison.metrics);
-    answer.fields["seen"] = seen_json(total_seen(layers));
-    const LayerComparison* main = main_layer(layers, o.layer);
-    answer.fields["displacement_px"] = displacement_json(main ? *main->displacement : Displacement());
-    for (const LayerComparison& layer : layers) {
-        Json entry = Json::object();
-        if (layer.seen) entry["seen"] = seen_json(*layer.seen);
-        if (layer.displacement) entry["displacement_px"] = displacement_json(*layer.displacement);
-        answer.fields["layers"][layer.layer] = entry;
-    }
-    if (!comparison.worst.channel.empty())
-        answer.fields["worst"] = {{"x", comparison.worst.x},
-                                  {"y", comparison.worst.y},
-                                  {"channel", comparison.worst.channel},
-                                  {"ref", json_number(comparison.worst.reference)},
-                                  {"test", json_number(comparison.worst.test)}};
-    answer.fields["verdict"] = comparison.verdict == Verdict::kFailure   ? "failure"
-                               : comparison.verdict == Verdict::kWarning ? "warning"
-                                                                         : "pass";
-    answer.fields["reasons"] = comparison.reasons;
-    answer.text = summary_text(comparison, layers);
-    answer.code = comparison.verdict == Verdict::kFailure ? ExitCode::kExceeded : ExitCode::kDone;
-    return answer;
-}
-
-Answer run(CompareCommand command, Console& console) {
-    if (!command.diff.empty() && std::filesystem::path(command.diff).extension() != ".exr")
-        throw UsageError("a difference is written as .exr, not \"" + command.diff + "\"");
-    if (!command.diff.empty()) check_writable(command.diff, {command.reference, command.test});
-    if (command.mask >= 0) command.options.mask_object = static_cast<Id>(command.mask);
-    const Image reference = read_image(command.reference), test = read_image(command.test);
-    const Comparison comparison = compare(reference, test, command.options);
-    const std::vector<LayerComparison> layers =
-        compare_layers(reference, test, {command.radius, command.options.mask_object});
-    if (!command.diff.empty()) {
-        const LayerComparison* main = main_layer(layers, command.options.layer);
-        write_image(command.diff, make_difference(reference, test,
-                                                  {command.options.layer, command.options.mask_object,
-                                                   main ? &*main->displacement : nullptr}));
-    }
-    if (comparison.verdict == Verdict::kWarning)
-        for (const std::string& reason : comparison.reasons) console.warn(reason);
-    return answer_of(command, comparison, layers);
-}
-
-/// A number from `least` to `most`; NaN is none.
-CLI::Validator number_between(double least, double most, const std::string& name) {
-    return CLI::Validator(
-        [least, most](std::string& text) {
-            char* end = nullptr;
-            const double value = std::strtod(text.c_str(), &end);
-            const bool is_good = !text.empty() && *end == '\0' && value >= least && value <= most;
-            return is_good ? std::string()
-                           : "\"" + text + "\" is not a number from " + Json(least).dump() + " to " +
-                                 (std::isinf(most) ? "inf" : Json(most).dump());
-        },
-        name);
+        {.names = "--max",
+         .target = &command.limits,
+         .help =
+             "fail where a metric is beyond VALUE (ssim, psnr_db, coverage: below it); may be given several "
+             "times: " +
+             one_of(metric_names()),
+         .value = "METRIC=VALUE"},
+        {.names = "--fail", .target = &o.fail, .help = "difference beyond which a pixel fails", .range = {0}},
+        {.names = "--failpercent",
+         .target = &o.failpercent,
+         .help = "percentage of pixels that may fail",
+         .range = {0, 100}},
+        {.names = "--hardfail",
+         .target = &o.hardfail,
+         .help = "difference that no pixel may exceed",
+         .range = {0}},
+        {.names = "--failrelative",
+         .target = &o.failrelative,
+         .help = "a failing pixel must also differ by this share",
+         .range = {0}},
+        {.names = "--allowfailures",
+         .target = &o.allowfailures,
+         .help = "so many pixels may differ by any amount",
+         .range = {0}},
+        {.names = "--warn", .target = &o.warn, .help = "difference worth a warning", .range = {0}},
+        {.names = "--warnpercent",
+         .target = &o.warnpercent,
+         .help = "percentage of pixels that may be so",
+         .range = {0, 100}},
+        {.names = "--radius",
+         .target = &command.request.radius,
+         .help = "how far displaced points are looked for, pixels",
+         .range = {1, 4096}}};
 }
 
 }  // namespace
 
-void register_compare(const CommandRegistry& registry) {
-    const CLI::Validator tolerance = number_between(0, INFINITY, "NONNEGATIVE"),
-                         percentage = number_between(0, 100, "0..100"),
-                         radius = number_between(1, 4096, "1..4096");
-    auto command = std::make_shared<CompareCommand>();
-    CLI::App* app = registry.app->add_subcommand(
-        "compare", "error metrics between two images and a verdict: exit 0 within tolerance, 1 beyond");
-    CompareOptions& o = command->options;
-    app->add_option("REF", command->reference, "the reference, .exr")->required();
-    app->add_option("TEST", command->test, "the image in question, .exr")->required();
-    app->add_option("-o,--output", command->diff, "difference image to write, .exr")->type_name("DIFF.exr");
-    app->add_option("--layer", o.layer, "compare this layer instead of the beauty: direct, reflect, refract")
-        ->type_name("L");
-    app->add_option("--mask-object", command->mask, "only pixels whose optic.object is this id")
-        ->check(CLI::Range(0LL, 4294967294LL))
-        ->type_name("ID");
-    app->add_option("--fail", o.fail, "difference beyond which a pixel fails")->check(tolerance);
-    app->add_option("--failpercent", o.failpercent, "percentage of pixels that may fail")->check(percentage);
-    app->add_option("--hardfail", o.hardfail, "difference that no pixel may exceed")->check(tolerance);
-    app->add_option("--failrelative", o.failrelative, "a failing pixel must also differ by this share")
-        ->check(tolerance);
-    app->add_option("--allowfailures", o.allowfailures, "so many pixels may differ by any amount")
-        ->check(CLI::Range(0LL, 1LL << 53));
-    app->add_option("--warn", o.warn, "difference worth a warning")->check(tolerance);
-    app->add_option("--warnpercent", o.warnpercent, "percentage of pixels that may be so")->check(percentage);
-    app->add_option("--radius", command->radius, "how far displaced points are looked for, pixels")
-        ->check(radius);
-    registry.add(app, "compare", [command](Console& console) { return run(*command, console); });
+Command compare_command() {
+    auto compared = std::make_shared<CompareCommand>();
+    Command command{
+        .name = "compare",
+        .summary = "error metrics between two images and a verdict: exit 0 within tolerance, 1 beyond",
+        .options = joined({image_options(*compared), tolerance_options(*compared)}),
+        .schema = "compare"};
+    command.body = [compared](Console& console) { return run(*compared, console); };
+    return command;
 }
 
 }  // namespace trilens

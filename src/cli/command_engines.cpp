@@ -2,8 +2,6 @@
 // leaves uncovered.
 #include <trilens/engine_study.h>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/command.h"
 #include "cli/format.h"
 #include "cli/scene_options.h"
@@ -28,6 +26,7 @@ std::string table_text(const std::vector<StudyRow>& rows) {
 }
 
 Answer run(const StudyOptions& options, Console& console) {
+    console.files().reads(options.scenes);
     StudyRequest request;
     request.camera = options.scene.camera;
     request.folder = options.output;
@@ -45,23 +44,32 @@ Answer run(const StudyOptions& options, Console& console) {
 
 }  // namespace
 
-void register_sweep_engines(const CommandRegistry& registry, CLI::App& sweep) {
+Command sweep_engines_command() {
     auto options = std::make_shared<StudyOptions>();
-    CLI::App* command =
-        sweep.add_subcommand("engines", "the classic engine against the exact one: curves and clipping");
-    command->add_option("SCENES", options->scenes, "scene files")->required();
-    command->add_option("-o,--output", options->output, "folder for the tables and plots")
-        ->required()
-        ->type_name("DIR");
     options->scene.resolution = 2;
-    command
-        ->add_option("-n,--resolution", options->scene.resolution,
-                     "resolution of the optics while K varies: coarse facets bend edges most")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str()
-        ->type_name("N");
-    add_scene_overrides(*command, options->scene);
-    registry.add(command, "sweep", [options](Console& console) { return run(*options, console); });
+    Command command{.name = "engines",
+                    .summary = "the classic engine against the exact one: curves and clipping",
+                    .schema = "sweep"};
+    command.options =
+        joined({{{.names = "SCENES",
+                  .target = &options->scenes,
+                  .help = "scene files",
+                  .offer = Offer::kScene,
+                  .is_required = true},
+                 {.names = "-o,--output",
+                  .target = &options->output,
+                  .help = "folder for the tables and plots",
+                  .value = "DIR",
+                  .offer = Offer::kFolder,
+                  .is_required = true},
+                 {.names = "-n,--resolution",
+                  .target = &options->scene.resolution,
+                  .help = "resolution of the optics while K varies: coarse facets bend edges most; "
+                          "default: 2",
+                  .range = {1, 1024}}},
+                scene_overrides(options->scene)});
+    command.body = [options](Console& console) { return run(*options, console); };
+    return command;
 }
 
 }  // namespace trilens

@@ -1,8 +1,6 @@
 // trilens info: the build, its libraries and the machine, for bug reports.
 #include <trilens/version.h>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/command.h"
 
 namespace trilens {
@@ -52,9 +50,11 @@ Answer info() {
 
 }  // namespace
 
-void register_info(const CommandRegistry& registry) {
-    CLI::App* command = registry.app->add_subcommand("info", "the build, its libraries and the machine");
-    registry.add(command, "info", [](Console&) { return info(); });
+Command info_command() {
+    return {.name = "info",
+            .summary = "the build, its libraries and the machine",
+            .schema = "info",
+            .body = [](Console&) { return info(); }};
 }
 
 }  // namespace trilens

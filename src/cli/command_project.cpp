@@ -2,7 +2,6 @@
 #include <trilens/project.h>
 #include <trilens/stopwatch.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -137,6 +136,7 @@ std::string text_line(const Renderer& renderer, std::size_t point, const WorldIm
 }
 
 Answer run(const ProjectOptions& options, Console& console) {
+    console.files().reads({options.scene.scene, options.points});
     const std::vector<Vec3> points = wanted_points(options);
     const Renderer renderer = load_renderer(options.scene, console);
     ProjectRequest request;
@@ -149,8 +149,8 @@ Answer run(const ProjectOptions& options, Console& console) {
     const auto images = renderer.project(points, request);
     const double seconds = watch.seconds();
 
-    const auto open =
-        std::count_if(images.begin(), images.end(), [](const PointProjection& point) { return !point.complete; });
+    const auto open = std::count_if(images.begin(), images.end(),
+                                    [](const PointProjection& point) { return !point.complete; });
     if (open > 0)
         console.warn(fmt::format("{} of {} points may have images that are not listed{}", open, points.size(),
                                  request.search == ImageSearch::kFacets
@@ -163,36 +163,44 @@ Answer run(const ProjectOptions& options, Console& console) {
     answer.text = "point,x,y,t,path,optic,facet,inside,visible,refined\n";
     for (std::size_t p = 0; p < points.size(); ++p)
         for (const WorldImage& image : images[p].images) answer.text += text_line(renderer, p, image);
-    console.note(std::to_string(points.size()) + " points in " + std::to_string(seconds) + " s");
+    console.note_stage(fmt::format("projected {} points", points.size()), watch);
     return answer;
 }
 
 }  // namespace
 
-void register_project(const CommandRegistry& registry) {
+Command project_command() {
     auto options = std::make_shared<ProjectOptions>();
-    CLI::App* command =
-        registry.app->add_subcommand("project", "where world points appear: all images, in pixels");
-    add_scene_options(*command, options->scene);
-    command->add_option("--point", options->point, "a world point; may be given several times")
-        ->type_name("X,Y,Z")
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->expected(1)
-        ->take_all();
-    command->add_option("--points", options->points, "a file of x,y,z per line; a header line is allowed")
-        ->type_name("FILE.csv");
-    command
-        ->add_option(
-            "--search", options->search,
-            "complete: every part of the exact surfaces is searched or excluded; facets: only near what "
-            "the facets show, faster, may miss images")
-        ->check(CLI::IsMember({"complete", "facets"}));
-    command
-        ->add_option("--refine", options->refine,
-                     "exact: on the exact surface; none: as the facets have it (with --search facets)")
-        ->check(CLI::IsMember({"exact", "none"}));
-    command->add_flag("--no-visibility", options->no_visibility, "do not ask what hides the images");
-    registry.add(command, "project", [options](Console& console) { return run(*options, console); });
+    Command command{.name = "project",
+                    .summary = "where world points appear: all images, in pixels",
+                    .schema = "project"};
+    command.options =
+        joined({scene_argument(options->scene),
+                scene_overrides(options->scene),
+                {{.names = "--point",
+                  .target = &options->point,
+                  .help = "a world point; may be given several times",
+                  .value = "X,Y,Z"},
+                 {.names = "--points",
+                  .target = &options->points,
+                  .help = "a file of x,y,z per line; a header line is allowed",
+                  .value = "FILE.csv",
+                  .offer = Offer::kFile},
+                 {.names = "--search",
+                  .target = &options->search,
+                  .help = "complete: every part of the exact surfaces is searched or excluded; facets: "
+                          "only near what the facets show, faster, may miss images",
+                  .choices = {"complete", "facets"}},
+                 {.names = "--refine",
+                  .target = &options->refine,
+                  .help = "exact: on the exact surface; none: as the facets have it (with --search "
+                          "facets)",
+                  .choices = {"exact", "none"}},
+                 {.names = "--no-visibility",
+                  .target = &options->no_visibility,
+                  .help = "do not ask what hides the images"}}});
+    command.body = [options](Console& console) { return run(*options, console); };
+    return command;
 }
 
 }  // namespace trilens

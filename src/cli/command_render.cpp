@@ -2,13 +2,15 @@
 #include <trilens/files.h>
 #include <trilens/image.h>
 #include <trilens/render.h>
+#include <trilens/stopwatch.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 
 #include "cli/command.h"
 #include "cli/explain.h"
+#include "cli/format.h"
+#include "cli/image_output.h"
 #include "cli/scene_options.h"
 
 namespace trilens {
@@ -26,9 +28,11 @@ struct RenderOptions {
     bool wire = false;
 };
 
-/// What an output is, by --format or its name's ending: "exr", "png" or "svg".
+/// What an output is, by --format or its name's ending: "exr", "png" or "svg". Standard output gets OpenEXR
+/// where nothing else is asked for.
 std::string output_format(const RenderOptions& options, const std::string& command) {
     if (!options.format.empty()) return options.format;
+    if (is_standard_stream(options.output)) return "exr";
     const std::string ending = std::filesystem::path(options.output).extension().string();
     if (ending == ".exr" || ending == ".png" || (ending == ".svg" && command == "render"))
         return ending.substr(1);
@@ -54,16 +58,13 @@ Answer run_vector(const RenderOptions& options, const Renderer& renderer, Consol
         throw UsageError("--crop is for pictures of pixels; an .svg shows the whole film");
     const std::size_t camera = find_camera(renderer.scene(), options.scene.camera);
     const LineDrawing drawing = renderer.draw_lines({camera, 0}, options.wire, console.warner());
-    replace_text_file(options.output, drawing.svg);
-    Answer answer;
-    answer.text = options.output;
-    answer.fields = {{"output", options.output},
-                     {"engine", "exact"},
-                     {"width", renderer.scene().film.width},
-                     {"height", renderer.scene().film.height},
-                     {"wire", options.wire},
-                     {"curves", drawing.curves},
-                     {"arcs", drawing.arcs}};
+    Answer answer = write_output(options.output, drawing.svg, console);
+    answer.fields.update(Json{{"engine", "exact"},
+                              {"width", renderer.scene().film.width},
+                              {"height", renderer.scene().film.height},
+                              {"wire", options.wire},
+                              {"curves", drawing.curves},
+                              {"arcs", drawing.arcs}});
     return answer;
 }
 
@@ -73,68 +74,103 @@ void check_options(const RenderOptions& options, const std::string& format, cons
     if (options.wire && format != "svg") throw UsageError("--wire is for .svg outputs");
 }
 
+Answer draw(const RenderOptions& options, const std::string& format, const PictureRequest& request,
+            const Renderer& renderer, Console& console, const std::string& command) {
+    const Picture picture = renderer.draw(request, console.progress(command), console.warner());
+    console.note(
+        fmt::format("drew {} x {} pixels, {} of them of optics: prepared in {:.3f} s, drawn in {:.3f} s",
+                    picture.image.width, picture.image.height, picture.statistics.optic_pixels,
+                    picture.prepare_seconds, picture.draw_seconds));
+    Answer answer = write_output(options.output, picture.image,
+                                 format == "png" ? ImageFormat::kPng : ImageFormat::kExr, console);
+    answer.fields["engine"] = engine_name(request.engine.engine);
+    if (request.engine.engine == Engine::kClassic)
+        answer.fields["classic"] = classic_name(request.engine.classic);
+    answer.fields.update(picture_fields(renderer, picture));
+    return answer;
+}
+
+/// Throws UsageError with the option's name for a window or a pixel that the film does not have.
+void check_on_film(const RenderOptions& options, const LayerRequest& window, const Film& film) {
+    const std::string size = fmt::format("the film of {} x {} pixels", film.width, film.height);
+    const bool fits = window.x0 >= 0 && window.y0 >= 0 && window.x1 <= film.width &&
+                      window.y1 <= film.height && window.x0 < window.x1 && window.y0 < window.y1;
+    if (!options.scene.crop.empty() && !fits)
+        throw UsageError("--crop " + options.scene.crop + " is no window of " + size);
+    if (options.pixel.empty()) return;
+    const std::vector<int> pixel = parse_integers(options.pixel, ',', 2, "--pixel");
+    if (pixel[0] < 0 || pixel[1] < 0 || pixel[0] >= film.width || pixel[1] >= film.height)
+        throw UsageError("--pixel " + options.pixel + " is not on " + size);
+}
+
 Answer run(const RenderOptions& options, const std::string& command, const EngineChoice& engine,
            Console& console) {
     if (options.pixel.empty() && options.output.empty())
         throw UsageError(command + " needs -o OUT.exr, or --pixel x,y");
     const std::string format = options.output.empty() ? "" : output_format(options, command);
-    if (!options.output.empty()) check_writable(options.output, {options.scene.scene});
+    console.files().reads({options.scene.scene});
+    check_output(options.output, console);
+    if (is_standard_stream(options.output) && !options.pixel.empty())
+        throw UsageError("--pixel explains on standard output, where -o - writes the image: give -o a name");
     check_options(options, format, engine);
     PictureRequest request;
     request.engine = engine;
     request.layers = layer_request(options.scene);
     const Renderer renderer = load_renderer(options.scene, console);
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
+    check_on_film(options, request.layers, renderer.scene().film);
+    if (options.pixel.empty())
+        return format == "svg" ? run_vector(options, renderer, console)
+                               : draw(options, format, request, renderer, console, command);
+
+    const std::vector<int> pixel = parse_integers(options.pixel, ',', 2, "--pixel");
     Answer answer;
-    if (!options.pixel.empty()) {
-        const std::vector<int> pixel = parse_integers(options.pixel, ',', 2, "--pixel");
-        answer.fields = explanation_json(renderer, engine, renderer.explain(request, pixel[0], pixel[1]));
-        answer.text = answer.fields.dump(2);
-        if (options.output.empty()) return answer;
-    }
-    if (format == "svg") return run_vector(options, renderer, console);
-    const Picture picture = renderer.draw(request, console.progress(command), console.warner());
-    write_image_as(options.output, picture.image, format == "png" ? ImageFormat::kPng : ImageFormat::kExr);
-    answer.fields["output"] = options.output;
-    answer.fields["engine"] = engine_name(engine.engine);
-    if (engine.engine == Engine::kClassic) answer.fields["classic"] = classic_name(engine.classic);
-    answer.fields.update(picture_fields(renderer, picture));
-    if (answer.text.empty()) answer.text = options.output;
+    answer.fields = explanation_json(renderer, engine, renderer.explain(request, pixel[0], pixel[1]));
+    answer.text = answer.fields.dump(2);
+    if (options.output.empty()) return answer;
+    const Answer drawn = format == "svg" ? run_vector(options, renderer, console)
+                                         : draw(options, format, request, renderer, console, command);
+    answer.fields.update(drawn.fields);
     return answer;
 }
 
-void add_render_options(CLI::App& command, RenderOptions& options) {
-    add_scene_options(command, options.scene);
-    add_window_options(command, options.scene);
-    command
-        .add_option("-o,--output", options.output,
-                    "image to write: .exr (all layers) or .png (beauty); render: or .svg (outlines)")
-        ->type_name("OUT");
-    command.add_option("--pixel", options.pixel, "explain one pixel as JSON")->type_name("x,y");
+std::vector<Option> picture_options(RenderOptions& options, const std::string& formats) {
+    return joined({scene_argument(options.scene),
+                   scene_overrides(options.scene),
+                   window_options(options.scene),
+                   {{.names = "-o,--output",
+                     .target = &options.output,
+                     .help = "file to write, by its ending: " + formats + "; - for standard output",
+                     .value = "OUT",
+                     .offer = Offer::kImage},
+                    {.names = "--pixel",
+                     .target = &options.pixel,
+                     .help = "explain one pixel as JSON",
+                     .value = "x,y"}}});
 }
 
-void add_engine_options(CLI::App& command, RenderOptions& options) {
-    command
-        .add_option("--engine", options.engine,
-                    "exact; classic: by the outlines of projected triangles; auto (which is exact for now)")
-        ->check(CLI::IsMember({"exact", "classic", "auto"}));
-    CLI::Option* slices =
-        command
-            .add_option("--slices", options.slices,
-                        "classic: curved edges by K straight pieces between levels of t, not arcs")
-            ->check(CLI::Range(1, 1024))
-            ->type_name("K");
-    command
-        .add_option("--tessellate", options.tessellate,
-                    "classic: curved edges by K x K smaller triangles, not arcs")
-        ->check(CLI::Range(1, 1024))
-        ->type_name("K")
-        ->excludes(slices);
-    command
-        .add_option(
-            "--clip", options.clip,
-            "classic: where outlines are cut at a facet's border: in the scene, on the screen, or not (none)")
-        ->check(CLI::IsMember({"scene", "screen", "none"}));
+std::vector<Option> engine_options(RenderOptions& options) {
+    return {
+        {.names = "--engine",
+         .target = &options.engine,
+         .help = "exact; classic: by the outlines of projected triangles; auto (which is exact for now)",
+         .choices = {"exact", "classic", "auto"}},
+        {.names = "--slices",
+         .target = &options.slices,
+         .help = "classic: curved edges by K straight pieces between levels of t, not arcs",
+         .value = "K",
+         .range = {1, 1024}},
+        {.names = "--tessellate",
+         .target = &options.tessellate,
+         .help = "classic: curved edges by K x K smaller triangles, not arcs",
+         .value = "K",
+         .range = {1, 1024},
+         .excludes = "--slices"},
+        {.names = "--clip",
+         .target = &options.clip,
+         .help = "classic: where outlines are cut at a facet's border: in the scene, on the screen, or not "
+                 "(none)",
+         .choices = {"scene", "screen", "none"}}};
 }
 
 EngineChoice chosen_engine(const RenderOptions& options) {
@@ -157,31 +193,37 @@ EngineChoice chosen_engine(const RenderOptions& options) {
 
 }  // namespace
 
-void register_render(const CommandRegistry& registry) {
-    auto render = std::make_shared<RenderOptions>();
-    CLI::App* command = registry.app->add_subcommand("render", "draw the scene by projection");
-    add_render_options(*command, *render);
-    add_engine_options(*command, *render);
-    command->add_option("--format", render->format, "exr, png or svg; default: by the output's ending")
-        ->check(CLI::IsMember({"exr", "png", "svg"}));
-    command->add_flag("--wire", render->wire, "svg: hidden edges too");
-    registry.add(command, "render", [render](Console& console) {
+std::vector<Command> render_commands() {
+    auto render = std::make_shared<RenderOptions>(), trace = std::make_shared<RenderOptions>();
+    Command by_projection{.name = "render", .summary = "draw the scene by projection", .schema = "render"};
+    by_projection.options =
+        joined({picture_options(*render, ".exr (all layers), .png (beauty) or .svg (outlines)"),
+                engine_options(*render),
+                {{.names = "--format",
+                  .target = &render->format,
+                  .help = "what to write, whatever the output is called",
+                  .choices = {"exr", "png", "svg"}},
+                 {.names = "--wire", .target = &render->wire, .help = "svg: hidden edges too"}}});
+    by_projection.body = [render](Console& console) {
         return run(*render, "render", chosen_engine(*render), console);
-    });
+    };
 
-    auto trace = std::make_shared<RenderOptions>();
-    command = registry.app->add_subcommand("trace", "draw the same scene by ray tracing: the truth");
-    add_render_options(*command, *trace);
-    command->add_option("--format", trace->format, "exr or png; default: by the output's ending")
-        ->check(CLI::IsMember({"exr", "png"}));
-    command
-        ->add_option("--surface", trace->surface,
-                     "facets: the rays of render's facets; limit: the exact surface")
-        ->check(CLI::IsMember({"facets", "limit"}));
-    registry.add(command, "trace", [trace](Console& console) {
+    Command by_rays{
+        .name = "trace", .summary = "draw the same scene by ray tracing: the truth", .schema = "trace"};
+    by_rays.options = joined({picture_options(*trace, ".exr (all layers) or .png (beauty)"),
+                              {{.names = "--format",
+                                .target = &trace->format,
+                                .help = "what to write, whatever the output is called",
+                                .choices = {"exr", "png"}},
+                               {.names = "--surface",
+                                .target = &trace->surface,
+                                .help = "facets: the rays of render's facets; limit: the exact surface",
+                                .choices = {"facets", "limit"}}}});
+    by_rays.body = [trace](Console& console) {
         return run(*trace, "trace", trace->surface == "facets" ? Engine::kFacetsTruth : Engine::kLimitTruth,
                    console);
-    });
+    };
+    return {std::move(by_projection), std::move(by_rays)};
 }
 
 }  // namespace trilens

@@ -3,8 +3,6 @@
 #include <trilens/scene.h>
 #include <trilens/text.h>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/command.h"
 #include "cli/scene_options.h"
 
@@ -83,6 +81,7 @@ Answer validate(const SceneOptions& options, Console& console) {
     renderer.check({find_camera(renderer.scene(), options.camera), 0});
     const std::size_t optics = renderer.optics().size(), triangles = renderer.triangle_count();
     Answer answer;
+    answer.is_report = true;
     answer.text = options.scene + ": valid, " + std::to_string(optics) + " optics, " +
                   std::to_string(triangles) + " triangles";
     answer.fields["optics"] = optics;
@@ -111,29 +110,32 @@ Answer example(const std::string& name) {
 
 }  // namespace
 
-void register_scene(const CommandRegistry& registry) {
-    CLI::App* scene = registry.app->add_subcommand("scene", "look at scene files");
-    scene->require_subcommand(1);
+Command scene_command() {
     auto options = std::make_shared<SceneOptions>();
-
-    CLI::App* command = scene->add_subcommand("validate", "check a scene file and everything it names");
-    add_scene_options(*command, *options);
-    registry.add(command, "scene", [options](Console& console) { return validate(*options, console); });
-
-    command = scene->add_subcommand("info", "what a scene holds");
-    add_scene_options(*command, *options);
-    registry.add(command, "scene", [options](Console& console) { return info(*options, console); });
-
-    command = scene->add_subcommand("schema", "print the JSON Schema of scene files");
-    registry.add(command, "scene", [](Console&) {
-        return Answer{
-            scene_schema(), {{"schema_document", Json::parse(scene_schema())}}, {}, ExitCode::kDone};
-    });
-
+    const std::vector<Option> of_scene = joined({scene_argument(*options), scene_overrides(*options)});
+    Command check{.name = "validate",
+                  .summary = "check a scene file and everything it names",
+                  .options = of_scene,
+                  .schema = "scene"};
+    check.body = [options](Console& console) { return validate(*options, console); };
+    Command look{.name = "info", .summary = "what a scene holds", .options = of_scene, .schema = "scene"};
+    look.body = [options](Console& console) { return info(*options, console); };
+    Command schema{.name = "schema", .summary = "print the JSON Schema of scene files", .schema = "scene"};
+    schema.body = [](Console&) {
+        return Answer{.text = scene_schema(), .fields = {{"schema_document", Json::parse(scene_schema())}}};
+    };
     auto name = std::make_shared<std::string>();
-    command = scene->add_subcommand("example", "print an example scene, or the list of them");
-    command->add_option("NAME", *name, "which example; without it, the list");
-    registry.add(command, "scene", [name](Console&) { return example(*name); });
+    Command print{.name = "example",
+                  .summary = "print an example scene, or the list of them",
+                  .options = {{.names = "NAME",
+                               .target = name.get(),
+                               .help = "which example; without it, the list",
+                               .offer = Offer::kExample}},
+                  .schema = "scene"};
+    print.body = [name](Console&) { return example(*name); };
+    return {.name = "scene",
+            .summary = "look at scene files",
+            .commands = {std::move(check), std::move(look), std::move(schema), std::move(print)}};
 }
 
 }  // namespace trilens

@@ -1,7 +1,7 @@
 // trilens sweep: error against resolution, for one scene or for a gallery of scenes.
+#include <trilens/stopwatch.h>
 #include <trilens/sweep.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -137,19 +137,27 @@ SweepRequest sweep_request(const SweepOptions& options, const std::string& scene
 
 Answer run(const SweepOptions& options, Console& console) {
     require_distinct_names(options.scenes);
+    console.files().reads(options.scenes);
     std::vector<SweepSummary> summaries;
-    for (const std::string& scene : options.scenes)
+    for (const std::string& scene : options.scenes) {
+        const Stopwatch watch;
         summaries.push_back(run_sweep(sweep_request(options, scene), sweep_talk(console)));
+        console.note_stage("swept " + scene, watch);
+    }
     // A shard sums up nothing: `sweep report` does once all are done.
     const bool is_whole = is_whole_sweep(options.shard);
     const std::string report = is_whole ? options.output + "/report.html" : "";
     if (is_whole && summaries.size() > 1) write_sweep_gallery(options.output, summaries);
-    return answer_of(summaries, report);
+    Answer answer = answer_of(summaries, report);
+    answer.is_report = true;
+    return answer;
 }
 
 Answer plan(const SweepOptions& options, Console& console) {
     Answer answer;
+    answer.is_report = true;
     require_distinct_names(options.scenes);
+    console.files().reads(options.scenes);
     for (const std::string& scene : options.scenes) {
         const std::string file = plan_sweep(sweep_request(options, scene), sweep_talk(console));
         answer.text += file + "\n";
@@ -171,51 +179,79 @@ std::vector<std::string> sweeps_in(const std::string& folder) {
     return found.empty() ? std::vector<std::string>{folder} : found;
 }
 
-void add_sweep_options(CLI::App& command, SweepOptions& options) {
-    command.add_option("SCENES", options.scenes, "scene files; several make a gallery")->required();
-    command.add_option("-o,--output", options.output, "folder for the results")->required()->type_name("DIR");
-    command.add_option("--over", options.over, "what is varied: resolution=1,2,4 or resolution=1..64:x2")
-        ->type_name("AXIS");
-    command.add_option("--truth", options.truth, "limit or facets")
-        ->check(CLI::IsMember({"limit", "facets"}));
-    command.add_option("--shard", options.shard, "do part i of n only: i/n, or auto in a job array")
-        ->type_name("i/n");
-    add_scene_overrides(command, options.scene);
+std::vector<Option> sweep_options(SweepOptions& options) {
+    return joined({{{.names = "SCENES",
+                     .target = &options.scenes,
+                     .help = "scene files; several make a gallery",
+                     .offer = Offer::kScene,
+                     .is_required = true},
+                    {.names = "-o,--output",
+                     .target = &options.output,
+                     .help = "folder for the results",
+                     .value = "DIR",
+                     .offer = Offer::kFolder,
+                     .is_required = true},
+                    {.names = "--over",
+                     .target = &options.over,
+                     .help = "what is varied: resolution=1,2,4 or resolution=1..64:x2",
+                     .value = "AXIS"},
+                    {.names = "--truth",
+                     .target = &options.truth,
+                     .help = "what runs are compared with: the exact surface or the same facets, ray traced",
+                     .choices = {"limit", "facets"}},
+                    {.names = "--shard",
+                     .target = &options.shard,
+                     .help = "do part i of n only: i/n, or auto in a job array",
+                     .value = "i/n"}},
+                   scene_overrides(options.scene)});
+}
+
+Answer status(const std::string& folder) {
+    std::vector<SweepSummary> summaries;
+    for (const std::string& one : sweeps_in(folder)) summaries.push_back(load_sweep(one));
+    return answer_of(summaries, folder);
+}
+
+Answer report(const std::string& folder) {
+    std::vector<SweepSummary> summaries;
+    for (const std::string& one : sweeps_in(folder)) summaries.push_back(report_sweep(one));
+    if (summaries.size() > 1) write_sweep_gallery(folder, summaries);
+    return answer_of(summaries, folder + "/report.html");
+}
+
+Command folder_command(const std::string& name, const std::string& summary,
+                       Answer (*body)(const std::string& folder)) {
+    auto folder = std::make_shared<std::string>();
+    return {.name = name,
+            .summary = summary,
+            .options = {{.names = "DIR",
+                         .target = folder.get(),
+                         .help = "the sweep's folder",
+                         .offer = Offer::kFolder,
+                         .is_required = true}},
+            .schema = "sweep",
+            .body = [folder, body](Console&) { return body(*folder); }};
 }
 
 }  // namespace
 
-void register_sweep(const CommandRegistry& registry) {
-    CLI::App* sweep = registry.app->add_subcommand("sweep", "render, trace and compare over resolutions");
-    sweep->require_subcommand(1);
+Command sweep_command() {
     auto options = std::make_shared<SweepOptions>();
-    CLI::App* command = sweep->add_subcommand("run", "do what is not done yet, then report");
-    add_sweep_options(*command, *options);
-    registry.add(command, "sweep", [options](Console& console) { return run(*options, console); });
-
-    command = sweep->add_subcommand("plan", "write the plan, run nothing");
-    add_sweep_options(*command, *options);
-    registry.add(command, "sweep", [options](Console& console) { return plan(*options, console); });
-
-    register_sweep_engines(registry, *sweep);
-
-    auto folder = std::make_shared<std::string>();
-    command = sweep->add_subcommand("status", "what is done of a sweep");
-    command->add_option("DIR", *folder, "the sweep's folder")->required();
-    registry.add(command, "sweep", [folder](Console&) {
-        std::vector<SweepSummary> summaries;
-        for (const std::string& one : sweeps_in(*folder)) summaries.push_back(load_sweep(one));
-        return answer_of(summaries, *folder);
-    });
-
-    command = sweep->add_subcommand("report", "sum up again: tables, fits, plots, page");
-    command->add_option("DIR", *folder, "the sweep's folder")->required();
-    registry.add(command, "sweep", [folder](Console&) {
-        std::vector<SweepSummary> summaries;
-        for (const std::string& one : sweeps_in(*folder)) summaries.push_back(report_sweep(one));
-        if (summaries.size() > 1) write_sweep_gallery(*folder, summaries);
-        return answer_of(summaries, *folder + "/report.html");
-    });
+    Command all{.name = "run",
+                .summary = "do what is not done yet, then report",
+                .options = sweep_options(*options),
+                .schema = "sweep"};
+    all.body = [options](Console& console) { return run(*options, console); };
+    Command planned{.name = "plan",
+                    .summary = "write the plan, run nothing",
+                    .options = sweep_options(*options),
+                    .schema = "sweep"};
+    planned.body = [options](Console& console) { return plan(*options, console); };
+    return {.name = "sweep",
+            .summary = "render, trace and compare over resolutions",
+            .commands = {std::move(all), std::move(planned), sweep_engines_command(),
+                         folder_command("status", "what is done of a sweep", status),
+                         folder_command("report", "sum up again: tables, fits, plots, page", report)}};
 }
 
 }  // namespace trilens

@@ -7,14 +7,38 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "cli/format.h"
+
 namespace trilens {
 namespace {
 
 std::atomic<bool> g_stop{false};
 std::atomic<int> g_signal{0};
 
+std::atomic<bool> g_at_once{true};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler reads it");
+std::string g_after_interrupt, g_after_terminate;
+
+/// All of `text`, as far as the descriptor takes it; only with what a signal handler may call.
+void write_all(int descriptor, const char* text, std::size_t size) {
+    while (size > 0) {
+        const ssize_t written = write(descriptor, text, size);
+        if (written <= 0) return;
+        text += written;
+        size -= static_cast<std::size_t>(written);
+    }
+}
+
+[[noreturn]] void end_at_once(int signal) {
+    constexpr char kSaid[] = "trilens: error: interrupted\n";
+    const std::string& answer = signal == SIGTERM ? g_after_terminate : g_after_interrupt;
+    write_all(STDOUT_FILENO, answer.data(), answer.size());
+    write_all(STDERR_FILENO, kSaid, sizeof kSaid - 1);
+    _exit(128 + signal);
+}
+
 void handle_signal(int signal) {
-    if (g_stop.exchange(true)) _exit(128 + signal);
+    if (g_stop.exchange(true) || g_at_once) end_at_once(signal);
     g_signal = signal;
 }
 
@@ -29,6 +53,15 @@ bool is_live_terminal() {
 void install_signal_handlers() {
     std::signal(SIGINT, handle_signal);
     std::signal(SIGTERM, handle_signal);
+}
+
+void stop_at_once(bool at_once) {
+    g_at_once = at_once;
+}
+
+void set_last_words(const std::string& after_interrupt, const std::string& after_terminate) {
+    g_after_interrupt = after_interrupt;
+    g_after_terminate = after_terminate;
 }
 
 const std::atomic<bool>& stop_requested() {
@@ -80,10 +113,15 @@ void Console::error(const std::string& message) {
 
 void Console::note(const std::string& message) {
     const std::lock_guard lock(mutex_);
-    if (options_.verbose > 0 && !options_.quiet) write_line("", "0", message);
+    if (options_.verbose && !options_.quiet) write_line("", "0", message);
+}
+
+void Console::note_stage(const std::string& what, const Stopwatch& watch) {
+    note(fmt::format("{} ({:.3f} s)", what, watch.seconds()));
 }
 
 Progress Console::progress(const std::string& job) {
+    stop_at_once(false);
     last_done_ = -1;
     started_ = last_time_ = std::chrono::steady_clock::now();
     Progress progress;

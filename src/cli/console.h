@@ -2,11 +2,14 @@
 #pragma once
 
 #include <trilens/error.h>
+#include <trilens/stopwatch.h>
 #include <atomic>
 #include <chrono>
 #include <mutex>
 #include <string>
 #include <vector>
+
+#include "cli/file_roles.h"
 
 namespace trilens {
 
@@ -15,10 +18,11 @@ enum class ColourStyle { kAuto, kAlways, kNever };
 
 struct ConsoleOptions {
     bool quiet = false;  // errors only
-    int verbose = 0;
+    bool verbose = false;
     ProgressStyle progress = ProgressStyle::kAuto;
     ColourStyle colour = ColourStyle::kAuto;
-    bool wants_json = false;  // the answer's fields will be read
+    bool wants_json = false;          // the answer's fields will be read
+    bool is_stdout_answered = false;  // by the JSON object: nothing else may go there
 };
 
 /// One writer for everything on stderr, so that a bar and a message never mix. Keeps the warnings for the
@@ -31,6 +35,8 @@ class Console {
     void warn(const std::string& message);
     void error(const std::string& message);
     void note(const std::string& message);  // only with -v
+    /// With -v: what was done since the watch was started, and in how many seconds.
+    void note_stage(const std::string& what, const Stopwatch& watch);
 
     /// A Progress that draws `job` here: a bar on a terminal, else a line every 10 % or 30 s.
     Progress progress(const std::string& job);
@@ -40,6 +46,10 @@ class Console {
 
     const std::vector<std::string>& warnings() const { return warnings_; }
     bool wants_json() const { return options_.wants_json; }
+    bool is_stdout_answered() const { return options_.is_stdout_answered; }
+    bool is_quiet() const { return options_.quiet; }
+    FileRoles& files() { return files_; }
+    const FileRoles& files() const { return files_; }
 
   private:
     void draw(const std::string& job, double done);
@@ -52,11 +62,21 @@ class Console {
     double last_done_ = -1;
     std::chrono::steady_clock::time_point last_time_, started_;
     std::vector<std::string> warnings_;
+    FileRoles files_;
     std::mutex mutex_;
 };
 
-/// Installs handlers of SIGINT and SIGTERM that set the flag below; a second signal ends the program at once.
+/// Installs handlers of SIGINT and SIGTERM. While a job reports its progress the first signal asks it to
+/// stop, so that what was finished is kept; at other times, and at the second signal, the program ends at
+/// once.
 void install_signal_handlers();
+
+/// Whether signals end the program at once: so it begins, and so it is while something may block for ever, as
+/// reading a pipe. Console::progress() turns it off.
+void stop_at_once(bool at_once);
+
+/// What a program that ends at once prints on stdout, after SIGINT and after SIGTERM.
+void set_last_words(const std::string& after_interrupt, const std::string& after_terminate);
 
 /// Set once a signal asked the program to stop.
 const std::atomic<bool>& stop_requested();

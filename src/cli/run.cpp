@@ -1,15 +1,17 @@
-// Parsing, dispatch, and the one place where failures become exit codes.
+// Dispatch, and the one place where failures become exit codes.
 #include <trilens/files.h>
+#include <trilens/stopwatch.h>
 #include <trilens/text.h>
 #include <trilens/version.h>
 
-#include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <exception>
-#include <memory>
 #include <new>
 
 #include "cli/command.h"
+#include "cli/option.h"
+#include "cli/parse.h"
 
 namespace trilens {
 
@@ -23,185 +25,238 @@ namespace {
 /// Options that every command has.
 struct CommonOptions {
     ConsoleOptions console;
+    std::string progress = "auto", colour = "auto";
     int threads = 0;
     std::string json;  // empty: text; "-": stdout; else a file beside the text
+    bool help = false, version = false;
 };
 
-struct Chosen {
-    std::string name;
-    CommandBody body;
-};
-
-const std::map<std::string, ProgressStyle> kProgressNames{{"auto", ProgressStyle::kAuto},
-                                                          {"bar", ProgressStyle::kBar},
-                                                          {"plain", ProgressStyle::kPlain},
-                                                          {"json", ProgressStyle::kJson},
-                                                          {"none", ProgressStyle::kSilent}};
-const std::map<std::string, ColourStyle> kColourNames{
-    {"auto", ColourStyle::kAuto}, {"always", ColourStyle::kAlways}, {"never", ColourStyle::kNever}};
-
-void add_common(CLI::App& command, CommonOptions& common) {
-    command.add_flag("-q,--quiet", common.console.quiet, "say errors only")->group("Common");
-    command.add_flag("-v,--verbose", common.console.verbose, "say more")->group("Common");
-    command.add_option("-t,--threads", common.threads, "threads; 0 means all")
-        ->check(CLI::Range(0, 4096))
-        ->group("Common");
-    command
-        .add_option("--json", common.json,
-                    "answer with one JSON object on stdout, or beside the text in =FILE")
-        ->type_name("[=FILE]")
-        ->group("Common");
-    command.add_option("--progress", common.console.progress, "auto, bar, plain, json or none")
-        ->transform(CLI::CheckedTransformer(kProgressNames, CLI::ignore_case).description(""))
-        ->type_name("STYLE")
-        ->group("Common");
-    command.add_option("--color", common.console.colour, "auto, always or never")
-        ->transform(CLI::CheckedTransformer(kColourNames, CLI::ignore_case).description(""))
-        ->type_name("WHEN")
-        ->group("Common");
+std::vector<Option> common_options(CommonOptions& common) {
+    std::vector<Option> options{
+        {.names = "-h,--help", .target = &common.help, .help = "print this help", .is_answer = true},
+        {.names = "--version", .target = &common.version, .help = "print the version", .is_answer = true},
+        {.names = "-q,--quiet",
+         .target = &common.console.quiet,
+         .help = "say errors only; stdout gets only what was asked for"},
+        {.names = "-v,--verbose",
+         .target = &common.console.verbose,
+         .help = "say more: versions, what was read, every stage with its seconds"},
+        {.names = "-t,--threads",
+         .target = &common.threads,
+         .help = "threads; 0 means all",
+         .range = {0, 4096}},
+        {.names = "--json",
+         .target = &common.json,
+         .help = "answer with one JSON object on stdout, or beside the text in =FILE",
+         .value = "[=FILE]",
+         .offer = Offer::kFile,
+         .value_follows = true},
+        {.names = "--progress",
+         .target = &common.progress,
+         .help = "how progress is shown",
+         .choices = {"auto", "bar", "plain", "json", "none"}},
+        {.names = "--color",
+         .target = &common.colour,
+         .help = "colours on stderr",
+         .choices = {"auto", "always", "never"}}};
+    for (Option& option : options) option.is_common = true;
+    return options;
 }
 
-/// A bare `--json` means stdout; CLI11 would otherwise take the next word for its value.
-std::vector<std::string> spelled_out(int argc, const char* const* argv) {
-    std::vector<std::string> words;
-    for (int i = 1; i < argc; ++i) words.push_back(std::string(argv[i]) == "--json" ? "--json=-" : argv[i]);
-    return words;
+void add_common(Command& command, const std::vector<Option>& common) {
+    command.options.insert(command.options.end(), common.begin(), common.end());
+    for (Command& below : command.commands) add_common(below, common);
 }
 
-Json answer_object(const std::string& command, ExitCode code, const Console& console) {
+ConsoleOptions console_options(const CommonOptions& common) {
+    ConsoleOptions options = common.console;
+    options.progress = common.progress == "bar"     ? ProgressStyle::kBar
+                       : common.progress == "plain" ? ProgressStyle::kPlain
+                       : common.progress == "json"  ? ProgressStyle::kJson
+                       : common.progress == "none"  ? ProgressStyle::kSilent
+                                                    : ProgressStyle::kAuto;
+    options.colour = common.colour == "always"  ? ColourStyle::kAlways
+                     : common.colour == "never" ? ColourStyle::kNever
+                                                : ColourStyle::kAuto;
+    options.wants_json = !common.json.empty();
+    options.is_stdout_answered = common.json == "-";
+    return options;
+}
+
+Json answer_object(const std::string& schema, int code, const Console& console) {
     Json object;
-    object["schema"] = "trilens." + command + "/1";
-    object["status"] = code == ExitCode::kDone ? "ok" : code == ExitCode::kExceeded ? "fail" : "error";
-    object["exit_code"] = static_cast<int>(code);
+    object["schema"] = "trilens." + schema + "/1";
+    object["status"] = code == 0 ? "ok" : code == 1 ? "fail" : "error";
+    object["exit_code"] = code;
     object["warnings"] = console.warnings();
     object["errors"] = Json::array();
     return object;
 }
 
+std::string json_text(const Json& object) {
+    return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 void print(const std::string& text) {
+    stop_at_once(true);  // a pipe that nobody reads
     std::fputs(text.c_str(), stdout);
     if (!text.empty() && text.back() != '\n') std::fputc('\n', stdout);
     if (std::fflush(stdout) != 0) throw OutputError("stdout", "cannot be written");
 }
 
-void give_answer(const Chosen& chosen, const CommonOptions& common, const Console& console,
-                 const Answer& answer) {
-    if (common.json.empty()) return print(answer.text);
-    Json object = answer_object(chosen.name, answer.code, console);
+/// What the words ask for, and where its answer goes.
+struct Run {
+    Located located;
+    CommonOptions common;
+    std::vector<std::string> words;
+
+    std::string schema() const {
+        if (!located.command().schema.empty()) return located.command().schema;
+        return located.path.size() > 1 ? located.path[1]->name : "help";
+    }
+};
+
+void give_answer(const Run& run, const Console& console, const Answer& answer) {
+    const std::string text = console.is_quiet() && answer.is_report ? "" : answer.text;
+    if (run.common.json.empty()) return print(text);
+    Json object = answer_object(run.schema(), static_cast<int>(answer.code), console);
     object["errors"] = answer.errors;
     object.update(answer.fields);
-    if (common.json == "-") return print(object.dump(2));
-    replace_text_file(common.json, object.dump(2) + "\n");
-    print(answer.text);
+    if (run.common.json == "-") return print(json_text(object));
+    replace_text_file(run.common.json, json_text(object));
+    print(text);
 }
 
-int fail(const std::string& command, const std::string& json, Console& console, const Error& error) {
+/// A failure may be told in a file only where the command line means that file for nothing else.
+bool is_free_for_json(const Run& run, const Console& console) {
+    for (const std::string& input : console.files().inputs())
+        if (is_one_file(run.common.json, input)) return false;
+    for (const std::string& word : run.words) {
+        if (word.rfind("--json=", 0) == 0) continue;
+        const std::size_t equals = word.find('=');
+        if (is_one_file(run.common.json, word)) return false;
+        if (equals != std::string::npos && is_one_file(run.common.json, word.substr(equals + 1)))
+            return false;
+    }
+    return true;
+}
+
+int fail(const Run& run, Console& console, const Error& error) {
     const int code =
         error.code() == ExitCode::kInterrupted ? stop_exit_code() : static_cast<int>(error.code());
     console.error(error.what());
-    if (!json.empty()) {
-        Json object = answer_object(command, error.code(), console);
-        object["exit_code"] = code;
-        object["errors"].push_back(error.what());
-        try {
-            if (json == "-")
-                print(object.dump(2, ' ', false, Json::error_handler_t::replace));
-            else
-                replace_text_file(json, object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-        } catch (const Error& second) {
-            if (std::string(second.what()) != error.what()) console.error(second.what());
-        }
+    if (run.common.json.empty()) return code;
+    Json object = answer_object(run.schema(), code, console);
+    object["errors"].push_back(error.what());
+    try {
+        if (run.common.json == "-")
+            print(json_text(object));
+        else if (is_free_for_json(run, console))
+            replace_text_file(run.common.json, json_text(object));
+    } catch (const Error& second) {
+        if (std::string(second.what()) != error.what()) console.error(second.what());
     }
     return code;
 }
 
-/// The long options of a command and of the commands below it.
-void collect_options(const CLI::App& command, std::vector<std::string>& known) {
-    for (const CLI::Option* option : command.get_options())
-        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-    for (const CLI::App* below : command.get_subcommands(nullptr)) collect_options(*below, known);
+/// A bare `--json` means stdout.
+std::vector<std::string> spelled_out(int argc, const char* const* argv) {
+    std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    for (std::string& word : words)
+        if (word == "--json") word = "--json=-";
+    return words;
 }
 
-/// The usage error behind a CLI11 complaint, with the nearest known word where one was mistyped.
-UsageError usage_error(const CLI::App& app, const CLI::ParseError& complaint,
-                       const std::vector<std::string>& words) {
-    std::vector<std::string> commands;
-    for (const CLI::App* command : app.get_subcommands(nullptr)) commands.push_back(command->get_name());
-    if (words.empty()) return UsageError("a command is required; see trilens --help");
-    if (words[0].rfind("-", 0) != 0 &&
-        std::find(commands.begin(), commands.end(), words[0]) == commands.end())
-        return UsageError("there is no command \"" + words[0] + "\"" + suggestion(words[0], commands));
+/// A command line that cannot be parsed may still say where its answer goes.
+std::string json_of(const std::vector<std::string>& words) {
+    std::string json;
+    for (const std::string& word : words)
+        if (word.rfind("--json=", 0) == 0) json = word.substr(7);
+    return json;
+}
 
-    // CLI11 lists what it did not take; the first option among it is the one to explain.
-    std::vector<std::string> known;
-    const CLI::App* chosen = nullptr;
-    for (const CLI::App* command : app.get_subcommands(nullptr))
-        if (command->get_name() == words[0]) chosen = command;
-    if (chosen) collect_options(*chosen, known);
-    if (dynamic_cast<const CLI::ExtrasError*>(&complaint)) {
-        for (const std::string& word : words) {
-            const std::string name = word.substr(0, word.find('='));
-            if (word.rfind("--", 0) == 0 && std::find(known.begin(), known.end(), name) == known.end())
-                return UsageError("there is no option \"" + name + "\"" + suggestion(name, known));
-        }
+void parse(const Run& run) {
+    const Located& located = run.located;
+    if (!located.unknown.empty()) throw unknown_command(located);
+    parse_options(located);
+    if (located.command().commands.empty() || run.common.help || run.common.version) return;
+    std::vector<std::string> names;
+    for (const Command& command : located.command().commands) names.push_back(command.name);
+    throw UsageError("a command is required: " + located.called() + " " + one_of(names) + "; see " +
+                     located.called() + " --help");
+}
+
+/// What is said where a signal ends the program at once and JSON was asked for on stdout.
+void prepare_last_words(const Run& run, const Console& console) {
+    if (run.common.json != "-") return;
+    std::vector<std::string> said;
+    for (const int code : {130, 143}) {
+        Json object = answer_object(run.schema(), code, console);
+        object["errors"].push_back("interrupted");
+        said.push_back(json_text(object));
     }
-    return UsageError(complaint.what());
+    set_last_words(said[0], said[1]);
+}
+
+int run_command(const Run& run, Console& console) {
+    try {
+        console.files().writes(run.common.json);
+        prepare_last_words(run, console);
+        set_threads(run.common.threads);
+        std::string built = "trilens " + version();
+        for (const std::string& library : library_versions()) built += ", " + library;
+        console.note(built + ", " + std::to_string(threads()) + " threads");
+        const Stopwatch watch;
+        const Answer answer = run.located.command().body(console);
+        give_answer(run, console, answer);
+        console.note_stage(run.located.called() + ": done", watch);
+        return static_cast<int>(answer.code);
+    } catch (const Error& error) {
+        return fail(run, console, error);
+    } catch (const std::bad_alloc&) {
+        return fail(run, console, ComputationError("out of memory"));
+    } catch (const std::exception& error) {
+        return fail(run, console, ComputationError(std::string("internal error: ") + error.what()));
+    }
+}
+
+/// Every command that there is.
+Command make_root() {
+    Command root{.name = "trilens",
+                 .summary = "draw what curved mirrors and glass show, by projection, and measure its error"};
+    root.commands = render_commands();
+    for (Command& command : std::vector<Command>{compare_command(), sweep_command(), project_command(),
+                                                 scene_command(), info_command()})
+        root.commands.push_back(std::move(command));
+    return root;
 }
 
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
     install_signal_handlers();
-    CLI::App app{"trilens draws what curved mirrors and glass show, by projection, and measures its error.",
-                 "trilens"};
-    app.require_subcommand(1);
-    app.set_version_flag("--version", "trilens " + version());
-    app.set_help_flag("-h,--help", "print this help");
-    CommonOptions common;
-    add_common(app, common);
-    Chosen chosen;
-    CommandRegistry registry;
-    registry.app = &app;
-    registry.add = [&](CLI::App* command, const std::string& name, CommandBody body) {
-        add_common(*command, common);
-        command->final_callback([&chosen, name, body = std::move(body)] { chosen = {name, body}; });
-    };
-    register_render(registry);
-    register_compare(registry);
-    register_sweep(registry);
-    register_project(registry);
-    register_scene(registry);
-    register_info(registry);
-
-    const std::vector<std::string> words = spelled_out(argc, argv);
+    Run run;
+    Command root = make_root();
+    for (Command& command : manual_commands(root)) root.commands.push_back(std::move(command));
+    add_common(root, common_options(run.common));
+    run.words = spelled_out(argc, argv);
+    run.located = locate(root, run.words);
     try {
-        std::vector<std::string> reversed(words.rbegin(), words.rend());
-        app.parse(reversed);
-    } catch (const CLI::ParseError& complaint) {
-        if (complaint.get_exit_code() == 0) return app.exit(complaint);
-        Console console(common.console);
-        std::string json = common.json;
-        for (const std::string& word : words)
-            if (word.rfind("--json=", 0) == 0) json = word.substr(7);
-        return fail(words.empty() || words[0][0] == '-' ? "help" : words[0], json, console,
-                    usage_error(app, complaint, words));
+        parse(run);
+    } catch (const UsageError& error) {
+        run.common.json = json_of(run.words);
+        Console console(console_options(run.common));
+        return fail(run, console, error);
     }
-
-    common.console.wants_json = !common.json.empty();
-    Console console(common.console);
+    Console console(console_options(run.common));
+    if (!run.common.help && !run.common.version) return run_command(run, console);
     try {
-        set_threads(common.threads);
-        const Answer answer = chosen.body(console);
-        give_answer(chosen, common, console, answer);
-        return static_cast<int>(answer.code);
+        print(run.common.help ? help_text(run.located) : "trilens " + version());
     } catch (const Error& error) {
-        return fail(chosen.name, common.json, console, error);
-    } catch (const std::bad_alloc&) {
-        return fail(chosen.name, common.json, console, ComputationError("out of memory"));
-    } catch (const std::exception& error) {
-        return fail(chosen.name, common.json, console,
-                    ComputationError(std::string("internal error: ") + error.what()));
+        console.error(error.what());
+        return static_cast<int>(error.code());
     }
+    return 0;
 }
 
 }  // namespace trilens

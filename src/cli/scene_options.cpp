@@ -1,14 +1,18 @@
 #include "cli/scene_options.h"
 
 #include <trilens/error.h>
-#include <CLI/CLI.hpp>
+#include <trilens/stopwatch.h>
 #include <algorithm>
 #include <charconv>
+#include <iostream>
+#include <iterator>
+
+#include "cli/format.h"
 
 namespace trilens {
 namespace {
 
-std::vector<SceneOverride> scene_overrides(const SceneOptions& options) {
+std::vector<SceneOverride> file_overrides(const SceneOptions& options) {
     std::vector<SceneOverride> overrides;
     for (const std::string& text : options.set) {
         const std::size_t equals = text.find('=');
@@ -27,6 +31,36 @@ std::vector<SceneOverride> scene_overrides(const SceneOptions& options) {
     if (options.spp > 0) overrides.push_back({"/film/spp", std::to_string(options.spp)});
     if (options.max_depth >= 0) overrides.push_back({"/render/maxDepth", std::to_string(options.max_depth)});
     return overrides;
+}
+
+constexpr const char* kStandardInput = "standard input";
+
+/// OpenEXR's first four bytes.
+bool is_exr(const std::string& bytes) {
+    return bytes.rfind("\x76\x2f\x31\x01", 0) == 0;
+}
+
+Scene read_standard_input(const SceneRequest& request) {
+    const std::string text{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
+    if (std::cin.bad()) throw InputError(kStandardInput, "", "cannot be read");
+    if (text.empty()) throw InputError(kStandardInput, "", "is empty; a scene is expected there");
+    if (is_exr(text)) throw InputError(kStandardInput, "", "is an image; name its file instead of -");
+    try {
+        Scene scene = parse_scene(text, "", request.overrides);
+        if (request.resolution != 0) set_resolution(scene, request.resolution);
+        return scene;
+    } catch (const InputError& error) {
+        throw InputError(kStandardInput, "", error.what());
+    }
+}
+
+std::string scene_note(const SceneOptions& options, const Scene& scene) {
+    const SceneInfo found = make_scene_info(scene);
+    return fmt::format(
+        "read {}: {} optics, {} objects with {} triangles, {} lights, {} cameras, film {} x {}, {} samples",
+        is_standard_stream(options.scene) ? kStandardInput : options.scene, found.optics, found.objects,
+        found.triangles, found.lights, found.cameras.size(), scene.film.width, scene.film.height,
+        scene.film.spp * scene.film.spp);
 }
 
 }  // namespace
@@ -51,49 +85,72 @@ std::vector<int> parse_integers(const std::string& text, char separator, std::si
     return values;
 }
 
-void add_scene_options(CLI::App& command, SceneOptions& options) {
-    command.add_option("SCENE", options.scene, "scene file (JSON), or an image that carries its scene")
-        ->required();
-    command.add_option("-n,--resolution", options.resolution, "N x N facets per quad face of every optic")
-        ->check(CLI::Range(1, 1024));
-    add_scene_overrides(command, options);
+std::vector<Option> scene_argument(SceneOptions& options) {
+    return {{.names = "SCENE",
+             .target = &options.scene,
+             .help = "scene file (JSON), an image that carries its scene, or - for standard input",
+             .offer = Offer::kScene,
+             .is_required = true},
+            {.names = "-n,--resolution",
+             .target = &options.resolution,
+             .help = "N x N facets per quad face of every optic",
+             .range = {1, 1024}}};
 }
 
-void add_scene_overrides(CLI::App& command, SceneOptions& options) {
-    command.add_option("--size", options.size, "film size in pixels")->type_name("WxH");
-    command.add_option("--spp", options.spp, "S x S samples per pixel")
-        ->check(CLI::Range(1, 64))
-        ->type_name("S");
-    command.add_option("--camera", options.camera, "camera by name; default: the first")->type_name("NAME");
-    command.add_option("--max-depth", options.max_depth, "optic hits after the first")
-        ->check(CLI::Range(0, 64));
-    command.add_option("--set", options.set, "replace a value of the scene")
-        ->type_name("/json/pointer=VALUE")
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->expected(1)
-        ->take_all();
+std::vector<Option> scene_overrides(SceneOptions& options) {
+    return {{.names = "--size", .target = &options.size, .help = "film size in pixels", .value = "WxH"},
+            {.names = "--spp",
+             .target = &options.spp,
+             .help = "S x S samples per pixel",
+             .value = "S",
+             .range = {1, 64}},
+            {.names = "--camera",
+             .target = &options.camera,
+             .help = "camera by name; default: the first",
+             .value = "NAME"},
+            {.names = "--max-depth",
+             .target = &options.max_depth,
+             .help = "optic hits after the first",
+             .range = {0, 64}},
+            {.names = "--set",
+             .target = &options.set,
+             .help = "replace a value of the scene; may be given several times",
+             .value = "/json/pointer=VALUE"}};
 }
 
-void add_window_options(CLI::App& command, SceneOptions& options) {
-    command.add_option("--crop", options.crop, "draw this window of pixels only")->type_name("x0,y0,x1,y1");
-    command
-        .add_option("--aov", options.aov,
-                    "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract")
-        ->type_name("LIST");
+std::vector<Option> window_options(SceneOptions& options) {
+    return {{.names = "--crop",
+             .target = &options.crop,
+             .help = "draw this window of pixels only",
+             .value = "x0,y0,x1,y1"},
+            {.names = "--aov",
+             .target = &options.aov,
+             .help = "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract",
+             .value = "LIST"}};
 }
 
 SceneRequest scene_request(const SceneOptions& options) {
-    return {options.scene, scene_overrides(options), options.resolution};
+    return {options.scene, file_overrides(options), options.resolution};
 }
 
 Scene load_scene(const SceneOptions& options, Console& console) {
-    Scene scene = load_scene(scene_request(options));
+    console.files().reads({options.scene});
+    const Stopwatch watch;
+    Scene scene = is_standard_stream(options.scene) ? read_standard_input(scene_request(options))
+                                                    : load_scene(scene_request(options));
     for (const std::string& warning : scene.warnings) console.warn(warning);
+    console.note_stage(scene_note(options, scene), watch);
     return scene;
 }
 
 Renderer load_renderer(const SceneOptions& options, Console& console) {
-    return Renderer(load_scene(options, console), console.warner());
+    Scene scene = load_scene(options, console);
+    const Stopwatch watch;
+    Renderer renderer(std::move(scene), console.warner());
+    console.note_stage(fmt::format("made surfaces and trees: {} facets, {} triangles", renderer.facet_count(),
+                                   renderer.triangle_count()),
+                       watch);
+    return renderer;
 }
 
 LayerRequest layer_request(const SceneOptions& options) {

@@ -7,16 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "cli/console.h"
-
-namespace CLI {
-class App;
-}
+#include "cli/command.h"
+#include "cli/option.h"
 
 namespace trilens {
 
 struct SceneOptions {
-    std::string scene;             // a scene file, or an image that carries its scene
+    std::string scene;             // a scene file, an image that carries its scene, or "-"
     std::string camera;            // empty: the image's own, or the first
     int resolution = 0;            // 0: as the scene says
     std::string size;              // "640x480"; empty: as the scene says
@@ -27,17 +24,18 @@ struct SceneOptions {
     std::string aov = "all";
 };
 
-/// Adds the scene argument, its resolution, and what overrides it.
-void add_scene_options(CLI::App& command, SceneOptions& options);
-/// Adds the overrides alone: --size, --spp, --camera, --max-depth, --set.
-void add_scene_overrides(CLI::App& command, SceneOptions& options);
-/// Adds --crop and --aov.
-void add_window_options(CLI::App& command, SceneOptions& options);
+/// The scene argument and its resolution.
+std::vector<Option> scene_argument(SceneOptions& options);
+/// The overrides alone: --size, --spp, --camera, --max-depth, --set.
+std::vector<Option> scene_overrides(SceneOptions& options);
+/// --crop and --aov.
+std::vector<Option> window_options(SceneOptions& options);
 
 /// The options as the library takes them. Throws UsageError for texts that say nothing.
 SceneRequest scene_request(const SceneOptions& options);
 
-/// The scene, with its warnings told.
+/// The scene, with its warnings told; of "-" the text on standard input, whose relative paths start where the
+/// program runs. What it read becomes an input of the console's files.
 Scene load_scene(const SceneOptions& options, Console& console);
 
 /// The scene made ready for drawing.

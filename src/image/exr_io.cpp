@@ -7,8 +7,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <new>
 #include <set>
+#include <string_view>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -102,7 +104,6 @@ std::vector<std::uint32_t> pack_rows(const Image& image, int first, int last) {
 
 void check_readable(const OIIO::ImageSpec& spec, const std::string& file, std::size_t file_size) {
     if (spec.deep) throw InputError(file, "", "has deep pixels, which are not supported");
-    if (spec.get_int_attribute("oiio:subimages", 1) > 1) throw InputError(file, "", "has more than one part");
     if (spec.full_x != 0 || spec.full_y != 0)
         throw InputError(file, "", "its display window does not start at (0, 0)");
     for (int c = 0; c < spec.nchannels; ++c) {
@@ -158,16 +159,23 @@ void unpack(const OIIO::ImageSpec& spec, const std::vector<char>& packed, std::s
     }
 }
 
-bool read_rows(OIIO::ImageInput& in, int first, int last, std::vector<char>& packed) {
-    const OIIO::ImageSpec& spec = in.spec();
+/// Rows of pixels of one part.
+struct Rows {
+    int part = 0, first = 0, last = 0;
+};
+
+bool read_rows(OIIO::ImageInput& in, const OIIO::ImageSpec& spec, const Rows& rows,
+               std::vector<char>& packed) {
+    const auto [part, first, last] = rows;
     if (spec.tile_width == 0)
-        return in.read_scanlines(0, 0, first, last, 0, 0, spec.nchannels, OIIO::TypeUnknown, packed.data());
-    return in.read_tiles(0, 0, spec.x, spec.x + spec.width, first, last, 0, 1, 0, spec.nchannels,
+        return in.read_scanlines(part, 0, first, last, 0, 0, spec.nchannels, OIIO::TypeUnknown,
+                                 packed.data());
+    return in.read_tiles(part, 0, spec.x, spec.x + spec.width, first, last, 0, 1, 0, spec.nchannels,
                          OIIO::TypeUnknown, packed.data());
 }
 
-Image read_all(OIIO::ImageInput& in, const std::string& file, std::size_t file_size) {
-    const OIIO::ImageSpec spec = in.spec();
+Image read_part(OIIO::ImageInput& in, int part, const std::string& file, std::size_t file_size) {
+    const OIIO::ImageSpec spec = in.spec(part);
     check_readable(spec, file, file_size);
     Image image = empty_image_of(spec);
 
@@ -177,11 +185,33 @@ Image read_all(OIIO::ImageInput& in, const std::string& file, std::size_t file_s
         const int rows = std::min(band, spec.height - row);
         const std::size_t columns = static_cast<std::size_t>(spec.width);
         std::vector<char> packed(static_cast<std::size_t>(rows) * columns * spec.pixel_bytes(true));
-        if (!read_rows(in, spec.y + row, spec.y + row + rows, packed) || in.has_error())
+        if (!read_rows(in, spec, {part, spec.y + row, spec.y + row + rows}, packed) || in.has_error())
             throw InputError(file, "", "is truncated or damaged: " + library_reason(in.geterror()));
         unpack(spec, packed, static_cast<std::size_t>(row) * columns, image);
     }
     return image;
+}
+
+Image read_part_in_memory(OIIO::ImageInput& in, int part, const std::string& file, std::size_t file_size) {
+    try {
+        return read_part(in, part, file, file_size);
+    } catch (const std::bad_alloc&) {
+        throw InputError(file, "", "needs more memory than there is");
+    }
+}
+
+std::unique_ptr<OIIO::ImageInput> open_exr(const std::string& file) {
+    auto in = OIIO::ImageInput::create("openexr");
+    if (!in)
+        throw InputError(file, "", "OpenImageIO cannot read OpenEXR: " + library_reason(OIIO::geterror()));
+    OIIO::ImageSpec spec;
+    if (!in->open(file, spec))
+        throw InputError(file, "", "is no OpenEXR image, or is damaged: " + library_reason(in->geterror()));
+    return in;
+}
+
+int count_parts(OIIO::ImageInput& in) {
+    return in.spec().get_int_attribute("oiio:subimages", 1);
 }
 
 }  // namespace
@@ -212,17 +242,30 @@ void write_exr(const std::string& file, const Image& image) {
 
 Image read_exr(const std::string& file) {
     const std::size_t size = readable_size(file);
-    const auto in = OIIO::ImageInput::create("openexr");
-    if (!in)
-        throw InputError(file, "", "OpenImageIO cannot read OpenEXR: " + library_reason(OIIO::geterror()));
-    OIIO::ImageSpec spec;
-    if (!in->open(file, spec))
-        throw InputError(file, "", "is no OpenEXR image, or is damaged: " + library_reason(in->geterror()));
-    try {
-        return read_all(*in, file, size);
-    } catch (const std::bad_alloc&) {
-        throw InputError(file, "", "needs more memory than there is");
+    const auto in = open_exr(file);
+    if (count_parts(*in) > 1) throw InputError(file, "", "has more than one part");
+    return read_part_in_memory(*in, 0, file, size);
+}
+
+std::vector<std::pair<std::string, Image>> read_exr_parts(const std::string& file) {
+    const std::size_t size = readable_size(file);
+    const auto in = open_exr(file);
+    std::vector<std::pair<std::string, Image>> parts;
+    std::set<std::string> names;
+    for (int part = 0; part < count_parts(*in); ++part) {
+        const std::string name = in->spec(part).get_string_attribute("oiio:subimagename");
+        if (!names.insert(name).second) throw InputError(file, "", "has two parts called \"" + name + "\"");
+        parts.emplace_back(name, read_part_in_memory(*in, part, file, size));
     }
+    return parts;
+}
+
+bool is_exr_file(const std::string& file) {
+    if (readable_size(file) < 4) return false;
+    std::ifstream in(file, std::ios::binary);
+    char start[4] = "";
+    in.read(start, sizeof start);
+    return in && std::string_view(start, sizeof start) == "\x76\x2f\x31\x01";
 }
 
 void set_image_threads(int threads) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/appearance.h"
@@ -25,6 +26,13 @@ std::vector<unsigned char> encode_exr(const std::string& name, const Image& imag
 /// they were written in. All or nothing: throws InputError where the file is missing, no OpenEXR, truncated
 /// or damaged, has more than one part or deep pixels, or its display window does not start at (0, 0).
 Image read_exr(const std::string& file);
+
+/// The same of every part of a file, by name (empty where the file gives none). Throws InputError as read_exr
+/// does, and where two parts have one name.
+std::vector<std::pair<std::string, Image>> read_exr_parts(const std::string& file);
+
+/// Whether a file starts as OpenEXR files do. Throws InputError where it cannot be read.
+bool is_exr_file(const std::string& file);
 
 /// Reads any picture that OpenImageIO knows as linear Rec.709: 8 and 16 bit integer files are taken as sRGB
 /// unless they say that they are linear, all others as linear. One or two channels become grey; alpha is

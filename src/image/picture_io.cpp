@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <new>
+#include <optional>
 #include <string_view>
 
 #include "base/check.h"
@@ -15,6 +17,7 @@
 #include "base/file_bytes.h"
 #include "image/image_io.h"
 #include "image/library_reason.h"
+#include "image/library_talk.h"
 
 namespace trilens {
 namespace {
@@ -129,6 +132,13 @@ std::string name_for_format(std::span<const unsigned char> encoded) {
     return "";
 }
 
+bool is_png_file(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    unsigned char start[8] = {};
+    in.read(reinterpret_cast<char*>(start), sizeof start);
+    return in && name_for_format(start) == "memory.png";
+}
+
 std::uint8_t stored_from_linear(float value) {
     if (!(value > 0)) return 0;
     return static_cast<std::uint8_t>(
@@ -159,6 +169,8 @@ std::vector<unsigned char> encode_named_png(const std::string& name, int width, 
 std::shared_ptr<const Texture> read_texture(const std::string& file) {
     const std::size_t size = readable_size(file);
     const OIIO::ImageSpec hints = reading_hints();
+    std::optional<LibraryTalk> talk;
+    if (is_png_file(file)) talk.emplace();
     const auto in = OIIO::ImageInput::open(file, &hints);
     if (!in) throw InputError(file, "", "is no picture, or is damaged: " + library_reason(OIIO::geterror()));
     return read_open(*in, file, size);
@@ -173,6 +185,8 @@ std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> enc
     // The proxy goes in as a hint: open() of OpenImageIO 2.4 forgets a proxy argument where there are hints.
     OIIO::ImageSpec hints = reading_hints();
     hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    std::optional<LibraryTalk> talk;
+    if (format == "memory.png") talk.emplace();
     const auto in = OIIO::ImageInput::open(format, &hints);
     if (!in) throw InputError(name, "", "is damaged: " + library_reason(OIIO::geterror()));
     return read_open(*in, name, encoded.size());

@@ -1,5 +1,7 @@
 #include "measure/compare_layers.h"
 
+#include <utility>
+
 namespace trilens {
 
 std::vector<LayerComparison> compare_layers(const Image& reference, const Image& test,

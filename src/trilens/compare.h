@@ -1,14 +1,16 @@
 // How far two pictures are apart: pixel by pixel, and in what their optics show.
 //
-//     const trilens::Image truth = trilens::read_image("truth.exr"), image =
-//     trilens::read_image("projected.exr"); const trilens::Comparison comparison = trilens::compare(truth,
-//     image); std::printf("rmse %g\n", comparison.metrics.rmse); for (const trilens::LayerComparison& layer :
-//     trilens::compare_layers(truth, image))
-//         if (layer.displacement) std::printf("%s moved by %g px\n", layer.layer.c_str(),
-//         layer.displacement->mean);
+//     const trilens::Image truth = trilens::read_image("truth.exr"), image = trilens::read_image("mine.exr");
+//     const trilens::Comparison comparison = trilens::compare(truth, image);
+//     std::printf("rmse %g\n", comparison.metrics.rmse);
+//     for (const trilens::LayerComparison& layer : trilens::compare_layers(truth, image))
+//         if (layer.displacement && layer.displacement->summary)
+//             std::printf("%s moved by %g px\n", layer.layer.c_str(), layer.displacement->summary->mean);
 #pragma once
 
 #include "measure/compare.h"
 #include "measure/compare_layers.h"
 #include "measure/difference.h"
 #include "measure/fit.h"
+#include "trilens/compare_inputs.h"
+#include "trilens/compare_limits.h"

@@ -1,6 +1,7 @@
 #include "trilens/image.h"
 
 #include <set>
+#include <utility>
 
 #include "base/error.h"
 #include "image/image_io.h"
@@ -12,7 +13,7 @@ bool ends_with(const std::string& text, const std::string& end) {
     return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-void write_beauty(const std::string& file, const Image& image) {
+std::vector<float> beauty_of(const Image& image) {
     std::vector<float> rgb(3 * image.pixels());
     int c = 0;
     for (const char* name : {"R", "G", "B"}) {
@@ -22,7 +23,19 @@ void write_beauty(const std::string& file, const Image& image) {
         for (std::size_t p = 0; p < values.size(); ++p) rgb[3 * p + static_cast<std::size_t>(c)] = values[p];
         ++c;
     }
-    write_png(file, image.data_width, image.data_height, rgb);
+    return rgb;
+}
+
+Image image_of(const Texture& texture) {
+    Image image;
+    image.width = image.data_width = texture.width;
+    image.height = image.data_height = texture.height;
+    for (std::size_t c = 0; c < 3; ++c) {
+        std::vector<float> values(image.pixels());
+        for (std::size_t p = 0; p < values.size(); ++p) values[p] = texture.rgb[3 * p + c];
+        image.channels.push_back({std::string(1, "RGB"[c]), std::move(values)});
+    }
+    return image;
 }
 
 }  // namespace
@@ -48,6 +61,16 @@ Image read_image(const std::string& file) {
     return read_exr(file);
 }
 
+std::vector<ImagePart> read_image_parts(const std::string& file) {
+    std::vector<ImagePart> parts;
+    if (!is_exr_file(file)) {
+        parts.push_back({"", image_of(*read_texture(file))});
+        return parts;
+    }
+    for (auto& [name, image] : read_exr_parts(file)) parts.push_back({name, std::move(image)});
+    return parts;
+}
+
 void write_image(const std::string& file, const Image& image) {
     if (ends_with(file, ".exr")) return write_image_as(file, image, ImageFormat::kExr);
     if (ends_with(file, ".png")) return write_image_as(file, image, ImageFormat::kPng);
@@ -56,13 +79,19 @@ void write_image(const std::string& file, const Image& image) {
 
 void write_image_as(const std::string& file, const Image& image, ImageFormat format) {
     check_image(image);
-    if (format == ImageFormat::kPng) return write_beauty(file, image);
+    if (format == ImageFormat::kPng)
+        return write_png(file, image.data_width, image.data_height, beauty_of(image));
     write_exr(file, image);
 }
 
-std::vector<unsigned char> encode_image(const Image& image) {
+std::vector<unsigned char> encode_image_as(const Image& image, ImageFormat format) {
     check_image(image);
+    if (format == ImageFormat::kPng) return encode_png(image.data_width, image.data_height, beauty_of(image));
     return encode_exr("image", image);
+}
+
+std::vector<unsigned char> encode_image(const Image& image) {
+    return encode_image_as(image, ImageFormat::kExr);
 }
 
 }  // namespace trilens

@@ -17,6 +17,16 @@ namespace trilens {
 /// file cannot be used.
 Image read_image(const std::string& file);
 
+/// A part of a picture's file.
+struct ImagePart {
+    std::string name;  // empty where the file gives none
+    Image image;
+};
+
+/// Reads every part of any picture: of OpenEXR all channels as read_image does, of other formats (PNG, JPEG
+/// and their like) one part with R, G and B in linear Rec.709, their alpha left out. Throws InputError.
+std::vector<ImagePart> read_image_parts(const std::string& file);
+
 /// Writes OpenEXR, all channels to the last bit (a name that ends in ".exr"), or the beauty R G B as 8-bit
 /// sRGB
 /// (".png"); beside the name, then renamed. Metadata is kept where its name starts with "trilens:". Throws
@@ -28,6 +38,9 @@ enum class ImageFormat { kExr, kPng };
 
 /// The same, whatever the name ends in.
 void write_image_as(const std::string& file, const Image& image, ImageFormat format);
+
+/// The bytes of that file.
+std::vector<unsigned char> encode_image_as(const Image& image, ImageFormat format);
 
 /// The bytes of that OpenEXR file.
 std::vector<unsigned char> encode_image(const Image& image);

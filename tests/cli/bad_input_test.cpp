@@ -172,7 +172,7 @@ TEST_CASE("a command line that makes no sense: exit 2 and the nearest word", "[c
          {"--fail nan", "--hardfail nan", "--warn nan", "--failrelative -1", "--failpercent 101",
           "--allowfailures -1", "--allowfailures 99999999999999999999", "--radius nan"})
         check_one_message(run_trilens(std::string("compare a.exr b.exr ") + tolerance), 2, {"--"});
-    check_one_message(run_trilens("compare a.exr b.exr -o diff.png"), 2, {"diff.png"});
+    check_one_message(run_trilens("compare a.exr b.exr -o diff.jpeg"), 2, {"diff.jpeg"});
     check_one_message(run_trilens("sweep run " + scene + " --over resolution=2000" + out), 2, {"2000"});
     check_one_message(run_trilens(""), 2, {"command"});
     CHECK(files_in(folder) == 1);

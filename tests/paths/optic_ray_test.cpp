@@ -6,7 +6,7 @@
 #include "intersect/limit_tracer.h"
 #include "intersect/random_scene.h"
 #include "support/test.h"
-#include "test_surfaces.h"
+#include "intersect/test_surfaces.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -1,0 +1,142 @@
+// What a comparison prints, and its JSON.
+#include "cli/compare_report.h"
+
+#include "cli/format.h"
+
+namespace trilens {
+namespace {
+
+Json metrics_json(const Metrics& m) {
+    return {
+        {"mae", json_number(m.mae)},   {"rmse", json_number(m.rmse)},       {"relmse", json_number(m.relmse)},
+        {"relmse_eps", 0.01},          {"psnr_db", json_number(m.psnr_db)}, {"psnr_peak", 1},
+        {"ssim", json_number(m.ssim)}, {"max", json_number(m.max)},         {"p50", json_number(m.p50)},
+        {"p95", json_number(m.p95)},   {"p99", json_number(m.p99)}};
+}
+
+Json seen_json(const SeenMismatch& s) {
+    return {{"pixels", s.pixels},
+            {"object_mismatch", s.object_mismatch},
+            {"primitive_mismatch", s.primitive_mismatch},
+            {"coverage_mismatch", s.coverage_mismatch}};
+}
+
+/// Null is "nothing was measured".
+Json displacement_json(const Displacement& d) {
+    const auto statistic = [&](double Summary::*which) {
+        return d.summary ? json_number((*d.summary).*which) : Json(nullptr);
+    };
+    return {{"mean", statistic(&Summary::mean)},
+            {"p50", statistic(&Summary::p50)},
+            {"p95", statistic(&Summary::p95)},
+            {"p99", statistic(&Summary::p99)},
+            {"max", statistic(&Summary::max)},
+            {"pixels", d.pixels},
+            {"lost", d.lost},
+            {"beyond_radius", d.beyond_radius},
+            {"missing", d.missing},
+            {"coverage", d.coverage ? json_number(*d.coverage) : Json(nullptr)},
+            {"mean_off_folds", d.mean_off_folds ? json_number(*d.mean_off_folds) : Json(nullptr)},
+            {"near_folds", d.near_folds}};
+}
+
+std::string displacement_text(const std::string& layer, const Displacement& d) {
+    std::string text = fmt::format("{:<8} displacement: nothing could be measured\n", layer);
+    if (d.summary)
+        text = fmt::format(
+            "{:<8} displacement mean {:.4g}  p50 {:.4g}  p95 {:.4g}  p99 {:.4g}  max {:.4g} px over {} "
+            "pixels\n",
+            layer, d.summary->mean, d.summary->p50, d.summary->p95, d.summary->p99, d.summary->max, d.pixels);
+    return text + fmt::format(
+                      "{:<8} measured {:.2f} % of what either shows: {} lost ({} of them farther than "
+                      "the radius), {} missing\n",
+                      layer, 100 * d.coverage.value_or(0), d.lost, d.beyond_radius, d.missing);
+}
+
+std::string left_out_text(const std::string& image, const std::vector<std::string>& names) {
+    if (names.empty()) return "";
+    std::string text = "left out      only in the " + image + ":";
+    for (const std::string& name : names) text += " " + name;
+    return text + "\n";
+}
+
+std::string summary_text(const ComparedInputs& inputs) {
+    const Comparison& comparison = inputs.comparison;
+    const Metrics& m = comparison.metrics;
+    const CompareCounts& c = comparison.counts;
+    std::string text = left_out_text("reference", inputs.images.only_reference) +
+                       left_out_text("test", inputs.images.only_test);
+    text += fmt::format("pixels        {} ({} beyond fail, {} beyond hardfail, {} beyond warn)\n", c.pixels,
+                        c.fail, c.hard, c.warn);
+    text += fmt::format("error         mae {:.6g}  rmse {:.6g}  relmse {:.6g}  max {:.6g}\n", m.mae, m.rmse,
+                        m.relmse, m.max);
+    text += fmt::format("likeness      psnr {:.2f} dB  ssim {:.6f}\n", m.psnr_db, m.ssim);
+    if (const WorstPixel& worst = comparison.worst; !worst.channel.empty())
+        text += fmt::format("worst         pixel {},{} channel {}: {:.6g}, reference {:.6g}\n", worst.x,
+                            worst.y, worst.channel, worst.test, worst.reference);
+    for (const LayerComparison& layer : inputs.layers) {
+        if (const auto& seen = layer.seen; seen && seen->pixels > 0)
+            text += fmt::format(
+                "{:<8} seen {} pixels: {} other object, {} other triangle, {} covered in one only\n",
+                layer.layer, seen->pixels, seen->object_mismatch, seen->primitive_mismatch,
+                seen->coverage_mismatch);
+        if (const auto& d = layer.displacement; d && d->coverage) text += displacement_text(layer.layer, *d);
+    }
+    for (const std::string& reason : comparison.reasons) text += reason + "\n";
+    return text +
+           (comparison.verdict == Verdict::kFailure   ? "FAILURE"
+            : comparison.verdict == Verdict::kWarning ? "WARNING"
+                                                      : "PASS") +
+           "\n";
+}
+
+}  // namespace
+
+Answer compare_answer(const CompareRequest& command, const ComparedInputs& inputs) {
+    const Comparison& comparison = inputs.comparison;
+    const std::vector<LayerComparison>& layers = inputs.layers;
+    Answer answer;
+    answer.is_report = true;
+    const CompareCounts& c = comparison.counts;
+    const CompareOptions& o = command.options;
+    answer.fields["ref"] = {{"file", command.reference}};
+    answer.fields["test"] = {{"file", command.test}};
+    answer.fields["thresholds"] = {{"fail", o.fail},
+                                   {"failpercent", o.failpercent},
+                                   {"hardfail", o.hardfail},
+                                   {"failrelative", o.failrelative},
+                                   {"allowfailures", o.allowfailures},
+                                   {"warn", o.warn},
+                                   {"warnpercent", o.warnpercent}};
+    for (const MetricLimit& limit : command.limits)
+        answer.fields["thresholds"]["max"][limit.metric] = limit.value;
+    answer.fields["left_out"] = {{"ref", inputs.images.only_reference}, {"test", inputs.images.only_test}};
+    answer.fields["counts"] = {{"pixels", c.pixels},   {"fail", c.fail},         {"warn", c.warn},
+                               {"hard", c.hard},       {"nan_ref", c.nan_ref},   {"nan_test", c.nan_test},
+                               {"inf_ref", c.inf_ref}, {"inf_test", c.inf_test}, {"masked", c.masked}};
+    answer.fields["metrics"]["RGB"] = metrics_json(comparison.metrics);
+    answer.fields["seen"] = seen_json(total_seen(layers));
+    const LayerComparison* main = main_layer(layers, o.layer);
+    answer.fields["displacement_px"] = displacement_json(main ? *main->displacement : Displacement());
+    for (const LayerComparison& layer : layers) {
+        Json entry = Json::object();
+        if (layer.seen) entry["seen"] = seen_json(*layer.seen);
+        if (layer.displacement) entry["displacement_px"] = displacement_json(*layer.displacement);
+        answer.fields["layers"][layer.layer] = entry;
+    }
+    if (!comparison.worst.channel.empty())
+        answer.fields["worst"] = {{"x", comparison.worst.x},
+                                  {"y", comparison.worst.y},
+                                  {"channel", comparison.worst.channel},
+                                  {"ref", json_number(comparison.worst.reference)},
+                                  {"test", json_number(comparison.worst.test)}};
+    answer.fields["verdict"] = comparison.verdict == Verdict::kFailure   ? "failure"
+                               : comparison.verdict == Verdict::kWarning ? "warning"
+                                                                         : "pass";
+    answer.fields["reasons"] = comparison.reasons;
+    answer.text = summary_text(inputs);
+    answer.code = comparison.verdict == Verdict::kFailure ? ExitCode::kExceeded : ExitCode::kDone;
+    return answer;
+}
+
+}  // namespace trilens

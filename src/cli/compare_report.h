@@ -1,0 +1,32 @@
+// What `trilens compare` is asked, what it found, and how it says so.
+#pragma once
+
+#include <trilens/compare.h>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+
+namespace trilens {
+
+struct CompareRequest {
+    std::string reference, test, difference;  // files
+    std::string layer_of_reference, layer_of_test;
+    bool strict = false;
+    std::vector<MetricLimit> limits;
+    double scale = 1;  // of a difference in .png
+    double radius = DisplacementOptions{}.radius;
+    CompareOptions options;
+};
+
+/// The two images with the channels that they share, and what was found.
+struct ComparedInputs {
+    CommonChannels images;
+    Comparison comparison;
+    std::vector<LayerComparison> layers;
+};
+
+/// The table and the verdict, and the fields of `trilens.compare/1`.
+Answer compare_answer(const CompareRequest& request, const ComparedInputs& inputs);
+
+}  // namespace trilens

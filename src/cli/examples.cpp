@@ -1,0 +1,62 @@
+#include "cli/examples.h"
+
+#include <map>
+
+namespace trilens {
+
+std::vector<Example> examples_of(const std::string& called) {
+    static const std::map<std::string, std::vector<Example>> kExamples{
+        {"trilens",
+         {{"trilens scene example mirror-sphere > scene.json", "a scene to start from"},
+          {"trilens render scene.json -o mine.exr", "its picture, by projection"},
+          {"trilens trace scene.json -o truth.exr", "the same picture, by ray tracing"},
+          {"trilens compare truth.exr mine.exr", "how far they are apart"}}},
+        {"trilens render",
+         {{"trilens render scene.json -n 16 -o mine.exr", "all layers, 16 x 16 facets per face"},
+          {"trilens render scene.json -o mine.png --set /cameras/0/yfov=30",
+           "the beauty, through another lens"},
+          {"trilens render - --format png -o - < scene.json > mine.png", "from one pipe into another"},
+          {"trilens render scene.json --pixel 320,240", "how one pixel comes about"},
+          {"trilens render mine.exr -n 32 -o finer.exr", "again, from the scene that the image carries"}}},
+        {"trilens trace",
+         {{"trilens trace scene.json -o truth.exr", "the truth: the exact surface, every ray exact"},
+          {"trilens trace scene.json --surface facets -o facets.exr", "the rays of render's own facets"}}},
+        {"trilens compare",
+         {{"trilens compare truth.exr mine.exr -o diff.exr", "metrics, a verdict, and the difference"},
+          {"trilens compare truth.exr mine.exr --max displacement_p95=0.5 --max lost_percent=1",
+           "fail where what is seen moved too far, or is gone"},
+          {"trilens compare other.exr mine.exr --ref-layer ViewLayer.Combined",
+           "against another program's image"},
+          {"trilens compare truth.png mine.png -o diff.png --scale 10",
+           "pictures, and ten times their difference"}}},
+        {"trilens sweep run",
+         {{"trilens sweep run scene.json --over resolution=1..64:x2 -o results/scene",
+           "error against resolution, with a report"}}},
+        {"trilens sweep plan",
+         {{"trilens sweep plan scene.json --over resolution=1,2,4 -o results/scene", "what a run would do"}}},
+        {"trilens sweep status", {{"trilens sweep status results/scene", "what is done"}}},
+        {"trilens sweep report", {{"trilens sweep report results/scene", "tables, plots and page again"}}},
+        {"trilens sweep engines",
+         {{"trilens sweep engines scene.json -o results/engines", "classic against exact"}}},
+        {"trilens project",
+         {{"trilens project scene.json --point 0,1,2", "all images of one world point"},
+          {"trilens project scene.json --points points.csv --json", "of many, for a program"}}},
+        {"trilens scene validate", {{"trilens scene validate scene.json", "before long work"}}},
+        {"trilens scene info", {{"trilens scene info scene.json", "cameras, optics, triangles, bounds"}}},
+        {"trilens scene schema",
+         {{"trilens scene schema > schema.json", "for an editor that checks as you type"}}},
+        {"trilens scene example",
+         {{"trilens scene example", "their names"},
+          {"trilens scene example mirror-sphere > scene.json", "one of them, to start from"}}},
+        {"trilens info", {{"trilens info", "for a report of a problem"}}},
+        {"trilens man",
+         {{"trilens man render | man -l -", "read a page that is not installed"},
+          {"trilens man --all share/man/man1", "write them all"}}},
+        {"trilens completion",
+         {{"source <(trilens completion bash)", "for this shell"},
+          {"trilens completion fish > ~/.config/fish/completions/trilens.fish", "for every fish to come"}}}};
+    const auto found = kExamples.find(called);
+    return found == kExamples.end() ? std::vector<Example>{} : found->second;
+}
+
+}  // namespace trilens

@@ -1,0 +1,21 @@
+// Where a command's picture goes: a file, or standard output.
+#pragma once
+
+#include <trilens/image.h>
+#include <string>
+
+#include "cli/command.h"
+
+namespace trilens {
+
+/// Throws UsageError where `output` is an input, or is standard output and the JSON answer is there too;
+/// OutputError where it could not be written. Before long work.
+void check_output(const std::string& output, Console& console);
+
+/// Writes the picture and answers with its name; on standard output with the bytes alone. Throws OutputError.
+Answer write_output(const std::string& output, const Image& image, ImageFormat format, Console& console);
+
+/// The same for text.
+Answer write_output(const std::string& output, const std::string& text, Console& console);
+
+}  // namespace trilens

@@ -1,0 +1,96 @@
+// What the command says of command lines that it does not take: one line in its own words, with the option
+// and what it takes.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "support/test.h"
+
+using namespace trilens_test;
+
+namespace {
+
+/// Exit 2, one line on stderr, and these words in it.
+void check_usage(const std::string& arguments, const std::vector<std::string>& says) {
+    const CommandRun run = run_trilens(arguments);
+    INFO("trilens " << arguments << "\n" << run.err);
+    CHECK(run.exit_code == 2);
+    CHECK(run.out.empty());
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    CHECK(run.err.rfind("trilens: error: ", 0) == 0);
+    for (const std::string& words : says) {
+        INFO("must say: " << words);
+        CHECK(run.err.find(words) != std::string::npos);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("an unknown command is refused with the nearest, even where help is asked for", "[cli][usage]") {
+    check_usage("rendr --help", {"\"rendr\"", "'render'"});
+    check_usage("help rendr", {"\"rendr\"", "'render'"});
+    check_usage("sweep rnu --help", {"\"sweep rnu\"", "'run'"});
+    check_usage("-t 1 rendr", {"\"rendr\""});
+    check_usage("", {"a command is required", "render"});
+    check_usage("sweep", {"a command is required", "run, plan", "trilens sweep --help"});
+}
+
+TEST_CASE("help of a command is the same in both ways of asking", "[cli][usage]") {
+    for (const std::string command : {"render", "sweep", "sweep run", "scene example", ""}) {
+        INFO(command);
+        const CommandRun asked = run_trilens("help " + command), flagged = run_trilens(command + " --help");
+        CHECK(asked.exit_code == 0);
+        CHECK(flagged.exit_code == 0);
+        CHECK(asked.out == flagged.out);
+        CHECK(asked.out.find("Usage: trilens" + (command.empty() ? "" : " " + command)) != std::string::npos);
+        CHECK(asked.out.find("--verbose") != std::string::npos);
+    }
+    CHECK(run_trilens("render --help").out.find("trilens render scene.json -n 16") != std::string::npos);
+}
+
+TEST_CASE("every kind of bad option is told in one line with what the option takes", "[cli][usage]") {
+    check_usage("render", {"needs SCENE", "scene file"});
+    check_usage("sweep run a.json", {"-o/--output DIR", "folder for the results"});
+    check_usage("completion", {"needs SHELL"});
+    check_usage("render a.json -n many", {"-n/--resolution", "integer from 1 to 1024", "\"many\""});
+    check_usage("render a.json -n 2.5", {"-n/--resolution", "integer", "\"2.5\""});
+    check_usage("render a.json -n 1025", {"-n/--resolution", "from 1 to 1024", "\"1025\""});
+    check_usage("render a.json -n 99999999999999999999", {"-n/--resolution"});
+    check_usage("render a.json -n ''", {"-n/--resolution", "integer"});
+    check_usage("render a.json -n", {"-n/--resolution", "nothing follows"});
+    check_usage("render a.json -o", {"-o/--output takes OUT", "nothing follows"});
+    check_usage("render a.json -n 2 -n 3", {"-n/--resolution takes one value", "2 times"});
+    check_usage("render a.json --engine exct", {"--engine takes exact, classic or auto", "'exact'"});
+    check_usage("render a.json --slices 2 --tessellate 2", {"--tessellate", "--slices", "exclude"});
+    check_usage("render a.json b.json", {"no further argument \"b.json\""});
+    check_usage("render a.json --quiet=3", {"-q/--quiet takes no value"});
+    check_usage("render a.json -q=3", {"-q/--quiet takes no value"});
+    check_usage("render a.json -z", {"there is no option \"-z\"", "--help"});
+    check_usage("render a.json --resolutoin=4", {"\"--resolutoin\"", "'--resolution'"});
+    check_usage("compare a.exr b.exr --failpercent 101",
+                {"--failpercent", "a number from 0 to 100", "\"101\""});
+    check_usage("compare a.exr b.exr --fail nan", {"--fail", "a number of at least 0", "\"nan\""});
+    check_usage("compare a.exr b.exr --mask-object -1", {"--mask-object", "\"-1\""});
+    check_usage("compare a.exr b.exr --max rmsee=1", {"\"rmsee\"", "'rmse'"});
+    check_usage("compare a.exr b.exr --max rmse", {"--max takes METRIC=VALUE", "\"rmse\""});
+    check_usage("compare a.exr b.exr --max rmse=nan", {"--max", "\"rmse=nan\""});
+    check_usage("compare a.exr b.exr --scale 2", {"--scale", ".png"});
+    check_usage("compare a.exr b.exr --strict --ref-layer L", {"--strict", "--ref-layer"});
+    check_usage("man render --all somewhere", {"--all"});
+    check_usage("info --threads 5000", {"-t/--threads", "from 0 to 4096"});
+    check_usage("info --progress loud", {"--progress takes auto, bar, plain, json or none"});
+}
+
+TEST_CASE("values that look like options, and groups of short ones, are read", "[cli][usage]") {
+    const std::string folder = scratch_dir("cli_usage_values");
+    const std::string scene = write_file(folder, "room.json", small_scene());
+    CHECK(run_trilens("project " + scene + " -n 2 --point -1,2,3").exit_code == 0);
+    CHECK(run_trilens("sweep plan -o " + folder + "/out " + scene + " --over resolution=1 " +
+                      write_file(folder, "other.json", small_scene()))
+              .exit_code == 0);
+    CHECK(run_trilens("scene validate -n2 " + scene).exit_code == 0);
+    CHECK(run_trilens("scene validate -qn 2 " + scene).exit_code == 0);
+    CHECK(run_trilens("scene info --set=/film/width=16 " + scene).out.find("film 16 x 24") !=
+          std::string::npos);
+}
