@@ -36,16 +36,37 @@ Json seen_json(const SeenMismatch& s) {
             {"coverage_mismatch", s.coverage_mismatch}};
 }
 
+/// Null is "nothing was measured".
 Json displacement_json(const Displacement& d) {
-    return {{"mean", json_number(d.mean)},
-            {"p50", json_number(d.p50)},
-            {"p95", json_number(d.p95)},
-            {"p99", json_number(d.p99)},
-            {"max", json_number(d.max)},
+    const auto statistic = [&](double Summary::*which) {
+        return d.summary ? json_number((*d.summary).*which) : Json(nullptr);
+    };
+    return {{"mean", statistic(&Summary::mean)},
+            {"p50", statistic(&Summary::p50)},
+            {"p95", statistic(&Summary::p95)},
+            {"p99", statistic(&Summary::p99)},
+            {"max", statistic(&Summary::max)},
             {"pixels", d.pixels},
             {"lost", d.lost},
-            {"mean_off_folds", json_number(d.mean_off_folds)},
+            {"beyond_radius", d.beyond_radius},
+            {"missing", d.missing},
+            {"coverage", d.coverage ? json_number(*d.coverage) : Json(nullptr)},
+            {"mean_off_folds", d.mean_off_folds ? json_number(*d.mean_off_folds) : Json(nullptr)},
             {"near_folds", d.near_folds}};
+}
+
+std::string displacement_text(const std::string& layer, const Displacement& d) {
+    const std::string measured = fmt::format(
+        "{:<8} measured {:.2f} % of what either shows: {} lost ({} of them farther than the radius), {} "
+        "missing\n",
+        layer, 100 * d.coverage.value_or(0), d.lost, d.beyond_radius, d.missing);
+    if (!d.summary) return fmt::format("{:<8} displacement: nothing could be measured\n", layer) + measured;
+    return fmt::format(
+               "{:<8} displacement mean {:.4g}  p50 {:.4g}  p95 {:.4g}  p99 {:.4g}  max {:.4g} px over {} "
+               "pixels\n",
+               layer, d.summary->mean, d.summary->p50, d.summary->p95, d.summary->p99, d.summary->max,
+               d.pixels) +
+           measured;
 }
 
 std::string summary_text(const Comparison& comparison, const std::vector<LayerComparison>& layers) {
@@ -65,11 +86,8 @@ std::string summary_text(const Comparison& comparison, const std::vector<LayerCo
                 "{:<8} seen {} pixels: {} other object, {} other triangle, {} covered in one only\n",
                 layer.layer, seen->pixels, seen->object_mismatch, seen->primitive_mismatch,
                 seen->coverage_mismatch);
-        if (const auto& d = layer.displacement; d && d->pixels + d->lost > 0)
-            text += fmt::format(
-                "{:<8} displacement mean {:.4g}  p50 {:.4g}  p95 {:.4g}  p99 {:.4g}  max {:.4g} "
-                "px over {} pixels, {} lost\n",
-                layer.layer, d->mean, d->p50, d->p95, d->p99, d->max, d->pixels, d->lost);
+        if (layer.displacement && layer.displacement->coverage)
+            text += displacement_text(layer.layer, *layer.displacement);
     }
     for (const std::string& reason : comparison.reasons) text += reason + "\n";
     return text +

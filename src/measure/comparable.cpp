@@ -24,9 +24,30 @@ std::string window_of(const Image& image) {
     return text.str();
 }
 
+/// "reflectID.object" of "reflect.object", "reflectP.X" of "reflect.X"; other names as they are.
+std::string newer_name(const std::string& name) {
+    const std::size_t dot = name.find('.');
+    if (dot == std::string::npos || (name.substr(0, dot) != "reflect" && name.substr(0, dot) != "refract"))
+        return name;
+    const std::string layer = name.substr(0, dot), channel = name.substr(dot + 1);
+    for (const char* id : {"object", "primitive"})
+        if (channel == id) return layer + "ID." + channel;
+    for (const char* place : {"X", "Y", "Z", "length"})
+        if (channel == place) return layer + "P." + channel;
+    return name;
+}
+
+/// The channel that `image` calls by that name or by the older or newer one.
+const Channel* find_by_any_name(const Image& image, const std::string& name) {
+    if (const Channel* channel = image.find(name)) return channel;
+    for (const Channel& channel : image.channels)
+        if (newer_name(channel.name) == newer_name(name)) return &channel;
+    return nullptr;
+}
+
 void require_same_channels(const Image& one, const Image& other, const std::string& only_where) {
     for (const Channel& channel : one.channels) {
-        const Channel* match = other.find(channel.name);
+        const Channel* match = find_by_any_name(other, channel.name);
         if (!match) refuse(channel.name, "only " + only_where + " has this channel");
         if (match->is_id() != channel.is_id())
             refuse(channel.name, "one has the channel as float, the other as uint");
@@ -74,6 +95,11 @@ const std::vector<Id>& id_channel(const Image& image, std::string_view name) {
 
 std::string channel_of(const std::string& layer, const std::string& name) {
     return layer.empty() ? name : layer + "." + name;
+}
+
+std::string seen_channel(const Image& image, const std::string& layer, const std::string& name) {
+    const std::string older = channel_of(layer, name), newer = newer_name(older);
+    return image.find(newer) ? newer : older;
 }
 
 }  // namespace trilens

@@ -1,14 +1,16 @@
 #include "measure/compare_layers.h"
 
+#include <utility>
+
 namespace trilens {
 
 std::vector<LayerComparison> compare_layers(const Image& reference, const Image& test,
                                             const DisplacementOptions& options) {
     std::vector<LayerComparison> layers;
     for (const char* name : {"reflect", "refract"}) {
-        if (!reference.find(std::string(name) + ".object")) continue;
-        layers.push_back({name, compare_seen(reference, test, name, options.mask_object),
-                          measure_displacement(reference, test, name, options)});
+        LayerComparison layer{name, compare_seen(reference, test, name, options.mask_object),
+                              measure_displacement(reference, test, name, options)};
+        if (layer.seen) layers.push_back(std::move(layer));
     }
     return layers;
 }
@@ -29,7 +31,7 @@ const LayerComparison* main_layer(const std::vector<LayerComparison>& layers, co
     for (const LayerComparison& layer : layers)
         if (layer.layer == asked && layer.displacement) return &layer;
     for (const LayerComparison& layer : layers)
-        if (layer.displacement && layer.displacement->pixels + layer.displacement->lost > 0) return &layer;
+        if (layer.displacement && layer.displacement->coverage) return &layer;
     return nullptr;
 }
 

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "measure/sliver.h"
+#include "measure/slope.h"
 
 namespace trilens {
 namespace {
@@ -230,16 +232,49 @@ std::array<int, 2> ImageFinder::likely_side(const SeenPoint& wanted) const {
     return {d * g0 - b * g1 < 0 ? -1 : 1, a * g1 - b * g0 < 0 ? -1 : 1};
 }
 
-std::optional<Vec2> ImageFinder::find(const SeenPoint& wanted, double radius) const {
+/// Whether the reference's own pixel belongs to a piece of the wanted object that is wide enough for a slope.
+bool ImageFinder::has_patch(const SeenPoint& wanted) const {
+    const Piece piece{wanted.object, wanted.optic, std::nullopt};
+    for (int corner = 0; corner < 4; ++corner) {
+        const PatchPlace place{wanted.column - corner % 2, wanted.row - corner / 2, corner};
+        if (make_patch(field_, test_, place, piece)) return true;
+    }
+    return false;
+}
+
+/// How far the displaced image of the point may lie, by the slopes of both images at the pixel. On the way to
+/// it the seen point moves from what the reference shows at the pixel to the wanted one; near a fold it moves
+/// up to twice as far as the slopes say, round a corner between two walls as far again. Infinite where the
+/// reference shows something else all round the pixel.
+double ImageFinder::farthest(const SeenPoint& wanted) const {
+    const Piece piece{wanted.object, wanted.optic, std::nullopt};
+    const Slopes test_slopes = slopes_at(test_, wanted.column, wanted.row);
+    double least = std::numeric_limits<double>::infinity();
+    for (int row = wanted.row - 1; row <= wanted.row + 1; ++row) {
+        for (int column = wanted.column - 1; column <= wanted.column + 1; ++column) {
+            if (!field_.contains(column, row) || !field_.shows(field_.index(column, row), piece)) continue;
+            const Vec3 step = wanted.point - field_.point(field_.index(column, row));
+            const std::optional<double> here = pixels_for(slopes_at(field_, column, row), step),
+                                        there = pixels_for(test_slopes, step);
+            const double away = std::hypot(column - wanted.column, row - wanted.row);
+            // A single pixel next door says nothing of where it ends; one at the same place is the same spot.
+            if (!here && !there && away > 0) continue;
+            least = std::min(least, away + 1 + 4 * std::max(here.value_or(0), there.value_or(0)));
+        }
+    }
+    return least;
+}
+
+std::optional<Vec2> ImageFinder::find(const SeenPoint& wanted) const {
     // The same pixel shows the same point, to the last bit.
     const std::size_t here = field_.index(wanted.column, wanted.row);
-    if (field_.shows(here, {wanted.object, wanted.optic, std::nullopt}) && field_.point(here) == wanted.point)
-        return Vec2(0);
+    const bool is_shown = field_.shows(here, {wanted.object, wanted.optic, std::nullopt});
+    if (is_shown && field_.point(here) == wanted.point) return Vec2(0);
 
     // Only the four cells round the pixel reach nearer than one pixel: a hit there that is nearer ends the
     // search. The likeliest comes first; within a quarter of a pixel it is not asked whether another image
     // lies nearer still.
-    Best best{radius, std::nullopt};
+    Best best{std::numeric_limits<double>::infinity(), std::nullopt};
     const auto [side_x, side_y] = likely_side(wanted);
     for (const int dy : {side_y, -side_y}) {
         for (const int dx : {side_x, -side_x}) {
@@ -247,7 +282,14 @@ std::optional<Vec2> ImageFinder::find(const SeenPoint& wanted, double radius) co
             if (best.shift && best.score < kSurelyNearest) return best.shift;
         }
     }
-    if (!best.shift || best.score > 1) search(wanted, best);
+    if (is_shown && !has_patch(wanted)) {
+        const std::optional<Vec2> shift = find_along_sliver(field_, wanted);
+        if (shift && glm::length(*shift) < best.score) best = {glm::length(*shift), shift};
+    }
+    if (!best.shift || best.score > 1) {
+        best.score = std::min(best.score, farthest(wanted));
+        search(wanted, best);
+    }
     return best.shift;
 }
 

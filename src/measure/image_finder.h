@@ -1,4 +1,4 @@
-// Finds where a reference image shows a world point, nearest to a given pixel.
+// Finds where a reference image shows what a pixel of another sees, nearest to that pixel.
 #pragma once
 
 #include <array>
@@ -12,13 +12,6 @@
 
 namespace trilens {
 
-/// What is looked for: a point of an object, through an optic, and from which pixel.
-struct SeenPoint {
-    Vec3 point{0};
-    Id object = kNone, optic = 0, primitive = 0;
-    int column = 0, row = 0;  // of the data window
-};
-
 /// A reference field with a pyramid of bounding boxes over its cells. Holds the fields' views, not their
 /// images.
 class ImageFinder {
@@ -31,10 +24,12 @@ class ImageFinder {
     const SeenField& reference() const { return field_; }
     const SeenField& test() const { return test_; }
 
-    /// The screen vector from the pixel to the nearest place, at most `radius` pixels away, where the
-    /// reference shows the point; nothing where there is none. Pixels of the point's own triangle are
-    /// preferred to others of its object.
-    std::optional<Vec2> find(const SeenPoint& wanted, double radius) const;
+    /// The screen vector from the pixel to the nearest place where the reference shows the point that `test`
+    /// sees there; nothing where there is none. Pixels of the point's own triangle are preferred to others of
+    /// its object. Where the reference shows nearly the point at the pixel or next to it, but cannot say
+    /// where, a place farther away than the slopes there allow is another image of the point (a curved mirror
+    /// may show it several times) and no answer.
+    std::optional<Vec2> find(const SeenPoint& wanted) const;
 
   private:
     struct Box {
@@ -56,6 +51,8 @@ class ImageFinder {
     void try_cell(const SeenPoint& wanted, int column, int row, Best& best) const;
     bool try_pieces(const SeenPoint& wanted, int column, int row, bool same_primitive, Best& best) const;
     void search(const SeenPoint& wanted, Best& best) const;
+    bool has_patch(const SeenPoint& wanted) const;
+    double farthest(const SeenPoint& wanted) const;
 
     SeenField field_, test_;
     std::vector<Level>

@@ -7,17 +7,20 @@ namespace trilens {
 std::optional<SeenMismatch> compare_seen(const Image& reference, const Image& test, const std::string& layer,
                                          std::optional<Id> mask_object) {
     require_comparable(reference, test);
-    if (!reference.find(channel_of(layer, "object"))) return std::nullopt;
+    const auto channel = [&](const Image& image, const char* name) {
+        return seen_channel(image, layer, name);
+    };
+    if (!reference.find(channel(reference, "object"))) return std::nullopt;
     const std::vector<std::uint8_t> mask = compared_pixels(reference, test, mask_object);
-    const std::vector<Id>& object_reference = id_channel(reference, channel_of(layer, "object"));
-    const std::vector<Id>& object_test = id_channel(test, channel_of(layer, "object"));
+    const std::vector<Id>& object_reference = id_channel(reference, channel(reference, "object"));
+    const std::vector<Id>& object_test = id_channel(test, channel(test, "object"));
 
     // Without a channel of primitives every object is one piece.
-    const std::string primitive = channel_of(layer, "primitive");
-    const bool has_primitive = reference.find(primitive) != nullptr;
+    const bool has_primitive = reference.find(channel(reference, "primitive")) != nullptr;
     const std::vector<Id>& primitive_reference =
-        has_primitive ? id_channel(reference, primitive) : object_reference;
-    const std::vector<Id>& primitive_test = has_primitive ? id_channel(test, primitive) : object_test;
+        has_primitive ? id_channel(reference, channel(reference, "primitive")) : object_reference;
+    const std::vector<Id>& primitive_test =
+        has_primitive ? id_channel(test, channel(test, "primitive")) : object_test;
 
     SeenMismatch result;
     for (std::size_t i = 0; i < mask.size(); ++i) {

@@ -18,9 +18,9 @@ struct SeenMismatch {
     std::size_t primitive_mismatch = 0;  // both see the same object, but different triangles of it
 };
 
-/// Compares `layer`.object and `layer`.primitive ("reflect", "refract"; for "optic", which has no primitive,
-/// only objects). `mask_object` as in CompareOptions. Nothing where the images have no such layer. Throws
-/// InputError where they cannot be compared.
+/// Compares the objects and triangles that `layer` shows ("reflect", "refract"; for "optic", which has no
+/// triangles, only objects). `mask_object` as in CompareOptions. Nothing where the images have no such layer.
+/// Throws InputError where they cannot be compared.
 std::optional<SeenMismatch> compare_seen(const Image& reference, const Image& test, const std::string& layer,
                                          std::optional<Id> mask_object = std::nullopt);
 

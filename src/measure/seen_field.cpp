@@ -41,24 +41,38 @@ void link_line(const Line& line, std::uint8_t bit, std::vector<std::uint8_t>& li
 
 }  // namespace
 
+bool SeenField::shows_layer(std::size_t i) const {
+    if ((*object)[i] != kNone) return true;
+    return optic_of(i) != kNone && ((*x)[i] != 0 || (*y)[i] != 0 || (*z)[i] != 0);
+}
+
 bool SeenField::sees(std::size_t i) const {
-    return (*object)[i] != kNone && std::isfinite((*x)[i]) && std::isfinite((*y)[i]) &&
-           std::isfinite((*z)[i]);
+    return shows_layer(i) && std::isfinite((*x)[i]) && std::isfinite((*y)[i]) && std::isfinite((*z)[i]);
+}
+
+SeenPoint SeenField::seen_point(std::size_t i) const {
+    const std::size_t columns = static_cast<std::size_t>(width);
+    return {point(i),
+            (*object)[i],
+            optic_of(i),
+            primitive_of(i),
+            static_cast<int>(i % columns),
+            static_cast<int>(i / columns)};
 }
 
 std::optional<SeenField> make_seen_field(const Image& image, const std::string& layer) {
+    const auto channel = [&](const char* name) { return seen_channel(image, layer, name); };
     for (const char* name : {"object", "X", "Y", "Z"})
-        if (!image.find(channel_of(layer, name))) return std::nullopt;
+        if (!image.find(channel(name))) return std::nullopt;
     SeenField field;
     field.width = image.data_width;
     field.height = image.data_height;
-    field.object = &id_channel(image, channel_of(layer, "object"));
-    field.x = &float_channel(image, channel_of(layer, "X"));
-    field.y = &float_channel(image, channel_of(layer, "Y"));
-    field.z = &float_channel(image, channel_of(layer, "Z"));
+    field.object = &id_channel(image, channel("object"));
+    field.x = &float_channel(image, channel("X"));
+    field.y = &float_channel(image, channel("Y"));
+    field.z = &float_channel(image, channel("Z"));
     if (image.find("optic.object")) field.optic = &id_channel(image, "optic.object");
-    const std::string primitive = channel_of(layer, "primitive");
-    if (image.find(primitive)) field.primitive = &id_channel(image, primitive);
+    if (image.find(channel("primitive"))) field.primitive = &id_channel(image, channel("primitive"));
     return field;
 }
 

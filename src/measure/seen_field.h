@@ -1,5 +1,4 @@
-// What an image sees through its optics as a field on the screen: a world point per pixel, in connected
-// pieces.
+// What an image sees through its optics as a field on the screen: a point per pixel, in connected pieces.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +12,27 @@
 
 namespace trilens {
 
-/// What belongs together: an object seen through an optic, or only one triangle of it.
+/// What belongs together: an object seen through an optic, or only one triangle of it. Object kNone is the
+/// environment.
 struct Piece {
     Id object = kNone, optic = 0;
     std::optional<Id> primitive;
 };
 
+/// What a pixel sees.
+struct SeenPoint {
+    Vec3 point{0};  // world frame; of the environment its direction
+    Id object = kNone, optic = 0, primitive = 0;
+    int column = 0, row = 0;  // of the data window
+};
+
 /// Views into an image's channels (the image must outlive it) and which neighbours belong to one piece of
-/// surface.
+/// surface. Where no object is seen but a direction is given, the environment is seen there: the points are
+/// then places on the sphere of directions, a surface like any other.
 struct SeenField {
-    int width = 0, height = 0;                                         // the data window
-    const std::vector<float>*x = nullptr, *y = nullptr, *z = nullptr;  // seen points, world frame
+    int width = 0, height = 0;  // the data window
+    // Seen points, world frame; of the environment the unit direction; zero where nothing is seen.
+    const std::vector<float>*x = nullptr, *y = nullptr, *z = nullptr;
     const std::vector<Id>* object = nullptr;
     const std::vector<Id>* optic = nullptr;      // null: the image does not say which optic a pixel shows
     const std::vector<Id>* primitive = nullptr;  // null: the image does not say which triangle is seen
@@ -42,8 +51,12 @@ struct SeenField {
     Id optic_of(std::size_t i) const { return optic ? (*optic)[i] : 0; }
     Id primitive_of(std::size_t i) const { return primitive ? (*primitive)[i] : 0; }
 
-    /// Whether the pixel sees an object at a finite place.
+    /// Whether the pixel shows the layer: an object, or the environment through an optic. Its point may be no
+    /// number.
+    bool shows_layer(std::size_t i) const;
+    /// Whether the pixel shows the layer at a finite place.
     bool sees(std::size_t i) const;
+    SeenPoint seen_point(std::size_t i) const;
     /// Whether the pixel sees that piece at a finite place.
     bool shows(std::size_t i, const Piece& piece) const {
         return (*object)[i] == piece.object && optic_of(i) == piece.optic &&
@@ -51,8 +64,8 @@ struct SeenField {
     }
 };
 
-/// The field of `layer` ("reflect", "refract") without links; nothing where the image lacks `layer`.object or
-/// `layer`.X, Y, Z.
+/// The field of `layer` ("reflect", "refract") without links; nothing where the image lacks the layer's
+/// objects or places (see seen_channel).
 std::optional<SeenField> make_seen_field(const Image& image, const std::string& layer);
 
 /// Fills `links`: two neighbours are linked where they see the same object in the same optic, and the step

@@ -19,10 +19,12 @@ const OpticDisplacement* find_displacement(const RunRecord& run, const std::stri
     return nullptr;
 }
 
+/// In either direction: a mean over what is left says little of the whole.
 bool lost_too_many(const MetricValues& metrics) {
     const double lost = find_value(metrics, "disp_lost").value_or(0),
+                 missing = find_value(metrics, "disp_missing").value_or(0),
                  found = find_value(metrics, "disp_pixels").value_or(0);
-    return lost > kMostLost * (lost + found);
+    return std::max(lost, missing) > kMostLost * (std::max(lost, missing) + found);
 }
 
 /// Fits the points gathered in `fit`; `usable` says which may take part.

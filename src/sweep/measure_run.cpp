@@ -38,20 +38,23 @@ MetricValues colour_values(const Comparison& comparison) {
 MetricValues displacement_values(const Displacement& displacement) {
     MetricValues values = {{"disp_pixels", static_cast<double>(displacement.pixels)},
                            {"disp_lost", static_cast<double>(displacement.lost)},
+                           {"disp_beyond_radius", static_cast<double>(displacement.beyond_radius)},
+                           {"disp_missing", static_cast<double>(displacement.missing)},
                            {"disp_near_folds", static_cast<double>(displacement.near_folds)}};
-    if (displacement.pixels == 0) return values;
-    values["disp_mean_px"] = displacement.mean;
-    values["disp_p50_px"] = displacement.p50;
-    values["disp_p95_px"] = displacement.p95;
-    values["disp_p99_px"] = displacement.p99;
-    values["disp_max_px"] = displacement.max;
-    if (displacement.near_folds < displacement.pixels)
-        values["disp_mean_off_folds_px"] = displacement.mean_off_folds;
+    if (displacement.coverage) values["disp_coverage"] = *displacement.coverage;
+    if (displacement.mean_off_folds) values["disp_mean_off_folds_px"] = *displacement.mean_off_folds;
+    if (!displacement.summary) return values;
+    values["disp_mean_px"] = displacement.summary->mean;
+    values["disp_p50_px"] = displacement.summary->p50;
+    values["disp_p95_px"] = displacement.summary->p95;
+    values["disp_p99_px"] = displacement.summary->p99;
+    values["disp_max_px"] = displacement.summary->max;
     return values;
 }
 
+/// Whether either image shows the layer.
 bool sees_something(const Displacement& displacement) {
-    return displacement.pixels + displacement.lost > 0;
+    return displacement.coverage.has_value();
 }
 
 /// Each optic by itself; one that is on no pixel of either image is left out with a warning.

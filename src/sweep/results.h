@@ -59,8 +59,9 @@ struct PlannedRun {
 struct OpticDisplacement {
     std::string layer;  // "reflect", "refract"
     std::string optic;  // its name, or "all"
-    MetricValues
-        metrics;  // disp_{mean,p50,p95,p99,max,mean_off_folds}_px, disp_pixels, disp_lost, disp_near_folds
+    // disp_{mean,p50,p95,p99,max,mean_off_folds}_px, disp_{pixels,lost,beyond_radius,missing,near_folds} and
+    // disp_coverage (0..1): see Displacement
+    MetricValues metrics;
 };
 
 enum class RunState { kMissing, kDone, kFailed };

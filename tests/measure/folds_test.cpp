@@ -79,14 +79,14 @@ TEST_CASE("off a fold the mean displacement falls like the error, over all pixel
             measure_displacement(reference, image_of(kSize, kSize, folded(60.3, error)), "reflect").value();
         CHECK(found.near_folds > static_cast<std::size_t>(kSize));
         CHECK(found.near_folds < static_cast<std::size_t>(14 * kSize));
-        CHECK(found.mean_off_folds < found.mean);
+        CHECK(found.mean_off_folds.value() < found.summary.value().mean);
         // Where u' ^ 2 = u ^ 2 + error: the displacement is near error / (2 u), u = distance / kSize.
         if (before > 0) {
-            order = std::log(before / found.mean) / std::log(4.0);
-            order_off = std::log(before_off / found.mean_off_folds) / std::log(4.0);
+            order = std::log(before / found.summary.value().mean) / std::log(4.0);
+            order_off = std::log(before_off / found.mean_off_folds.value()) / std::log(4.0);
         }
-        before = found.mean;
-        before_off = found.mean_off_folds;
+        before = found.summary.value().mean;
+        before_off = found.mean_off_folds.value();
     }
     CHECK(order < 0.93);
     CHECK(order_off == Approx(1).margin(0.03));

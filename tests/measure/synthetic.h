@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "base/image.h"
 #include "base/vec.h"
@@ -15,6 +16,11 @@ struct Seen {
     trilens::Id object = trilens::kNone, primitive = 0;
     trilens::Vec3 point{0};
 };
+
+/// The environment in a direction, which need not be a unit vector.
+inline Seen environment(const trilens::Vec3& direction) {
+    return {trilens::kNone, trilens::kNone, trilens::normalize(direction)};
+}
 
 /// What is seen at a position on the film, pixels from its top left.
 using Field = std::function<Seen(double x, double y)>;
@@ -31,8 +37,7 @@ inline trilens::Image image_of(int width, int height, const Field& field) {
         const Seen seen = field(static_cast<double>(i % static_cast<std::size_t>(width)) + 0.5,
                                 static_cast<double>(i / static_cast<std::size_t>(width)) + 0.5);
         object[i] = seen.object;
-        if (seen.object == kNone) continue;
-        primitive[i] = seen.primitive;
+        primitive[i] = seen.object == kNone ? kNone : seen.primitive;
         x[i] = static_cast<float>(seen.point.x);
         y[i] = static_cast<float>(seen.point.y);
         z[i] = static_cast<float>(seen.point.z);
@@ -42,6 +47,16 @@ inline trilens::Image image_of(int width, int height, const Field& field) {
     image.channels.push_back({"reflect.X", x});
     image.channels.push_back({"reflect.Y", y});
     image.channels.push_back({"reflect.Z", z});
+    return image;
+}
+
+/// The same picture with ids and places in layers of their own: "reflectID.object", "reflectP.X".
+inline trilens::Image with_newer_names(trilens::Image image) {
+    for (trilens::Channel& channel : image.channels) {
+        const std::string name = channel.name.substr(channel.name.find('.') + 1);
+        if (channel.name == "reflect." + name)
+            channel.name = (channel.is_id() ? "reflectID." : "reflectP.") + name;
+    }
     return image;
 }
 

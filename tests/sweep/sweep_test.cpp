@@ -205,6 +205,35 @@ TEST_CASE("sweep: runs that lose many pixels take no part in a fit") {
     CHECK(left.order.value() == Approx(2).epsilon(1e-3));
 }
 
+TEST_CASE("sweep: runs whose picture misses much of what the truth shows take no part in a fit") {
+    FakeSweep fake(trilens_test::scratch_dir("sweep_missing"), {1, 2, 4, 8});
+    // At n = 1 the left half of the left optic shows nothing; what it shows is where the law says.
+    fake.callbacks.render = [](int n) {
+        Image image = trilens_test::fake_image(1.5 / (n * n), 2.9 / (n * n));
+        for (std::size_t i = 0; i < image.pixels() && n == 1; ++i) {
+            if (i % trilens_test::kFakeWidth >= trilens_test::kFakeWidth / 4) continue;
+            image.find("reflect.object")->ids()[i] = kNone;
+            for (const char* name : {"reflect.X", "reflect.Y", "reflect.Z"})
+                image.find(name)->floats()[i] = 0;
+        }
+        return image;
+    };
+    const SweepSummary summary = fake.run();
+    const SweepFit left = fit_of(summary, "reflect", "left", "disp_mean_px");
+    REQUIRE(left.points.size() == 4);
+    CHECK(!left.points[0].used);
+    CHECK(fit_of(summary, "reflect", "right", "disp_mean_px").points[0].used);
+
+    // The table says how much was measured.
+    for (auto row : read_csv(read_whole_file(fake.params.folder + "/displacement.csv").value())) {
+        if (row["optic"] == "all") continue;
+        const bool is_half = row["n"] == "1" && row["optic"] == "left";
+        CHECK(number(row["disp_coverage"]) == Approx(is_half ? 0.5 : 1).margin(0.1));
+        if (is_half) CHECK(number(row["disp_missing"]) == Approx(24 * 40).margin(2 * 40));
+        CHECK(number(row["disp_beyond_radius"]) == 0);
+    }
+}
+
 TEST_CASE("sweep: the report escapes, embeds every picture, and refers to nothing outside") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_report"), {1, 2});
     fake.run();
