@@ -22,8 +22,8 @@ constexpr std::array kColumns = {
     "coverage_mismatch", "object_mismatch", "primitive_mismatch"};
 // clang-format on
 constexpr std::array kDisplacementColumns = {
-    "disp_mean_px",    "disp_p50_px",  "disp_p95_px",  "disp_p99_px",
-    "disp_max_px",     "disp_pixels",  "disp_lost",    "disp_mean_off_folds_px",
+    "disp_mean_px",    "disp_p50_px",  "disp_p95_px",   "disp_p99_px",
+    "disp_max_px",     "disp_pixels",  "disp_lost",     "disp_mean_off_folds_px",
     "disp_near_folds", "disp_missing", "disp_coverage", "disp_beyond_radius"};
 
 std::string cell(const std::string& text) {
