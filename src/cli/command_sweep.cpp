@@ -20,6 +20,7 @@ struct SweepOptions {
     std::string output;
     std::string truth = "limit";
     std::string shard = "0/1";
+    bool replace = false;
 };
 
 std::string scene_name(const std::string& file) {
@@ -49,7 +50,8 @@ Json fit_json(const SweepFit& fit) {
             {"constant", optional_json(fit.constant)},
             {"r2", optional_json(fit.r2)},
             {"n_for_1px", optional_json(fit.n_for_1px)},
-            {"n_for_half_px", optional_json(fit.n_for_half_px)}};
+            {"n_for_half_px", optional_json(fit.n_for_half_px)},
+            {"coverage", optional_json(fit.coverage)}};
 }
 
 Json summary_json(const SweepSummary& summary) {
@@ -67,6 +69,7 @@ std::string fit_line(const SweepFit& fit) {
     std::string line =
         fmt::format("  {:<8} {:<14} {:<16} order {:5.2f}  constant {:8.4g}  r2 {:.4f}", fit.layer, fit.optic,
                     fit.metric, *fit.order, fit.constant.value_or(0), fit.r2.value_or(0));
+    if (fit.coverage) line += fmt::format("  of {:.1f} % measured", 100 * *fit.coverage);
     if (fit.n_for_1px)
         line += "  1 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_1px)));
     if (fit.n_for_half_px)
@@ -131,6 +134,7 @@ SweepRequest sweep_request(const SweepOptions& options, const std::string& scene
     request.truth = options.truth;
     request.shard = options.shard;
     request.folder = folder_of(options, scene);
+    request.replace = options.replace;
     request.command = command_line(options, scene);
     return request;
 }
@@ -138,6 +142,7 @@ SweepRequest sweep_request(const SweepOptions& options, const std::string& scene
 Answer run(const SweepOptions& options, Console& console) {
     require_distinct_names(options.scenes);
     console.files().reads(options.scenes);
+    if (options.scenes.size() > 1) require_no_sweep(options.output);
     std::vector<SweepSummary> summaries;
     for (const std::string& scene : options.scenes) {
         const Stopwatch watch;
@@ -180,30 +185,34 @@ std::vector<std::string> sweeps_in(const std::string& folder) {
 }
 
 std::vector<Option> sweep_options(SweepOptions& options) {
-    return joined({{{.names = "SCENES",
-                     .target = &options.scenes,
-                     .help = "scene files; several make a gallery",
-                     .offer = Offer::kScene,
-                     .is_required = true},
-                    {.names = "-o,--output",
-                     .target = &options.output,
-                     .help = "folder for the results",
-                     .value = "DIR",
-                     .offer = Offer::kFolder,
-                     .is_required = true},
-                    {.names = "--over",
-                     .target = &options.over,
-                     .help = "what is varied: resolution=1,2,4 or resolution=1..64:x2",
-                     .value = "AXIS"},
-                    {.names = "--truth",
-                     .target = &options.truth,
-                     .help = "what runs are compared with: the exact surface or the same facets, ray traced",
-                     .choices = {"limit", "facets"}},
-                    {.names = "--shard",
-                     .target = &options.shard,
-                     .help = "do part i of n only: i/n, or auto in a job array",
-                     .value = "i/n"}},
-                   scene_overrides(options.scene)});
+    return joined(
+        {{{.names = "SCENES",
+           .target = &options.scenes,
+           .help = "scene files; several make a gallery",
+           .offer = Offer::kScene,
+           .is_required = true},
+          {.names = "-o,--output",
+           .target = &options.output,
+           .help = "folder for the results",
+           .value = "DIR",
+           .offer = Offer::kFolder,
+           .is_required = true},
+          {.names = "--over",
+           .target = &options.over,
+           .help = "what is varied: resolution=1,2,4 or resolution=1..64:x2",
+           .value = "AXIS"},
+          {.names = "--truth",
+           .target = &options.truth,
+           .help = "what runs are compared with: the exact surface or the same facets, ray traced",
+           .choices = {"limit", "facets"}},
+          {.names = "--shard",
+           .target = &options.shard,
+           .help = "do part i of n only: i/n, or auto in a job array",
+           .value = "i/n"},
+          {.names = "--replace",
+           .target = &options.replace,
+           .help = "start the folder afresh, whatever sweep it holds (else another sweep's is refused)"}},
+         scene_overrides(options.scene)});
 }
 
 Answer status(const std::string& folder) {

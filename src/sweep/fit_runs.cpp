@@ -46,16 +46,22 @@ void fit_points(SweepFit& fit, const std::vector<bool>& usable) {
 
 SweepFit fit_displacement(const std::vector<RunRecord>& runs, const OpticDisplacement& of,
                           const std::string& name) {
-    SweepFit fit{of.layer, of.optic, name, {}, {}, {}, {}, {}, {}};
+    SweepFit fit;
+    fit.layer = of.layer, fit.optic = of.optic, fit.metric = name;
     std::vector<bool> usable;
+    std::vector<std::optional<double>> coverage;
     for (const RunRecord& run : runs) {
         const OpticDisplacement* const one = find_displacement(run, of.layer, of.optic);
         const std::optional<double> value = one ? find_value(one->metrics, name) : std::nullopt;
         if (!value) continue;
         fit.points.push_back({run.plan.n, *value, false});
         usable.push_back(!lost_too_many(one->metrics));
+        coverage.push_back(find_value(one->metrics, "disp_coverage"));
     }
     fit_points(fit, usable);
+    for (std::size_t i = 0; i < fit.points.size(); ++i)
+        if (fit.points[i].used && coverage[i])
+            fit.coverage = std::min(fit.coverage.value_or(1), *coverage[i]);
     return fit;
 }
 
@@ -69,7 +75,8 @@ std::vector<SweepFit> fit_runs(const std::vector<RunRecord>& runs) {
                 if (!find_fit(fits, one.layer, one.optic, name))
                     fits.push_back(fit_displacement(runs, one, name));
 
-    SweepFit colour{"", "all", "rgb_rmse", {}, {}, {}, {}, {}, {}};
+    SweepFit colour;
+    colour.optic = "all", colour.metric = "rgb_rmse";
     for (const RunRecord& run : runs)
         if (const std::optional<double> value = find_value(run.metrics, colour.metric))
             colour.points.push_back({run.plan.n, *value, false});

@@ -7,6 +7,7 @@
 #include "report/pictures.h"
 #include "report/text.h"
 #include "sweep/fit_runs.h"
+#include "sweep/sweep_folder.h"
 #include "sweep/sweep_plots.h"
 
 namespace trilens {
@@ -53,7 +54,7 @@ GalleryEntry entry_of(const SweepSummary& summary) {
     entry.text = "n = " + std::to_string(run->plan.n) + ", optics: " + summary.manifest.subject.mesh;
     entry.metrics = facts_of(summary, *run);
     const Image image = read_exr(run_folder(summary.folder, run->plan.id) + "/image.exr");
-    const Image truth = read_exr(truth_file(summary.folder, summary.manifest.truth_hash));
+    const Image truth = read_exr(truth_file(summary.folder, run->plan.truth));
     const auto p99 = run->metrics.find("rgb_p99");
     const double scale = difference_scale(p99 == run->metrics.end() ? 0 : p99->second);
     entry.pictures = {beauty_picture(image, "projected"), beauty_picture(truth, "ray-traced truth"),
@@ -64,6 +65,7 @@ GalleryEntry entry_of(const SweepSummary& summary) {
 }  // namespace
 
 void write_sweep_gallery(const std::string& folder, std::span<const SweepSummary> summaries) {
+    require_no_sweep(folder);
     Gallery gallery;
     gallery.title = "trilens: curved mirrors and glass by projection";
     gallery.text =

@@ -9,7 +9,8 @@
 
 namespace trilens {
 
-/// Writes `folder`/report.html over sweeps that lie in folders below it. Throws OutputError.
+/// Writes `folder`/report.html over sweeps that lie in folders below it. Throws UsageError where the folder
+/// is a sweep's own, OutputError.
 void write_sweep_gallery(const std::string& folder, std::span<const SweepSummary> summaries);
 
 }  // namespace trilens

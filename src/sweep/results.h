@@ -32,8 +32,10 @@ struct SweptOptic {
 
 /// What is swept, in words and names: goes into every result and changes no number.
 struct SweepSubject {
-    std::string title;                        // of the report
-    std::string scene;                        // file
+    std::string title;         // of the report
+    std::string scene;         // file
+    std::string scene_name;    // what tells scenes of one folder apart: file and overrides; empty: scene
+    std::string scene_digest;  // of all that the scene holds; empty: not known
     std::string camera, mesh, method, truth;  // CSV columns: "main", "pawn", "exact", "limit"
     int spp = 1, threads = 0;
     std::string isa;
@@ -42,17 +44,18 @@ struct SweepSubject {
     Facts versions;
 };
 
+/// Whose folder it is, and what is varied.
 struct SweepManifest {
     SweepSubject subject;
     Axis axis;
-    std::string truth_hash;
 };
 
 /// One line of plan.jsonl.
 struct PlannedRun {
     std::string id;  // "n0008": the folder's name under runs/
     int n = 0;
-    std::string hash;  // of everything that the run's result depends on
+    std::string hash;   // of everything that the run's result depends on
+    std::string truth;  // of everything that its truth depends on: truth_file
 };
 
 /// How far what one layer of one optic shows lies from where the truth shows it.
@@ -97,6 +100,8 @@ struct SweepFit {
     std::vector<SweepPoint> points;                  // every finished run that has the metric
     std::optional<double> order, constant, r2;       // none: fewer than two usable points
     std::optional<double> n_for_1px, n_for_half_px;  // metrics in pixels only
+    // The least share of an optic's pixels that a run behind the law measured, 0..1; metrics in pixels only.
+    std::optional<double> coverage;
 };
 
 struct SweepSummary {

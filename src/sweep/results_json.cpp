@@ -15,7 +15,7 @@
 namespace trilens {
 namespace {
 
-constexpr const char* kManifestSchema = "trilens.sweep-manifest/1";
+constexpr const char* kManifestSchema = "trilens.sweep-manifest/2";
 constexpr const char* kRunSchema = "trilens.sweep-run/1";
 constexpr const char* kSummarySchema = "trilens.sweep-summary/1";
 
@@ -64,6 +64,7 @@ Json json_of_fit(const SweepFit& fit) {
     json["r2"] = json_of_number(fit.r2);
     json["n_for_1px"] = json_of_resolution(fit.n_for_1px);
     json["n_for_half_px"] = json_of_resolution(fit.n_for_half_px);
+    json["coverage"] = json_of_number(fit.coverage);
     json["points"] = Json::array();
     for (const SweepPoint& point : fit.points)
         json["points"].push_back(
@@ -72,9 +73,17 @@ Json json_of_fit(const SweepFit& fit) {
 }
 
 Json json_of_subject(const SweepSubject& subject) {
-    Json json = {{"title", subject.title}, {"scene", subject.scene},     {"camera", subject.camera},
-                 {"mesh", subject.mesh},   {"method", subject.method},   {"truth", subject.truth},
-                 {"spp", subject.spp},     {"threads", subject.threads}, {"isa", subject.isa}};
+    Json json = {{"title", subject.title},
+                 {"scene", subject.scene},
+                 {"scene_name", subject.scene_name},
+                 {"scene_digest", subject.scene_digest},
+                 {"camera", subject.camera},
+                 {"mesh", subject.mesh},
+                 {"method", subject.method},
+                 {"truth", subject.truth},
+                 {"spp", subject.spp},
+                 {"threads", subject.threads},
+                 {"isa", subject.isa}};
     json["optics"] = Json::array();
     for (const SweptOptic& optic : subject.optics)
         json["optics"].push_back({{"object", optic.object}, {"name", optic.name}});
@@ -85,12 +94,13 @@ Json json_of_subject(const SweepSubject& subject) {
 }
 
 SweepSubject subject_of_json(const Json& json) {
-    SweepSubject subject{json.at("title"),    json.at("scene"),
-                         json.at("camera"),   json.at("mesh"),
-                         json.at("method"),   json.at("truth"),
-                         json.at("spp"),      json.at("threads"),
-                         json.at("isa"),      {},
-                         json.at("commands"), {}};
+    SweepSubject subject{json.at("title"),      json.at("scene"),
+                         json.at("scene_name"), json.at("scene_digest"),
+                         json.at("camera"),     json.at("mesh"),
+                         json.at("method"),     json.at("truth"),
+                         json.at("spp"),        json.at("threads"),
+                         json.at("isa"),        {},
+                         json.at("commands"),   {}};
     for (const Json& optic : json.at("optics"))
         subject.optics.push_back({optic.at("object"), optic.at("name")});
     for (const auto& [name, version] : json.at("versions").items())
@@ -116,15 +126,14 @@ std::string manifest_text(const SweepManifest& manifest, const std::vector<Plann
     Json json = {{"schema", kManifestSchema}};
     json["axis"] = {{"name", manifest.axis.name}, {"values", manifest.axis.values}};
     json["runs"] = plan.size();
-    json["truth_hash"] = manifest.truth_hash;
     json["subject"] = json_of_subject(manifest.subject);
     return json_document(json);
 }
 
-std::string plan_text(const std::vector<PlannedRun>& plan, const std::string& truth_hash) {
+std::string plan_text(const std::vector<PlannedRun>& plan) {
     std::string text;
     for (const PlannedRun& run : plan)
-        text += json_line({{"id", run.id}, {"n", run.n}, {"hash", run.hash}, {"truth", truth_hash}});
+        text += json_line({{"id", run.id}, {"n", run.n}, {"hash", run.hash}, {"truth", run.truth}});
     return text;
 }
 
@@ -151,8 +160,7 @@ SweepManifest read_manifest(const std::string& file) {
         const Json json = Json::parse(text);
         if (json.at("schema") != kManifestSchema) throw std::invalid_argument("another schema");
         const Json& axis = json.at("axis");
-        return SweepManifest{subject_of_json(json.at("subject")), Axis{axis.at("name"), axis.at("values")},
-                             json.at("truth_hash")};
+        return SweepManifest{subject_of_json(json.at("subject")), Axis{axis.at("name"), axis.at("values")}};
     });
 }
 
@@ -162,7 +170,7 @@ std::vector<PlannedRun> read_plan(const std::string& file) {
         for (std::size_t at = 0; at < text.size();) {
             const std::size_t end = std::min(text.find('\n', at), text.size());
             const Json json = Json::parse(text.substr(at, end - at));
-            plan.push_back({json.at("id"), json.at("n"), json.at("hash")});
+            plan.push_back({json.at("id"), json.at("n"), json.at("hash"), json.at("truth")});
             at = end + 1;
         }
         return plan;

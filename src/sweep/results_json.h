@@ -10,7 +10,7 @@
 namespace trilens {
 
 std::string manifest_text(const SweepManifest& manifest, const std::vector<PlannedRun>& plan);
-std::string plan_text(const std::vector<PlannedRun>& plan, const std::string& truth_hash);
+std::string plan_text(const std::vector<PlannedRun>& plan);
 
 /// metrics.json of a finished run, error.json of a failed one.
 std::string run_text(const RunRecord& run);

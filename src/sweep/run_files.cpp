@@ -2,7 +2,10 @@
 #include "sweep/run_files.h"
 
 #include <array>
+#include <cstddef>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -32,7 +35,25 @@ std::optional<std::string> done_text(const std::string& folder, const PlannedRun
     return text;
 }
 
+/// The hash of the first of kFiles, on the second line of DONE.
+std::string image_hash_in(const std::string& done) {
+    const std::size_t line = done.find('\n') + 1;
+    return done.substr(line, done.find(' ', line) - line);
+}
+
 }  // namespace
+
+std::string run_lock(const std::string& folder, const PlannedRun& plan) {
+    make_folder(run_folder(folder, plan.id));
+    return run_folder(folder, plan.id) + "/lock";
+}
+
+std::string failure_stamp(const std::string& folder, const PlannedRun& plan) {
+    namespace fs = std::filesystem;
+    std::error_code none;
+    const fs::file_time_type time = fs::last_write_time(run_folder(folder, plan.id) + "/error.json", none);
+    return none ? "" : std::to_string(time.time_since_epoch().count());
+}
 
 RunRecord load_run(const std::string& folder, const PlannedRun& plan) {
     const std::string home = run_folder(folder, plan.id);
@@ -42,7 +63,7 @@ RunRecord load_run(const std::string& folder, const PlannedRun& plan) {
     if (done && done == done_text(folder, plan)) {
         std::optional<RunRecord> run = parse_run(read_whole_file(home + "/metrics.json").value_or(""), plan);
         if (!run || run->state != RunState::kDone) return missing;
-        run->image_hash = file_hash(home + "/image.exr").value_or("");
+        run->image_hash = image_hash_in(*done);
         return *run;
     }
     const std::optional<RunRecord> failed =
@@ -66,7 +87,7 @@ RunRecord store_run(const std::string& folder, RunRecord run, const Image& image
     const std::optional<std::string> done = done_text(folder, run.plan);
     if (!done) throw OutputError(home, "what was written cannot be read back");
     replace_text_file(home + "/DONE", *done);
-    run.image_hash = file_hash(home + "/image.exr").value_or("");
+    run.image_hash = image_hash_in(*done);
     return run;
 }
 

@@ -8,6 +8,13 @@
 
 namespace trilens {
 
+/// The file whose lock (file_lock.h) a process holds while it does or judges the run. Throws OutputError.
+std::string run_lock(const std::string& folder, const PlannedRun& plan);
+
+/// Tells apart the failures that the folder keeps of this run, one after the other; empty where it keeps
+/// none.
+std::string failure_stamp(const std::string& folder, const PlannedRun& plan);
+
 /// What the folder says of this run. Finished only where DONE holds plan.hash and the hashes of files that
 /// are as they were written; any damage makes it missing.
 RunRecord load_run(const std::string& folder, const PlannedRun& plan);

@@ -11,54 +11,21 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "base/files.h"
-#include "base/hash.h"
+#include "base/parallel.h"
 #include "base/stopwatch.h"
-#include "image/image_io.h"
-#include "report/text.h"
 #include "sweep/csv.h"
+#include "sweep/file_lock.h"
 #include "sweep/fit_runs.h"
 #include "sweep/measure_run.h"
+#include "sweep/plan.h"
 #include "sweep/results_json.h"
 #include "sweep/run_files.h"
+#include "sweep/sweep_folder.h"
 #include "sweep/sweep_report.h"
+#include "sweep/truth_store.h"
 
 namespace trilens {
 namespace {
-
-constexpr const char* kFormat =
-    "trilens.sweep/1";  // part of every hash: raise it when what a run stores changes
-
-/// Hash of parts such that no two lists of parts read the same.
-std::string hash_parts(const std::vector<std::string>& parts) {
-    std::string text;
-    for (const std::string& part : parts) text += std::to_string(part.size()) + ":" + part;
-    return hash_text(text);
-}
-
-std::string run_id(int n) {
-    const std::string digits = std::to_string(n);
-    return "n" + std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;
-}
-
-std::string truth_hash(const SweepCallbacks& callbacks) {
-    return hash_parts(
-        {kFormat, "truth", callbacks.truth_key.empty() ? callbacks.job_key : callbacks.truth_key});
-}
-
-std::vector<PlannedRun> make_plan(const SweepParams& params, const SweepCallbacks& callbacks) {
-    std::vector<std::string> parts = {kFormat, truth_hash(callbacks), callbacks.job_key};
-    for (const SweptOptic& optic : params.subject.optics) {
-        parts.push_back(std::to_string(optic.object));
-        parts.push_back(optic.name);
-    }
-    std::vector<PlannedRun> plan;
-    for (const int n : params.axis.values) {
-        std::vector<std::string> all = parts;
-        all.push_back(params.axis.name + "=" + std::to_string(n));
-        plan.push_back({run_id(n), n, hash_parts(all)});
-    }
-    return plan;
-}
 
 /// Optics whose names tell them apart from each other and from "all": where they do not, the object's id is
 /// added.
@@ -69,31 +36,6 @@ std::vector<SweptOptic> distinct_optics(const std::vector<SweptOptic>& optics) {
     for (SweptOptic& optic : distinct)
         if (uses[optic.name] > 1) optic.name += " #" + std::to_string(optic.object);
     return distinct;
-}
-
-struct Truth {
-    Image image;
-    double seconds = 0;
-};
-
-/// The truth of this sweep: read where it is, else traced and kept.
-Truth get_truth(const std::string& folder, const SweepCallbacks& callbacks) {
-    const std::string file = truth_file(folder, truth_hash(callbacks)), seconds_file = file + ".seconds";
-    if (const std::optional<std::string> text = read_whole_file(seconds_file)) {
-        double seconds = 0;
-        const auto end = std::from_chars(text->data(), text->data() + text->size(), seconds);
-        // A truth that cannot be read is traced again.
-        try {
-            if (end.ec == std::errc()) return {read_exr(file), seconds};
-        } catch (const InputError&) {
-        }
-    }
-    const Stopwatch watch;
-    Truth truth{callbacks.trace(), 0};
-    truth.seconds = watch.seconds();
-    write_exr(file, truth.image);
-    replace_text_file(seconds_file, shortest_text(truth.seconds) + "\n");
-    return truth;
 }
 
 /// "trilens:facets" of the header, where render says it.
@@ -110,27 +52,12 @@ struct DrawnRun {
     Image image, diff;
 };
 
-/// Renders and measures one run into `run`; what goes wrong there is the run's failure, and then there is no
-/// picture.
-std::optional<DrawnRun> draw_run(const SweepCallbacks& callbacks, const Truth& truth,
-                                 const SweepSubject& subject, RunRecord& run) {
+/// What goes wrong in `work` is the run's failure.
+void attempt(RunRecord& run, const std::function<void()>& work) {
     run.state = RunState::kFailed;
     try {
-        const Stopwatch watch;
-        DrawnRun drawn{callbacks.render(run.plan.n), {}};
-        const double seconds = watch.seconds();
-        MeasuredRun measured = measure_run(drawn.image, truth.image, subject.optics);
-        drawn.diff = std::move(measured.diff);
-        run.metrics = std::move(measured.metrics);
-        run.displacement = std::move(measured.displacement);
-        run.warnings = std::move(measured.warnings);
-        run.metrics["t_total_s"] = seconds;
-        run.metrics["t_trace_s"] = truth.seconds;
-        run.metrics["width"] = drawn.image.width;
-        run.metrics["height"] = drawn.image.height;
-        if (const std::optional<double> facets = facet_count(drawn.image)) run.metrics["facets"] = *facets;
+        work();
         run.state = RunState::kDone;
-        return drawn;
     } catch (const Interrupted&) {
         throw;
     } catch (const Error& error) {
@@ -140,34 +67,87 @@ std::optional<DrawnRun> draw_run(const SweepCallbacks& callbacks, const Truth& t
         run.exit_code = static_cast<int>(ExitCode::kComputation);
         run.error = "out of memory";
     }
-    return std::nullopt;
 }
 
-RunRecord do_run(const SweepParams& params, const SweepCallbacks& callbacks, const Truth& truth,
-                 const PlannedRun& plan) {
-    clear_run(params.folder, plan);
-    RunRecord run;
-    run.plan = plan;
-    const std::optional<DrawnRun> drawn = draw_run(callbacks, truth, params.subject, run);
-    if (drawn) return store_run(params.folder, std::move(run), drawn->image, drawn->diff);
-    store_failure(params.folder, run);
-    return run;
+/// Renders and measures one run into `run`.
+DrawnRun draw_run(const SweepCallbacks& callbacks, const Truth& truth, const SweepSubject& subject,
+                  RunRecord& run) {
+    const Stopwatch watch;
+    DrawnRun drawn{callbacks.render(run.plan.n), {}};
+    const double seconds = watch.seconds();
+    MeasuredRun measured = measure_run(drawn.image, truth.image, subject.optics);
+    drawn.diff = std::move(measured.diff);
+    run.metrics = std::move(measured.metrics);
+    run.displacement = std::move(measured.displacement);
+    run.warnings = std::move(measured.warnings);
+    run.metrics["t_total_s"] = seconds;
+    run.metrics["t_trace_s"] = truth.seconds;
+    run.metrics["width"] = drawn.image.width;
+    run.metrics["height"] = drawn.image.height;
+    if (const std::optional<double> facets = facet_count(drawn.image)) run.metrics["facets"] = *facets;
+    return drawn;
 }
 
-/// Runs the shard's part of the plan. Throws Interrupted between runs.
+/// One process at its part of the plan.
+struct Worker {
+    const SweepParams& params;
+    const SweepCallbacks& callbacks;
+    TruthStore truths;
+    std::map<std::string, std::string> failures;  // id -> failure_stamp, as the folder was at the start
+
+    RunRecord do_run(const PlannedRun& plan) {
+        RunRecord run;
+        run.plan = plan;
+        // Without the truth that all runs share none can be done; one of its own is a part of the run.
+        if (!callbacks.truth_per_run) truths.get(plan);
+        clear_run(params.folder, plan);
+        DrawnRun drawn;
+        attempt(run, [&] { drawn = draw_run(callbacks, truths.get(plan), params.subject, run); });
+        if (run.state == RunState::kDone)
+            return store_run(params.folder, std::move(run), drawn.image, drawn.diff);
+        store_failure(params.folder, run);
+        return run;
+    }
+
+    /// The caller holds the run's lock. A run that another process has tried since this one began is not
+    /// tried again.
+    void settle(const PlannedRun& plan) {
+        RunRecord run = load_run(params.folder, plan);
+        const bool is_tried =
+            run.state == RunState::kFailed && failure_stamp(params.folder, plan) != failures[plan.id];
+        if (run.state != RunState::kDone && !is_tried) run = do_run(plan);
+        if (params.on_run) params.on_run(run);
+    }
+};
+
+/// Runs the shard's part of the plan: first what no other process is at, then what those have left. Throws
+/// Interrupted between runs.
 void run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
               const std::vector<PlannedRun>& plan) {
-    std::optional<Truth> truth;
-    for (std::size_t job = 0; job < plan.size(); ++job) {
-        params.progress(static_cast<double>(job) / static_cast<double>(plan.size()));
-        if (!params.shard.has(job)) continue;
+    Worker worker{params, callbacks, {params.folder, callbacks.trace, params.progress}, {}};
+    std::vector<PlannedRun> mine, busy;
+    for (std::size_t job = 0; job < plan.size(); ++job)
+        if (params.shard.has(job)) mine.push_back(plan[job]);
+    for (const PlannedRun& run : mine) worker.failures[run.id] = failure_stamp(params.folder, run);
+
+    std::size_t settled = 0;
+    const auto settle = [&](const PlannedRun& run) {
+        worker.settle(run);
+        params.progress(static_cast<double>(++settled) / static_cast<double>(mine.size()));
+    };
+    params.progress(0);
+    for (const PlannedRun& run : mine) {
         if (params.progress.cancelled()) throw Interrupted();
-        RunRecord run = load_run(params.folder, plan[job]);
-        if (run.state != RunState::kDone) {
-            if (!truth) truth = get_truth(params.folder, callbacks);
-            run = do_run(params, callbacks, *truth, plan[job]);
-        }
-        if (params.on_run) params.on_run(run);
+        const std::optional<FileLock> lock = FileLock::try_lock(run_lock(params.folder, run), LockKind::kOne);
+        if (lock)
+            settle(run);
+        else
+            busy.push_back(run);
+    }
+    for (const PlannedRun& run : busy) {
+        if (params.progress.cancelled()) throw Interrupted();
+        const FileLock lock = FileLock::wait(run_lock(params.folder, run), LockKind::kOne, params.progress);
+        settle(run);
     }
     params.progress(1);
 }
@@ -177,16 +157,16 @@ SweepParams with_distinct_optics(SweepParams params) {
     return params;
 }
 
-std::vector<PlannedRun> write_plan(const SweepParams& params, const SweepCallbacks& callbacks) {
+std::vector<PlannedRun> plan_of(const SweepParams& params, const SweepCallbacks& callbacks) {
     TRILENS_CHECK(callbacks.render && callbacks.trace, "a sweep renders and traces");
     TRILENS_CHECK(params.shard.index >= 0 && params.shard.index < params.shard.count, "a shard of the plan");
-    const std::vector<PlannedRun> plan = make_plan(params, callbacks);
-    make_folder(params.folder + "/truth");
-    make_folder(params.folder + "/runs");
-    const SweepManifest manifest{params.subject, params.axis, truth_hash(callbacks)};
-    replace_text_file(params.folder + "/manifest.json", manifest_text(manifest, plan));
-    replace_text_file(params.folder + "/plan.jsonl", plan_text(plan, manifest.truth_hash));
-    return plan;
+    const std::string& truth = callbacks.truth_key.empty() ? callbacks.job_key : callbacks.truth_key;
+    return make_plan(params.axis, params.subject.optics, {callbacks.job_key, truth, callbacks.truth_per_run});
+}
+
+FileLock claim(const SweepParams& params, const std::vector<PlannedRun>& plan) {
+    if (params.replace) clear_folder(params.folder);
+    return claim_folder(params.folder, {params.subject, params.axis}, plan, params.progress);
 }
 
 void write_tables(const SweepSummary& summary) {
@@ -197,13 +177,15 @@ void write_tables(const SweepSummary& summary) {
 
 }  // namespace
 
-void plan_sweep(const SweepParams& params, const SweepCallbacks& callbacks) {
-    write_plan(params, callbacks);
+void plan_sweep(const SweepParams& given, const SweepCallbacks& callbacks) {
+    const SweepParams params = with_distinct_optics(given);
+    claim(params, plan_of(params, callbacks));
 }
 
 SweepSummary run_sweep(const SweepParams& given, const SweepCallbacks& callbacks) {
     const SweepParams params = with_distinct_optics(given);
-    const std::vector<PlannedRun> plan = write_plan(params, callbacks);
+    const std::vector<PlannedRun> plan = plan_of(params, callbacks);
+    const FileLock user = claim(params, plan);
     try {
         run_plan(params, callbacks, plan);
     } catch (const Interrupted&) {
@@ -217,8 +199,11 @@ SweepSummary load_sweep(const std::string& folder) {
     SweepSummary summary;
     summary.folder = folder;
     summary.manifest = read_manifest(folder + "/manifest.json");
-    for (const PlannedRun& plan : read_plan(folder + "/plan.jsonl"))
-        summary.runs.push_back(load_run(folder, plan));
+    const std::vector<PlannedRun> plan = read_plan(folder + "/plan.jsonl");
+    summary.runs.resize(plan.size());
+    parallel_for(plan.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) summary.runs[i] = load_run(folder, plan[i]);
+    });
     summary.fits = fit_runs(summary.runs);
     return summary;
 }

@@ -194,7 +194,7 @@ std::vector<ReportRun> make_report_runs(const SweepSummary& summary, const Pictu
                                         std::vector<std::string>& warnings) {
     std::optional<Image> truth;
     try {
-        truth = read_exr(truth_file(summary.folder, summary.manifest.truth_hash));
+        truth = read_exr(truth_file(summary.folder, summary.runs.front().plan.truth));
     } catch (const InputError& error) {
         warnings.push_back(std::string("no picture of the truth: ") + error.what());
     }

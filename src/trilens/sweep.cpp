@@ -3,8 +3,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "base/error.h"
+#include "base/format.h"
+#include "base/hash.h"
+#include "sweep/code_digest.h"
 #include "sweep/sweep.h"
 #include "trilens/render.h"
 #include "trilens/version.h"
@@ -29,12 +33,28 @@ Shard shard_of(const std::string& text) {
     return parse_shard(text, [](const char* name) { return std::getenv(name); });
 }
 
+/// The scene file as seen from the sweep's folder, so that it is the same from wherever the sweep is called
+/// and after both have moved; and what is changed in it.
+std::string scene_name(const SweepRequest& request) {
+    namespace fs = std::filesystem;
+    std::error_code unreadable;
+    const fs::path file = fs::weakly_canonical(request.scene.file, unreadable);
+    const fs::path folder = fs::weakly_canonical(request.folder, unreadable);
+    std::string name = file.lexically_proximate(folder).generic_string();
+    if (request.scene.resolution > 0) name += fmt::format(" resolution={}", request.scene.resolution);
+    for (const SceneOverride& change : request.scene.overrides)
+        name += fmt::format(" {}={}", change.pointer, change.value);
+    return name;
+}
+
 SweepSubject subject_of(const SweepRequest& request, const Renderer& renderer, std::size_t camera) {
     const std::vector<std::string> libraries = library_versions();
     SweepSubject subject;
     subject.title =
         request.title.empty() ? std::filesystem::path(request.scene.file).stem().string() : request.title;
     subject.scene = request.scene.file;
+    subject.scene_name = scene_name(request);
+    subject.scene_digest = hash_text(renderer.scene().resolved + "\n" + renderer.digest());
     subject.camera = renderer.scene().cameras[camera].name;
     subject.method = engine_name(Engine::kExact);
     subject.truth = request.truth;
@@ -57,6 +77,7 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk&
     job->params.folder = request.folder;
     job->params.axis = parse_axis(request.over);
     job->params.shard = shard_of(request.shard);
+    job->params.replace = request.replace;
 
     Scene scene = load_scene(request.scene);
     if (talk.warn)
@@ -78,8 +99,12 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk&
         return renderer->draw(picture, progress, talk.warn).image;
     };
     job->callbacks.render = [draw](int n) { return draw(Engine::kExact, n); };
-    job->callbacks.trace = [draw, truth] { return draw(truth, 0); };
-    job->callbacks.job_key = version() + "\n" + job->params.subject.camera + "\n" +
+    // The facets of run n are the truth of run n alone; the limit surface is that of all.
+    job->callbacks.truth_per_run = truth == Engine::kFacetsTruth;
+    job->callbacks.trace = [draw, truth](int n) {
+        return draw(truth, truth == Engine::kFacetsTruth ? n : 0);
+    };
+    job->callbacks.job_key = code_digest() + "\n" + job->params.subject.camera + "\n" +
                              job->renderer->scene().resolved + "\n" + job->renderer->digest();
     job->callbacks.truth_key = job->callbacks.job_key + "\n" + request.truth;
     return job;

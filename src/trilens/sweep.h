@@ -28,8 +28,9 @@ struct SweepRequest {
     std::string truth = "limit";               // or "facets"
     std::string shard = "0/1";                 // part i of n, or "auto" in a job array
     std::string folder;
-    std::string title;    // of the report; empty: the scene file's name
-    std::string command;  // what makes the sweep again, for the report; may be empty
+    bool replace = false;  // starts the folder afresh, whichever sweep it belongs to
+    std::string title;     // of the report; empty: the scene file's name
+    std::string command;   // what makes the sweep again, for the report; may be empty
 };
 
 /// How a sweep says what it does; both may be empty. `progress`: made for a job of that name.
@@ -39,8 +40,11 @@ struct SweepTalk {
 };
 
 /// Does what is not done yet, then sums up and reports (a part of several sums up nothing). A run that fails
-/// is recorded, and the others go on. Throws UsageError for a text that says no axis, truth or shard,
-/// InputError where the scene has no optic or cannot be read, OutputError, Interrupted.
+/// is recorded, and the others go on. Results of another scene content, truth or build of this library are
+/// not trusted. Several processes may do one sweep in one folder at once. Throws UsageError for a text that
+/// says no axis, truth or shard, and for a folder that belongs to another sweep (of another scene or other
+/// overrides, camera, truth or axis; the list of values may differ), InputError where the scene has no optic
+/// or cannot be read, OutputError, Interrupted.
 SweepSummary run_sweep(const SweepRequest& request, const SweepTalk& talk = {});
 
 /// Whether one process does all of it. Throws UsageError as run_sweep does.
@@ -48,6 +52,9 @@ bool is_whole_sweep(const std::string& shard);
 
 /// Writes the plan and runs nothing; returns the plan's file.
 std::string plan_sweep(const SweepRequest& request, const SweepTalk& talk = {});
+
+/// Throws UsageError where the folder is one sweep's own: a gallery of several would write over its report.
+void require_no_sweep(const std::string& folder);
 
 /// What a sweep's folder says, with fits; writes nothing. Throws InputError where there is no plan in it.
 SweepSummary load_sweep(const std::string& folder);

@@ -70,7 +70,7 @@ struct FakeSweep {
             image.metadata["trilens:facets"] = std::to_string(12 * n * n);
             return image;
         };
-        callbacks.trace = [this] {
+        callbacks.trace = [this](int) {
             ++traces;
             return fake_image(0, 0);
         };

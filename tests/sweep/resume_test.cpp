@@ -96,7 +96,7 @@ TEST_CASE("sweep: what changed is done again, and only that") {
         CHECK(calls_of_run(fake) == Calls{1, 0});
     }
     SECTION("a truth that cannot be read, once it is needed") {
-        replace_text_file(truth_file(fake.params.folder, load_sweep(fake.params.folder).manifest.truth_hash),
+        replace_text_file(truth_file(fake.params.folder, load_sweep(fake.params.folder).runs[0].plan.truth),
                           "no image");
         CHECK(calls_of_run(fake) == Calls{0, 0});
         fs::remove(runs + "n0002/DONE");
@@ -148,7 +148,7 @@ TEST_CASE("sweep: an image that cannot be compared is a failed run") {
 TEST_CASE("sweep: without a truth there is no sweep; a bug in a callback is not a failed run") {
     FakeSweep fake(trilens_test::scratch_dir("resume_no_truth"), {1, 2});
     const auto trace = fake.callbacks.trace;
-    fake.callbacks.trace = []() -> Image { throw ComputationError("no truth"); };
+    fake.callbacks.trace = [](int) -> Image { throw ComputationError("no truth"); };
     CHECK_THROWS_AS(fake.run(), ComputationError);
     CHECK(fake.renders == 0);
     fake.callbacks.trace = trace;

@@ -1,0 +1,118 @@
+#include "sweep/sweep_folder.h"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/format.h"
+#include "sweep/results_json.h"
+
+namespace trilens {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kWhatToDo = "choose another folder, or discard what is there with --replace";
+
+// The manifest goes last: until then the folder is known as a sweep's.
+constexpr std::array kWritten = {"report.html", "runs.csv", "displacement.csv", "summary.json", "plots",
+                                 "runs",        "truth",    "plan.jsonl",       "manifest.json"};
+
+std::string manifest_file(const std::string& folder) {
+    return folder + "/manifest.json";
+}
+/// Held by every process at work in the folder.
+std::string users_lock(const std::string& folder) {
+    return folder + "/lock";
+}
+/// Held while the manifest is read and written.
+std::string plan_lock(const std::string& folder) {
+    return folder + "/plan.lock";
+}
+
+bool is_there(const fs::path& file) {
+    std::error_code unreadable;
+    return fs::exists(file, unreadable);
+}
+
+const std::string& scene_name(const SweepSubject& subject) {
+    return subject.scene_name.empty() ? subject.scene : subject.scene_name;
+}
+
+std::string owner_text(const SweepManifest& manifest) {
+    const SweepSubject& subject = manifest.subject;
+    return fmt::format("the sweep of {} over {} (camera {}, truth {})", scene_name(subject),
+                       manifest.axis.name, subject.camera, subject.truth);
+}
+
+/// One of the sweeps in folders below; none where there are none.
+std::optional<std::string> sweep_below(const std::string& folder) {
+    std::error_code unreadable;
+    for (fs::directory_iterator entry(folder, unreadable), end; !unreadable && entry != end;
+         entry.increment(unreadable))
+        if (is_there(entry->path() / "manifest.json")) return entry->path().filename().string();
+    return std::nullopt;
+}
+
+void require_free(const std::string& folder, const SweepManifest& manifest) {
+    if (!is_there(manifest_file(folder))) {
+        if (const std::optional<std::string> below = sweep_below(folder))
+            throw UsageError(fmt::format("{} holds a gallery of sweeps ({} is one); choose another folder",
+                                         folder, *below));
+        return;
+    }
+    std::optional<SweepManifest> owner;
+    try {
+        owner = read_manifest(manifest_file(folder));
+    } catch (const InputError& error) {
+        throw InputError("", "", fmt::format("{}; {}", error.what(), kWhatToDo));
+    }
+    if (is_same_sweep(*owner, manifest)) return;
+    throw UsageError(fmt::format("{} belongs to {}, this is {}; {}", folder, owner_text(*owner),
+                                 owner_text(manifest), kWhatToDo));
+}
+
+}  // namespace
+
+bool is_same_sweep(const SweepManifest& a, const SweepManifest& b) {
+    const SweepSubject &one = a.subject, &other = b.subject;
+    const bool is_same_scene = scene_name(one) == scene_name(other) ||
+                               (!one.scene_digest.empty() && one.scene_digest == other.scene_digest);
+    return is_same_scene && one.camera == other.camera && one.truth == other.truth &&
+           a.axis.name == b.axis.name;
+}
+
+FileLock claim_folder(const std::string& folder, const SweepManifest& manifest,
+                      const std::vector<PlannedRun>& plan, const Progress& progress) {
+    make_folder(folder);
+    FileLock user = FileLock::wait(users_lock(folder), LockKind::kMany, progress);
+    const FileLock planner = FileLock::wait(plan_lock(folder), LockKind::kOne, progress);
+    require_free(folder, manifest);
+    make_folder(folder + "/truth");
+    make_folder(folder + "/runs");
+    replace_text_file(manifest_file(folder), manifest_text(manifest, plan));
+    replace_text_file(folder + "/plan.jsonl", plan_text(plan));
+    return user;
+}
+
+void clear_folder(const std::string& folder) {
+    if (!is_there(manifest_file(folder))) return;
+    const std::optional<FileLock> alone = FileLock::try_lock(users_lock(folder), LockKind::kOne);
+    if (!alone) throw UsageError(folder + " cannot be replaced: another process is sweeping into it");
+    for (const char* name : kWritten) {
+        std::error_code failure;
+        fs::remove_all(folder + "/" + name, failure);
+        if (failure) throw OutputError(folder + "/" + name, "cannot be removed: " + failure.message());
+    }
+}
+
+void require_no_sweep(const std::string& folder) {
+    if (is_there(manifest_file(folder)))
+        throw UsageError(
+            folder + " holds a sweep, whose report several scenes would write over; choose another folder");
+}
+
+}  // namespace trilens
