@@ -3,7 +3,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "sweep/hash.h"
+#include "base/hash.h"
 
 namespace trilens {
 namespace {

@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "image/image_io.h"
 #include "sweep/files.h"
-#include "sweep/hash.h"
 #include "sweep/results_json.h"
 
 namespace trilens {

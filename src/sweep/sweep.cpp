@@ -11,11 +11,11 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "image/image_io.h"
 #include "sweep/csv.h"
 #include "sweep/files.h"
 #include "sweep/fit_runs.h"
-#include "sweep/hash.h"
 #include "sweep/measure_run.h"
 #include "sweep/results_json.h"
 #include "sweep/run_files.h"

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "image/image_io.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
 #include "sweep/files.h"
 #include "sweep/fit_runs.h"
-#include "sweep/hash.h"
 #include "sweep/json.h"
 #include "sweep/xml.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/hash.h"
 #include "support/test.h"
-#include "sweep/hash.h"
 #include "sweep/xml.h"
 
 using namespace trilens;
