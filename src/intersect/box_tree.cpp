@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "base/check.h"
@@ -36,12 +37,46 @@ struct LocalRay {
 struct Query : EmbreeContext {
     double (*callback)(void* state, Id box) = nullptr;
     void* state = nullptr;
+    const Id* box = nullptr;  // of each of Embree's primitives
     double t_start = 0, local_from_t = 0;
+    double t_far = 0;  // the smallest that the callback gave
 };
 
-LocalFrame make_frame(std::span<const Box> boxes) {
+/// The element in the middle by size; `values` is not empty.
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// The boxes of each tree, those near the middle first.
+std::vector<std::vector<Id>> group_by_distance(std::span<const Box> boxes) {
+    Vec3 middle;
+    std::vector<double> values(boxes.size());
+    for (int k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < boxes.size(); ++i)
+            values[i] = 0.5 * boxes[i].low[k] + 0.5 * boxes[i].high[k];
+        middle[k] = median(values);
+    }
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const Vec3 reach = glm::max(middle - boxes[i].low, boxes[i].high - middle);
+        values[i] = std::max({reach.x, reach.y, reach.z});
+    }
+    const double near = kGroupSpan * median(values);
+    std::map<int, std::vector<Id>> groups;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const bool is_far = near > 0 && values[i] > near;
+        const double factors = is_far ? (std::log2(values[i]) - std::log2(near)) / std::log2(kGroupSpan) : -1;
+        groups[static_cast<int>(std::floor(factors))].push_back(static_cast<Id>(i));
+    }
+    std::vector<std::vector<Id>> result;
+    for (auto& [factor, group] : groups) result.push_back(std::move(group));
+    return result;
+}
+
+LocalFrame make_frame(std::span<const Box> boxes, const std::vector<Id>& group) {
     Vec3 low(kInfinity), high(-kInfinity);
-    for (const Box& box : boxes) low = glm::min(low, box.low), high = glm::max(high, box.high);
+    for (const Id i : group) low = glm::min(low, boxes[i].low), high = glm::max(high, boxes[i].high);
     // Halves first: the sum of two large corners may overflow.
     const Vec3 half = 0.5 * high - 0.5 * low;
     const double radius = length(half);
@@ -86,9 +121,10 @@ void on_bounds(const RTCBoundsFunctionArguments* arguments) {
 // Embree offers a box: ask the visitor, and shorten the ray to what still matters.
 void on_box(const RTCIntersectFunctionNArguments* arguments) noexcept {
     if (!arguments->valid[0]) return;
-    const Query& query = *static_cast<const Query*>(arguments->context);
+    Query& query = *static_cast<Query*>(arguments->context);
     RTCRayHit& hit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-    const double t_far = query.callback(query.state, arguments->primID);
+    const double t_far = query.callback(query.state, query.box[arguments->primID]);
+    query.t_far = std::min(query.t_far, t_far);
     const double s_far = (t_far - query.t_start) * query.local_from_t;
     if (!(s_far < hit.ray.tfar)) return;
     const float tfar =
@@ -110,31 +146,53 @@ RTCBounds local_bounds(const LocalFrame& frame, const Box& box) {
 
 }  // namespace
 
-struct BoxTree::Data : EmbreeTree {
-    using EmbreeTree::EmbreeTree;
-    LocalFrame frame;
+struct BoxTree::Data {
+    /// Boxes that share an Embree scene and its frame.
+    struct Group {
+        std::vector<Id> box;
+        LocalFrame frame;
+        RTCScene scene = nullptr;
+    };
+
+    explicit Data(const std::string& isa) : device(isa) {}
+    ~Data() {
+        for (const Group& group : groups)
+            if (group.scene) rtcReleaseScene(group.scene);
+    }
+    Data(const Data&) = delete;
+    Data& operator=(const Data&) = delete;
+
+    void build(std::span<const Box> boxes, Group& group) {
+        group.frame = make_frame(boxes, group.box);
+        std::vector<RTCBounds> bounds;
+        bounds.reserve(group.box.size());
+        for (const Id i : group.box) bounds.push_back(local_bounds(group.frame, boxes[i]));
+
+        RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
+        rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(bounds.size()));
+        rtcSetGeometryUserData(geometry, bounds.data());
+        rtcSetGeometryBoundsFunction(geometry, &on_bounds, nullptr);
+        rtcSetGeometryIntersectFunction(geometry, &on_box);
+        rtcCommitGeometry(geometry);
+        group.scene = rtcNewScene(device.get());
+        rtcSetSceneFlags(group.scene, RTC_SCENE_FLAG_ROBUST);
+        rtcAttachGeometry(group.scene, geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(group.scene);
+        device.check("building the tree");
+    }
+
+    EmbreeDevice device;
+    std::vector<Group> groups;
 };
 
 BoxTree::BoxTree(std::span<const Box> boxes, const std::string& isa) : data_(std::make_unique<Data>(isa)) {
     if (boxes.empty()) return;
     TRILENS_CHECK(boxes.size() < kNone, "boxes are numbered with 32 bits");
-    data_->frame = make_frame(boxes);
-    std::vector<RTCBounds> bounds;
-    bounds.reserve(boxes.size());
-    for (const Box& box : boxes) bounds.push_back(local_bounds(data_->frame, box));
-
-    RTCGeometry geometry = rtcNewGeometry(data_->device.get(), RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(bounds.size()));
-    rtcSetGeometryUserData(geometry, bounds.data());
-    rtcSetGeometryBoundsFunction(geometry, &on_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, &on_box);
-    rtcCommitGeometry(geometry);
-    data_->scene = rtcNewScene(data_->device.get());
-    rtcSetSceneFlags(data_->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcAttachGeometry(data_->scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(data_->scene);
-    data_->device.check("building the tree");
+    for (std::vector<Id>& group : group_by_distance(boxes)) {
+        data_->groups.emplace_back().box = std::move(group);
+        data_->build(boxes, data_->groups.back());
+    }
 }
 
 BoxTree::~BoxTree() = default;
@@ -142,28 +200,33 @@ BoxTree::BoxTree(BoxTree&&) noexcept = default;
 BoxTree& BoxTree::operator=(BoxTree&&) noexcept = default;
 
 void BoxTree::visit_with(const Ray& ray, const Interval& interval, Callback callback, void* state) const {
-    if (!data_->scene) return;
-    const LocalRay local = make_local(data_->frame, ray, interval.t_min, interval.t_max);
-    if (!local.meets_scene) return;
+    double t_max = interval.t_max;
+    for (const Data::Group& group : data_->groups) {
+        const LocalRay local = make_local(group.frame, ray, interval.t_min, t_max);
+        if (!local.meets_scene) continue;
 
-    Query query;
-    init_context(&query);
-    query.callback = callback;
-    query.state = state;
-    query.t_start = local.t_start;
-    query.local_from_t = local.local_from_t;
+        Query query;
+        init_context(&query);
+        query.callback = callback;
+        query.state = state;
+        query.box = group.box.data();
+        query.t_start = local.t_start;
+        query.local_from_t = local.local_from_t;
+        query.t_far = t_max;
 
-    RTCRayHit embree{};
-    embree.ray.org_x = static_cast<float>(local.origin.x),
-    embree.ray.dir_x = static_cast<float>(local.direction.x);
-    embree.ray.org_y = static_cast<float>(local.origin.y),
-    embree.ray.dir_y = static_cast<float>(local.direction.y);
-    embree.ray.org_z = static_cast<float>(local.origin.z),
-    embree.ray.dir_z = static_cast<float>(local.direction.z);
-    embree.ray.tfar = rounded_up(local.s_max);
-    embree.ray.mask = ~0u;
-    embree.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    intersect_one(data_->scene, &query, &embree);
+        RTCRayHit embree{};
+        embree.ray.org_x = static_cast<float>(local.origin.x),
+        embree.ray.dir_x = static_cast<float>(local.direction.x);
+        embree.ray.org_y = static_cast<float>(local.origin.y),
+        embree.ray.dir_y = static_cast<float>(local.direction.y);
+        embree.ray.org_z = static_cast<float>(local.origin.z),
+        embree.ray.dir_z = static_cast<float>(local.direction.z);
+        embree.ray.tfar = rounded_up(local.s_max);
+        embree.ray.mask = ~0u;
+        embree.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        intersect_one(group.scene, &query, &embree);
+        t_max = query.t_far;
+    }
 }
 
 }  // namespace trilens

@@ -13,9 +13,11 @@
 
 namespace trilens {
 
-/// Embree's tree over boxes. Embree works in float; here the scene is moved to the origin and scaled to order
-/// one, every ray is brought to the scene in double before it is rounded, and boxes are widened by
-/// kBoxMargin, so that no box that the double ray meets is missed. Thread-safe to read.
+/// Embree's trees over boxes. Embree works in float; here the scene is moved to the origin and scaled to
+/// order one, every ray is brought to the scene in double before it is rounded, and boxes are widened by
+/// kBoxMargin, so that no box that the double ray meets is missed. Boxes far beyond most others (more than
+/// kGroupSpan times as far from the middle of all as half of the boxes are) go into trees of their own, one
+/// for each factor of kGroupSpan, so that the margin of the others stays theirs. Thread-safe to read.
 class BoxTree {
   public:
     /// `isa`: Embree's instruction set ("sse2" .. "avx512"), or empty for the best.
@@ -27,9 +29,9 @@ class BoxTree {
     BoxTree& operator=(BoxTree&&) noexcept;
 
     /// Calls visitor(box) for every box that the ray meets within [t_min, t_max], some that it just misses,
-    /// roughly from near to far but in no promised order, each once. The visitor returns the t beyond which
-    /// boxes no longer matter (minus infinity to stop); it must not throw. A ray that is not finite, or has
-    /// no direction, meets nothing.
+    /// roughly from near to far in each tree but in no promised order, each once. The visitor returns the t
+    /// beyond which boxes no longer matter (minus infinity to stop); it must not throw. A ray that is not
+    /// finite, or has no direction, meets nothing.
     template <typename Visitor>
     void visit(const Ray& ray, double t_min, double t_max, Visitor&& visitor) const {
         static_assert(std::is_invocable_r_v<double, Visitor&, Id>);
@@ -49,10 +51,12 @@ class BoxTree {
     std::unique_ptr<Data> data_;
 };
 
-/// How much wider boxes are on each side than asked for, as a share of the half diagonal of all boxes
-/// together. A ray rounded to float strays from the double one by at most 2^-25 per component at its start
-/// and as much again along its way of at most 2; Embree's own box test adds a few units in the last place:
-/// together below 2^-22.
+inline constexpr double kGroupSpan = 1024;
+
+/// How much wider boxes are on each side than asked for, as a share of the half diagonal of all boxes of
+/// their tree together. A ray rounded to float strays from the double one by at most 2^-25 per component at
+/// its start and as much again along its way of at most 2; Embree's own box test adds a few units in the last
+/// place: together below 2^-22.
 inline constexpr double kBoxMargin = 1.0 / (1 << 20);
 
 }  // namespace trilens

@@ -26,4 +26,13 @@ std::string read_required_file(const std::string& file) {
     return text;
 }
 
+std::string_view utf8_text(std::string_view bytes, const std::string& file) {
+    constexpr std::string_view kUtf8 = "\xEF\xBB\xBF", kLittle = "\xFF\xFE", kBig = "\xFE\xFF";
+    constexpr std::string_view kBig32("\0\0\xFE\xFF", 4);
+    for (const std::string_view mark : {kLittle, kBig, kBig32})
+        if (bytes.substr(0, mark.size()) == mark)
+            throw InputError(file, "", "is UTF-16 or UTF-32 text: save it as UTF-8");
+    return bytes.substr(0, kUtf8.size()) == kUtf8 ? bytes.substr(kUtf8.size()) : bytes;
+}
+
 }  // namespace trilens

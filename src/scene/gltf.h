@@ -42,6 +42,7 @@ struct GltfNode {
 struct GltfModel {
     std::vector<GltfMaterial> materials;
     std::vector<GltfImage> images;
+    std::vector<std::string> buffer_files;  // resolved paths of the buffers that are files of their own
     std::vector<std::vector<GltfPrimitive>> meshes;
     std::vector<GltfNode> nodes;
     std::vector<int> roots;  // nodes of the default scene

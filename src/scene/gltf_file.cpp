@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <string_view>
 
 #include <tiny_gltf.h>
 
@@ -23,7 +24,7 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
     return true;
 }
 
-[[noreturn]] void fail(const std::string& file, const std::string& bytes, const std::string& reason) {
+[[noreturn]] void fail(const std::string& file, std::string_view bytes, const std::string& reason) {
     // Compressed accessors have no buffer view, which is all that the library says of them.
     const bool draco = bytes.find("\"KHR_draco_mesh_compression\"") != std::string::npos;
     throw InputError(file, "",
@@ -34,7 +35,8 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
 }  // namespace
 
 tinygltf::Model load_gltf_model(const std::string& file) {
-    const std::string bytes = read_required_file(file);
+    const std::string whole = read_required_file(file);
+    const std::string_view bytes = utf8_text(whole, file);
     if (bytes.size() > std::numeric_limits<unsigned int>::max())
         throw InputError(file, "", "is larger than 4 GiB");
     const auto size = static_cast<unsigned int>(bytes.size());

@@ -23,6 +23,7 @@ class Reader {
 
     GltfModel read() {
         check_extensions();
+        find_buffer_files();
         read_images();
         for (std::size_t i = 0; i < in_.materials.size(); ++i) read_material(i);
         for (std::size_t i = 0; i < in_.meshes.size(); ++i) read_mesh(i);
@@ -56,15 +57,26 @@ class Reader {
             if (known.count(name) == 0) warn("the extension '" + name + "' is ignored");
     }
 
+    /// A relative URI as a path from where the program runs; empty for a data URI and for none.
+    std::string resolve(const std::string& uri) const {
+        if (uri.empty() || uri.rfind("data:", 0) == 0) return "";
+        return (std::filesystem::path(file_).parent_path() / decode_gltf_uri(uri)).string();
+    }
+
+    void find_buffer_files() {
+        for (const tinygltf::Buffer& buffer : in_.buffers) {
+            std::string path = resolve(buffer.uri);
+            if (!path.empty()) out_.buffer_files.push_back(std::move(path));
+        }
+    }
+
     void read_images() {
-        const std::filesystem::path folder = std::filesystem::path(file_).parent_path();
         for (std::size_t i = 0; i < in_.images.size(); ++i) {
             const tinygltf::Image& image = in_.images[i];
             GltfImage result;
             result.name = file_ + ": /images/" + std::to_string(i);
             result.encoded = image.image;
-            if (!image.uri.empty() && image.uri.rfind("data:", 0) != 0)
-                result.file = (folder / decode_gltf_uri(image.uri)).string();
+            result.file = resolve(image.uri);
             out_.images.push_back(std::move(result));
         }
     }

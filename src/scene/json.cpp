@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "scene/files.h"
+
 namespace trilens {
 namespace {
 
@@ -109,7 +111,8 @@ class Builder : public nlohmann::json_sax<Json> {
 
 }  // namespace
 
-Json parse_json(const std::string& text, const std::string& file) {
+Json parse_json(const std::string& bytes, const std::string& file) {
+    const std::string text(utf8_text(bytes, file));
     if (text.find_first_not_of(" \t\r\n") == std::string::npos) fail_at(file, "", "is empty");
     Builder builder(text, file);
     constexpr bool kWholeText = true, kIgnoreComments = true;

@@ -14,9 +14,10 @@ namespace trilens {
 /// Keeps the order of the file's keys.
 using Json = nlohmann::ordered_json;
 
-/// Parses JSON with comments. Throws InputError with line and column of a syntax error or of a number beyond
-/// double, and with the JSON pointer of a key that stands twice in one object or of nesting beyond 64 levels.
-Json parse_json(const std::string& text, const std::string& file);
+/// Parses JSON with comments, UTF-8 with or without its byte order mark. Throws InputError with line and
+/// column of a syntax error or of a number beyond double, and with the JSON pointer of a key that stands
+/// twice in one object or of nesting beyond 64 levels.
+Json parse_json(const std::string& bytes, const std::string& file);
 
 /// One step of a JSON pointer, escaped (RFC 6901).
 std::string escape_key(std::string_view key);

@@ -69,7 +69,7 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
     if (const auto found = find_problem(json, scene_schema_json()))
         fail_at(file, found->place, found->message);
 
-    Reading reading{file, source.folder, textures, {}, {}};
+    Reading reading(file, source.folder, textures);
     const Node root{json, "", file};
     reading.scene.file = file;
     reading.scene.folder =
@@ -89,7 +89,10 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
 
 Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides,
                  const TextureReader& textures) {
-    return load_scene_text(read_required_file(file), SceneSource(file), overrides, textures);
+    const std::string text = read_required_file(file);
+    Scene scene = load_scene_text(text, SceneSource(file), overrides, textures);
+    scene.files.insert(scene.files.begin(), make_file_read(file, text));
+    return scene;
 }
 
 }  // namespace trilens

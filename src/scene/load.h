@@ -43,7 +43,7 @@ struct SceneSource {
     std::string folder;  // may be empty: where the program runs
 };
 
-/// The same from text in memory, as an image's header holds it.
+/// The same from text in memory, as an image's header holds it: Scene::files lacks the scene file itself.
 Scene load_scene_text(const std::string& text, const SceneSource& source,
                       std::span<const SceneOverride> overrides, const TextureReader& textures);
 

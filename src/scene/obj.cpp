@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "scene/files.h"
 #include "scene/words.h"
 
 namespace trilens {
@@ -278,7 +279,8 @@ ObjFile ObjReader::finish() {
 
 }  // namespace
 
-ObjFile parse_obj(const std::string& text, const std::string& file) {
+ObjFile parse_obj(const std::string& bytes, const std::string& file) {
+    const std::string_view text = utf8_text(bytes, file);
     ObjReader reader(file);
     std::string joined;  // lines that end in a backslash, so far
     std::size_t line = 0, begin = 0;

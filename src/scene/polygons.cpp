@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "scene/ear_clipping.h"
+
 namespace trilens {
 namespace {
 
@@ -70,20 +72,30 @@ bool place(PolygonMesh& mesh, const Transform& transform) {
     return true;
 }
 
-ObjectMesh triangulate(const PolygonMesh& mesh) {
-    ObjectMesh object;
+TriangulatedMesh triangulate(const PolygonMesh& mesh) {
+    TriangulatedMesh result;
+    ObjectMesh& object = result.object;
     object.points = mesh.cage.points;
+    std::vector<Vec3> polygon;
     const std::vector<char> is_hole = hole_flags(mesh.cage);
     std::size_t first = 0;
     for (std::size_t face = 0; face < mesh.cage.face_vertex_counts.size(); ++face) {
         const auto corners = static_cast<std::size_t>(mesh.cage.face_vertex_counts[face]);
-        for (std::size_t k = 1; k + 1 < corners && !is_hole[face]; ++k) {
-            add_triangle(mesh, {first, first + k, first + k + 1}, object);
-            object.material.push_back(mesh.face_material.empty() ? kNone : mesh.face_material[face]);
+        if (!is_hole[face]) {
+            polygon.clear();
+            for (std::size_t k = 0; k < corners; ++k)
+                polygon.push_back(
+                    mesh.cage.points[static_cast<std::size_t>(mesh.cage.face_vertex_indices[first + k])]);
+            const PolygonTriangles cut = triangulate_polygon(polygon);
+            for (const auto& [a, b, c] : cut.triangles) {
+                add_triangle(mesh, {first + a, first + b, first + c}, object);
+                object.material.push_back(mesh.face_material.empty() ? kNone : mesh.face_material[face]);
+            }
+            if (!cut.covers) ++result.uncovered_faces;
         }
         first += corners;
     }
-    return object;
+    return result;
 }
 
 std::size_t count_without_area(const ObjectMesh& mesh) {

@@ -27,9 +27,16 @@ struct PolygonMesh {
 /// that fronts stay fronts. Returns false where a point leaves the range of coordinates.
 bool place(PolygonMesh& mesh, const Transform& transform);
 
-/// Polygons as fans from their first corner, in face order, holes left out; degenerate triangles stay.
-/// `material` of the result holds indices of `mesh.materials` or kNone, one per triangle.
-ObjectMesh triangulate(const PolygonMesh& mesh);
+/// The triangles of polygons, with what could not be cut right.
+struct TriangulatedMesh {
+    ObjectMesh object;
+    std::size_t uncovered_faces = 0;  // drawn as fans that do not cover them: they cross themselves
+};
+
+/// n - 2 triangles for each polygon of n corners (see triangulate_polygon), in face order, holes left out;
+/// degenerate triangles stay. `material` of the object holds indices of `mesh.materials` or kNone, one per
+/// triangle.
+TriangulatedMesh triangulate(const PolygonMesh& mesh);
 
 /// Per triangle: whether its area is zero (relative to its longest edge squared, kNoArea) .
 std::size_t count_without_area(const ObjectMesh& mesh);

@@ -124,8 +124,12 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     read_subdivision(node, polygons.cage);
     place_or_fail(polygons, node);
     mesh.face_count = polygons.cage.face_vertex_counts.size();
-    mesh.object = triangulate(polygons);
+    TriangulatedMesh triangulated = triangulate(polygons);
+    mesh.object = std::move(triangulated.object);
     settle_materials(polygons, mesh, reading.scene);
+    warn_count(triangulated.uncovered_faces,
+               "faces cross themselves: they are drawn as fans from their first corners", node.place,
+               reading);
     warn_count(count_without_area(mesh.object), "triangles have no area", node.place, reading);
 }
 

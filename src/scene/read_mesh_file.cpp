@@ -4,7 +4,6 @@
 #include <map>
 #include <set>
 
-#include "scene/files.h"
 #include "scene/gltf.h"
 #include "scene/obj.h"
 #include "scene/reading.h"
@@ -23,8 +22,9 @@ std::map<std::string, MtlMaterial> read_libraries(const ObjFile& obj, const std:
             reading.warn(place, "the material library '" + path + "' does not exist");
             continue;
         }
-        for (const MtlMaterial& material : parse_mtl(read_required_file(path), path))
-            by_name.emplace(material.name, material);
+        const MtlFile mtl = parse_mtl(reading.read_file(path), path);
+        for (const std::string& warning : mtl.warnings) reading.warn(place, path + ": " + warning);
+        for (const MtlMaterial& material : mtl.materials) by_name.emplace(material.name, material);
     }
     return by_name;
 }
@@ -65,7 +65,7 @@ void inherit_materials(ObjFile& obj, const std::filesystem::path& folder, const 
 }
 
 PolygonMesh read_obj_file(const std::string& path, bool inherit, const std::string& place, Reading& reading) {
-    ObjFile obj = parse_obj(read_required_file(path), path);
+    ObjFile obj = parse_obj(reading.read_file(path), path);
     for (const std::string& warning : obj.warnings) reading.warn(place, path + ": " + warning);
     if (inherit)
         inherit_materials(obj, std::filesystem::path(path).parent_path(), place, reading);
@@ -76,7 +76,9 @@ PolygonMesh read_obj_file(const std::string& path, bool inherit, const std::stri
 
 PolygonMesh read_gltf_file(const std::string& path, bool inherit, const std::string& place,
                            Reading& reading) {
+    reading.note_file(path);
     const GltfModel model = read_gltf(path);
+    for (const std::string& buffer : model.buffer_files) reading.note_file(buffer);
     for (const std::string& warning : model.warnings) reading.warn(place, path + ": " + warning);
     return polygons_of_gltf(model, path, inherit ? &reading.textures : nullptr);
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "scene/json.h"
 #include "scene/load.h"
@@ -13,11 +14,17 @@
 
 namespace trilens {
 
+FileRead make_file_read(const std::string& path, std::string_view bytes);
+
 /// One scene being read.
 struct Reading {
+    Reading(const std::string& named, const std::string& paths_start_here, const TextureReader& pictures);
+    Reading(const Reading&) = delete;  // its texture reader holds its address
+    Reading& operator=(const Reading&) = delete;
+
     const std::string& file;
     const std::string& folder;  // where its relative paths start
-    const TextureReader& textures;
+    TextureReader textures;     // the caller's; files that it reads are noted
     Scene scene;
     std::map<std::string, std::shared_ptr<const Texture>> texture_of_path;
     std::size_t named_materials =
@@ -27,6 +34,12 @@ struct Reading {
     std::string resolve(const std::string& path) const {
         return (std::filesystem::path(folder) / path).string();
     }
+
+    /// The bytes of a file, which stands in scene.files from then on. Throws what read_required_file throws.
+    std::string read_file(const std::string& path);
+    /// Notes a file that someone else reads.
+    void note_file(const std::string& path) { read_file(path); }
+
     void warn(const std::string& place, const std::string& message) {
         scene.warnings.push_back(file + ": " + one_line((place.empty() ? "" : place + ": ") + message));
     }

@@ -51,7 +51,8 @@ struct NormalOverride {
     double amplitude = 0, scale = 1;
 };
 
-/// The triangles of an object, ready to draw: world frame, polygons already cut into fans, in face order.
+/// The triangles of an object, ready to draw: world frame, polygons already cut into triangles, in face
+/// order.
 struct ObjectMesh {
     std::vector<Vec3> points;
     std::vector<IdTriple> triangles;
@@ -83,6 +84,12 @@ struct RenderSettings {
     bool fresnel = true;
 };
 
+/// A file as it was when it was read.
+struct FileRead {
+    std::string path;  // absolute, otherwise as named: symbolic links and '..' still stand in it
+    std::string hash;  // of its bytes: hash_text
+};
+
 struct Scene {
     std::string file;      // where it came from, for messages
     std::string folder;    // absolute: where its relative paths start
@@ -95,6 +102,7 @@ struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Light> lights;
     RenderSettings render;
+    std::vector<FileRead> files;  // every file that the scene was made of, each once, in order of reading
     std::vector<std::string> warnings;
 };
 

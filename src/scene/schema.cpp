@@ -231,7 +231,7 @@ const char* scene_schema() {
       "intensity": { "$ref": "#/definitions/notNegative", "default": 1, "description": "directional: lux; point: candela; ambient: radiance." },
       "direction": { "$ref": "#/definitions/vec3", "description": "directional: the way the light travels." },
       "position": { "$ref": "#/definitions/vec3" },
-      "shadows": { "type": "boolean", "default": false }
+      "shadows": { "type": "boolean", "default": false, "description": "Whether objects and mirrors cast shadows in this light: objects by their triangles, mirrors by their exact surface, at any resolution. Glass casts none: it lets the light through, unbent and undimmed." }
     },
     "allOf": [
       { "if": { "properties": { "type": { "const": "directional" } } },

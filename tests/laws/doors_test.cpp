@@ -78,7 +78,7 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"tbb/", {"src/base/parallel.cpp"}},
     {"oneapi/", {}},
     {"opensubdiv/", {"surfaces/"}},
-    {"tiny_obj_loader.h", {"src/scene/"}},
+    {"tiny_obj_loader.h", {}},
     {"tiny_gltf.h", {"src/scene/gltf"}},
     {"nlohmann/", {"src/scene/json.h", "src/sweep/json.h", "src/cli/json.h"}},
     {"OpenImageIO/", {"src/image/"}},

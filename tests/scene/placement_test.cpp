@@ -70,7 +70,7 @@ TEST_CASE("a mirroring transform reverses faces after their first corner") {
     CHECK(mesh.cage.face_vertex_indices == std::vector<int>{0, 3, 2, 1});
     CHECK(mesh.uvs[1] == Vec2(0, 1));
     CHECK(mesh.normals[1] == Vec3(0, 0, -1));
-    const ObjectMesh object = triangulate(mesh);
+    const ObjectMesh object = triangulate(mesh).object;
     CHECK(object.triangles == std::vector<IdTriple>{{0, 3, 2}, {0, 2, 1}});
 }
 
