@@ -138,6 +138,7 @@ Scene load_scene(const SceneOptions& options, Console& console) {
     const Stopwatch watch;
     Scene scene = is_standard_stream(options.scene) ? read_standard_input(scene_request(options))
                                                     : load_scene(scene_request(options));
+    for (const FileRead& file : scene.files) console.files().reads({file.path});
     for (const std::string& warning : scene.warnings) console.warn(warning);
     console.note_stage(scene_note(options, scene), watch);
     return scene;

@@ -39,6 +39,18 @@ void tell(const World& world, const LayerRequest& window, const LayerStatistics&
                         statistics.pixels_without_ray));
 }
 
+/// What a picture leaves out of the scene, whatever it shows.
+void tell_omissions(const World& world, const Warn& warn) {
+    const RenderSettings& settings = world.scene.render;
+    if (world.optics.size() > 1 && (settings.reflect || settings.refract))
+        warn("optics do not see each other: a path ends after its first optic");
+    for (const Optic& optic : world.optics)
+        if (!optic.mirror && settings.refract)
+            warn(world.names[optic.mesh] +
+                 ": glass bends light once, at the surface that is seen; where light leaves a body is not "
+                 "followed");
+}
+
 /// The window as it is drawn: the whole film where none is asked for.
 LayerRequest checked_layers(const World& world, LayerRequest asked) {
     const Film& film = world.scene.film;
@@ -80,6 +92,8 @@ void describe(const World& world, const PictureRequest& request, Image& image) {
     header["trilens:facets"] = std::to_string(facet_count(world, request.frame.resolution));
     header["trilens:scene"] = world.scene.resolved;
     header["trilens:folder"] = world.scene.folder;
+    for (const FileRead& file : world.scene.files)
+        header["trilens:files"] += file.hash + " " + file.path + "\n";
 }
 
 }  // namespace
@@ -97,7 +111,10 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     picture.image = draw_layers(world, viewer, layers, progress, &picture.statistics);
     picture.draw_seconds = drawing.seconds();
     describe(world, request, picture.image);
-    if (warn) tell(world, layers, picture.statistics, warn);
+    if (warn) {
+        tell(world, layers, picture.statistics, warn);
+        tell_omissions(world, warn);
+    }
     return picture;
 }
 

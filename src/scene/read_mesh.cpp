@@ -1,9 +1,11 @@
 // One entry of `meshes`: its material, its shape as optic or object, and what is doubtful about it.
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/nearest.h"
+#include "scene/far_point.h"
 #include "scene/reading.h"
 
 namespace trilens {
@@ -66,6 +68,15 @@ void warn_count(std::size_t count, const std::string& what, const std::string& p
     if (count > 0) reading.warn(place, std::to_string(count) + " " + what);
 }
 
+void check_far_points(const Node& node, const Cage& cage) {
+    const std::optional<std::size_t> far = find_far_point(cage);
+    if (!far) return;
+    const std::string message = "lies more than " + describe(kFarthestPoint) +
+                                " times as far from the middle of the cage as half of its points do";
+    if (node.has("points")) node["points"][*far].fail(message);
+    node["file"].fail("point " + std::to_string(*far + 1) + " of the file " + message);
+}
+
 void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     check_optic_material(node, mesh.material, reading);
     if (node.has("primitive")) {
@@ -77,6 +88,7 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     read_subdivision(node, polygons.cage);
     check_scheme(node, polygons.cage);
     place_or_fail(polygons, node);
+    check_far_points(node, polygons.cage);
     mesh.cage = std::move(polygons.cage);
     mesh.face_count = mesh.cage.face_vertex_counts.size();
 

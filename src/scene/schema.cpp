@@ -175,7 +175,7 @@ const char* scene_schema() {
   },
 
   "mesh": {
-    "title": "a mesh", "description": "UsdGeomMesh's names. Objects are drawn as their polygons, optics as their limit surface: what an object has no use for (resolution, creases, normals) it ignores.",
+    "title": "a mesh", "description": "UsdGeomMesh's names. Objects are drawn as their polygons, optics as their limit surface: what an object has no use for (resolution, creases, normals) it ignores. No point of an optic's cage may lie more than 1e4 times as far from their middle (the median along each axis) as half of them do.",
     "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
     "required": ["role"],
     "oneOf": [ { "required": ["points"] }, { "required": ["file"] }, { "required": ["primitive"] } ],

@@ -255,6 +255,26 @@ TEST_CASE("keys that need or exclude each other") {
     });
 }
 
+TEST_CASE("a point of an optic's cage far beyond the others is refused by name") {
+    // Half of the cage's points lie within 4 of its middle.
+    const std::string far =
+        "room.json: /meshes/0/points/4: lies more than 10000 times as far from the middle of the cage as "
+        "half of its points do";
+    CHECK(error_with("/meshes/0/points/4/0", "1e15") == far);
+    CHECK(error_with("/meshes/0/points/4/2", "-50000") == far);
+    CHECK(error_with("/meshes/0/points/4/0", "3e4").empty());
+    CHECK(error_with("/meshes/2/points/0/0", "1e15").empty());  // an object
+    const std::string folder = scratch_dir("scene_far_point"), file = folder + "/room.json";
+    std::ofstream(folder + "/a.obj") << "v 9e9 9e9 9e9\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 2 3 4 5\n";
+    const std::vector<SceneOverride> mesh = {
+        {"/meshes/0", R"({"role":"optic","material":"glass","file":"a.obj"})"}};
+    CHECK(error_of(kRoom, mesh, file).empty());  // no face uses the far point
+    std::ofstream(folder + "/a.obj")
+        << "v 0 0 0\nv 1 0 0\nv 1 1e9 0\nv 0 1 0\nv -1 0 0\nf 1 2 3 4\nf 1 4 5\n";
+    const std::string error = error_of(kRoom, mesh, file);
+    CHECK(begins_with(error, file + ": /meshes/0/file: point 3 of the file lies more than 10000 times"));
+}
+
 TEST_CASE("files that a scene names") {
     const std::string folder = scratch_dir("scene_bad_names");
     const std::string file = folder + "/room.json";
