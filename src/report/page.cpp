@@ -38,7 +38,7 @@ tbody tr:hover{background:var(--panel)}
 .js .view{cursor:zoom-in}.js .view:focus-visible{outline:3px solid var(--accent);outline-offset:2px}
 .bar{height:12px;border-radius:3px;margin-top:6px}.scale{display:flex;justify-content:space-between;font-size:12px;color:var(--soft)}
 .zoom{border:0;padding:0;max-width:100vw;max-height:100vh;width:100vw;height:100vh;background:var(--paper);color:var(--ink);overflow:auto}
-.zoom figure{width:max(var(--width),min(96vw,1200px));padding:12px}.zoom .view{cursor:default}.zoom img{image-rendering:pixelated}
+.zoom figure{width:max(var(--width),min(96vw,110vh));padding:12px}.zoom .view{cursor:default}.zoom img{image-rendering:pixelated}
 .zoom button{position:sticky;left:12px;top:8px;z-index:1;margin:8px 12px 0;font:inherit;padding:8px 16px;border:1px solid var(--line);border-radius:8px;background:var(--panel);color:var(--ink)}
 @media screen{.js .wipe .view{grid-template-columns:1fr;position:relative}.js .wipe img{grid-area:1/1}
 .js .wipe img+img{clip-path:inset(0 0 0 var(--cut))}

@@ -21,7 +21,7 @@ constexpr double kLeft = 62, kRight = 16, kBottom = 44;  // pixels around the fr
 constexpr double kTitleSize = 14, kLabelSize = 12, kNoteSize = 11;  // pixels, as in plot_style.cpp
 constexpr double kLegendRow = 18, kMarkerRoom = 22;
 constexpr double kReferenceLift = 1.8;  // reference orders start so far above the data
-constexpr std::size_t kMostLines = 24;  // measured values that bear a line each; of more, those with a label
+constexpr std::size_t kMostTicks = 24;  // measured values that are ticks; with more, round values are
 
 struct Plot {
     const PlotParams& params;
@@ -105,15 +105,15 @@ void draw_tick_labels(Plot& plot, std::vector<PlotTick> ticks, bool is_x) {
     }
 }
 
-/// The values at which there are measurements, each a tick.
+/// The values at which there are measurements, each a tick; none where they are too many.
 std::vector<PlotTick> measured_ticks(const Plot& plot) {
     std::set<double> values;
     for (const PlotSeries& series : plot.series)
         for (const Vec2& point : series.points)
             if (plot.can_show(point)) values.insert(point.x);
     std::vector<PlotTick> ticks;
-    for (const double value : values)
-        ticks.push_back({value, rounded_text(value, 6), values.size() <= kMostLines});
+    if (values.size() > kMostTicks) return ticks;
+    for (const double value : values) ticks.push_back({value, rounded_text(value, 6), true});
     return ticks;
 }
 

@@ -32,7 +32,7 @@ struct PlotParams {
     std::vector<PlotLevel> levels;
     bool reference_orders = true;   // faint lines of order 1 and 2, on log-log plots
     int width = 400, height = 340;  // the legend comes below and adds to the height
-    bool ticks_at_points = false;   // x ticks where measurements are, else at round values
+    bool ticks_at_points = false;   // x ticks where measurements are, if they are few; else at round values
     std::string subtitle = {};      // small, below the title
 };
 
