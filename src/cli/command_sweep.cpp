@@ -69,7 +69,7 @@ std::string fit_line(const SweepFit& fit) {
     std::string line =
         fmt::format("  {:<8} {:<14} {:<16} order {:5.2f}  constant {:8.4g}  r2 {:.4f}", fit.layer, fit.optic,
                     fit.metric, *fit.order, fit.constant.value_or(0), fit.r2.value_or(0));
-    if (fit.coverage) line += fmt::format("  of {:.1f} % measured", 100 * *fit.coverage);
+    if (fit.coverage) line += fmt::format("  measured >= {:.1f} %", 100 * *fit.coverage);
     if (fit.n_for_1px)
         line += "  1 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_1px)));
     if (fit.n_for_half_px)

@@ -1,8 +1,6 @@
 // A report as one HTML file: what was found, the plots, every run with its pictures, and how to do it again.
 #include "report/html.h"
 
-#include <cmath>
-
 #include "base/files.h"
 #include "report/text.h"
 
@@ -19,21 +17,6 @@ std::string heading(const std::string& text) {
 
 std::string plot_figure(const std::string& svg) {
     return "<figure class=\"plot\">\n" + svg + "</figure>\n";
-}
-
-std::string colour_bar(const ColourLegend& legend) {
-    if (legend.title.empty()) return "";
-    constexpr int kStops = 12;
-    std::string gradient;
-    for (int i = 0; i <= kStops; ++i) gradient += "," + viridis_hex(static_cast<double>(i) / kStops);
-    std::string marks;
-    for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-        const double value = legend.range.lo * std::pow(legend.range.hi / legend.range.lo, share);
-        marks += html_text("span", rounded_text(value, 2) + " " + legend.unit);
-    }
-    return paragraph("soft", legend.title) +
-           "<div class=\"bar\" style=\"background:linear-gradient(to right" + gradient +
-           ")\"></div><div class=\"scale\">" + marks + "</div>\n";
 }
 
 std::string run_section(const ReportRun& run) {
@@ -88,15 +71,17 @@ std::string report_html(const Report& report) {
         body += "</div>\n";
     }
     for (const std::string& warning : report.warnings) body += paragraph("warning", warning);
+    if (!report.plots.empty() || !report.sentences.empty()) body += heading("Convergence");
+    for (const std::string& sentence : report.sentences) body += paragraph("", sentence);
     if (!report.plots.empty()) {
-        body += heading("Convergence") + "<div class=\"plots\">\n";
+        body += "<div class=\"plots\">\n";
         for (const std::string& plot : report.plots) body += plot_figure(plot);
         body += "</div>\n" + paragraph("soft", report.plots_note);
     }
     if (!report.table_rows.empty())
         body += heading("Numbers") + html_table(report.table_columns, report.table_rows);
     if (!report.runs.empty()) {
-        body += heading("Runs") + paragraph("soft", report.pictures_note) + colour_bar(report.legend);
+        body += heading("Runs") + paragraph("soft", report.pictures_note);
         for (const ReportRun& run : report.runs) body += run_section(run);
     }
     return html_page(report.title, body + how_to_repeat(report.commands, report.versions));

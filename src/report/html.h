@@ -14,18 +14,11 @@ struct Headline {
 };
 
 struct ReportRun {
-    std::string title;                // "n = 8"
-    std::vector<Thumbnail> pictures;  // projected, truth, difference, displacement
+    std::string title;                  // "n = 8"
+    std::vector<PagePicture> pictures;  // projected with truth, displacement, difference
     Facts facts;
     std::vector<std::string> warnings;
     std::string error;  // not empty: the run failed with this
-};
-
-/// What the colours of the displacement pictures mean.
-struct ColourLegend {
-    std::string title;  // empty: no legend
-    ColourRange range;
-    std::string unit;
 };
 
 /// Everything a report shows, as text; plots are SVG documents, all else is escaped.
@@ -34,11 +27,11 @@ struct Report {
     std::vector<Headline> headlines;
     std::vector<std::string> warnings;
     std::vector<std::string> plots;
+    std::vector<std::string> sentences;  // what needs no plot
     std::string plots_note;
     std::vector<std::string> table_columns;
     std::vector<std::vector<std::string>> table_rows;
     std::string pictures_note;  // "differences are shown times 16"
-    ColourLegend legend;
     std::vector<ReportRun> runs;
     std::vector<std::string> commands;
     Facts versions;
@@ -53,7 +46,7 @@ void write_report(const std::string& file, const Report& report);
 /// One scene of a gallery.
 struct GalleryEntry {
     std::string title, text;
-    std::vector<Thumbnail> pictures;  // projected, truth, difference
+    std::vector<PagePicture> pictures;  // projected, truth, difference
     Facts metrics;
     std::string
         link;  // a relative path, empty for none; one with a scheme ("https:") is shown but not linked

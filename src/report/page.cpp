@@ -1,6 +1,7 @@
 // The frame of every HTML page that is written: one file, readable without scripts and without a network.
 #include "report/page.h"
 
+#include <cmath>
 #include <cstddef>
 
 #include "report/plot_style.h"
@@ -22,26 +23,36 @@ pre{background:var(--panel);border:1px solid var(--line);border-radius:8px;paddi
 .cards{display:flex;flex-wrap:wrap;gap:12px;margin:20px 0}
 .card{background:var(--panel);border:1px solid var(--line);border-radius:10px;padding:12px 18px;min-width:170px}
 .card b{display:block;font-size:26px;line-height:1.25;font-variant-numeric:tabular-nums}.card span{color:var(--soft);font-size:13px}
-.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,520px),1fr));gap:16px}
+.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,380px),1fr));gap:16px}
 figure{margin:0}.plot{border:1px solid var(--line);border-radius:10px;overflow:hidden}.plot svg{display:block;width:100%;height:auto}
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:14px}
 th,td{padding:5px 12px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
-th{white-space:normal;color:var(--soft);font-weight:600;border-bottom-width:2px;vertical-align:bottom}th:first-child,td:first-child{text-align:left}
+th{white-space:normal;color:var(--soft);font-weight:600;border-bottom-width:2px;vertical-align:bottom}th:first-child,td:first-child{text-align:left;position:sticky;left:0;background:var(--paper)}
 tbody tr:hover{background:var(--panel)}
 .run{border:1px solid var(--line);border-radius:10px;padding:14px 16px;margin:14px 0;break-inside:avoid}
-.pictures{display:grid;grid-template-columns:repeat(auto-fit,minmax(200px,1fr));gap:12px;margin:8px 0}
-.pictures figure{min-width:0}.pictures img{display:block;width:100%;height:auto;max-width:480px;border-radius:6px;cursor:zoom-in;background:#808080}
-.pictures img.big{image-rendering:pixelated;cursor:zoom-out;max-width:none}
-.pictures figure:has(img.big){grid-column:1/-1}
+.pictures{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,290px),1fr));gap:16px;margin:8px 0}
+.pictures figure{min-width:0;max-width:560px}.view{display:grid;gap:6px;border-radius:6px;overflow:hidden}
+.view img{display:block;width:100%;height:auto;min-width:0;background:#808080}
+.wipe .view{grid-template-columns:1fr 1fr}.slider{display:none}
+.names{display:flex;justify-content:space-between;gap:12px;color:var(--soft);font-size:13px;margin-top:4px}
+.js .view{cursor:zoom-in}.js .view:focus-visible{outline:3px solid var(--accent);outline-offset:2px}
+.bar{height:12px;border-radius:3px;margin-top:6px}.scale{display:flex;justify-content:space-between;font-size:12px;color:var(--soft)}
+.zoom{border:0;padding:0;max-width:100vw;max-height:100vh;width:100vw;height:100vh;background:var(--paper);color:var(--ink);overflow:auto}
+.zoom figure{width:max(var(--width),min(96vw,110vh));padding:12px}.zoom .view{cursor:default}.zoom img{image-rendering:pixelated}
+.zoom button{position:sticky;left:12px;top:8px;z-index:1;margin:8px 12px 0;font:inherit;padding:8px 16px;border:1px solid var(--line);border-radius:8px;background:var(--panel);color:var(--ink)}
+@media screen{.js .wipe .view{grid-template-columns:1fr;position:relative}.js .wipe img{grid-area:1/1}
+.js .wipe img+img{clip-path:inset(0 0 0 var(--cut))}
+.js .wipe .view::after{content:"";position:absolute;top:0;bottom:0;left:var(--cut);border-left:2px solid #fff;box-shadow:-1px 0 0 #0008,1px 0 0 #0008}
+.js .slider{display:block}.slider input{display:block;width:100%;height:36px;margin:0;touch-action:pan-y;accent-color:var(--accent)}}
 figcaption{color:var(--soft);font-size:13px;margin-top:4px}
 .facts{display:grid;grid-template-columns:repeat(auto-fill,minmax(290px,1fr));gap:2px 24px;margin:8px 0;font-size:14px}
 .facts div{display:flex;justify-content:space-between;gap:12px;border-bottom:1px dotted var(--line)}
 .facts dt{color:var(--soft)}.facts dd{margin:0;font-variant-numeric:tabular-nums;text-align:right;overflow-wrap:anywhere}
 .warning{border-left:4px solid #b07d00;padding:4px 12px;background:var(--panel);margin:6px 0}
 .error{border-left:4px solid var(--bad);padding:4px 12px;background:var(--panel);margin:6px 0}
-.bar{height:14px;border-radius:4px;max-width:420px}.scale{display:flex;justify-content:space-between;max-width:420px;font-size:12px;color:var(--soft)}
-.gallery{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,620px),1fr));gap:18px}
-.gallery .run{margin:0}.gallery .pictures{grid-template-columns:repeat(auto-fit,minmax(150px,1fr))}
+.gallery{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,640px),1fr));gap:18px}
+.gallery .run{margin:0}.gallery .plot{max-width:480px}
+@media (max-width:600px){main{padding:16px 12px 40px}.run{padding:12px}.card{flex:1 1 40%;min-width:0;padding:10px 12px}.card b{font-size:20px;overflow-wrap:anywhere}h1{overflow-wrap:anywhere}}
 @media print{main{max-width:none;padding:0}*{print-color-adjust:exact;-webkit-print-color-adjust:exact}h2{break-after:avoid}.plot{break-inside:avoid}}
 )";
 
@@ -49,13 +60,57 @@ constexpr const char* kDarkVariables =
     ":root{--paper:#0d1117;--ink:#e6edf3;--soft:#9198a1;--line:#30363d;--panel:#161b22;--accent:#56b4e9;--"
     "bad:#ff7b72}";
 
+// A range input does the keys and the fingers of the slider; a dialog those of closing.
 constexpr const char* kScript = R"(
-document.querySelectorAll('.pictures').forEach(row=>{const [a,b]=row.querySelectorAll('img');
-row.querySelectorAll('img').forEach(i=>i.addEventListener('click',()=>i.classList.toggle('big')));
-if(!a||!b)return;const own=a.src,cap=a.parentNode.querySelector('figcaption'),words=cap.textContent;
-a.addEventListener('mouseenter',()=>{a.src=b.src;cap.textContent=b.parentNode.querySelector('figcaption').textContent});
-a.addEventListener('mouseleave',()=>{a.src=own;cap.textContent=words})});
+document.documentElement.classList.add('js');
+document.addEventListener('input',e=>{const pair=e.target.closest('.wipe');if(pair)pair.style.setProperty('--cut',e.target.value+'%')});
+const zoom=document.createElement('dialog'),close=document.createElement('button');zoom.className='zoom';close.textContent='Close';
+close.addEventListener('click',()=>zoom.close());document.body.append(zoom);
+const open=view=>{const figure=view.closest('figure').cloneNode(true),own=figure.querySelector('.view');
+['tabindex','role','aria-label'].forEach(name=>own.removeAttribute(name));
+const now=view.closest('figure').querySelector('input'),then=figure.querySelector('input');if(now)then.value=now.value;
+figure.style.setProperty('--width',figure.querySelector('img').getAttribute('width')+'px');
+zoom.replaceChildren(close,figure);zoom.showModal();zoom.scrollTo(0,0)};
+document.querySelectorAll('.pictures .view').forEach(view=>{view.tabIndex=0;view.setAttribute('role','button');
+view.setAttribute('aria-label','Full size: '+view.querySelector('img').alt);view.addEventListener('click',()=>open(view));
+view.addEventListener('keydown',e=>{if(e.key==='Enter'||e.key===' '){e.preventDefault();open(view)}})});
 )";
+
+std::string image_element(const PagePicture& picture) {
+    return "<img alt=\"" + escape_markup(picture.caption) + "\" width=\"" + std::to_string(picture.width) +
+           "\" height=\"" + std::to_string(picture.height) + "\" src=\"data:image/png;base64," +
+           base64_text(picture.png) + "\">";
+}
+
+std::string colour_bar(const ColourLegend& legend) {
+    constexpr int kStops = 12;
+    std::string gradient, marks;
+    for (int i = 0; i <= kStops; ++i) gradient += "," + viridis_hex(static_cast<double>(i) / kStops);
+    for (const double share : {0.0, 0.5, 1.0}) {
+        const double value = legend.range.lo * std::pow(legend.range.hi / legend.range.lo, share);
+        marks += html_text("span", rounded_text(value, 2) + " " + legend.unit);
+    }
+    return "<div class=\"bar\" style=\"background:linear-gradient(to right" + gradient +
+           ")\"></div><div class=\"scale\">" + marks + "</div>";
+}
+
+std::string single_figure(const PagePicture& picture) {
+    std::string html = "<figure>";
+    if (!picture.png.empty()) html += "<div class=\"view\">" + image_element(picture) + "</div>";
+    if (picture.legend) html += colour_bar(*picture.legend);
+    return html + html_text("figcaption", picture.caption) + "</figure>\n";
+}
+
+/// Side by side without scripts and in print; with them one over the other, and a slider that moves the
+/// border.
+std::string pair_figure(const PagePicture& left, const PagePicture& right) {
+    return "<figure class=\"wipe\" style=\"--cut:50%\"><div class=\"view\">" + image_element(left) +
+           image_element(right) + "</div><div class=\"names\">" + html_text("span", left.caption) +
+           html_text("span", right.caption) +
+           "</div><div class=\"slider\"><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" "
+           "aria-label=\"border between " +
+           escape_markup(left.caption) + " and " + escape_markup(right.caption) + "\"></div></figure>\n";
+}
 
 }  // namespace
 
@@ -68,16 +123,13 @@ std::string html_page(const std::string& title, const std::string& body) {
            "</script>\n</body>\n</html>\n";
 }
 
-std::string html_pictures(const std::vector<Thumbnail>& pictures) {
+std::string html_pictures(const std::vector<PagePicture>& pictures) {
     std::string html = "<div class=\"pictures\">\n";
-    for (const Thumbnail& picture : pictures) {
-        const std::string caption = escape_markup(picture.caption);
-        html += "<figure>";
-        if (!picture.png.empty())
-            html += "<img alt=\"" + caption + "\" width=\"" + std::to_string(picture.width) + "\" height=\"" +
-                    std::to_string(picture.height) + "\" src=\"data:image/png;base64," +
-                    base64_text(picture.png) + "\">";
-        html += "<figcaption>" + caption + "</figcaption></figure>\n";
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        const bool is_pair = i + 1 < pictures.size() && pictures[i + 1].is_over_previous &&
+                             !pictures[i].png.empty() && !pictures[i + 1].png.empty();
+        html += is_pair ? pair_figure(pictures[i], pictures[i + 1]) : single_figure(pictures[i]);
+        i += is_pair;
     }
     return html + "</div>\n";
 }

@@ -12,9 +12,10 @@ namespace trilens {
 /// A page around `body` (markup). The title is text.
 std::string html_page(const std::string& title, const std::string& body);
 
-/// A row of pictures with captions, side by side. Hovering over the first shows the second in its place; a
-/// click enlarges.
-std::string html_pictures(const std::vector<Thumbnail>& pictures);
+/// A row of pictures with captions and the meaning of their colours. Two that show the same lie one over the
+/// other with a slider between them, for mouse, finger and keys; a click, a tap or Enter shows full size.
+/// Without scripts all lie side by side.
+std::string html_pictures(const std::vector<PagePicture>& pictures);
 
 /// A two-column list.
 std::string html_facts(const Facts& facts);

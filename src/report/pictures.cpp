@@ -1,4 +1,4 @@
-// Small pictures of images for reports: what is shown, how far two differ, how far things moved.
+// Pictures of images for reports: what is shown, how far two differ, how far things moved.
 #include "report/pictures.h"
 
 #include <algorithm>
@@ -86,14 +86,14 @@ Footprint footprint(int i, int target, int source) {
 }
 
 int shrunk_width(int width) {
-    return std::min(width, kThumbnailWidth);
+    return std::min(width, kLargestPicture);
 }
 int shrunk_height(int width, int height) {
     return std::max(1,
                     static_cast<int>(std::lround(static_cast<double>(height) * shrunk_width(width) / width)));
 }
 
-/// The film at kThumbnailWidth at most; each pixel is the mean over its area.
+/// The film at kLargestPicture at most; each pixel is the mean over its area.
 Film shrink(const Film& film) {
     Film small = make_film(shrunk_width(film.width), shrunk_height(film.width, film.height));
     if (small.width == film.width) return film;
@@ -114,10 +114,10 @@ Film shrink(const Film& film) {
     return small;
 }
 
-Thumbnail picture_of(Film film, const std::string& caption) {
+PagePicture picture_of(Film film, const std::string& caption) {
     mark_not_finite(film);
     const Film small = shrink(film);
-    return {caption, small.width, small.height, encode_png(small.width, small.height, small.rgb)};
+    return {caption, small.width, small.height, encode_png(small.width, small.height, small.rgb), {}, false};
 }
 
 LinearRgb displacement_colour(float pixels, const ColourRange& range) {
@@ -127,19 +127,19 @@ LinearRgb displacement_colour(float pixels, const ColourRange& range) {
 
 }  // namespace
 
-Thumbnail beauty_picture(const Image& image, const std::string& caption) {
+PagePicture beauty_picture(const Image& image, const std::string& caption) {
     return picture_of(film_of(image), caption);
 }
 
-Thumbnail difference_picture(const Image& test, const Image& truth, double scale,
-                             const std::string& caption) {
+PagePicture difference_picture(const Image& test, const Image& truth, double scale,
+                               const std::string& caption) {
     Film film = difference_of(test, truth);
     for (float& value : film.rgb) value *= static_cast<float>(scale);
     return picture_of(std::move(film), caption);
 }
 
-Thumbnail displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
-                               const std::string& caption) {
+PagePicture displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
+                                 const std::string& caption) {
     TRILENS_CHECK(width > 0 && pixels.size() % static_cast<std::size_t>(width) == 0, "whole rows");
     const int height = static_cast<int>(pixels.size() / static_cast<std::size_t>(width));
     Film small = make_film(shrunk_width(width), shrunk_height(width, height));
@@ -157,12 +157,17 @@ Thumbnail displacement_picture(std::span<const float> pixels, int width, const C
             std::copy(colour.begin(), colour.end(),
                       small.rgb.begin() + static_cast<std::ptrdiff_t>(small.index(x, y)));
         }
-    return {caption, small.width, small.height, encode_png(small.width, small.height, small.rgb)};
+    return {caption,
+            small.width,
+            small.height,
+            encode_png(small.width, small.height, small.rgb),
+            ColourLegend{range, "px"},
+            false};
 }
 
 double difference_scale(double difference) {
     double scale = 1;
-    while (scale < 1024 && 2 * scale * difference < 1) scale *= 2;
+    while (scale < 1048576 && 2 * scale * difference < 1) scale *= 2;
     return scale;
 }
 

@@ -1,6 +1,7 @@
-// Small pictures of images for reports: what is shown, how far two differ, how far things moved.
+// Pictures of images for reports: what is shown, how far two differ, how far things moved.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,28 +11,38 @@
 
 namespace trilens {
 
-inline constexpr int kThumbnailWidth = 320;  // pixels
+inline constexpr int kLargestPicture = 1280;  // width, pixels
 
-/// A small picture as a report embeds it: PNG bytes and what they show.
-struct Thumbnail {
-    std::string caption;
-    int width = 0, height = 0;
-    std::vector<unsigned char> png;  // empty: there is none, and the caption says why
+/// What the colours of a picture mean.
+struct ColourLegend {
+    ColourRange range;
+    std::string unit;
 };
 
-/// R G B of the whole film (black outside the data window), scaled down to kThumbnailWidth where wider;
+/// A picture as a report embeds it, at the film's size where that is no wider than kLargestPicture: PNG bytes
+/// and what they show.
+struct PagePicture {
+    std::string caption;
+    int width = 0, height = 0;
+    std::vector<unsigned char> png = {};      // empty: there is none, and the caption says why
+    std::optional<ColourLegend> legend = {};  // of a colour-mapped one
+    bool is_over_previous = false;  // shows the same as the picture before it: a slider between them
+};
+
+/// R G B of the whole film (black outside the data window), scaled down to kLargestPicture where wider;
 /// values that are not finite show as magenta. Throws InputError where a channel is missing.
-Thumbnail beauty_picture(const Image& image, const std::string& caption);
+PagePicture beauty_picture(const Image& image, const std::string& caption);
 
 /// scale * |test - truth| per channel, the same way. The films must be of one size.
-Thumbnail difference_picture(const Image& test, const Image& truth, double scale, const std::string& caption);
+PagePicture difference_picture(const Image& test, const Image& truth, double scale,
+                               const std::string& caption);
 
 /// The colours of `range` over a film of width x height values, rows from the top: NaN (nothing to measure)
 /// is grey, infinite (lost) is orange. Where it is scaled down, a pixel shows the largest value under it.
-Thumbnail displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
-                               const std::string& caption);
+PagePicture displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
+                                 const std::string& caption);
 
-/// The largest power of two, between 1 and 1024, that keeps scale * difference below 1.
+/// The largest power of two, between 1 and 2^20, that keeps scale * difference below 1.
 double difference_scale(double difference);
 
 }  // namespace trilens

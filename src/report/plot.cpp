@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <utility>
 
+#include "report/plot_labels.h"
 #include "report/plot_scale.h"
 #include "report/plot_style.h"
 #include "report/text.h"
@@ -15,16 +17,19 @@
 namespace trilens {
 namespace {
 
-constexpr double kLeft = 68, kRight = 18, kTop = 38, kBottom = 54;  // pixels around the frame
-constexpr double kCharWidth = 6.4;                                  // of the 11 px font, on average
-constexpr double kReferenceLabelWidth = 36;                         // "order 2" in the small font
+constexpr double kLeft = 62, kRight = 16, kBottom = 44;  // pixels around the frame, without the legend
+constexpr double kTitleSize = 14, kLabelSize = 12, kNoteSize = 11;  // pixels, as in plot_style.cpp
+constexpr double kLegendRow = 18, kMarkerRoom = 22;
 constexpr double kReferenceLift = 1.8;  // reference orders start so far above the data
+constexpr std::size_t kMostTicks = 24;  // measured values that are ticks; with more, round values are
 
 struct Plot {
     const PlotParams& params;
     std::span<const PlotSeries> series;
     PlotScale x, y;
     std::string svg;
+    PlotRoom room, lines;  // words and measurements; where lines are drawn
+    double height = 0;     // of all that was drawn
 
     bool is_log() const { return x.kind == ScaleKind::kLog; }
     bool can_show(const Vec2& point) const { return x.can_show(point.x) && y.can_show(point.y); }
@@ -78,26 +83,104 @@ std::optional<std::array<Vec2, 2>> clip_to_frame(const Plot& plot, const Vec2& a
     return std::array<Vec2, 2>{a + enter * along, a + leave * along};
 }
 
+/// Where two labels would touch, the later of: the first and the last of the axis, decades, the others.
+void draw_tick_labels(Plot& plot, std::vector<PlotTick> ticks, bool is_x) {
+    constexpr double kGap = 5;
+    std::vector<std::pair<int, PlotTick>> labelled;
+    for (std::size_t i = 0; i < ticks.size(); ++i)
+        if (!ticks[i].label.empty())
+            labelled.push_back({i == 0 || i + 1 == ticks.size() ? 0 : ticks[i].strong ? 1 : 2, ticks[i]});
+    std::ranges::stable_sort(labelled, {}, &std::pair<int, PlotTick>::first);
+    PlotRoom row;
+    for (const auto& [rank, tick] : labelled) {
+        // A long number at the right end moves into the picture.
+        const double half = text_width(tick.label, kLabelSize) / 2;
+        const Vec2 at =
+            is_x ? Vec2(std::min(plot.x.pixel(tick.value), plot.params.width - half), plot.y.first + 17)
+                 : Vec2(plot.x.first - 7, plot.y.pixel(tick.value) + 4);
+        PlotBox box = text_box(at, is_x ? "middle" : "end", tick.label, kLabelSize);
+        if (is_x) box.lo.x -= kGap, box.hi.x += kGap;
+        if (!row.take_if_free(box)) continue;
+        plot.svg += text(is_x ? "tp-tick tp-x" : "tp-tick tp-y", at, is_x ? "middle" : "end", tick.label);
+    }
+}
+
+/// The values at which there are measurements, each a tick; none where they are too many.
+std::vector<PlotTick> measured_ticks(const Plot& plot) {
+    std::set<double> values;
+    for (const PlotSeries& series : plot.series)
+        for (const Vec2& point : series.points)
+            if (plot.can_show(point)) values.insert(point.x);
+    std::vector<PlotTick> ticks;
+    if (values.size() > kMostTicks) return ticks;
+    for (const double value : values) ticks.push_back({value, rounded_text(value, 6), true});
+    return ticks;
+}
+
 void draw_frame(Plot& plot) {
     const PlotScale &x = plot.x, &y = plot.y;
-    for (const PlotTick& tick : make_ticks(x)) {
+    const std::vector<PlotTick> measured =
+        plot.params.ticks_at_points ? measured_ticks(plot) : std::vector<PlotTick>();
+    const std::vector<PlotTick> across = measured.empty() ? make_ticks(x) : measured, up = make_ticks(y);
+    for (const PlotTick& tick : across) {
         const double at = x.pixel(tick.value);
         plot.svg += line(tick.strong ? "tp-grid" : "tp-minor", {at, y.first}, {at, y.last});
-        if (!tick.label.empty()) plot.svg += text("tp-tick tp-x", {at, y.first + 17}, "middle", tick.label);
     }
-    for (const PlotTick& tick : make_ticks(y)) {
+    for (const PlotTick& tick : up) {
         const double at = y.pixel(tick.value);
         plot.svg += line(tick.strong ? "tp-grid" : "tp-minor", {x.first, at}, {x.last, at});
-        if (!tick.label.empty()) plot.svg += text("tp-tick tp-y", {x.first - 7, at + 4}, "end", tick.label);
     }
+    draw_tick_labels(plot, across, true);
+    draw_tick_labels(plot, up, false);
     plot.svg += "<rect class=\"tp-frame\"" + attribute("x", x.first) + attribute("y", y.last) +
                 attribute("width", x.last - x.first) + attribute("height", y.first - y.last) + "/>\n";
 
     const double middle_x = (x.first + x.last) / 2, middle_y = (y.first + y.last) / 2;
-    plot.svg += text("tp-title", {x.first, 23}, "start", plot.params.title);
-    plot.svg += text("tp-label", {middle_x, y.first + 38}, "middle", plot.params.x_label);
-    plot.svg += "<g transform=\"translate(18," + number(middle_y) + ") rotate(-90)\">" +
-                text("tp-label", {0, 0}, "middle", plot.params.y_label) + "</g>\n";
+    const double width = plot.params.width - 20, tall = y.first - y.last + 20;
+    plot.svg += text("tp-title", {10, 21}, "start", shortened_text(plot.params.title, kTitleSize, width));
+    if (!plot.params.subtitle.empty())
+        plot.svg +=
+            text("tp-note", {10, 37}, "start", shortened_text(plot.params.subtitle, kNoteSize, width));
+    plot.svg += text("tp-label", {middle_x, y.first + 37}, "middle",
+                     shortened_text(plot.params.x_label, kLabelSize, width - x.first));
+    plot.svg += "<g transform=\"translate(15," + number(middle_y) + ") rotate(-90)\">" +
+                text("tp-label", {0, 0}, "middle", shortened_text(plot.params.y_label, kLabelSize, tall)) +
+                "</g>\n";
+}
+
+/// Draws the note at the first of the places where it lies in the frame and covers nothing, or else, where it
+/// covers a line at most; nowhere if there is none.
+void draw_note(Plot& plot, const std::string& words,
+               const std::vector<std::pair<Vec2, const char*>>& places) {
+    for (const bool may_cover_lines : {false, true})
+        for (const auto& [at, anchor] : places) {
+            const PlotBox box = text_box(at, anchor, words, kNoteSize);
+            const bool is_inside = box.lo.x > plot.x.first && box.hi.x < plot.x.last &&
+                                   box.lo.y > plot.y.last && box.hi.y < plot.y.first;
+            if (!is_inside || (!may_cover_lines && !plot.lines.is_free(box)) || !plot.room.take_if_free(box))
+                continue;
+            plot.svg += text("tp-note tp-inside", at, anchor, words);
+            return;
+        }
+}
+
+/// Remembers where a line runs, in steps of a few pixels.
+void take_line(Plot& plot, const Vec2& a, const Vec2& b) {
+    const int steps = 1 + static_cast<int>(length(b - a) / 4);
+    for (int i = 0; i <= steps; ++i) {
+        const Vec2 at = a + static_cast<double>(i) / steps * (b - a);
+        plot.lines.take({at - Vec2(1), at + Vec2(1)});
+    }
+}
+
+/// Measurements take their place before any word does.
+void take_markers(Plot& plot) {
+    for (const PlotSeries& series : plot.series)
+        for (const Vec2& point : series.points)
+            if (plot.can_show(point)) {
+                const Vec2 at = plot.pixel(point);
+                plot.room.take({at - Vec2(6), at + Vec2(6)});
+            }
 }
 
 void draw_levels(Plot& plot) {
@@ -105,7 +188,13 @@ void draw_levels(Plot& plot) {
         if (!plot.y.can_show(level.y) || level.y < plot.y.lo || level.y > plot.y.hi) continue;
         const double at = plot.y.pixel(level.y);
         plot.svg += line("tp-level", {plot.x.first, at}, {plot.x.last, at});
-        plot.svg += text("tp-note", {plot.x.first + 6, at - 4}, "start", level.label);
+        const double left = plot.x.first + 6, right = plot.x.last - 6;
+        draw_note(plot, level.label,
+                  {{{right, at - 4}, "end"},
+                   {{left, at - 4}, "start"},
+                   {{right, at + 12}, "end"},
+                   {{left, at + 12}, "start"},
+                   {{(left + right) / 2, at - 4}, "middle"}});
     }
 }
 
@@ -124,9 +213,14 @@ void draw_reference_orders(Plot& plot) {
         if (!inside) continue;
         const auto& [start, end] = *inside;
         plot.svg += line("tp-reference", start, end);
-        // The label stands on the line's end, where no measurement is.
-        const double rise = (end.y - start.y) / (end.x - start.x) * kReferenceLabelWidth;
-        plot.svg += text("tp-note", {end.x - 4, end.y - rise - 4}, "end", "order " + std::to_string(order));
+        take_line(plot, start, end);
+        // The label stands above the line, as near to its end as there is room.
+        std::vector<std::pair<Vec2, const char*>> places;
+        for (const double share : {0.98, 0.85, 0.7, 0.55, 0.4})
+            places.push_back({start + share * (end - start) + Vec2(4, -5), "start"});
+        for (const double share : {0.98, 0.85, 0.7, 0.55, 0.4})
+            places.push_back({start + share * (end - start) + Vec2(-4, 14), "end"});
+        draw_note(plot, "order " + std::to_string(order), places);
     }
 }
 
@@ -146,7 +240,10 @@ void draw_series(Plot& plot, std::size_t i) {
             return plot.pixel({x, series.fit->constant * std::pow(x, -series.fit->order)});
         };
         const auto inside = clip_to_frame(plot, on_fit(plot.x.lo), on_fit(plot.x.hi));
-        if (inside) plot.svg += line("tp-fit " + plot_series_class(i), (*inside)[0], (*inside)[1]);
+        if (inside) {
+            plot.svg += line("tp-fit " + plot_series_class(i), (*inside)[0], (*inside)[1]);
+            take_line(plot, (*inside)[0], (*inside)[1]);
+        }
         if (!path.empty())
             plot.svg += "<path class=\"tp-join " + plot_series_class(i) + "\" d=\"" + path + "\"/>\n";
     } else if (!path.empty()) {
@@ -155,50 +252,22 @@ void draw_series(Plot& plot, std::size_t i) {
     plot.svg += markers;
 }
 
-/// The corner of the frame where a box of this size hides the fewest measurements; right before left, top
-/// before bottom.
-Vec2 emptiest_corner(const Plot& plot, const Vec2& size) {
-    constexpr double kGap = 8;
-    const double left = plot.x.first + kGap, right = plot.x.last - kGap - size.x;
-    const double top = plot.y.last + kGap, bottom = plot.y.first - kGap - size.y;
-    const std::array<Vec2, 4> corners = {Vec2(right, top), Vec2(left, bottom), Vec2(left, top),
-                                         Vec2(right, bottom)};
-    std::array<std::size_t, 4> hidden{};
-    for (std::size_t corner = 0; corner < corners.size(); ++corner)
-        for (const PlotSeries& series : plot.series)
-            for (const Vec2& point : series.points) {
-                if (!plot.can_show(point)) continue;
-                const Vec2 offset = plot.pixel(point) - corners[corner];
-                hidden[corner] +=
-                    offset.x > -6 && offset.y > -6 && offset.x < size.x + 6 && offset.y < size.y + 6;
-            }
-    return corners[static_cast<std::size_t>(std::min_element(hidden.begin(), hidden.end()) - hidden.begin())];
-}
-
-std::size_t character_count(const std::string& utf8) {
-    return static_cast<std::size_t>(std::count_if(
-        utf8.begin(), utf8.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
+/// The series in rows below the frame, as many to a row as fit.
 void draw_legend(Plot& plot) {
-    if (plot.series.empty()) return;
-    std::vector<std::string> entries;
-    std::size_t longest = 0;
-    for (const PlotSeries& series : plot.series) {
-        std::string entry = series.name;
-        if (plot.is_log() && series.fit) entry += ": order " + fixed_text(series.fit->order, 2);
-        longest = std::max(longest, character_count(entry));
-        entries.push_back(entry);
-    }
-    const Vec2 size(34 + kCharWidth * static_cast<double>(longest),
-                    10 + 17 * static_cast<double>(entries.size()));
-    const Vec2 corner = emptiest_corner(plot, size);
-    plot.svg += "<rect class=\"tp-legend\" rx=\"4\"" + attribute("x", corner.x) + attribute("y", corner.y) +
-                attribute("width", size.x) + attribute("height", size.y) + "/>\n";
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        const double middle = corner.y + 13 + 17 * static_cast<double>(i);
-        plot.svg += marker(i, {corner.x + 14, middle}, "");
-        plot.svg += text("tp-entry", {corner.x + 26, middle + 4}, "start", entries[i]);
+    const double left = 10, right = plot.params.width - 10;
+    Vec2 at(left, plot.y.first + kBottom + kLegendRow - 6);
+    for (std::size_t i = 0; i < plot.series.size(); ++i) {
+        const PlotSeries& series = plot.series[i];
+        const std::string order =
+            plot.is_log() && series.fit ? ": order " + fixed_text(series.fit->order, 2) : "";
+        const double most = right - left - kMarkerRoom - text_width(order, kLabelSize);
+        const std::string entry = shortened_text(series.name, kLabelSize, most) + order;
+        const double width = kMarkerRoom + text_width(entry, kLabelSize);
+        if (at.x > left && at.x + width > right) at = {left, at.y + kLegendRow};
+        plot.svg += marker(i, {at.x + 7, at.y - 4}, "");
+        plot.svg += text("tp-entry", {at.x + 17, at.y}, "start", entry);
+        at.x += width;
+        plot.height = at.y + 8;
     }
 }
 
@@ -213,7 +282,8 @@ void draw_left_out(Plot& plot) {
     const std::string words =
         std::to_string(left_out) + (left_out == 1 ? " point" : " points") +
         " left out: " + (plot.is_log() ? "zero, negative or not a number" : "not a number");
-    plot.svg += text("tp-note", {plot.x.last, plot.y.first + 49}, "end", words);
+    plot.svg += text("tp-note", {10, plot.height + 8}, "start", words);
+    plot.height += 16;
 }
 
 std::string draw(const PlotParams& params, std::span<const PlotSeries> series, ScaleKind kind) {
@@ -227,22 +297,25 @@ std::string draw(const PlotParams& params, std::span<const PlotSeries> series, S
         }
     if (kind == ScaleKind::kLog && params.reference_orders && !ys.empty())
         ys.push_back(kReferenceLift * *std::max_element(ys.begin(), ys.end()));
-    Plot plot{params, series, fit_scale(kind, xs), fit_scale(kind, ys), ""};
+    Plot plot{params, series, fit_scale(kind, xs), fit_scale(kind, ys), "", {}, {}, 0};
     plot.x.first = kLeft, plot.x.last = params.width - kRight;
-    plot.y.first = params.height - kBottom, plot.y.last = kTop;
+    plot.y.first = params.height - kBottom, plot.y.last = params.subtitle.empty() ? 34 : 48;
+    plot.height = params.height;
 
-    const std::string width = std::to_string(params.width), height = std::to_string(params.height);
-    plot.svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tp\" width=\"" + width + "\" height=\"" +
-               height + "\" viewBox=\"0 0 " + width + " " + height + "\" role=\"img\" aria-label=\"" +
-               escape_markup(params.title) + "\">\n" + "<style>" + plot_style() + "</style>\n" +
-               "<rect class=\"tp-paper\" width=\"" + width + "\" height=\"" + height + "\"/>\n";
     draw_frame(plot);
-    draw_levels(plot);
-    if (plot.is_log() && params.reference_orders) draw_reference_orders(plot);
+    take_markers(plot);
     for (std::size_t i = 0; i < series.size(); ++i) draw_series(plot, i);
+    if (plot.is_log() && params.reference_orders) draw_reference_orders(plot);
+    draw_levels(plot);
     draw_legend(plot);
     draw_left_out(plot);
-    return plot.svg + "</svg>\n";
+
+    const std::string width = std::to_string(params.width), height = number(plot.height);
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tp\" width=\"" + width + "\" height=\"" +
+           height + "\" viewBox=\"0 0 " + width + " " + height + "\" role=\"img\" aria-label=\"" +
+           escape_markup(params.title) + "\">\n" + "<style>" + plot_style() + "</style>\n" +
+           "<rect class=\"tp-paper\" width=\"" + width + "\" height=\"" + height + "\"/>\n" + plot.svg +
+           "</svg>\n";
 }
 
 }  // namespace

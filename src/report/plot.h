@@ -30,13 +30,16 @@ struct PlotLevel {
 struct PlotParams {
     std::string title, x_label, y_label;  // labels with units: "mean displacement [px]"
     std::vector<PlotLevel> levels;
-    bool reference_orders = true;  // faint lines of order 1 and 2, on log-log plots
-    int width = 640, height = 420;
+    bool reference_orders = true;   // faint lines of order 1 and 2, on log-log plots
+    int width = 400, height = 340;  // the legend comes below and adds to the height
+    bool ticks_at_points = false;   // x ticks where measurements are, if they are few; else at round values
+    std::string subtitle = {};      // small, below the title
 };
 
 /// An SVG document with both axes logarithmic. Points that are not finite or not positive are left out, and a
-/// note in the picture says how many. Eight series differ in colour and marker; from the ninth on they
-/// repeat. The text depends on the arguments alone.
+/// note in the picture says how many. No word covers another word or a measurement: those without room are
+/// left out, but for titles and the legend, which are cut short. Eight series differ in colour and marker;
+/// from the ninth on they repeat. The text depends on the arguments alone.
 std::string log_log_plot(const PlotParams& params, std::span<const PlotSeries> series);
 
 /// The same with both axes linear: only points that are not finite are left out; no fits and reference

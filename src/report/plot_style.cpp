@@ -22,14 +22,14 @@ std::string plot_style() {
     std::string rules =
         "text{font-family:system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue','DejaVu "
         "Sans',sans-serif;"
-        "font-size:11px;fill:#333}"
+        "font-size:12px;fill:#333}"
         ".tp-paper{fill:#fff}.tp-title{font-size:14px;font-weight:600;fill:#111}.tp-label{font-size:12px}"
         ".tp-grid{stroke:#cdd2d8;stroke-width:1}.tp-minor{stroke:#eceff2;stroke-width:1}"
         ".tp-frame{fill:none;stroke:#8a929b;stroke-width:1}"
         ".tp-level{stroke:#8a929b;stroke-width:1;stroke-dasharray:2 3}"
         ".tp-reference{stroke:#b9c0c8;stroke-width:1.5;stroke-dasharray:7 "
-        "4}.tp-note{font-size:10px;fill:#7a828b}"
-        ".tp-legend{fill:#fff;fill-opacity:.88;stroke:#cdd2d8}"
+        "4}.tp-note{font-size:11px;fill:#616a73}"
+        ".tp-inside{paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}"
         ".tp-line{fill:none;stroke-width:1.8}.tp-fit{stroke-width:1.8}"
         ".tp-join{fill:none;stroke-width:1;stroke-opacity:.35}.tp-marker{stroke-width:1.6;fill-opacity:."
         "9}";
@@ -40,17 +40,16 @@ std::string plot_style() {
 }
 
 std::string dark_plot_style(const std::string& scope) {
-    const std::array<std::pair<const char*, const char*>, 10> rules = {
-        {{"text", "fill:#c9d1d9"},
-         {".tp-paper", "fill:#161b22"},
-         {".tp-title", "fill:#f0f3f6"},
-         {".tp-grid", "stroke:#3a424c"},
-         {".tp-minor", "stroke:#242b33"},
-         {".tp-frame", "stroke:#6e7781"},
-         {".tp-level", "stroke:#8a929b"},
-         {".tp-reference", "stroke:#57606a"},
-         {".tp-note", "fill:#8b949e"},
-         {".tp-legend", "fill:#161b22;stroke:#3a424c"}}};
+    const std::array<std::pair<const char*, const char*>, 10> rules = {{{"text", "fill:#c9d1d9"},
+                                                                        {".tp-paper", "fill:#161b22"},
+                                                                        {".tp-title", "fill:#f0f3f6"},
+                                                                        {".tp-grid", "stroke:#3a424c"},
+                                                                        {".tp-minor", "stroke:#242b33"},
+                                                                        {".tp-frame", "stroke:#6e7781"},
+                                                                        {".tp-level", "stroke:#8a929b"},
+                                                                        {".tp-reference", "stroke:#57606a"},
+                                                                        {".tp-note", "fill:#9aa3ad"},
+                                                                        {".tp-inside", "stroke:#161b22"}}};
     std::string style;
     for (const auto& [selector, properties] : rules) style += scope + " " + selector + "{" + properties + "}";
     for (std::size_t i = 0; i < kDark.size(); ++i)

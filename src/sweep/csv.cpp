@@ -2,6 +2,7 @@
 #include "sweep/csv.h"
 
 #include <array>
+#include <cstddef>
 #include <map>
 #include <utility>
 #include <vector>
@@ -16,7 +17,7 @@ namespace {
 constexpr std::array kColumns = {
     "id", "scene", "camera", "mesh", "method", "truth", "n", "facets", "width", "height", "spp", "seed",
     "rgb_mae", "rgb_rmse", "rgb_relmse", "rgb_psnr_db", "rgb_ssim", "rgb_flip", "rgb_max", "rgb_p95", "rgb_p99",
-    "disp_mean_px", "disp_p95_px", "disp_max_px", "false_hit", "false_miss", "nonfinite", "failed_px",
+    "disp_mean_px", "disp_p95_px", "disp_max_px", "disp_coverage", "disp_lost", "disp_missing", "false_hit", "false_miss", "nonfinite", "failed_px",
     "t_tess_s", "t_project_s", "t_trace_s", "t_total_s", "peak_rss_mb", "threads", "isa",
     "status", "exit_code", "image", "diff", "image_fnv1a",
     "coverage_mismatch", "object_mismatch", "primitive_mismatch"};
@@ -37,6 +38,22 @@ std::string row(const std::vector<std::string>& cells) {
     std::string line;
     for (std::size_t i = 0; i < cells.size(); ++i) line += (i ? "," : "") + cell(cells[i]);
     return line + "\n";
+}
+
+/// The table without the columns that are empty but for their name, unless all are.
+std::string text_of_rows(const std::vector<std::vector<std::string>>& rows) {
+    std::vector<bool> is_used(rows[0].size(), rows.size() == 1);
+    for (std::size_t i = 1; i < rows.size(); ++i)
+        for (std::size_t column = 0; column < is_used.size(); ++column)
+            if (!rows[i][column].empty()) is_used[column] = true;
+    std::string text;
+    for (const std::vector<std::string>& cells : rows) {
+        std::vector<std::string> kept;
+        for (std::size_t column = 0; column < cells.size(); ++column)
+            if (is_used[column]) kept.push_back(cells[column]);
+        text += row(kept);
+    }
+    return text;
 }
 
 std::string metric_text(const MetricValues& metrics, const std::string& name) {
@@ -69,30 +86,29 @@ std::map<std::string, std::string> run_words(const SweepSummary& summary, const 
 }  // namespace
 
 std::string runs_csv(const SweepSummary& summary) {
-    std::string text = row({kColumns.begin(), kColumns.end()});
+    std::vector<std::vector<std::string>> rows = {{kColumns.begin(), kColumns.end()}};
     for (const RunRecord& run : summary.runs) {
         const std::map<std::string, std::string> words = run_words(summary, run);
-        std::vector<std::string> cells;
+        std::vector<std::string>& cells = rows.emplace_back();
         for (const char* column : kColumns) {
             const auto word = words.find(column);
             cells.push_back(word != words.end() ? word->second : metric_text(run.metrics, column));
         }
-        text += row(cells);
     }
-    return text;
+    return text_of_rows(rows);
 }
 
 std::string displacement_csv(const SweepSummary& summary) {
     std::vector<std::string> header = {"id", "n", "layer", "optic"};
     header.insert(header.end(), kDisplacementColumns.begin(), kDisplacementColumns.end());
-    std::string text = row(header);
+    std::vector<std::vector<std::string>> rows = {header};
     for (const RunRecord& run : summary.runs)
         for (const OpticDisplacement& one : run.displacement) {
             std::vector<std::string> cells = {run.plan.id, std::to_string(run.plan.n), one.layer, one.optic};
             for (const char* column : kDisplacementColumns) cells.push_back(metric_text(one.metrics, column));
-            text += row(cells);
+            rows.push_back(cells);
         }
-    return text;
+    return text_of_rows(rows);
 }
 
 }  // namespace trilens

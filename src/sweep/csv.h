@@ -7,8 +7,9 @@
 
 namespace trilens {
 
-/// One row per run under the fixed columns of the interface. Numbers are the shortest that read back; an
-/// empty cell was not computed, "nan" was. Cells with commas, quotes or line ends are quoted as in RFC 4180.
+/// One row per run under the columns of the interface that any run has something for. Numbers are the
+/// shortest that read back; an empty cell was not computed, "nan" was. Cells with commas, quotes or line ends
+/// are quoted as in RFC 4180.
 std::string runs_csv(const SweepSummary& summary);
 
 /// One row per finished run, layer and optic ("all" included) with its displacement.

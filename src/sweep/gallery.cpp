@@ -1,13 +1,12 @@
 #include "sweep/gallery.h"
 
-#include <filesystem>
+#include <optional>
 
-#include "image/image_io.h"
 #include "report/html.h"
-#include "report/pictures.h"
 #include "report/text.h"
 #include "sweep/fit_runs.h"
 #include "sweep/sweep_folder.h"
+#include "sweep/sweep_pictures.h"
 #include "sweep/sweep_plots.h"
 
 namespace trilens {
@@ -24,11 +23,11 @@ const RunRecord* finest_run(const SweepSummary& summary) {
 Facts facts_of(const SweepSummary& summary, const RunRecord& run) {
     Facts facts;
     for (const OpticDisplacement& one : run.displacement) {
-        const auto mean = one.metrics.find("disp_mean_px"), lost = one.metrics.find("disp_lost");
-        if (one.optic != "all" || mean == one.metrics.end()) continue;
-        facts.emplace_back(one.layer + ", mean displacement", rounded_text(mean->second, 3) + " px");
-        if (lost != one.metrics.end() && lost->second > 0)
-            facts.emplace_back(one.layer + ", lost pixels", rounded_text(lost->second, 6));
+        if (one.optic != "all") continue;
+        if (const std::optional<double> mean = find_value(one.metrics, "disp_mean_px"))
+            facts.emplace_back(one.layer + ", mean displacement where measured",
+                               rounded_text(*mean, 3) + " px");
+        facts.emplace_back(one.layer + ", measured", measured_text(one.metrics));
     }
     for (const SweepFit& fit : summary.fits)
         if (fit.optic == "all" && fit.metric == "disp_mean_px" && fit.order)
@@ -53,12 +52,7 @@ GalleryEntry entry_of(const SweepSummary& summary) {
     }
     entry.text = "n = " + std::to_string(run->plan.n) + ", optics: " + summary.manifest.subject.mesh;
     entry.metrics = facts_of(summary, *run);
-    const Image image = read_exr(run_folder(summary.folder, run->plan.id) + "/image.exr");
-    const Image truth = read_exr(truth_file(summary.folder, run->plan.truth));
-    const auto p99 = run->metrics.find("rgb_p99");
-    const double scale = difference_scale(p99 == run->metrics.end() ? 0 : p99->second);
-    entry.pictures = {beauty_picture(image, "projected"), beauty_picture(truth, "ray-traced truth"),
-                      difference_picture(image, truth, scale, "difference x " + rounded_text(scale, 4))};
+    entry.pictures = run_pictures(summary.folder, *run);
     return entry;
 }
 
@@ -69,10 +63,10 @@ void write_sweep_gallery(const std::string& folder, std::span<const SweepSummary
     Gallery gallery;
     gallery.title = "trilens: curved mirrors and glass by projection";
     gallery.text =
-        "Each scene as projected at its finest resolution, as ray traced on the exact surfaces, their "
-        "difference, and how the "
-        "displacement of what is seen falls with the resolution. A click on a title leads to all runs of the "
-        "scene.";
+        "Each scene as projected at its finest resolution and as ray traced, with a slider between the two, "
+        "how "
+        "far what is seen moved, how far the colours differ, and how the displacement falls with the "
+        "resolution. A click on a title leads to all runs of the scene.";
     for (const SweepSummary& summary : summaries) {
         gallery.entries.push_back(entry_of(summary));
         for (const std::string& command : summary.manifest.subject.commands)

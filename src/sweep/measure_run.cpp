@@ -90,7 +90,12 @@ void add_mismatches(const Image& test, const Image& truth, const std::string& la
     metrics["primitive_mismatch"] += static_cast<double>(seen->primitive_mismatch);
 }
 
+/// The larger displacement, the smaller coverage, the losses of both layers together.
 void take_worse(const MetricValues& layer, MetricValues& metrics) {
+    if (const std::optional<double> coverage = find_value(layer, "disp_coverage"))
+        metrics["disp_coverage"] = std::min(find_value(metrics, "disp_coverage").value_or(1), *coverage);
+    for (const char* name : {"disp_lost", "disp_missing"})
+        metrics[name] += find_value(layer, name).value_or(0);
     for (const char* name : {"disp_mean_px", "disp_p95_px", "disp_max_px"}) {
         const auto value = layer.find(name);
         if (value != layer.end()) metrics[name] = std::max(metrics[name], value->second);

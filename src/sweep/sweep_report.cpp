@@ -2,25 +2,26 @@
 #include "sweep/sweep_report.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <functional>
+#include <filesystem>
 #include <optional>
-#include <utility>
+#include <set>
+#include <system_error>
 
-#include "base/error.h"
 #include "base/files.h"
-#include "image/image_io.h"
+#include "base/format.h"
+#include "base/parallel.h"
 #include "report/html.h"
 #include "report/text.h"
 #include "sweep/fit_runs.h"
-#include "sweep/measure_run.h"
+#include "sweep/sweep_pictures.h"
 #include "sweep/sweep_plots.h"
 
 namespace trilens {
 namespace {
 
 constexpr const char* kAll = "all";
+constexpr std::size_t kMostPictured = 12, kMostFailures = 40;  // runs
 
 std::string count_text(const MetricValues& metrics, const std::string& name) {
     const std::optional<double> value = find_value(metrics, name);
@@ -32,8 +33,16 @@ std::string value_text(const MetricValues& metrics, const std::string& name) {
     return value ? rounded_text(*value, 3) : "";
 }
 
-// ---- words and numbers
-// --------------------------------------------------------------------------------------------
+std::string coverage_text(const MetricValues& metrics) {
+    const std::optional<double> share = find_value(metrics, "disp_coverage");
+    return share ? percent_text(*share) : "";
+}
+
+const MetricValues* find_all(const RunRecord& run, const std::string& layer) {
+    for (const OpticDisplacement& one : run.displacement)
+        if (one.layer == layer && one.optic == kAll) return &one.metrics;
+    return nullptr;
+}
 
 /// "23", or "230 (extrapolated)" where no run was that fine.
 std::string resolution_text(const SweepFit& fit, std::optional<double> n) {
@@ -43,19 +52,36 @@ std::string resolution_text(const SweepFit& fit, std::optional<double> n) {
     return "n = " + rounded_text(*n, 6) + (*n > finest ? " (extrapolated)" : "");
 }
 
+std::vector<Headline> layer_headlines(const SweepSummary& summary, const std::string& layer) {
+    const SweepFit* const fit = find_fit(summary.fits, layer, kAll, "disp_mean_px");
+    if (!fit) return {};
+    const std::string range = measured_range(summary, layer);
+    const Headline measured =
+        fit->coverage
+            ? Headline{percent_text(*fit->coverage),
+                       layer + ": measured at least, in the runs behind the order (in all: " + range + ")"}
+            : Headline{range, layer + ": of its pixels measured"};
+    if (is_exact(*fit))
+        return {{"exact", layer + ": every displacement that was measured is zero"}, measured};
+
+    std::vector<Headline> headlines;
+    headlines.push_back({fit->order ? fixed_text(*fit->order, 2) : "—", layer + ": order of convergence"});
+    const SweepFit* const off = find_fit_off_folds(summary.fits, layer, kAll);
+    if (off && off->order) headlines.push_back({fixed_text(*off->order, 2), layer + ": order off the folds"});
+    if (fit->n_for_1px)
+        headlines.push_back(
+            {resolution_text(*fit, fit->n_for_1px), layer + ": for a mean of 1 px where measured"});
+    if (fit->n_for_half_px)
+        headlines.push_back(
+            {resolution_text(*fit, fit->n_for_half_px), layer + ": for a mean of 0.5 px where measured"});
+    headlines.push_back(measured);
+    return headlines;
+}
+
 std::vector<Headline> make_headlines(const SweepSummary& summary) {
     std::vector<Headline> headlines;
-    for (const std::string& layer : layers_of(summary)) {
-        const SweepFit* fit = find_fit(summary.fits, layer, kAll, "disp_mean_px");
-        if (!fit) continue;
-        headlines.push_back(
-            {fit->order ? fixed_text(*fit->order, 2) : "—", layer + ": order of convergence"});
-        const SweepFit* off = find_fit_off_folds(summary.fits, layer, kAll);
-        if (off && off->order)
-            headlines.push_back({fixed_text(*off->order, 2), layer + ": order off the folds"});
-        headlines.push_back({resolution_text(*fit, fit->n_for_1px), layer + ": for a mean of 1 px"});
-        headlines.push_back({resolution_text(*fit, fit->n_for_half_px), layer + ": for a mean of 0.5 px"});
-    }
+    for (const std::string& layer : layers_of(summary))
+        for (const Headline& headline : layer_headlines(summary, layer)) headlines.push_back(headline);
     headlines.push_back(
         {std::to_string(summary.count(RunState::kDone)) + " of " + std::to_string(summary.runs.size()),
          "runs finished"});
@@ -64,8 +90,8 @@ std::vector<Headline> make_headlines(const SweepSummary& summary) {
 
 std::string summary_words(const SweepSummary& summary) {
     const SweepSubject& subject = summary.manifest.subject;
-    std::string words = "The " + subject.method + " projection of " + subject.scene +
-                        " against its ray-traced " + subject.truth + " truth";
+    std::string words = fmt::format("The {} projection of {} against its ray-traced {} truth", subject.method,
+                                    subject.scene, subject.truth);
     if (!subject.camera.empty()) words += ", camera " + subject.camera;
     for (const RunRecord& run : summary.runs)
         if (run.state == RunState::kDone) {
@@ -73,19 +99,39 @@ std::string summary_words(const SweepSummary& summary) {
                      " pixels";
             break;
         }
-    const std::string side = std::to_string(subject.spp);
-    words += subject.spp == 1 ? ", one sample each" : ", " + side + " × " + side + " samples each";
-    return words +
-           ". Displacement says how many pixels a seen point lies from where the truth shows it. "
-           "Folds are where two images of a point meet: there displacements fall more slowly.";
+    words += subject.spp == 1 ? ", one sample each." : fmt::format(", {0} × {0} samples each.", subject.spp);
+    return words;
+}
+
+/// What plots would say with nothing in them.
+std::vector<std::string> exact_sentences(const SweepSummary& summary) {
+    std::vector<std::string> sentences;
+    for (const std::string& layer : layers_of(summary)) {
+        const SweepFit* const fit = find_fit(summary.fits, layer, kAll, "disp_mean_px");
+        if (!fit || !is_exact(*fit)) continue;
+        double lost = 0, missing = 0;
+        for (const RunRecord& run : summary.runs)
+            if (const MetricValues* const all = find_all(run, layer)) {
+                lost += find_value(*all, "disp_lost").value_or(0);
+                missing += find_value(*all, "disp_missing").value_or(0);
+            }
+        sentences.push_back(fmt::format(
+            "{}: exact. In all {} runs every displacement that was measured is zero, over {} of the pixels, "
+            "with {} lost and {} missing in all runs together.",
+            layer, fit->points.size(), measured_range(summary, layer), fixed_text(lost, 0),
+            fixed_text(missing, 0)));
+    }
+    const SweepFit* const colour = find_fit(summary.fits, "", kAll, "rgb_rmse");
+    if (colour && is_exact(*colour)) sentences.push_back("Every colour is the truth's to the last bit.");
+    return sentences;
 }
 
 void fill_table(const SweepSummary& summary, Report& report) {
     const std::vector<std::string> layers = layers_of(summary);
     report.table_columns = {"n", "status", "facets"};
     for (const std::string& layer : layers)
-        for (const char* what :
-             {": mean [px]", ": mean off folds [px]", ": 95 % [px]", ": max [px]", ": pixels lost"})
+        for (const char* what : {": measured", ": lost", ": missing", ": mean where measured [px]",
+                                 ": mean off folds [px]", ": 95 % [px]", ": max [px]"})
             report.table_columns.push_back(layer + what);
     for (const char* column : {"RGB RMSE", "PSNR [dB]", "SSIM", "time [s]"})
         report.table_columns.push_back(column);
@@ -94,12 +140,12 @@ void fill_table(const SweepSummary& summary, Report& report) {
         std::vector<std::string> row = {std::to_string(run.plan.n), state_name(run.state),
                                         count_text(run.metrics, "facets")};
         for (const std::string& layer : layers) {
-            MetricValues metrics;
-            for (const OpticDisplacement& one : run.displacement)
-                if (one.layer == layer && one.optic == kAll) metrics = one.metrics;
+            const MetricValues* const all = find_all(run, layer);
+            const MetricValues metrics = all ? *all : MetricValues();
+            row.push_back(coverage_text(metrics));
+            for (const char* name : {"disp_lost", "disp_missing"}) row.push_back(count_text(metrics, name));
             for (const char* name : {"disp_mean_px", "disp_mean_off_folds_px", "disp_p95_px", "disp_max_px"})
                 row.push_back(value_text(metrics, name));
-            row.push_back(count_text(metrics, "disp_lost"));
         }
         for (const char* name : {"rgb_rmse", "rgb_psnr_db", "rgb_ssim", "t_total_s"})
             row.push_back(value_text(run.metrics, name));
@@ -111,11 +157,12 @@ Facts run_facts(const RunRecord& run) {
     Facts facts;
     for (const OpticDisplacement& one : run.displacement) {
         if (run.displacement.size() > 1 && one.optic == kAll) continue;
-        const std::string lost = count_text(one.metrics, "disp_lost");
-        facts.emplace_back(one.layer + ", " + one.optic,
-                           value_text(one.metrics, "disp_mean_px") +
-                               " px, 95 %: " + value_text(one.metrics, "disp_p95_px") + " px" +
-                               (lost == "0" ? "" : ", " + lost + " lost"));
+        const std::string mean = value_text(one.metrics, "disp_mean_px");
+        facts.emplace_back(
+            one.layer + ", " + one.optic,
+            mean.empty() ? "no displacement could be measured"
+                         : "mean " + mean + " px, 95 %: " + value_text(one.metrics, "disp_p95_px") + " px");
+        facts.emplace_back(one.layer + ", " + one.optic + ", measured", measured_text(one.metrics));
     }
     facts.emplace_back("RGB RMSE", value_text(run.metrics, "rgb_rmse"));
     facts.emplace_back("largest colour difference", value_text(run.metrics, "rgb_max"));
@@ -123,96 +170,76 @@ Facts run_facts(const RunRecord& run) {
     return facts;
 }
 
-// ---- pictures
-// -----------------------------------------------------------------------------------------------------
-
-/// What is the same for the pictures of all runs, so that they compare.
-struct PictureScales {
-    double difference = 1;
-    ColourRange displacement;
-};
-
-PictureScales picture_scales(const SweepSummary& summary) {
-    double difference = 0, largest = 0, smallest = INFINITY;
-    for (const RunRecord& run : summary.runs) {
-        difference = std::max(difference, find_value(run.metrics, "rgb_p99").value_or(0));
-        for (const OpticDisplacement& one : run.displacement) {
-            largest = std::max(largest, find_value(one.metrics, "disp_p99_px").value_or(0));
-            const double median = find_value(one.metrics, "disp_p50_px").value_or(0);
-            if (median > 0) smallest = std::min(smallest, median);
-        }
-    }
-    PictureScales scales{difference_scale(difference), {}};
-    if (largest > 0 && std::isfinite(largest)) {
-        // Whole decades, at most four.
-        const double top = std::ceil(std::log10(largest)),
-                     bottom = std::floor(std::log10(std::min(smallest, largest)));
-        scales.displacement = {std::pow(10.0, std::max(std::min(bottom, top - 1), top - 4)),
-                               std::pow(10.0, top)};
-    }
-    return scales;
+/// At most kMostPictured of the finished runs, evenly spread, the first and the last among them.
+std::set<std::size_t> pictured_runs(const SweepSummary& summary) {
+    std::vector<std::size_t> done;
+    for (std::size_t i = 0; i < summary.runs.size(); ++i)
+        if (summary.runs[i].state == RunState::kDone) done.push_back(i);
+    if (done.size() <= kMostPictured) return {done.begin(), done.end()};
+    std::set<std::size_t> chosen;
+    for (std::size_t i = 0; i < kMostPictured; ++i)
+        chosen.insert(done[i * (done.size() - 1) / (kMostPictured - 1)]);
+    return chosen;
 }
 
-/// The picture, or its caption and the reason why there is none.
-Thumbnail picture_or_reason(const std::string& caption, const std::function<Thumbnail()>& make) {
-    try {
-        return make();
-    } catch (const InputError& error) {
-        return {caption + ": " + error.what(), 0, 0, {}};
+ReportRun run_section(const std::string& folder, const RunRecord& run) {
+    ReportRun section;
+    section.title = "n = " + std::to_string(run.plan.n);
+    section.warnings = run.warnings;
+    if (run.state == RunState::kFailed) {
+        section.error = "failed (exit code " + std::to_string(run.exit_code) + "): " + run.error;
+        return section;
     }
+    section.pictures = run_pictures(folder, run);
+    section.facts = run_facts(run);
+    return section;
 }
 
-std::vector<Thumbnail> run_pictures(const SweepSummary& summary, const RunRecord& run, const Image* truth,
-                                    const PictureScales& scales) {
-    const std::string home = run_folder(summary.folder, run.plan.id);
-    std::vector<Thumbnail> pictures;
-    std::optional<Image> image;
-    pictures.push_back(picture_or_reason("projected", [&] {
-        image = read_exr(home + "/image.exr");
-        return beauty_picture(*image, "projected");
-    }));
-    if (truth) {
-        pictures.push_back(picture_or_reason("truth", [&] { return beauty_picture(*truth, "truth"); }));
-        const std::string difference = "difference × " + rounded_text(scales.difference, 4);
-        if (image)
-            pictures.push_back(picture_or_reason(difference, [&] {
-                return difference_picture(*image, *truth, scales.difference, difference);
-            }));
+void fill_runs(const SweepSummary& summary, Report& report) {
+    const std::set<std::size_t> pictured = pictured_runs(summary);
+    std::vector<const RunRecord*> runs;  // of each section
+    std::size_t failures = 0;
+    for (std::size_t i = 0; i < summary.runs.size(); ++i) {
+        const RunRecord& run = summary.runs[i];
+        const bool is_told = run.state == RunState::kFailed && failures++ < kMostFailures;
+        if (is_told || pictured.count(i) > 0) runs.push_back(&run);
     }
-    const Thumbnail failed = picture_or_reason("displacement", [&] {
-        const Image diff = read_exr(home + "/diff.exr");
-        for (const DisplacementMap& map : displacement_maps(diff))
-            pictures.push_back(displacement_picture(map.pixels, diff.data_width, scales.displacement,
-                                                    "displacement, " + map.layer));
-        return Thumbnail{};
+
+    // Decoding and encoding pictures is most of a report's time.
+    report.runs.resize(runs.size());
+    parallel_for(runs.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) report.runs[i] = run_section(summary.folder, *runs[i]);
     });
-    if (!failed.caption.empty()) pictures.push_back(failed);
-    return pictures;
+
+    if (const std::size_t missing = summary.count(RunState::kMissing))
+        report.warnings.push_back(std::to_string(missing) + " of the runs are not done yet");
+    if (failures > kMostFailures)
+        report.warnings.push_back(fmt::format(
+            "{} runs failed; the first {} are told below, all are in summary.json", failures, kMostFailures));
+    if (const std::size_t done = summary.count(RunState::kDone); done > pictured.size())
+        report.pictures_note =
+            fmt::format("Pictures of {} of the {} finished runs, evenly spread; the table has all. ",
+                        pictured.size(), done);
 }
 
-std::vector<ReportRun> make_report_runs(const SweepSummary& summary, const PictureScales& scales,
-                                        std::vector<std::string>& warnings) {
-    std::optional<Image> truth;
-    try {
-        truth = read_exr(truth_file(summary.folder, summary.runs.front().plan.truth));
-    } catch (const InputError& error) {
-        warnings.push_back(std::string("no picture of the truth: ") + error.what());
+/// The plots as files, without those of an earlier report.
+void write_plots(const SweepSummary& summary, Report& report) {
+    namespace fs = std::filesystem;
+    const std::string folder = summary.folder + "/plots";
+    make_folder(folder);
+    std::set<std::string> written;
+    for (const NamedPlot& plot : make_plots(summary)) {
+        replace_text_file(folder + "/" + plot.name + ".svg", plot.svg);
+        written.insert(plot.name + ".svg");
+        report.plots.push_back(plot.svg);
     }
-    std::vector<ReportRun> runs;
-    for (const RunRecord& run : summary.runs) {
-        ReportRun one;
-        one.title = "n = " + std::to_string(run.plan.n);
-        one.warnings = run.warnings;
-        if (run.state == RunState::kMissing) one.error = "not run yet";
-        if (run.state == RunState::kFailed)
-            one.error = "failed (exit code " + std::to_string(run.exit_code) + "): " + run.error;
-        if (run.state == RunState::kDone) {
-            one.pictures = run_pictures(summary, run, truth ? &*truth : nullptr, scales);
-            one.facts = run_facts(run);
-        }
-        runs.push_back(one);
-    }
-    return runs;
+    std::vector<std::string> stale;
+    std::error_code unreadable;
+    for (fs::directory_iterator entry(folder, unreadable), end; !unreadable && entry != end;
+         entry.increment(unreadable))
+        if (entry->path().extension() == ".svg" && written.count(entry->path().filename().string()) == 0)
+            stale.push_back(entry->path().string());
+    for (const std::string& file : stale) remove_file(file);
 }
 
 }  // namespace
@@ -225,27 +252,21 @@ void write_sweep_report(const SweepSummary& summary) {
     report.headlines = make_headlines(summary);
     report.commands = subject.commands;
     report.versions = subject.versions;
-
-    make_folder(summary.folder + "/plots");
-    for (const NamedPlot& plot : make_plots(summary)) {
-        replace_text_file(summary.folder + "/plots/" + plot.name + ".svg", plot.svg);
-        report.plots.push_back(plot.svg);
-    }
-
+    report.sentences = exact_sentences(summary);
+    write_plots(summary, report);
     report.plots_note =
-        "A straight line is the law error = constant × n^−order fitted to the points. Runs that lost more "
-        "than a "
-        "tenth of an optic's pixels take no part in its fit, nor does a plateau at the fine end.";
-
+        "Displacement says how many pixels a seen point lies from where the truth shows it; it is known for "
+        "the measured share of the pixels that show the layer in either picture. Lost pixels show what the "
+        "truth does not, missing ones are the truth's that the projection does not show. Folds are where two "
+        "images of a point meet: there displacements fall more slowly. A straight line is the law error = "
+        "constant × n^−order fitted to the points. Runs that lost or miss "
+        "more than a tenth of an optic's pixels take no part in its fit, nor does a plateau at the fine end.";
     fill_table(summary, report);
-    const PictureScales scales = picture_scales(summary);
-    report.runs = make_report_runs(summary, scales, report.warnings);
-    report.pictures_note = "Differences are |projected − truth| × " + rounded_text(scales.difference, 4) +
-                           ", the same for all runs. Hover over a projected picture to see the truth in its "
-                           "place; click to enlarge.";
-    report.legend = {"Displacement, the same colours for all runs; grey: nothing to measure, orange: lost",
-                     scales.displacement, "px"};
-    if (layers_of(summary).empty()) report.legend.title.clear();
+    fill_runs(summary, report);
+    report.pictures_note +=
+        "The slider moves the border between the projected picture (left) and the truth (right). Each run "
+        "has its own colours for displacement and its own factor for differences, both stated at the "
+        "picture. A click, a tap or Enter shows a picture at full size.";
     write_report(summary.folder + "/report.html", report);
 }
 

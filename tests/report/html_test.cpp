@@ -27,8 +27,13 @@ Report evil_report() {
                                  std::vector<PlotSeries>{{kEvil, {{1, 1}}, std::nullopt}})};
     report.table_columns = {kEvil};
     report.table_rows = {{kEvil}};
-    report.legend = {kEvil, {0.01, 10}, kEvil};
-    report.runs = {{kEvil, {{kEvil, 1, 1, {1, 2, 3}}, {kEvil, 0, 0, {}}}, {{kEvil, kEvil}}, {kEvil}, kEvil}};
+    report.sentences = {kEvil};
+    report.runs = {
+        {kEvil,
+         {{kEvil, 1, 1, {1, 2, 3}, ColourLegend{{0.01, 10}, kEvil}, false}, {kEvil, 0, 0, {}, {}, true}},
+         {{kEvil, kEvil}},
+         {kEvil},
+         kEvil}};
     report.versions = {{kEvil, kEvil}};
     return report;
 }
@@ -64,7 +69,7 @@ TEST_CASE("sweep: no text of a report becomes markup") {
 TEST_CASE("sweep: pages refer to nothing outside themselves") {
     Gallery gallery{"scenes", "all of them", {}, {"trilens sweep run a.json"}, {{"trilens", "0.1"}}};
     gallery.entries.push_back(
-        {"inside", "", {{"one", 1, 1, {1}}}, {}, "ball/report.html", evil_report().plots[0]});
+        {"inside", "", {{"one", 1, 1, {1}, {}, false}}, {}, "ball/report.html", evil_report().plots[0]});
     gallery.entries.push_back({"outside", "", {}, {{"order", "2"}}, "https://example.org/x", ""});
     gallery.entries.push_back({"script", "", {}, {}, "javascript:alert(1)", ""});
     gallery.entries.push_back({"host", "", {}, {}, "//example.org", ""});
@@ -85,10 +90,12 @@ TEST_CASE("sweep: pages refer to nothing outside themselves") {
 
 TEST_CASE("sweep: a page holds its pictures' bytes, captions and the reason where there is none") {
     const std::vector<unsigned char> bytes = {0x89, 'P', 'N', 'G', 1, 2, 3};
-    const std::string html = html_pictures({{"projected", 320, 240, bytes}, {"truth: missing", 0, 0, {}}});
+    const std::string html =
+        html_pictures({{"projected", 320, 240, bytes, {}, false}, {"truth: missing", 0, 0, {}, {}, true}});
     CHECK(html.find("base64," + base64_text(bytes) + "\"") != std::string::npos);
     CHECK(html.find("width=\"320\" height=\"240\"") != std::string::npos);
     CHECK(count(html, "<figcaption>") == 2);
+    CHECK(count(html, "class=\"wipe\"") == 0);  // nothing to slide to
     CHECK(count(html, "<img") == 1);
     CHECK(html.find("truth: missing") != std::string::npos);
 }
@@ -106,4 +113,25 @@ TEST_CASE("sweep: pages are written whole or not at all") {
     std::size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) files += entry.is_regular_file();
     CHECK(files == 2);
+}
+
+TEST_CASE("sweep: two pictures of one thing lie under a slider, and beside each other without scripts") {
+    const std::vector<PagePicture> pictures = {
+        {"projected", 4, 3, {1}, {}, false},
+        {"truth", 4, 3, {2}, {}, true},
+        {"displacement", 4, 3, {3}, ColourLegend{{0.01, 100}, "px"}, false}};
+    const std::string html = html_pictures(pictures);
+    CHECK(count(html, "class=\"wipe\"") == 1);
+    CHECK(count(html, "<input type=\"range\"") == 1);
+    CHECK(html.find("aria-label=\"border between projected and truth\"") != std::string::npos);
+    CHECK(count(html, "<img ") == 3);
+    // The scale's ends and middle stand beside the picture.
+    for (const char* mark : {"<span>0.01 px</span>", "<span>1 px</span>", "<span>100 px</span>"})
+        CHECK(count(html, mark) == 1);
+    // What lies over another and what hides is for scripts and screens alone.
+    const std::string page = html_page("t", html);
+    const std::size_t screen = page.find("@media screen{.js");
+    REQUIRE(screen != std::string::npos);
+    CHECK(page.find("clip-path") > screen);
+    CHECK(page.find(".slider{display:none}") < screen);
 }

@@ -28,7 +28,7 @@ std::vector<float>& channel(Image& image, const char* name) {
 }
 
 /// The picture's pixel as linear RGB.
-LinearRgb pixel(const Thumbnail& picture, int x, int y) {
+LinearRgb pixel(const PagePicture& picture, int x, int y) {
     const std::shared_ptr<const Texture> texture = decode_texture(picture.png, "picture");
     REQUIRE((texture->width == picture.width && texture->height == picture.height));
     const std::size_t at = static_cast<std::size_t>(y * texture->width + x) * 3;
@@ -46,7 +46,7 @@ TEST_CASE("sweep: a beauty picture shows the film, black outside the data window
     for (const char* name : {"R", "G", "B"})
         image.channels.push_back({name, std::vector<float>{0.5f, 0.25f}});
     channel(image, "B")[1] = NAN;
-    const Thumbnail picture = beauty_picture(image, "caption");
+    const PagePicture picture = beauty_picture(image, "caption");
     CHECK((picture.width == 4 && picture.height == 3 && picture.caption == "caption"));
     check_colour(pixel(picture, 1, 1), {0.5f, 0.5f, 0.5f});
     check_colour(pixel(picture, 2, 1), {1, 0, 1});
@@ -57,16 +57,16 @@ TEST_CASE("sweep: a beauty picture shows the film, black outside the data window
 }
 
 TEST_CASE("sweep: large films shrink to the mean of what lies under a pixel") {
-    for (const int width : {321, 640, 1000}) {
+    for (const int width : {1281, 1600, 2560}) {
         Image image = grey_image(width, width / 2, 0.0f);
         double sum = 0;
         for (std::size_t i = 0; i < image.pixels(); ++i) {
             channel(image, "R")[i] = static_cast<float>((i * 37 % 101) / 100.0);
             sum += static_cast<double>(channel(image, "R")[i]);
         }
-        const Thumbnail picture = beauty_picture(image, "");
-        CHECK(picture.width == 320);
-        CHECK(picture.height == std::lround(width / 2 * 320.0 / width));
+        const PagePicture picture = beauty_picture(image, "");
+        CHECK(picture.width == kLargestPicture);
+        CHECK(picture.height == std::lround(width / 2 * 1280.0 / width));
         const auto texture = decode_texture(picture.png, "picture");
         double shrunk = 0;
         for (std::size_t i = 0; i < texture->rgb.size(); i += 3)
@@ -87,14 +87,15 @@ TEST_CASE("sweep: the difference's scale is the largest power of two that keeps 
     CHECK(difference_scale(0.03) == 32);
     CHECK(difference_scale(0.5) == 1);
     CHECK(difference_scale(0.49) == 2);
-    CHECK(difference_scale(0) == 1024);
+    CHECK(difference_scale(0) == 1048576);
+    CHECK(difference_scale(1e-5) == 65536);
     CHECK(difference_scale(9) == 1);
 }
 
 TEST_CASE("sweep: a displacement picture tells small, large, none and lost apart") {
     const ColourRange range{0.01, 10};
     const std::vector<float> pixels = {0.01f, 10.0f, NAN, INFINITY, 0.0f, 1e6f};
-    const Thumbnail picture = displacement_picture(pixels, 3, range, "");
+    const PagePicture picture = displacement_picture(pixels, 3, range, "");
     CHECK((picture.width == 3 && picture.height == 2));
     check_colour(pixel(picture, 0, 0), viridis(0));
     check_colour(pixel(picture, 1, 0), viridis(1));
@@ -105,9 +106,9 @@ TEST_CASE("sweep: a displacement picture tells small, large, none and lost apart
     CHECK((lost[0] > 0.9f && lost[2] < 0.1f));
 
     // One lost pixel among many stays visible.
-    std::vector<float> large(640 * 10, 0.5f);
-    large[641] = INFINITY;
-    check_colour(pixel(displacement_picture(large, 640, range, ""), 0, 0), lost);
+    std::vector<float> large(2560 * 10, 0.5f);
+    large[2561] = INFINITY;
+    check_colour(pixel(displacement_picture(large, 2560, range, ""), 0, 0), lost);
 }
 
 TEST_CASE("sweep: the colour map grows lighter all along and ends where viridis ends") {

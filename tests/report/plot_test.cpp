@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <clocale>
 #include <cmath>
+#include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -109,15 +111,115 @@ TEST_CASE("sweep: everything drawn stays inside the picture") {
             one.points.push_back({n, std::pow(10.0, i - 3) * std::pow(n, 1 - 0.3 * i)});
         series.push_back(one);
     }
-    for (const XmlElement& element :
-         trilens_test::read_xml(log_log_plot({"t", "n", "px", {}, true, 640, 420}, series))) {
+    const auto svg = trilens_test::read_xml(log_log_plot({"t", "n", "px", {}, true, 640, 420}, series));
+    const double height = svg[0].number("height");
+    CHECK((height > 420 && height < 520));  // the legend's rows
+    for (const XmlElement& element : svg) {
         for (const char* name : {"x", "x1", "x2", "cx"})
             if (element.attributes.count(name))
                 CHECK((element.number(name) >= 0 && element.number(name) <= 640));
         for (const char* name : {"y", "y1", "y2", "cy"})
             if (element.attributes.count(name))
-                CHECK((element.number(name) >= 0 && element.number(name) <= 420));
+                CHECK((element.number(name) >= 0 && element.number(name) <= height));
     }
+}
+
+namespace {
+
+/// Where a text stands, by a measure of its own: 0.6 em a character, from 0.75 em above the baseline to 0.2
+/// em below.
+struct Words {
+    std::string text;
+    double left, right, top, bottom;
+    bool touches(const Words& other) const {
+        return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+    }
+};
+
+Words words_of(const XmlElement& element) {
+    const double size = element.has_class("tp-title") ? 14 : element.has_class("tp-note") ? 11 : 12;
+    double characters = 0;
+    for (const char c : element.text) characters += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+    const double width = 0.6 * size * characters, x = element.number("x"), y = element.number("y");
+    const std::string anchor = element.attributes.at("text-anchor");
+    const double left = anchor == "end" ? x - width : anchor == "middle" ? x - width / 2 : x;
+    return {element.text, left, left + width, y - 0.75 * size, y + 0.2 * size};
+}
+
+/// All words of a plot but those that stand upright (the y label, turned around its own origin).
+std::vector<Words> all_words(const std::vector<XmlElement>& svg) {
+    std::vector<Words> all;
+    for (const XmlElement& element : svg)
+        if (element.name == "text" && !(element.number("x") == 0 && element.number("y") == 0))
+            all.push_back(words_of(element));
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("sweep: no word of a plot touches another one, the picture's border or a measurement") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> order(0, 3), decade(-9, 6), share(0, 1);
+    std::uniform_int_distribution<int> how_many(1, 7), how_often(1, 40);
+    for (int round = 0; round < 300; ++round) {
+        PlotParams params{"Mean displacement of what mirrors show and more",
+                          "resolution n [facets]",
+                          "mean displacement [px]",
+                          {{1, "1 px"}, {0.5, "0.5 px"}}};
+        params.ticks_at_points = round % 3 > 0;
+        params.subtitle = round % 2 ? "of the pixels that were measured: 98.2 % to 99.8 %" : "";
+        std::vector<PlotSeries> series;
+        const int count = how_many(random), points = how_often(random);
+        const double level = decade(random), step = 1.05 + share(random);
+        for (int i = 0; i < count; ++i) {
+            PlotSeries one{"optic " + std::string(static_cast<std::size_t>(i * i), 'x'),
+                           {},
+                           PlotFit{order(random), std::pow(10, level)}};
+            for (int k = 0; k < points; ++k) {
+                const double x = round % 3 == 1 ? k + 1 : std::floor(std::pow(step, k)) + k;
+                one.points.push_back(
+                    {x, one.fit->constant * std::pow(x, -one.fit->order) * (1 + share(random))});
+            }
+            series.push_back(one);
+        }
+        const auto svg = trilens_test::read_xml(log_log_plot(params, series));
+        const std::vector<Words> all = all_words(svg);
+        INFO("round " << round);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            INFO(all[i].text);
+            CHECK((all[i].left >= 0 && all[i].right <= svg[0].number("width")));
+            CHECK((all[i].top >= 0 && all[i].bottom <= svg[0].number("height")));
+            for (std::size_t j = 0; j < i; ++j) {
+                INFO(all[j].text);
+                CHECK(!all[i].touches(all[j]));
+            }
+        }
+        for (const XmlElement& element : svg)
+            if (element.name == "circle")
+                for (const Words& words : all)
+                    CHECK(!words.touches({"", element.number("cx") - 3, element.number("cx") + 3,
+                                          element.number("cy") - 3, element.number("cy") + 3}));
+    }
+}
+
+TEST_CASE("sweep: measured values are the ticks; of very many, round ones") {
+    const auto labels_of = [](const std::vector<double>& values) {
+        PlotParams params;
+        params.ticks_at_points = true;
+        PlotSeries series{"all", {}, std::nullopt};
+        for (const double value : values) series.points.push_back({value, 1 / value});
+        std::vector<std::string> labels;
+        for (const XmlElement& element :
+             trilens_test::read_xml(log_log_plot(params, std::vector<PlotSeries>{series})))
+            if (element.has_class("tp-x")) labels.push_back(element.text);
+        return std::set<std::string>(labels.begin(), labels.end());
+    };
+    CHECK(labels_of({1, 2, 4, 8, 16, 32, 64}) == std::set<std::string>{"1", "2", "4", "8", "16", "32", "64"});
+    CHECK(labels_of({3, 7}) == std::set<std::string>{"3", "7"});
+    CHECK(labels_of({12}) == std::set<std::string>{"12"});
+    std::vector<double> thousand;
+    for (int n = 1; n <= 1000; ++n) thousand.push_back(n);
+    CHECK(labels_of(thousand) == std::set<std::string>{"1", "10", "100", "1000"});
 }
 
 TEST_CASE("sweep: what a scale cannot show is left out and counted") {

@@ -1,6 +1,7 @@
 // Sweeps find the order that was put in, write what the interface names, and fail run by run.
 #include "sweep/sweep.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -14,6 +15,8 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "image/image_io.h"
+#include "report/pictures.h"
+#include "report/text.h"
 #include "report/xml.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
@@ -136,7 +139,9 @@ TEST_CASE("sweep: runs.csv reads back to the numbers of the runs; words with com
         CHECK(row["facets"] == std::to_string(12 * run.plan.n * run.plan.n));
         CHECK(row["width"] == "96");
         CHECK(row["status"] == "done");
-        CHECK(row["seed"] == "");
+        CHECK(row.count("seed") + row.count("isa") + row.count("rgb_flip") == 0);  // nobody has them
+        CHECK(number(row["disp_coverage"]) == run.metrics.at("disp_coverage"));
+        CHECK((row.count("disp_lost") == 1 && row.count("disp_missing") == 1));
         CHECK(row["image_fnv1a"] == run.image_hash);
         for (const char* metric :
              {"rgb_mae", "rgb_rmse", "rgb_psnr_db", "disp_mean_px", "disp_max_px", "t_total_s", "t_trace_s"})
@@ -177,7 +182,16 @@ TEST_CASE("sweep: identical pictures give no order, an infinite PSNR, and a repo
     CHECK(summary.runs[0].metrics.at("disp_mean_px") == 0);
     CHECK(std::isinf(load_sweep(fake.params.folder).runs[0].metrics.at("rgb_psnr_db")));
     CHECK(!fit_of(summary, "reflect", "all", "disp_mean_px").order);
-    CHECK(read_whole_file(fake.params.folder + "/report.html").value().find("2 of 2") != std::string::npos);
+    const std::string html = read_whole_file(fake.params.folder + "/report.html").value();
+    CHECK(html.find("2 of 2") != std::string::npos);
+    // A sentence, and no empty plot or black picture.
+    CHECK(
+        html.find("reflect: exact. In all 2 runs every displacement that was measured is zero, over 100 % of "
+                  "the pixels, with 0 lost and 0 missing") != std::string::npos);
+    CHECK(html.find("<svg") == std::string::npos);
+    CHECK(fs::is_empty(fake.params.folder + "/plots"));
+    CHECK(html.find("difference: none") != std::string::npos);
+    CHECK(html.find("displacement, reflect: zero wherever it was measured") != std::string::npos);
 }
 
 TEST_CASE(
@@ -247,6 +261,91 @@ TEST_CASE("sweep: the report escapes, embeds every picture, and refers to nothin
         CHECK(html.compare(at + 5, 22, "data:image/png;base64,") == 0);
     CHECK(pictures == 2 * 4);
     CHECK(html.find("href=") == std::string::npos);
+}
+
+TEST_CASE("sweep: columns that are empty in every row are left out, and come back with their first value") {
+    FakeSweep fake(trilens_test::scratch_dir("sweep_columns"), {1, 2});
+    const std::string file = fake.params.folder + "/runs.csv";
+    fake.before_render = [](int) { throw ComputationError("none"); };
+    fake.run();
+    const auto failed = read_csv(read_whole_file(file).value());
+    CHECK((failed[0].count("rgb_rmse") == 0 && failed[0].count("exit_code") == 1));
+    fake.before_render = [](int n) {
+        if (n == 2) throw ComputationError("one");
+    };
+    fake.run();
+    auto half = read_csv(read_whole_file(file).value());
+    CHECK((half[0]["rgb_rmse"] != "" && half[1].count("rgb_rmse") == 1 && half[1]["rgb_rmse"] == ""));
+    for (const auto& [column, value] : half[0]) {
+        INFO(column);
+        CHECK((!value.empty() || !half[1][column].empty()));
+    }
+}
+
+TEST_CASE("sweep: no mean of displacement stands without what was measured and lost") {
+    FakeSweep fake(trilens_test::scratch_dir("sweep_bare"), {1, 2, 4});
+    // The top rows of the left optic show nothing: they are missing.
+    fake.callbacks.render = [](int n) {
+        Image image = trilens_test::fake_image(1.5 / (n * n), 2.9 / (n * n));
+        for (std::size_t i = 0; i < 2 * trilens_test::kFakeWidth; ++i) {
+            image.find("reflect.object")->ids()[i] = kNone;
+            for (const char* name : {"reflect.X", "reflect.Y", "reflect.Z"})
+                image.find(name)->floats()[i] = 0;
+        }
+        return image;
+    };
+    const SweepSummary summary = fake.run();
+    const OpticDisplacement& all = summary.runs[2].displacement[0];
+    REQUIRE(all.optic == "all");
+    CHECK(all.metrics.at("disp_missing") >= 96);
+    CHECK(summary.runs[2].metrics.at("disp_missing") == all.metrics.at("disp_missing"));
+    CHECK(summary.runs[2].metrics.at("disp_coverage") == all.metrics.at("disp_coverage"));
+    const SweepFit fit = fit_of(summary, "reflect", "all", "disp_mean_px");
+    double least = 1;
+    for (const RunRecord& run : summary.runs)
+        least = std::min(least, run.displacement[0].metrics.at("disp_coverage"));
+    CHECK(fit.coverage.value() == least);
+    CHECK(Json::parse(read_whole_file(fake.params.folder + "/summary.json").value())
+              .at("fits")[0]
+              .at("coverage") == least);
+
+    const std::string html = read_whole_file(fake.params.folder + "/report.html").value();
+    for (const char* column : {"reflect: measured", "reflect: lost", "reflect: missing"})
+        CHECK(html.find("<th>" + std::string(column) + "</th>") != std::string::npos);
+    CHECK(html.find("<dt>reflect, left, measured</dt>") != std::string::npos);
+    CHECK(html.find("of the pixels that were measured: 9") != std::string::npos);  // in the plot
+    const std::string plot = read_whole_file(fake.params.folder + "/plots/reflect_disp_mean_px.svg").value();
+    CHECK(plot.find("of the pixels that were measured: 9") != std::string::npos);
+}
+
+TEST_CASE("sweep: each run's difference has a factor of its own, which it states") {
+    FakeSweep fake(trilens_test::scratch_dir("sweep_factors"), {1, 4, 16, 64});
+    const SweepSummary summary = fake.run();
+    const std::string html = read_whole_file(fake.params.folder + "/report.html").value();
+    double previous = 0;
+    for (const RunRecord& run : summary.runs) {
+        const double scale = difference_scale(run.metrics.at("rgb_p95"));
+        CHECK(scale >= 4 * previous);  // errors fall by 16
+        previous = scale;
+        CHECK(html.find("|projected − truth| × " + shortest_text(scale) + ",") != std::string::npos);
+    }
+}
+
+TEST_CASE("sweep: of many runs the table has all, and the page pictures of some with a word about it") {
+    std::vector<int> values;
+    for (int n = 1; n <= 30; ++n) values.push_back(n);
+    FakeSweep fake(trilens_test::scratch_dir("sweep_many"), values);
+    fake.run();
+    const std::string html = read_whole_file(fake.params.folder + "/report.html").value();
+    std::size_t rows = 0, sections = 0;
+    for (std::size_t at = 0; (at = html.find("<td>done</td>", at + 1)) != std::string::npos;) ++rows;
+    for (std::size_t at = 0; (at = html.find("<section class=\"run\">", at + 1)) != std::string::npos;)
+        ++sections;
+    CHECK(rows == 30);
+    CHECK(sections == 12);
+    CHECK(html.find("Pictures of 12 of the 30 finished runs") != std::string::npos);
+    for (const char* ends : {"<h3>n = 1</h3>", "<h3>n = 30</h3>"})
+        CHECK(html.find(ends) != std::string::npos);
 }
 
 TEST_CASE("sweep: a folder that cannot be written is an OutputError, one without a plan an InputError") {

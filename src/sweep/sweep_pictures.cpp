@@ -1,0 +1,100 @@
+#include "sweep/sweep_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "base/error.h"
+#include "image/image_io.h"
+#include "report/text.h"
+#include "sweep/measure_run.h"
+
+namespace trilens {
+namespace {
+
+PagePicture words_alone(const std::string& caption) {
+    return {caption, 0, 0, {}, {}, false};
+}
+
+/// The picture, or its caption and the reason why there is none.
+PagePicture picture_or_reason(const std::string& caption, const std::function<PagePicture()>& make) {
+    try {
+        return make();
+    } catch (const InputError& error) {
+        return words_alone(caption + ": " + error.what());
+    }
+}
+
+/// Whole decades that hold most of the positive values, at most four; none where there is none.
+std::optional<ColourRange> displacement_range(const std::vector<float>& pixels) {
+    std::vector<float> positive;
+    for (const float value : pixels)
+        if (std::isfinite(value) && value > 0) positive.push_back(value);
+    if (positive.empty()) return std::nullopt;
+    std::sort(positive.begin(), positive.end());
+    const auto at = [&](double share) {
+        const auto last = static_cast<double>(positive.size() - 1);
+        return std::log10(static_cast<double>(positive[static_cast<std::size_t>(std::lround(share * last))]));
+    };
+    const double top = std::ceil(at(0.99)), bottom = std::floor(at(0.1));
+    return ColourRange{std::pow(10.0, std::max(std::min(bottom, top - 1), top - 4)), std::pow(10.0, top)};
+}
+
+PagePicture displacement_of(const DisplacementMap& map, int width) {
+    const std::optional<ColourRange> range = displacement_range(map.pixels);
+    const bool has_lost = std::ranges::any_of(map.pixels, [](float value) { return std::isinf(value); });
+    const std::string caption = "displacement, " + map.layer;
+    if (range)
+        return displacement_picture(map.pixels, width, *range,
+                                    caption + (has_lost ? "; grey: none, orange: lost" : "; grey: none"));
+    if (!has_lost) return words_alone(caption + ": zero wherever it was measured");
+    PagePicture picture = displacement_picture(map.pixels, width, {}, caption + ": zero, but orange is lost");
+    picture.legend.reset();
+    return picture;
+}
+
+}  // namespace
+
+PagePicture run_difference(const Image& image, const Image& truth, const RunRecord& run) {
+    const double largest = find_value(run.metrics, "rgb_max").value_or(0);
+    if (largest == 0) return words_alone("difference: none, every colour is the truth's");
+    // The first that is not zero: where most are equal the few others decide.
+    double decisive = largest;
+    for (const char* name : {"rgb_p99", "rgb_p95"})
+        if (const double value = find_value(run.metrics, name).value_or(0); value > 0) decisive = value;
+    const double scale = difference_scale(decisive);
+    return difference_picture(
+        image, truth, scale,
+        "|projected − truth| × " + shortest_text(scale) + ", largest " + rounded_text(largest, 2));
+}
+
+std::vector<PagePicture> run_pictures(const std::string& folder, const RunRecord& run) {
+    const std::string home = run_folder(folder, run.plan.id);
+    std::vector<PagePicture> pictures;
+    std::optional<Image> image, truth;
+    pictures.push_back(picture_or_reason("projected", [&] {
+        image = read_exr(home + "/image.exr");
+        return beauty_picture(*image, "projected");
+    }));
+    pictures.push_back(picture_or_reason("truth", [&] {
+        truth = read_exr(truth_file(folder, run.plan.truth));
+        return beauty_picture(*truth, "truth");
+    }));
+    pictures.back().is_over_previous = true;
+
+    const PagePicture failed = picture_or_reason("displacement", [&] {
+        const Image diff = read_exr(home + "/diff.exr");
+        for (const DisplacementMap& map : displacement_maps(diff))
+            pictures.push_back(displacement_of(map, diff.data_width));
+        return PagePicture{};
+    });
+    if (!failed.caption.empty()) pictures.push_back(failed);
+    if (image && truth)
+        pictures.push_back(
+            picture_or_reason("difference", [&] { return run_difference(*image, *truth, run); }));
+    return pictures;
+}
+
+}  // namespace trilens

@@ -1,0 +1,22 @@
+// The pictures of a sweep's runs: projected and truth, how far what is seen moved, how far the colours
+// differ.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/pictures.h"
+#include "sweep/results.h"
+
+namespace trilens {
+
+/// The pictures of one finished run: projected with the truth over it, the displacement of each layer in
+/// colours of its own range, and the difference times a factor of its own; ranges and factors are stated. A
+/// picture that cannot be made is a caption that says why.
+std::vector<PagePicture> run_pictures(const std::string& folder, const RunRecord& run);
+
+/// The difference of a run's image and its truth, times a power of two such that it is neither black nor
+/// white all over, which the caption states; a caption alone where they are the same.
+PagePicture run_difference(const Image& image, const Image& truth, const RunRecord& run);
+
+}  // namespace trilens

@@ -1,0 +1,93 @@
+// `trilens sweep` on real scenes: which truth each run has, and whose folder it is.
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "support/test.h"
+
+using namespace trilens_test;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> cells;
+    std::stringstream rest(line);
+    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
+    return cells;
+}
+
+/// One column of runs.csv, a value per run.
+std::vector<double> column(const std::string& folder, const std::string& name) {
+    std::stringstream lines(bytes_of(folder + "/runs.csv"));
+    std::string line;
+    std::getline(lines, line);
+    const std::vector<std::string> header = cells_of(line);
+    std::size_t at = 0;
+    while (at < header.size() && header[at] != name) ++at;
+    REQUIRE(at < header.size());
+    std::vector<double> values;
+    while (std::getline(lines, line)) values.push_back(std::atof(cells_of(line).at(at).c_str()));
+    return values;
+}
+
+std::size_t truths_in(const std::string& folder) {
+    std::size_t count = 0;
+    for (const auto& entry : fs::directory_iterator(folder + "/truth"))
+        count += entry.path().extension() == ".exr";
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("the facets' truth is that of each run's own facets, and nothing is displaced", "[cli][sweep]") {
+    const std::string folder = scratch_dir("cli_sweep_facets");
+    const std::string scene = write_file(folder, "room.json", small_scene());
+    const auto sweep = [&](const std::string& truth) {
+        const std::string out = folder + "/" + truth;
+        REQUIRE(run_trilens("sweep run " + scene + " --size 96x72 --over resolution=2,4,8 --truth " + truth +
+                            " -o " + out)
+                    .exit_code == 0);
+        return out;
+    };
+    const std::string facets = sweep("facets"), limit = sweep("limit");
+    CHECK(truths_in(facets) == 3);
+    CHECK(truths_in(limit) == 1);
+    for (const double mean : column(facets, "disp_mean_px")) CHECK(mean == 0);
+    for (const double rmse : column(facets, "rgb_rmse")) CHECK(rmse < 1e-3);
+    for (const double covered : column(facets, "disp_coverage")) CHECK(covered > 0.99);
+    CHECK(column(limit, "disp_mean_px").front() > 0.1);
+}
+
+TEST_CASE("a sweep's folder takes no other scene, and the same one from anywhere", "[cli][sweep]") {
+    const std::string folder = scratch_dir("cli_sweep_owner");
+    write_file(folder, "room.json", small_scene());
+    write_file(folder, "other.json", replaced(small_scene(), "\"radius\": 1", "\"radius\": 0.8"));
+    const auto sweep = [&](const std::string& scene, const std::string& options) {
+        return run_trilens("sweep run " + scene + " -o " + folder + "/out " + options);
+    };
+    REQUIRE(sweep(folder + "/room.json", "--over resolution=1,2").exit_code == 0);
+    const std::string table = bytes_of(folder + "/out/runs.csv");
+
+    for (const std::string& other : {folder + "/other.json --over resolution=1,2",
+                                     folder + "/room.json --over resolution=1,2 --size 40x30",
+                                     folder + "/room.json --over resolution=1,2 --truth facets"}) {
+        const CommandRun run = sweep(other, "");
+        INFO(run.err);
+        CHECK(run.exit_code == 2);
+        CHECK(run.err.find("room.json") != std::string::npos);
+        CHECK(run.err.find("--replace") != std::string::npos);
+        CHECK(bytes_of(folder + "/out/runs.csv") == table);
+    }
+    // By another path, with another value: the same sweep.
+    CHECK(sweep(folder + "/out/../room.json", "--over resolution=1,2,4").exit_code == 0);
+    CHECK(column(folder + "/out", "n") == std::vector<double>{1, 2, 4});
+    CHECK(sweep(folder + "/other.json", "--over resolution=1,2 --replace").exit_code == 0);
+    CHECK(column(folder + "/out", "n") == std::vector<double>{1, 2});
+    CHECK(sweep(folder + "/room.json", "--over resolution=1,2").exit_code == 2);
+    // Several scenes make a gallery, which is no sweep.
+    CHECK(sweep(folder + "/room.json " + folder + "/other.json", "--over resolution=1").exit_code == 2);
+}
