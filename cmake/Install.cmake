@@ -28,3 +28,22 @@ if(TRILENS_CORE_ONLY)
 endif()
 configure_file(${CMAKE_CURRENT_LIST_DIR}/trilens.pc.in ${PROJECT_BINARY_DIR}/trilens.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/trilens.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/Doxyfile.in ${PROJECT_BINARY_DIR}/Doxyfile @ONLY)
+
+# Manual pages and completion come from the command's own tree of options.
+if(NOT TRILENS_CORE_ONLY)
+  set(shell ${PROJECT_BINARY_DIR}/shell)
+  add_custom_command(OUTPUT ${shell}/made
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${shell}/man1
+    COMMAND trilens_command man --all ${shell}/man1
+    COMMAND trilens_command completion bash > ${shell}/trilens
+    COMMAND trilens_command completion zsh > ${shell}/_trilens
+    COMMAND trilens_command completion fish > ${shell}/trilens.fish
+    COMMAND ${CMAKE_COMMAND} -E touch ${shell}/made
+    DEPENDS trilens_command VERBATIM)
+  add_custom_target(trilens_shell ALL DEPENDS ${shell}/made)
+  install(DIRECTORY ${shell}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+  install(FILES ${shell}/trilens DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${shell}/_trilens DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES ${shell}/trilens.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+endif()
