@@ -27,7 +27,7 @@ if(TRILENS_CORE_ONLY)
   set(pc_library trilens_core)
 endif()
 configure_file(${CMAKE_CURRENT_LIST_DIR}/trilens.pc.in ${PROJECT_BINARY_DIR}/trilens.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/trilens.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/trilens.pc DESTINATION lib/pkgconfig)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/Doxyfile.in ${PROJECT_BINARY_DIR}/Doxyfile @ONLY)
 
 # Manual pages and completion come from the command's own tree of options.

@@ -22,9 +22,10 @@ bool is_one_file(const std::string& one, const std::string& other) {
 void FileRoles::reads(const std::vector<std::string>& files) {
     for (const std::string& file : files) {
         if (file.empty() || is_standard_stream(file)) continue;
+        // Known as an input first, so that nothing writes there even while it fails.
+        inputs_.push_back(file);
         for (const std::string& output : outputs_)
             if (is_one_file(output, file)) throw UsageError("the output " + output + " is the input " + file);
-        inputs_.push_back(file);
     }
 }
 

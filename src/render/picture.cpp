@@ -11,6 +11,7 @@
 #include "base/version.h"
 #include "render/engine.h"
 #include "render/layers.h"
+#include "scene/named_files.h"
 
 namespace trilens {
 namespace {
@@ -92,8 +93,7 @@ void describe(const World& world, const PictureRequest& request, Image& image) {
     header["trilens:facets"] = std::to_string(facet_count(world, request.frame.resolution));
     header["trilens:scene"] = world.scene.resolved;
     header["trilens:folder"] = world.scene.folder;
-    for (const FileRead& file : world.scene.files)
-        header["trilens:files"] += file.hash + " " + file.path + "\n";
+    header["trilens:files"] = named_files_text(world.scene);
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 #include "trilens/scene.h"
 
 #include <filesystem>
-#include <map>
-#include <sstream>
 
 #include "base/error.h"
 #include "base/nearest.h"
 #include "image/image_io.h"
+#include "scene/named_files.h"
 
 namespace trilens {
 namespace {
@@ -17,20 +16,6 @@ TextureReader texture_reader() {
 
 bool is_image(const std::string& file) {
     return file.size() > 4 && file.compare(file.size() - 4, 4, ".exr") == 0;
-}
-
-/// A file that the image was drawn with may hold something else now. `recorded`: "hash path" per line.
-void warn_of_changed_files(const std::string& image, const std::string& recorded, Scene& scene) {
-    std::map<std::string, std::string> then;
-    std::istringstream lines(recorded);
-    for (std::string hash, path; lines >> hash && lines.get() && std::getline(lines, path);)
-        then[path] = hash;
-    for (const FileRead& now : scene.files) {
-        const auto found = then.find(now.path);
-        if (found != then.end() && found->second != now.hash)
-            scene.warnings.push_back(image + ": " + now.path +
-                                     " has changed since the image was drawn, which may look different now");
-    }
 }
 
 Scene load_scene_of_image(const std::string& file, std::span<const SceneOverride> overrides) {
@@ -48,7 +33,9 @@ Scene load_scene_of_image(const std::string& file, std::span<const SceneOverride
                                   texture_reader());
     for (std::size_t c = 0; c < scene.cameras.size(); ++c)
         if (scene.cameras[c].name == camera) scene.own_camera = c;
-    warn_of_changed_files(file, text("trilens:files"), scene);
+    for (const std::string& changed : changed_files(scene, text("trilens:files")))
+        scene.warnings.push_back(file + ": " + changed +
+                                 " has changed since the image was drawn, which may look different now");
     return scene;
 }
 

@@ -70,6 +70,30 @@ TEST_CASE("an image renders again through its own camera, and finds its scene's 
     CHECK(bytes_of(first) == bytes_of(second));
     REQUIRE(run_trilens("render " + quoted(first) + " --camera side -o " + quoted(second)).exit_code == 0);
     CHECK(bytes_of(first) != bytes_of(second));
+
+    // What the image was drawn with is not what stands there now: said, and drawn.
+    write_file(folder + "/scene", "wall.obj", "v -4 -4 -2\nv 4 -4 -2\nv 4 4 -2\nv -4 4 -2\nf 1 2 3 4\n");
+    const auto again = run_trilens("render " + quoted(first) + " -o " + quoted(second));
+    CHECK(again.exit_code == 0);
+    CHECK(again.err.find("wall.obj has changed since the image was drawn") != std::string::npos);
+}
+
+TEST_CASE("no output is a file that the scene read", "[cli][files]") {
+    const std::string folder = scratch_dir("cli_files_inputs");
+    const std::string wall =
+        write_file(folder, "wall.obj", "v -4 -4 -3\nv 4 -4 -3\nv 4 4 -3\nv -4 4 -3\nf 1 2 3 4\n");
+    const std::string text =
+        replaced(two_cameras(), "\"meshes\": [",
+                 R"("meshes": [ {"name": "far", "role": "object", "file": "wall.obj"},)");
+    const std::string scene = write_file(folder, "room.json", text);
+    for (const std::string& input : {scene, wall}) {
+        const std::string before = bytes_of(input);
+        CHECK(run_trilens("render " + quoted(scene) + " --format png -o " + quoted(input)).exit_code == 2);
+        CHECK(run_trilens("render " + quoted(scene) + " -o " + quoted(folder + "/x.png") +
+                          " --json=" + quoted(input))
+                  .exit_code == 2);
+        CHECK(bytes_of(input) == before);
+    }
 }
 
 TEST_CASE("a sweep runs again when a file that its scene names has changed, and only then", "[cli][files]") {

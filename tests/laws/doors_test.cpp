@@ -84,8 +84,8 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"OpenImageIO/", {"src/image/"}},
     {"OpenEXR/", {"src/image/"}},
     {"embree", {"src/intersect/"}},
-    {"CLI/", {"src/cli/"}},
-    {"fmt/", {"src/base/format.h"}},
+    {"CLI/", {"src/cli/parse.cpp"}},
+    {"fmt/", {"src/base/format.h", "src/cli/format.h"}},
     {"Imath/", {"src/image/"}},
 };
 
@@ -123,6 +123,7 @@ TEST_CASE("no header of ours brings an outside library with it, but for the voca
     const std::set<std::string> vocabulary{
         "src/base/vec.h",
         "src/base/format.h",
+        "src/cli/format.h",
         "src/scene/json.h",
         "src/sweep/json.h",
         "src/cli/json.h",
