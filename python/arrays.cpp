@@ -26,6 +26,12 @@ std::vector<Vec3> points_of(const Doubles& array, const std::string& name) {
     return {first, first + array.shape(0)};
 }
 
+py::array array_from(const py::object& object, const std::string& name) {
+    py::array array = py::array::ensure(object);
+    if (!array) throw py::type_error(name + " is no array");
+    return array;
+}
+
 std::vector<Id> ids_of(const py::array& array, const std::string& name) {
     const char kind = array.dtype().kind();
     if (array.size() > 0 && kind != 'i' && kind != 'u')
@@ -41,7 +47,8 @@ std::vector<Id> ids_of(const py::array& array, const std::string& name) {
     return ids;
 }
 
-std::vector<IdTriple> triples_of(const py::array& array, const std::string& name) {
+std::vector<IdTriple> triples_of(const py::object& object, const std::string& name) {
+    const py::array array = array_from(object, name);
     require_shape(array, std::array<py::ssize_t, 2>{-1, 3}, name);
     const std::vector<Id> ids = ids_of(array, name);
     std::vector<IdTriple> triples(ids.size() / 3);

@@ -18,11 +18,17 @@ using Indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcec
 /// An N x 3 array as points. Throws UsageError, naming `name`, for other shapes.
 std::vector<Vec3> points_of(const Doubles& array, const std::string& name);
 
+/// Anything that numpy makes an array of; else Python's TypeError.
+py::array array_from(const py::object& object, const std::string& name);
+
 /// An array of ids of any shape, in C order. Throws UsageError, naming `name`, for numbers that are none.
 std::vector<Id> ids_of(const py::array& array, const std::string& name);
+inline std::vector<Id> ids_of(const py::object& object, const std::string& name) {
+    return ids_of(array_from(object, name), name);
+}
 
 /// An N x 3 array as triples of ids.
-std::vector<IdTriple> triples_of(const py::array& array, const std::string& name);
+std::vector<IdTriple> triples_of(const py::object& object, const std::string& name);
 
 /// Throws UsageError unless the array has these dimensions; -1: any length.
 void require_shape(const py::array& array, std::span<const py::ssize_t> shape, const std::string& name);

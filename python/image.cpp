@@ -63,8 +63,7 @@ HeldImage from_arrays(const py::dict& channels, const std::optional<Size>& size,
     Image& image = held.image;
     for (const auto& [key, value] : channels) {
         const auto name = key.cast<std::string>();
-        const auto array = py::array::ensure(value);
-        if (!array) throw py::type_error("the channel " + name + " is no array");
+        const py::array array = array_from(py::reinterpret_borrow<py::object>(value), name);
         require_shape(array, std::array<py::ssize_t, 2>{-1, -1}, name);
         if (image.channels.empty()) {
             image.data_height = static_cast<int>(array.shape(0));
@@ -139,7 +138,7 @@ void bind_copying(py::class_<HeldImage, std::shared_ptr<HeldImage>>& image) {
 void bind_image(py::module_& module) {
     py::class_<HeldImage, std::shared_ptr<HeldImage>> image(
         module, "Image",
-        "A picture with named channels: a mapping from names (\"R\", \"reflectID.object\") to numpy arrays\n"
+        "A picture with named channels: a mapping from names (\"R\", \"optic.object\") to numpy arrays\n"
         "that look into the picture, without a copy.");
     bind_mapping(image);
     bind_copying(image);

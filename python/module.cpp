@@ -27,6 +27,7 @@ void bind_program(py::module_& module) {
 PYBIND11_MODULE(_trilens, module) {
     namespace bindings = trilens::python;
     module.doc() = "Projects curved mirrors and glass, and measures the error against ray-traced truth.";
+    module.attr("__module__") = "trilens";  // where its classes and functions are found
     bindings::bind_errors(module);
     bindings::bind_program(module);
     bindings::bind_image(module);
@@ -36,4 +37,5 @@ PYBIND11_MODULE(_trilens, module) {
     bindings::bind_renderer(module);
     bindings::bind_compare(module);
     bindings::bind_sweep(module);
+    pybind11::delattr(module, "__module__");
 }

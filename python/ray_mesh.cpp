@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <limits>
+#include <numeric>
 
 #include "talk.h"
 
@@ -20,7 +21,7 @@ std::vector<Vec3> screen_of(const Doubles& screen) {
 }
 
 RayMesh ray_mesh_of(const Doubles& origins, const Doubles& directions, const Doubles& screen,
-                    const py::array& facets) {
+                    const py::object& facets) {
     const std::vector<Vec3> from = points_of(origins, "origins"), along = points_of(directions, "directions");
     if (from.size() != along.size()) throw UsageError("there are not as many directions as origins");
     RayMesh mesh;
@@ -41,15 +42,18 @@ py::array rays_view(const py::object& self, Vec3 Ray::*member) {
         data, {{static_cast<py::ssize_t>(mesh.rays.size()), 3}, {sizeof(Ray), sizeof(double)}}, self);
 }
 
-TriangleScene triangles_of(const Doubles& points, const py::array& triangles,
-                           const std::optional<py::array>& object,
-                           const std::optional<py::array>& primitive) {
+TriangleScene triangles_of(const Doubles& points, const py::object& triangles, const py::object& object,
+                           const py::object& primitive) {
     TriangleScene scene;
     scene.points = points_of(points, "points");
     scene.triangles = triples_of(triangles, "triangles");
-    scene.object = object ? ids_of(*object, "object") : std::vector<Id>(scene.size(), 0);
-    if (primitive) scene.primitive = ids_of(*primitive, "primitive");
-    for (Id t = 0; !primitive && t < scene.size(); ++t) scene.primitive.push_back(t);
+    scene.object = object.is_none() ? std::vector<Id>(scene.size(), 0) : ids_of(object, "object");
+    if (!primitive.is_none()) {
+        scene.primitive = ids_of(primitive, "primitive");
+    } else {
+        scene.primitive.resize(scene.size());
+        std::iota(scene.primitive.begin(), scene.primitive.end(), Id{0});
+    }
     return scene;
 }
 
@@ -194,9 +198,9 @@ void bind_ray_mesh(py::module_& module) {
         });
     module.def(
         "draw_through",
-        [](const RayMesh& mesh, const Doubles& points, const py::array& triangles,
-           const std::array<int, 4>& window, int side, const std::optional<py::array>& object,
-           const std::optional<py::array>& primitive) {
+        [](const RayMesh& mesh, const Doubles& points, const py::object& triangles,
+           const std::array<int, 4>& window, int side, const py::object& object,
+           const py::object& primitive) {
             return draw(mesh, triangles_of(points, triangles, object, primitive),
                         {window[0], window[1], window[2], window[3], side});
         },

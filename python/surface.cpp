@@ -56,11 +56,11 @@ py::array vectors_of(const std::vector<SurfacePoint>& points, Vec3 SurfacePoint:
     return array_of(std::move(numbers), {static_cast<py::ssize_t>(points.size()), 3});
 }
 
-py::dict eval(const Surface& surface, const py::array& face, const Doubles& uv) {
+py::dict eval(const Surface& surface, const py::object& face, const Doubles& uv) {
     require_shape(uv, std::array<py::ssize_t, 2>{-1, 2}, "uv");
     const auto count = static_cast<std::size_t>(uv.shape(0));
     std::vector<Id> faces = ids_of(face, "face");
-    if (face.ndim() == 0) faces.assign(count, faces[0]);
+    if (array_from(face, "face").ndim() == 0) faces.assign(count, faces[0]);
     if (faces.size() != count) throw UsageError("face is one face, or one for each uv");
     const double* numbers = uv.data();
     for (std::size_t i = 0; i < count; ++i) {

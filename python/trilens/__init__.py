@@ -14,9 +14,3 @@ from ._trilens import *  # noqa: F401,F403
 
 __version__ = _trilens.version()
 __all__ = [name for name in dir(_trilens) if not name.startswith("_")]
-
-# Classes say the name by which they are found.
-for _name in __all__:
-    if isinstance(getattr(_trilens, _name), type):
-        getattr(_trilens, _name).__module__ = "trilens"
-del _name
