@@ -43,6 +43,9 @@ Image image_of(const Texture& texture) {
 void check_image(const Image& image) {
     if (image.width <= 0 || image.height <= 0 || image.data_width <= 0 || image.data_height <= 0)
         throw InputError("", "", "an image has pixels");
+    if (image.x0 < 0 || image.y0 < 0 || image.x0 > image.width - image.data_width ||
+        image.y0 > image.height - image.data_height)
+        throw InputError("", "", "the data window does not lie on the film");
     if (image.channels.empty()) throw InputError("", "channels", "an image has channels");
     std::set<std::string> names;
     for (const Channel& channel : image.channels) {

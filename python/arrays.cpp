@@ -1,0 +1,72 @@
+#include "arrays.h"
+
+namespace trilens::python {
+namespace {
+
+std::string shape_text(std::span<const py::ssize_t> shape) {
+    std::string text;
+    for (const py::ssize_t length : shape)
+        text += (text.empty() ? "" : " x ") + (length < 0 ? "N" : std::to_string(length));
+    return shape.empty() ? "a number" : text;
+}
+
+}  // namespace
+
+void require_shape(const py::array& array, std::span<const py::ssize_t> shape, const std::string& name) {
+    const std::span<const py::ssize_t> given(array.shape(), static_cast<std::size_t>(array.ndim()));
+    bool fits = given.size() == shape.size();
+    for (std::size_t k = 0; fits && k < shape.size(); ++k) fits = shape[k] < 0 || shape[k] == given[k];
+    if (!fits) throw UsageError(name + " has the shape " + shape_text(shape) + ", not " + shape_text(given));
+}
+
+std::vector<Vec3> points_of(const Doubles& array, const std::string& name) {
+    require_shape(array, std::array<py::ssize_t, 2>{-1, 3}, name);
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    const auto* first = reinterpret_cast<const Vec3*>(array.data());
+    return {first, first + array.shape(0)};
+}
+
+py::array array_from(const py::object& object, const std::string& name) {
+    py::array array = py::array::ensure(object);
+    if (!array) throw py::type_error(name + " is no array");
+    return array;
+}
+
+std::vector<Id> ids_of(const py::array& array, const std::string& name) {
+    const char kind = array.dtype().kind();
+    if (array.size() > 0 && kind != 'i' && kind != 'u')
+        throw UsageError(name + " holds whole numbers, not values of type " + text_of(array.dtype()));
+    const Indices numbers(array);
+    std::vector<Id> ids(static_cast<std::size_t>(numbers.size()));
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const std::int64_t number = numbers.data()[i];
+        if (number < 0 || number > static_cast<std::int64_t>(kNone))
+            throw UsageError(name + " holds " + std::to_string(number) + ", which is no index");
+        ids[i] = static_cast<Id>(number);
+    }
+    return ids;
+}
+
+std::vector<IdTriple> triples_of(const py::object& object, const std::string& name) {
+    const py::array array = array_from(object, name);
+    require_shape(array, std::array<py::ssize_t, 2>{-1, 3}, name);
+    const std::vector<Id> ids = ids_of(array, name);
+    std::vector<IdTriple> triples(ids.size() / 3);
+    for (std::size_t i = 0; i < triples.size(); ++i)
+        triples[i] = {ids[3 * i], ids[3 * i + 1], ids[3 * i + 2]};
+    return triples;
+}
+
+py::array_t<double> constant_view(const std::vector<Vec3>& values, const py::object& owner) {
+    return constant_view(reinterpret_cast<const double*>(values.data()),
+                         {{static_cast<py::ssize_t>(values.size()), 3}, {sizeof(Vec3), sizeof(double)}},
+                         owner);
+}
+
+py::array_t<Id> constant_view(const std::vector<IdTriple>& values, const py::object& owner) {
+    return constant_view(reinterpret_cast<const Id*>(values.data()),
+                         {{static_cast<py::ssize_t>(values.size()), 3}, {sizeof(IdTriple), sizeof(Id)}},
+                         owner);
+}
+
+}  // namespace trilens::python

@@ -1,0 +1,80 @@
+// What the files of the Python module share: each of them binds one subject.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <array>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <trilens/trilens.h>
+
+namespace trilens::python {
+
+namespace py = pybind11;
+
+void bind_errors(py::module_& module);
+void bind_program(py::module_& module);
+void bind_image(py::module_& module);
+void bind_scene(py::module_& module);
+void bind_renderer(py::module_& module);
+void bind_compare(py::module_& module);
+void bind_sweep(py::module_& module);
+void bind_surface(py::module_& module);
+void bind_ray_mesh(py::module_& module);
+
+/// Throws UsageError with the nearest known name unless `name` is one of them; `what`: "engine".
+void require_known(const std::string& what, const std::string& name, std::span<const std::string> known);
+
+/// str(object).
+inline std::string text_of(const py::handle& object) {
+    return py::str(object);
+}
+
+/// (x, y, z).
+inline py::tuple tuple_of(const Vec3& v) {
+    return py::make_tuple(v.x, v.y, v.z);
+}
+
+/// Three numbers as Python gives them.
+using Triple = std::array<double, 3>;
+inline Vec3 vec3(const Triple& v) {
+    return {v[0], v[1], v[2]};
+}
+
+/// A member of a plain record, by its name in Python.
+template <class Record, class Value>
+struct Field {
+    const char* name;
+    Value Record::*member;
+    const char* doc;
+};
+
+template <class Record, class Value>
+Field<Record, Value> field(const char* name, Value Record::*member, const char* doc) {
+    return {name, member, doc};
+}
+
+/// Binds a plain record: its fields for reading, to_dict(), and a repr that shows them.
+template <class Record, class... Bound, class... Values>
+void bind_fields(py::class_<Record, Bound...>& bound, const Field<Record, Values>&... fields) {
+    (bound.def_readonly(fields.name, fields.member, fields.doc), ...);
+    const auto to_dict = [fields...](const Record& record) {
+        py::dict values;
+        ((values[fields.name] = py::cast(record.*fields.member)), ...);
+        return values;
+    };
+    bound.def("to_dict", to_dict, "The fields as a dict.");
+    bound.def("__repr__", [to_dict](const py::object& self) {
+        std::string text = text_of(self.attr("__class__").attr("__name__")) + "(";
+        const char* separator = "";
+        for (const auto& [name, value] : to_dict(self.cast<const Record&>())) {
+            text += separator + text_of(name) + "=" + text_of(py::repr(value));
+            separator = ", ";
+        }
+        return text + ")";
+    });
+}
+
+}  // namespace trilens::python

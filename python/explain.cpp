@@ -1,0 +1,86 @@
+// One pixel explained, as a dict of the command's form.
+#include <pybind11/stl.h>
+
+#include "renderer.h"
+#include "talk.h"
+
+namespace trilens::python {
+namespace {
+
+py::dict ray_dict(const Ray& ray) {
+    py::dict dict;
+    dict["origin"] = tuple_of(ray.origin);
+    dict["direction"] = tuple_of(ray.direction);
+    return dict;
+}
+
+py::object hit_dict(const Renderer& renderer, const Hit& hit) {
+    if (!hit.seen()) return py::none();
+    const SeenTriangle seen = renderer.seen_triangle(hit);
+    py::dict dict;
+    dict["object"] = seen.object;
+    dict["name"] = renderer.scene().meshes[seen.object].name;
+    dict["primitive"] = seen.primitive;
+    dict["t"] = hit.t;
+    dict["barycentric"] = py::make_tuple(hit.barycentric.x, hit.barycentric.y);
+    dict["position"] = tuple_of(seen.position);
+    return dict;
+}
+
+py::object end_dict(const Renderer& renderer, const PathEnd* end) {
+    if (!end) return py::none();
+    py::dict dict;
+    dict["ray"] = ray_dict(end->ray);
+    dict["sees"] = hit_dict(renderer, end->hit);
+    return dict;
+}
+
+py::dict explanation_dict(const Renderer& renderer, Engine engine, const PixelExplanation& pixel) {
+    const SampleView& view = pixel.view();
+    py::dict dict;
+    dict["pixel"] = py::make_tuple(pixel.x, pixel.y);
+    dict["engine"] = engine_name(engine);
+    dict["ray"] = ray_dict(view.ray);
+    dict["depth"] = view.depth;
+    dict["sees"] = hit_dict(renderer, view.hit);
+    if (view.optic != kNone) {
+        const OpticInfo optic = renderer.optics()[view.optic];
+        py::dict shown;
+        shown["object"] = optic.object;
+        shown["name"] = optic.name;
+        shown["facet"] = view.facet;
+        shown["uv"] = py::make_tuple(view.uv.x, view.uv.y);
+        shown["cos_incident"] = view.incidence.cosine;
+        shown["front"] = view.incidence.front;
+        dict["optic"] = shown;
+        for (const Path path : {Path::kReflect, Path::kRefract})
+            dict[path_name(path)] = end_dict(renderer, pixel.views.find(view, path));
+    }
+    py::dict colour;
+    colour["direct"] = tuple_of(pixel.colour.direct);
+    colour["reflect"] = tuple_of(pixel.colour.reflect);
+    colour["refract"] = tuple_of(pixel.colour.refract);
+    dict["colour"] = colour;
+    return dict;
+}
+
+}  // namespace
+
+void bind_explain(RendererClass& renderer) {
+    renderer.def(
+        "explain",
+        [](const Renderer& self, int x, int y, int resolution, const std::optional<std::string>& camera,
+           const std::string& engine) {
+            const PictureRequest request{frame_params(self, resolution, camera), engine_choice(engine), {}};
+            const PixelExplanation pixel = Talk().run([&] { return self.explain(request, x, y); });
+            return explanation_dict(self, request.engine.engine, pixel);
+        },
+        py::arg("x"), py::arg("y"), py::arg("resolution") = 0, py::arg("camera") = py::none(),
+        py::arg("engine") = "exact",
+        "How the centre of the pixel (x, y) of the film comes about: every ray, hit and colour behind it, "
+        "as\n"
+        "`trilens render --pixel` says it. World frame; t in units of the ray's direction.\n"
+        "engine: \"exact\", \"classic\", \"limit\" or \"facets\". Raises UsageError outside of the film.");
+}
+
+}  // namespace trilens::python

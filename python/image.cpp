@@ -1,0 +1,187 @@
+// Images: channels as numpy arrays that look into the image, without a copy.
+#include "image.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "talk.h"
+
+namespace trilens::python {
+namespace {
+
+Channel& channel_of(HeldImage& held, const std::string& name) {
+    if (Channel* channel = held.image.find(name)) return *channel;
+    throw py::key_error(name);
+}
+
+py::array view_of(const py::object& self, const std::string& name) {
+    HeldImage& held = self.cast<HeldImage&>();
+    Channel& channel = channel_of(held, name);
+    const std::vector<py::ssize_t> shape{held.image.data_height, held.image.data_width};
+    if (channel.is_id()) return py::array_t<Id>(shape, channel.ids().data(), self);
+    return py::array_t<float>(shape, channel.floats().data(), self);
+}
+
+std::vector<std::string> names_of(const HeldImage& held) {
+    std::vector<std::string> names;
+    for (const Channel& channel : held.image.channels) names.push_back(channel.name);
+    return names;
+}
+
+py::array rgb_of(HeldImage& held, const std::string& layer) {
+    const std::string prefix = layer.empty() ? "" : layer + ".";
+    const std::size_t pixels = held.image.pixels();
+    std::vector<float> rgb(3 * pixels);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Channel& channel = channel_of(held, prefix + "RGB"[c]);
+        if (channel.is_id()) throw UsageError("the channel " + channel.name + " holds ids, not colours");
+        for (std::size_t p = 0; p < pixels; ++p) rgb[3 * p + c] = channel.floats()[p];
+    }
+    return array_of(std::move(rgb), {held.image.data_height, held.image.data_width, 3});
+}
+
+template <class Value>
+std::vector<Value> values_of(const py::array& array) {
+    const py::array_t<Value, py::array::c_style | py::array::forcecast> values(array);
+    return {values.data(), values.data() + values.size()};
+}
+
+Channel channel_from(const std::string& name, const py::array& array) {
+    const py::dtype type = array.dtype();
+    if (type.kind() == 'f') return {name, values_of<float>(array)};
+    if (type.kind() == 'u' && type.itemsize() == sizeof(Id)) return {name, values_of<Id>(array)};
+    throw UsageError("the channel " + name + " holds floats or uint32 ids, not " + text_of(type));
+}
+
+using Metadata = std::map<std::string, std::string>;
+using Window = std::array<int, 4>;
+using Size = std::array<int, 2>;
+
+HeldImage from_arrays(const py::dict& channels, const std::optional<Size>& size,
+                      const std::optional<Window>& window, const Metadata& metadata) {
+    HeldImage held;
+    Image& image = held.image;
+    for (const auto& [key, value] : channels) {
+        const auto name = key.cast<std::string>();
+        const py::array array = array_from(py::reinterpret_borrow<py::object>(value), name);
+        require_shape(array, std::array<py::ssize_t, 2>{-1, -1}, name);
+        if (image.channels.empty()) {
+            image.data_height = static_cast<int>(array.shape(0));
+            image.data_width = static_cast<int>(array.shape(1));
+        }
+        require_shape(array, std::array<py::ssize_t, 2>{image.data_height, image.data_width}, name);
+        image.channels.push_back(channel_from(name, array));
+    }
+
+    image.metadata = metadata;
+    if (window) {
+        image.x0 = (*window)[0], image.y0 = (*window)[1];
+        if ((*window)[2] - image.x0 != image.data_width || (*window)[3] - image.y0 != image.data_height)
+            throw UsageError("the window (x0, y0, x1, y1) has not the size of the channels");
+    }
+    image.width = size ? (*size)[0] : image.x0 + image.data_width;
+    image.height = size ? (*size)[1] : image.y0 + image.data_height;
+    check_image(image);
+    return held;
+}
+
+py::tuple size_of(const HeldImage& held) {
+    return py::make_tuple(held.image.width, held.image.height);
+}
+
+py::tuple window_of(const HeldImage& held) {
+    const Image& image = held.image;
+    return py::make_tuple(image.x0, image.y0, image.x0 + image.data_width, image.y0 + image.data_height);
+}
+
+void bind_mapping(py::class_<HeldImage, std::shared_ptr<HeldImage>>& image) {
+    image
+        .def("__getitem__", view_of, py::arg("name"),
+             "The channel as an array (data height, data width), rows from the top: float32, or uint32 for "
+             "ids\n"
+             "(NONE where there is none). A view: no copy is made, writing changes the image, and the view "
+             "keeps\n"
+             "the image alive. Raises KeyError.")
+        .def("keys", names_of, "The channels' names, in the image's order.")
+        .def("__iter__", [](const HeldImage& held) { return py::iter(py::cast(names_of(held))); })
+        .def("__len__", [](const HeldImage& held) { return held.image.channels.size(); })
+        .def("__contains__",
+             [](const HeldImage& held, const std::string& name) { return held.image.find(name) != nullptr; })
+        .def("__repr__", [](const HeldImage& held) {
+            return "<trilens.Image " + std::to_string(held.image.width) + " x " +
+                   std::to_string(held.image.height) + ", " + std::to_string(held.image.channels.size()) +
+                   " channels>";
+        });
+}
+
+void bind_copying(py::class_<HeldImage, std::shared_ptr<HeldImage>>& image) {
+    image.def("__copy__", [](const HeldImage& held) { return HeldImage(held); })
+        .def("__deepcopy__", [](const HeldImage& held, const py::dict&) { return HeldImage(held); })
+        .def(py::pickle(
+            [](const py::object& self) {
+                const HeldImage& held = self.cast<const HeldImage&>();
+                py::dict channels;
+                for (const std::string& name : names_of(held)) channels[py::str(name)] = view_of(self, name);
+                return py::make_tuple(channels, size_of(held), window_of(held), held.image.metadata,
+                                      held.statistics);
+            },
+            [](const py::tuple& state) {
+                HeldImage held = from_arrays(state[0].cast<py::dict>(), state[1].cast<Size>(),
+                                             state[2].cast<Window>(), state[3].cast<Metadata>());
+                held.statistics = state[4].cast<py::dict>();
+                return held;
+            }));
+}
+
+}  // namespace
+
+void bind_image(py::module_& module) {
+    py::class_<HeldImage, std::shared_ptr<HeldImage>> image(
+        module, "Image",
+        "A picture with named channels: a mapping from names (\"R\", \"optic.object\") to numpy arrays\n"
+        "that look into the picture, without a copy.");
+    bind_mapping(image);
+    bind_copying(image);
+    image
+        .def_static(
+            "from_arrays", from_arrays, py::arg("channels"), py::arg("size") = py::none(),
+            py::arg("window") = py::none(), py::arg("metadata") = Metadata(),
+            "An image from arrays of one shape (height, width); they are copied. Floats become float32;\n"
+            "uint32 arrays are ids.\n\n"
+            "size: (width, height) of the film in pixels; None: as far as the window reaches.\n"
+            "window: (x0, y0, x1, y1) of the film that the arrays cover; None: from its top left.\n"
+            "metadata: texts by names that start with \"trilens:\".")
+        .def_property_readonly("names", names_of, "The channels' names, in the image's order.")
+        .def_property_readonly("size", size_of, "(width, height) of the film, in pixels.")
+        .def_property_readonly("window", window_of,
+                               "(x0, y0, x1, y1): the pixels of the film that the arrays cover.")
+        .def_property_readonly(
+            "metadata", [](const HeldImage& held) { return held.image.metadata; },
+            "Texts by name (\"trilens:scene\"), as a new dict.")
+        .def_property_readonly(
+            "statistics", [](const HeldImage& held) { return held.statistics; },
+            "Of an image that was drawn here: optic_pixels, pixels_without_ray, prepare_seconds, "
+            "draw_seconds;\n"
+            "else empty.")
+        .def("rgb", rgb_of, py::arg("layer") = "",
+             "The colours R, G, B of a layer (\"\": the beauty) as a new float32 array (height, width, 3),\n"
+             "linear Rec.709. Raises KeyError where the image has none.")
+        .def(
+            "save",
+            [](const HeldImage& held, const std::filesystem::path& file) {
+                Talk().run([&] { return write_image(file.string(), held.image), true; });
+            },
+            py::arg("file"),
+            "Writes OpenEXR, every channel to the last bit (.exr), or the beauty as 8-bit sRGB (.png).\n"
+            "Raises UsageError for other endings, OutputError where the file cannot be written.");
+    module.def(
+        "read_image",
+        [](const std::filesystem::path& file) {
+            return HeldImage{Talk().run([&] { return read_image(file.string()); }), {}};
+        },
+        py::arg("file"),
+        "Reads every channel of an OpenEXR file in its own type (half becomes float32).\n"
+        "Raises InputError where the file cannot be used.");
+}
+
+}  // namespace trilens::python

@@ -1,0 +1,41 @@
+// The module: every subject bound once, then the program's own facts.
+#include <pybind11/stl.h>
+
+#include "bindings.h"
+
+namespace trilens::python {
+
+void bind_program(py::module_& module) {
+    module.attr("NONE") = kNone;
+    module.def("version", version, "The version of the library that runs, as \"0.2.0\".");
+    module.def("library_versions", library_versions,
+               "The libraries underneath with their versions: ray tracing, surfaces, images.");
+    module.def(
+        "set_threads",
+        [](int count) {
+            if (count < 0) throw UsageError("a number of threads is 0 (all) or more");
+            set_threads(count);
+        },
+        py::arg("threads"),
+        "Limits the threads of everything that follows; 0 means all that the machine has. Results do not "
+        "depend on it.");
+    module.def("threads", threads, "How many threads are used now, at least 1.");
+}
+
+}  // namespace trilens::python
+
+PYBIND11_MODULE(_trilens, module) {
+    namespace bindings = trilens::python;
+    module.doc() = "Projects curved mirrors and glass, and measures the error against ray-traced truth.";
+    module.attr("__module__") = "trilens";  // where its classes and functions are found
+    bindings::bind_errors(module);
+    bindings::bind_program(module);
+    bindings::bind_image(module);
+    bindings::bind_scene(module);
+    bindings::bind_surface(module);
+    bindings::bind_ray_mesh(module);
+    bindings::bind_renderer(module);
+    bindings::bind_compare(module);
+    bindings::bind_sweep(module);
+    pybind11::delattr(module, "__module__");
+}

@@ -1,0 +1,212 @@
+// Renderers: pictures and line drawings of a scene.
+#include "renderer.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "image.h"
+#include "talk.h"
+
+namespace trilens::python {
+namespace {
+
+using Window = std::array<int, 4>;
+using Names = std::vector<std::string>;
+
+/// What the classic engine may be told; none of it may be given to another engine.
+struct ClassicArguments {
+    std::optional<std::string> curves, clip;
+    std::optional<int> pieces;
+    std::optional<double> tolerance;
+};
+
+const Names kEngines{"exact", "classic", "limit", "facets"};
+const Names kCurves{"arcs", "slices", "tessellate", "straight"};
+const Names kClips{"scene", "screen", "none"};
+
+ClassicParams classic_params(const ClassicArguments& given) {
+    ClassicParams params;
+    if (given.curves) {
+        require_known("curves", *given.curves, kCurves);
+        params.curves = *given.curves == "arcs"         ? Curves::kArcs
+                        : *given.curves == "slices"     ? Curves::kSlices
+                        : *given.curves == "tessellate" ? Curves::kTessellate
+                                                        : Curves::kStraight;
+    }
+    if (given.clip) {
+        require_known("clip", *given.clip, kClips);
+        params.clip = *given.clip == "scene"    ? Clip::kScene
+                      : *given.clip == "screen" ? Clip::kScreen
+                                                : Clip::kUnclipped;
+    }
+    params.pieces = given.pieces.value_or(params.pieces);
+    params.tolerance = given.tolerance.value_or(params.tolerance);
+    return params;
+}
+
+EngineChoice projecting_engine(const std::string& name, const ClassicArguments& classic) {
+    const Names projecting{"exact", "classic"};
+    require_known("projecting engine", name, projecting);
+    if (name == "classic") return classic_params(classic);
+    if (classic.curves || classic.clip || classic.pieces || classic.tolerance)
+        throw UsageError(
+            "curves, clip, pieces and tolerance are the classic engine's; add engine=\"classic\"");
+    return Engine::kExact;
+}
+
+LayerRequest layer_request(const std::optional<Names>& layers, const std::optional<Window>& window) {
+    LayerRequest request;
+    if (window) {
+        if (*window == Window{}) throw UsageError("0,0,0,0 is no window of the film");
+        request = {(*window)[0], (*window)[1], (*window)[2], (*window)[3], {}};
+    }
+    if (layers) {
+        if (layers->empty()) throw UsageError("no layers are asked for; None asks for all of them");
+        request.layers = *layers;
+    }
+    return request;
+}
+
+HeldImage draw(const Renderer& renderer, const PictureRequest& request, const std::string& job, Talk& talk) {
+    Picture picture = talk.run([&] { return renderer.draw(request, talk.progress(job), talk.warner()); });
+    py::dict statistics;
+    statistics["optic_pixels"] = picture.statistics.optic_pixels;
+    statistics["pixels_without_ray"] = picture.statistics.pixels_without_ray;
+    statistics["prepare_seconds"] = picture.prepare_seconds;
+    statistics["draw_seconds"] = picture.draw_seconds;
+    return {std::move(picture.image), statistics};
+}
+
+void bind_pictures(RendererClass& renderer) {
+    renderer.def(
+        "render",
+        [](const Renderer& self, int resolution, const std::optional<std::string>& camera,
+           const std::string& engine, const std::optional<Names>& layers, const std::optional<Window>& window,
+           const std::optional<std::string>& curves, const std::optional<std::string>& clip,
+           std::optional<int> pieces, std::optional<double> tolerance, const py::object& progress,
+           const py::object& warn) {
+            Talk talk(progress, warn);
+            return draw(
+                self,
+                {frame_params(self, resolution, camera),
+                 projecting_engine(engine, {curves, clip, pieces, tolerance}), layer_request(layers, window)},
+                "render", talk);
+        },
+        py::arg("resolution") = 0, py::arg("camera") = py::none(), py::arg("engine") = "exact",
+        py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
+        py::arg("curves") = py::none(), py::arg("clip") = py::none(), py::arg("pieces") = py::none(),
+        py::arg("tolerance") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        "Draws the scene by projection. The same pixels for any number of threads.\n\n"
+        "resolution: 1..1024, of every optic's grid; 0: as the scene says.\n"
+        "camera: by name; None: the scene's own.\n"
+        "engine: \"exact\" or \"classic\" (the thesis' engine).\n"
+        "layers: to keep beside R G B A, of layer_names(); None: all.\n"
+        "window: (x0, y0, x1, y1) of the film in pixels, x1 and y1 outside; None: all of it.\n"
+        "curves, clip, pieces, tolerance: of the classic engine: \"arcs\", \"slices\", \"tessellate\" or\n"
+        "\"straight\"; \"scene\", \"screen\" or \"none\"; pieces 1..1024; arcs keep within tolerance "
+        "pixels.\n"
+        "progress: called as progress(done, job), done in 0..1; returning False raises Interrupted.\n"
+        "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
+        "Raises UsageError for a camera, layer or window that there is not, InputError where the picture "
+        "does not\n"
+        "fit in memory, ComputationError for pixels that are not finite. Ctrl-C stops it: "
+        "KeyboardInterrupt.");
+    renderer.def(
+        "trace",
+        [](const Renderer& self, const std::string& surface, int resolution,
+           const std::optional<std::string>& camera, const std::optional<Names>& layers,
+           const std::optional<Window>& window, const py::object& progress, const py::object& warn) {
+            require_known("surface", surface, Names{"limit", "facets"});
+            Talk talk(progress, warn);
+            return draw(self,
+                        {frame_params(self, resolution, camera), engine_choice(surface),
+                         layer_request(layers, window)},
+                        "trace", talk);
+        },
+        py::arg("surface") = "limit", py::arg("resolution") = 0, py::arg("camera") = py::none(),
+        py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        "Draws the same scene by ray tracing: the truth.\n\n"
+        "surface: \"limit\" (the exact surfaces) or \"facets\" (the rays that render's facets interpolate).\n"
+        "The other arguments, and what is raised, are those of render.");
+}
+
+void bind_line_drawing(py::module_& module, RendererClass& renderer) {
+    py::class_<LineDrawing>(module, "LineDrawing", "A picture as lines. Notebooks show it.")
+        .def_readonly("svg", &LineDrawing::svg, "One SVG document.")
+        .def_readonly("curves", &LineDrawing::curves, "How many curves it has.")
+        .def_readonly("arcs", &LineDrawing::arcs, "How many arcs the curves have.")
+        .def("_repr_svg_", [](const LineDrawing& drawing) { return drawing.svg; })
+        .def(
+            "save",
+            [](const LineDrawing& drawing, const std::filesystem::path& file) {
+                replace_text_file(file.string(), drawing.svg);
+            },
+            py::arg("file"), "Writes the document. Raises OutputError.");
+    renderer.def(
+        "draw_lines",
+        [](const Renderer& self, int resolution, const std::optional<std::string>& camera, bool wire,
+           const py::object& warn) {
+            Talk talk(py::none(), warn);
+            const FrameParams frame = frame_params(self, resolution, camera);
+            return talk.run([&] { return self.draw_lines(frame, wire, talk.warner()); });
+        },
+        py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(), py::arg("wire") = false,
+        py::arg("warn") = py::none(),
+        "The outlines of what the camera and the optics show, every curved edge an exact conic.\n"
+        "wire: hidden edges too. The other arguments are those of render.");
+}
+
+void bind_facts(RendererClass& renderer) {
+    renderer
+        .def_property_readonly(
+            "scene", [](const Renderer& self) -> const Scene& { return self.scene(); },
+            py::return_value_policy::reference_internal)
+        .def_property_readonly("optics", &Renderer::optics, "In scene order.")
+        .def_property_readonly("triangle_count", &Renderer::triangle_count, "Of the objects.")
+        .def("facet_count", &Renderer::facet_count, py::arg("resolution") = 0,
+             "Of the optics' grids; 0: at the scene's resolutions.")
+        .def("digest", &Renderer::digest, py::call_guard<py::gil_scoped_release>(),
+             "16 hexadecimal digits of what the scene loaded from all its files: equal digests, equal "
+             "pictures of\n"
+             "equal scenes.");
+}
+
+}  // namespace
+
+FrameParams frame_params(const Renderer& renderer, int resolution, const std::optional<std::string>& camera) {
+    return {find_camera(renderer.scene(), camera.value_or("")), resolution};
+}
+
+EngineChoice engine_choice(const std::string& name) {
+    require_known("engine", name, kEngines);
+    if (name == "classic") return ClassicParams{};
+    return name == "exact" ? Engine::kExact : name == "limit" ? Engine::kLimitTruth : Engine::kFacetsTruth;
+}
+
+void bind_renderer(py::module_& module) {
+    py::class_<OpticInfo> optic(module, "Optic", "An optic of a renderer.");
+    bind_fields(optic, field("object", &OpticInfo::object, "Its object id: its index in Scene.meshes."),
+                field("name", &OpticInfo::name, "Its name."),
+                field("mirror", &OpticInfo::mirror, "Whether it is a mirror; else it is glass."),
+                field("resolution", &OpticInfo::resolution, "The scene's: N x N facets per quad face."),
+                field("faces", &OpticInfo::faces, "Faces of its surface."));
+    RendererClass renderer(
+        module, "Renderer",
+        "A scene with what is built from it, each part once: surfaces, trees, grids. Several\n"
+        "threads may draw with one renderer at once.");
+    renderer.def(py::init([](const Scene& scene, const py::object& warn) {
+                     Talk talk(py::none(), warn);
+                     return talk.run([&] { return std::make_shared<Renderer>(scene, talk.warner()); });
+                 }),
+                 py::arg("scene"), py::kw_only(), py::arg("warn") = py::none(),
+                 "Raises InputError where a cage has no limit surface. warn: see load_scene.");
+    bind_pictures(renderer);
+    bind_line_drawing(module, renderer);
+    bind_project(renderer);
+    bind_explain(renderer);
+    bind_facts(renderer);
+    module.def("layer_names", layer_names, "The layers that may be asked for beside R G B A.");
+}
+
+}  // namespace trilens::python

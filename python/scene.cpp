@@ -1,0 +1,193 @@
+// Scenes: read from files and text, and what is in them.
+#include "scene.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "talk.h"
+
+namespace trilens::python {
+namespace {
+
+std::string json_text(const py::object& value, const py::object& indent = py::none()) {
+    return py::module_::import("json")
+        .attr("dumps")(value, py::arg("indent") = indent, py::arg("allow_nan") = false)
+        .cast<std::string>();
+}
+
+py::object json_value(const std::string& text) {
+    return py::module_::import("json").attr("loads")(text);
+}
+
+void tell_warnings(const Scene& scene, Talk& talk) {
+    talk.run([&] {
+        const Warn warn = talk.warner();
+        for (const std::string& message : scene.warnings) warn(message);
+        return true;
+    });
+}
+
+Scene load(const std::filesystem::path& file, const py::dict& overrides, int resolution,
+           const py::object& warn) {
+    Talk talk(py::none(), warn);
+    const SceneRequest request{file.string(), overrides_of(overrides), resolution};
+    Scene scene = talk.run([&] { return load_scene(request); });
+    tell_warnings(scene, talk);
+    return scene;
+}
+
+struct SceneText {
+    std::string json, folder;
+};
+
+Scene parse(const SceneText& text, const py::dict& overrides, int resolution, const py::object& warn) {
+    Talk talk(py::none(), warn);
+    const std::vector<SceneOverride> changes = overrides_of(overrides);
+    Scene scene = talk.run([&] {
+        Scene parsed = parse_scene(text.json, text.folder, changes);
+        if (resolution != 0) set_resolution(parsed, resolution);
+        return parsed;
+    });
+    tell_warnings(scene, talk);
+    return scene;
+}
+
+py::object bounds_of(const Box& box) {
+    if (box.empty()) return py::none();
+    return py::make_tuple(tuple_of(box.low), tuple_of(box.high));
+}
+
+void bind_parts(py::module_& module) {
+    py::class_<Film> film(module, "Film", "The picture plane.");
+    bind_fields(film, field("width", &Film::width, "Pixels."), field("height", &Film::height, "Pixels."),
+                field("spp", &Film::spp, "S: every pixel has S x S samples."));
+
+    py::class_<CameraDescription>(module, "Camera", "A camera as the scene gives it.")
+        .def_readonly("name", &CameraDescription::name)
+        .def_property_readonly(
+            "type",
+            [](const CameraDescription& camera) {
+                return camera.type == CameraDescription::Type::kRayMesh ? "rayMesh" : "perspective";
+            },
+            "\"perspective\" or \"rayMesh\".")
+        .def_readonly("yfov", &CameraDescription::yfov, "The whole vertical angle, degrees (perspective).")
+        .def_property_readonly(
+            "eye", [](const CameraDescription& camera) { return tuple_of(camera.eye); }, "World frame.")
+        .def_property_readonly(
+            "at", [](const CameraDescription& camera) { return tuple_of(camera.at); }, "World frame.")
+        .def_property_readonly(
+            "up", [](const CameraDescription& camera) { return tuple_of(camera.up); }, "World frame.")
+        .def("__repr__",
+             [](const CameraDescription& camera) { return "<trilens.Camera '" + camera.name + "'>"; });
+
+    py::class_<MeshInfo> mesh(module, "Mesh",
+                              "A mesh of the scene; its index in Scene.meshes is its object id.");
+    bind_fields(
+        mesh, field("name", &MeshInfo::name, "Its name."),
+        field("shape", &MeshInfo::shape,
+              "\"polygons\", \"catmullClark\", \"loop\", \"bilinear\", \"sphere\", \"paraboloid\",\n"
+              "\"cylinder\" or \"plane\"."),
+        field("material", &MeshInfo::material, "Its name; \"inherit\" where triangles carry their own."),
+        field("points", &MeshInfo::points, "How many; 0 for a primitive."),
+        field("faces", &MeshInfo::faces, "How many; 0 for a primitive."),
+        field("triangles", &MeshInfo::triangles, "How many, of an object."),
+        field("resolution", &MeshInfo::resolution, "N x N facets per quad face, of an optic."));
+    mesh.def_property_readonly(
+            "role", [](const MeshInfo& info) { return info.role == Role::kOptic ? "optic" : "object"; },
+            "\"optic\" (mirrors or refracts) or \"object\".")
+        .def_property_readonly(
+            "bounds", [](const MeshInfo& info) { return bounds_of(info.bounds); },
+            "((x, y, z), (x, y, z)): the lowest and the highest corner of its box, world frame; None where "
+            "empty.");
+}
+
+void bind_readers(py::module_& module) {
+    module.def(
+        "load_scene", load, py::arg("file"), py::arg("overrides") = py::dict(), py::arg("resolution") = 0,
+        py::kw_only(), py::arg("warn") = py::none(),
+        "Reads a scene file (.json), or the scene that an image (.exr) carries.\n\n"
+        "overrides: values by JSON pointer, {\"/film/width\": 320}, in order, before the scene is checked.\n"
+        "resolution: 1..1024, of every optic; 0: as the scene says.\n"
+        "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
+        "Raises InputError with the file and the place of the first problem.");
+    module.def(
+        "parse_scene",
+        [](const py::object& scene, const std::filesystem::path& folder, const py::dict& overrides,
+           int resolution, const py::object& warn) {
+            const bool is_text = py::isinstance<py::str>(scene);
+            return parse({is_text ? scene.cast<std::string>() : json_text(scene), folder.string()}, overrides,
+                         resolution, warn);
+        },
+        py::arg("scene"), py::arg("folder") = "", py::arg("overrides") = py::dict(),
+        py::arg("resolution") = 0, py::kw_only(), py::arg("warn") = py::none(),
+        "The same from JSON text or from a dict of the same form.\n\n"
+        "folder: where relative paths start; \"\": the working directory.");
+    module.def(
+        "scene_examples",
+        [] {
+            py::dict examples;
+            for (const SceneExample& example : scene_examples()) examples[example.name] = example.json;
+            return examples;
+        },
+        "Small scenes that come with the program: JSON texts by name, for parse_scene.");
+    module.def(
+        "scene_schema", [] { return json_value(scene_schema()); },
+        "The JSON Schema (draft 7) of scene files, as a dict.");
+}
+
+}  // namespace
+
+std::vector<SceneOverride> overrides_of(const py::dict& overrides) {
+    std::vector<SceneOverride> changes;
+    for (const auto& [pointer, value] : overrides)
+        changes.push_back(
+            {pointer.cast<std::string>(), json_text(py::reinterpret_borrow<py::object>(value))});
+    return changes;
+}
+
+void bind_scene(py::module_& module) {
+    bind_parts(module);
+    py::class_<Scene>(module, "Scene", "A scene, checked and with nothing left to load. It does not change.")
+        .def_readonly("file", &Scene::file, "Where it came from; empty for scenes from memory.")
+        .def_readonly("folder", &Scene::folder, "Where its relative paths start.")
+        .def_readonly("film", &Scene::film)
+        .def_readonly("cameras", &Scene::cameras, "At least one.")
+        .def_property_readonly(
+            "camera", [](const Scene& scene) { return scene.cameras[scene.own_camera].name; },
+            "The name of the camera that is used where none is asked for.")
+        .def_property_readonly(
+            "meshes", [](const Scene& scene) { return make_scene_info(scene).meshes; },
+            "In scene order: the index is the object id of images.")
+        .def_property_readonly(
+            "bounds", [](const Scene& scene) { return bounds_of(make_scene_info(scene).bounds); },
+            "The box around everything, as Mesh.bounds.")
+        .def_readonly("warnings", &Scene::warnings, "What is legal but doubtful.")
+        .def_readonly("resolved", &Scene::resolved,
+                      "The scene as JSON on one line, after overrides, as image headers carry it.")
+        .def(
+            "to_json",
+            [](const Scene& scene, const py::object& indent) {
+                return json_text(json_value(scene.resolved), indent);
+            },
+            py::arg("indent") = 2, "The resolved scene as JSON text.")
+        .def(
+            "to_dict", [](const Scene& scene) { return json_value(scene.resolved); },
+            "The resolved scene as a new dict, which parse_scene takes.")
+        .def(
+            "with_overrides",
+            [](const Scene& scene, const py::dict& overrides, int resolution, const py::object& warn) {
+                Scene changed = parse({scene.resolved, scene.folder}, overrides, resolution, warn);
+                changed.file = scene.file;
+                return changed;
+            },
+            py::arg("overrides") = py::dict(), py::arg("resolution") = 0, py::kw_only(),
+            py::arg("warn") = py::none(), "The scene with these changes, as a new one; see load_scene.")
+        .def("__repr__", [](const Scene& scene) {
+            return "<trilens.Scene '" + scene.file + "', " + std::to_string(scene.film.width) + " x " +
+                   std::to_string(scene.film.height) + ", " + std::to_string(scene.meshes.size()) +
+                   " meshes>";
+        });
+    bind_readers(module);
+}
+
+}  // namespace trilens::python

@@ -1,0 +1,165 @@
+// Sweeps over resolutions, their summaries, and fits.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "arrays.h"
+#include "scene.h"
+#include "talk.h"
+
+namespace trilens::python {
+namespace {
+
+using Path = std::filesystem::path;
+
+/// "resolution=1,2,4" from that text or from whole numbers.
+std::string axis_text(const py::object& over) {
+    if (py::isinstance<py::str>(over)) return over.cast<std::string>();
+    std::string text;
+    for (const int n : over.cast<std::vector<int>>())
+        text += (text.empty() ? "resolution=" : ",") + std::to_string(n);
+    return text;
+}
+
+SweepTalk talk_of(Talk& talk) {
+    return {[&talk](const std::string& job) { return talk.progress(job); }, talk.warner()};
+}
+
+const SweepFit* find_fit(const SweepSummary& summary, const std::string& metric, const std::string& layer,
+                         const std::string& optic) {
+    for (const SweepFit& fit : summary.fits)
+        if (fit.metric == metric && fit.layer == layer && (optic.empty() || fit.optic == optic)) return &fit;
+    return nullptr;
+}
+
+void bind_fits(py::module_& module) {
+    py::class_<SweepPoint> point(module, "SweepPoint", "One measurement of a fit.");
+    bind_fields(point, field("n", &SweepPoint::n, "The resolution."),
+                field("value", &SweepPoint::value, "The error."),
+                field("used", &SweepPoint::used, "Whether it took part in the fit."));
+    py::class_<SweepFit> fit(module, "SweepFit", "error = constant * n^-order over the runs of a sweep.");
+    bind_fields(
+        fit, field("metric", &SweepFit::metric, "The column's name in runs.csv."),
+        field("layer", &SweepFit::layer, "\"reflect\", \"refract\"; \"\" for the whole picture."),
+        field("optic", &SweepFit::optic, "Its name, or \"all\"."),
+        field("order", &SweepFit::order, "None: fewer than two usable points."),
+        field("constant", &SweepFit::constant, "The error that the law gives at n = 1."),
+        field("r2", &SweepFit::r2, "Of the line in log-log."),
+        field("n_for_1px", &SweepFit::n_for_1px, "Resolution for an error of one pixel (metrics in pixels)."),
+        field("n_for_half_px", &SweepFit::n_for_half_px, "Likewise, of half a pixel."),
+        field("points", &SweepFit::points, "Every finished run that has the metric."));
+    py::class_<Fit> law(module, "Fit", "error = constant * n^-order.");
+    bind_fields(law, field("order", &Fit::order, "2: doubling n quarters the error."),
+                field("constant", &Fit::constant, "The error at n = 1."),
+                field("r2", &Fit::r2, "Of the line in log-log."),
+                field("used", &Fit::used, "Per point: whether it took part."),
+                field("n_for_1", &Fit::n_for_1, "Smallest n for an error of 1; None where it does not fall."),
+                field("n_for_half", &Fit::n_for_half, "Likewise, of 0.5."));
+    module.def(
+        "fit_power_law",
+        [](const Doubles& n, const Doubles& errors, double floor, bool drop_plateau) {
+            require_shape(n, std::array<py::ssize_t, 1>{-1}, "n");
+            require_shape(errors, std::array<py::ssize_t, 1>{n.shape(0)}, "errors");
+            std::vector<FitPoint> points;
+            for (py::ssize_t i = 0; i < n.shape(0); ++i) points.push_back({n.at(i), errors.at(i)});
+            return fit_power_law(points, {floor, drop_plateau});
+        },
+        py::arg("n"), py::arg("errors"), py::kw_only(), py::arg("floor") = 0.0,
+        py::arg("drop_plateau") = false,
+        "Least squares of log error over log n; n and errors: (N,). Errors at or below floor are left out;\n"
+        "drop_plateau: and the finest runs over which the error hardly falls any more.\n"
+        "None where fewer than two distinct n are left.");
+}
+
+void bind_summary(py::module_& module) {
+    py::class_<OpticDisplacement> shift(module, "OpticDisplacement",
+                                        "Displacement of one optic's layer in one run.");
+    bind_fields(shift, field("layer", &OpticDisplacement::layer, "\"reflect\" or \"refract\"."),
+                field("optic", &OpticDisplacement::optic, "Its name, or \"all\"."),
+                field("metrics", &OpticDisplacement::metrics, "Values by column name, in pixels."));
+    py::class_<RunRecord>(module, "SweepRun", "One run of a sweep.")
+        .def_property_readonly(
+            "n", [](const RunRecord& run) { return run.plan.n; }, "Its resolution.")
+        .def_property_readonly(
+            "state", [](const RunRecord& run) { return state_name(run.state); },
+            "\"done\", \"failed\" or \"missing\".")
+        .def_readonly("metrics", &RunRecord::metrics, "Values by column name of runs.csv.")
+        .def_readonly("displacement", &RunRecord::displacement)
+        .def_readonly("warnings", &RunRecord::warnings)
+        .def_readonly("error", &RunRecord::error, "Of a failed run.")
+        .def("__repr__", [](const RunRecord& run) {
+            return "<trilens.SweepRun n=" + std::to_string(run.plan.n) + ", " + state_name(run.state) + ">";
+        });
+    py::class_<SweepSummary>(module, "SweepSummary", "What a sweep's folder says.")
+        .def_readonly("folder", &SweepSummary::folder)
+        .def_property_readonly("title",
+                               [](const SweepSummary& summary) { return summary.manifest.subject.title; })
+        .def_readonly("runs", &SweepSummary::runs, "In the order of their resolutions.")
+        .def_readonly("fits", &SweepSummary::fits)
+        .def("fit", find_fit, py::arg("metric") = "disp_mean_px", py::arg("layer") = "reflect",
+             py::arg("optic") = "", py::return_value_policy::reference_internal,
+             "The fit of this metric, layer and optic (\"\": the first); None where there is none.")
+        .def("__repr__", [](const SweepSummary& summary) {
+            return "<trilens.SweepSummary '" + summary.manifest.subject.title + "', " +
+                   std::to_string(summary.count(RunState::kDone)) + " of " +
+                   std::to_string(summary.runs.size()) + " runs done>";
+        });
+}
+
+/// Binds run_sweep or plan_sweep: the same arguments, other work.
+template <class Work>
+void def_sweep(py::module_& module, const char* name, const Work& work, const char* doc) {
+    module.def(
+        name,
+        [work](const Path& scene, const Path& folder, const py::object& over, const std::string& truth,
+               const std::optional<std::string>& camera, const py::dict& overrides, const std::string& shard,
+               const std::string& title, const py::object& progress, const py::object& warn) {
+            SweepRequest request;
+            request.scene = {scene.string(), overrides_of(overrides), 0};
+            request.camera = camera.value_or("");
+            request.over = axis_text(over);
+            request.truth = truth;
+            request.shard = shard;
+            request.folder = folder.string();
+            request.title = title;
+            Talk talk(progress, warn);
+            return talk.run([&] { return work(request, talk_of(talk)); });
+        },
+        py::arg("scene"), py::arg("folder"), py::arg("over") = "resolution=1..16:x2", py::kw_only(),
+        py::arg("truth") = "limit", py::arg("camera") = py::none(), py::arg("overrides") = py::dict(),
+        py::arg("shard") = "0/1", py::arg("title") = "", py::arg("progress") = py::none(),
+        py::arg("warn") = py::none(), doc);
+}
+
+}  // namespace
+
+void bind_sweep(py::module_& module) {
+    bind_fits(module);
+    bind_summary(module);
+    def_sweep(
+        module, "sweep",
+        [](const SweepRequest& request, const SweepTalk& talk) { return run_sweep(request, talk); },
+        "Renders, traces once and compares over the optics' resolutions, in a folder that can be resumed: "
+        "what is\n"
+        "done there already is not done again. Sums up with fits, tables, plots and report.html.\n\n"
+        "scene: a scene file. folder: where the results go.\n"
+        "over: resolutions as whole numbers, or as text: \"resolution=1,2,4\", \"resolution=1..64:x2\".\n"
+        "truth: \"limit\" or \"facets\". shard: part \"i/n\" of it, or \"auto\" in a job array.\n"
+        "progress: called as progress(done, job); returning False raises Interrupted. What is done is kept.\n"
+        "camera, overrides, warn: as in load_scene and render.\n"
+        "A run that fails is recorded (SweepRun.error), and the others go on.");
+    def_sweep(
+        module, "plan_sweep",
+        [](const SweepRequest& request, const SweepTalk& talk) { return plan_sweep(request, talk); },
+        "Writes the plan of a sweep and runs nothing; returns the plan's file. Arguments: see sweep.");
+    module.def(
+        "load_sweep",
+        [](const Path& folder) { return Talk().run([&] { return load_sweep(folder.string()); }); },
+        py::arg("folder"),
+        "What a sweep's folder says, with fits; writes nothing. Raises InputError without a plan.");
+    module.def(
+        "report_sweep",
+        [](const Path& folder) { return Talk().run([&] { return report_sweep(folder.string()); }); },
+        py::arg("folder"), "The same, and writes tables, plots and report.html.");
+}
+
+}  // namespace trilens::python
