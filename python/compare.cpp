@@ -91,6 +91,25 @@ void bind_metrics(py::module_& module) {
                 field("test", &WorstPixel::test, "The test's value."));
 }
 
+/// A displacement's numbers, flat, as the command's JSON has them.
+struct Moved {
+    std::optional<double> mean, p50, p95, p99, max;
+    std::size_t pixels = 0, lost = 0, beyond_radius = 0, missing = 0;
+    std::optional<double> coverage, mean_off_folds;
+    std::size_t near_folds = 0;
+};
+
+Moved moved_of(const Displacement& d) {
+    Moved moved;
+    if (const auto& s = d.summary)
+        moved.mean = s->mean, moved.p50 = s->p50, moved.p95 = s->p95, moved.p99 = s->p99, moved.max = s->max;
+    moved.pixels = d.pixels, moved.lost = d.lost;
+    moved.beyond_radius = d.beyond_radius, moved.missing = d.missing;
+    moved.coverage = d.coverage, moved.mean_off_folds = d.mean_off_folds;
+    moved.near_folds = d.near_folds;
+    return moved;
+}
+
 void bind_layers(py::module_& module) {
     py::class_<SeenMismatch> seen(module, "Seen", "Counts of pixels whose optic shows other things.");
     bind_fields(
@@ -99,21 +118,32 @@ void bind_layers(py::module_& module) {
         field("primitive_mismatch", &SeenMismatch::primitive_mismatch, "Different triangles of one object."),
         field("coverage_mismatch", &SeenMismatch::coverage_mismatch,
               "One sees something, the other nothing."));
-    py::class_<Displacement> shift(
+    py::class_<Moved> shift(
         module, "Displacement",
-        "How far what the test's optics show lies from where the reference shows it: pixels.");
-    bind_fields(shift, field("mean", &Displacement::mean, "Pixels."),
-                field("p50", &Displacement::p50, "Pixels."), field("p95", &Displacement::p95, "Pixels."),
-                field("p99", &Displacement::p99, "Pixels."), field("max", &Displacement::max, "Pixels."),
-                field("pixels", &Displacement::pixels, "How many pixels were found."),
-                field("lost", &Displacement::lost, "How many the reference does not show within the radius."),
-                field("mean_off_folds", &Displacement::mean_off_folds,
-                      "Mean away from folds of the reference, pixels."),
-                field("near_folds", &Displacement::near_folds, "Found pixels near such a fold."));
+        "How far what the test's optics show lies from where the reference shows it: pixels. None where "
+        "nothing "
+        "was\n"
+        "measured; what could not be measured is in no mean, so read each with coverage, lost and missing.");
+    bind_fields(
+        shift, field("mean", &Moved::mean, "Pixels."), field("p50", &Moved::p50, "Pixels."),
+        field("p95", &Moved::p95, "Pixels."), field("p99", &Moved::p99, "Pixels."),
+        field("max", &Moved::max, "Pixels."), field("pixels", &Moved::pixels, "How many pixels were found."),
+        field("lost", &Moved::lost, "Pixels of the test whose point the reference does not show."),
+        field("beyond_radius", &Moved::beyond_radius,
+              "Those lost that it shows farther away than the radius."),
+        field("missing", &Moved::missing, "Pixels of the reference whose point the test does not show."),
+        field("coverage", &Moved::coverage, "Found pixels over those that show the layer, 0..1."),
+        field("mean_off_folds", &Moved::mean_off_folds, "Mean away from folds of the reference, pixels."),
+        field("near_folds", &Moved::near_folds, "Found pixels near such a fold."));
     py::class_<LayerComparison>(module, "LayerComparison", "What one layer of both images shows.")
         .def_readonly("layer", &LayerComparison::layer, "\"reflect\" or \"refract\".")
         .def_readonly("seen", &LayerComparison::seen, "None where the images do not tell.")
-        .def_readonly("displacement", &LayerComparison::displacement, "None where the images do not tell.");
+        .def_property_readonly(
+            "displacement",
+            [](const LayerComparison& self) {
+                return self.displacement ? std::optional(moved_of(*self.displacement)) : std::nullopt;
+            },
+            "None where the images do not tell.");
 }
 
 void bind_comparison(py::module_& module) {
@@ -143,9 +173,8 @@ void bind_comparison(py::module_& module) {
             "displacement",
             [](const ImageComparison& self) {
                 const LayerComparison* main = self.main();
-                return main ? &*main->displacement : nullptr;
+                return main ? std::optional(moved_of(*main->displacement)) : std::nullopt;
             },
-            py::return_value_policy::reference_internal,
             "Of the layer that was asked for, or the first that shows something; None where none does.")
         .def("displacement_arrays", displacement_arrays, py::arg("layer"),
              "Of a layer, per pixel of the window (height, width), views without a copy: state (uint8: 0 "

@@ -17,7 +17,7 @@ struct ImageRow {
     double x, y, t, length;
     Id optic, object, facet;
     char32_t path[7];
-    bool inside, visible, refined;
+    bool inside, visible, refined, complete;
 };
 
 py::object row_type() {
@@ -39,6 +39,7 @@ py::object row_type() {
     add("inside", "?", offsetof(ImageRow, inside));
     add("visible", "?", offsetof(ImageRow, visible));
     add("refined", "?", offsetof(ImageRow, refined));
+    add("complete", "?", offsetof(ImageRow, complete));
     py::dict type;
     type["names"] = names;
     type["formats"] = formats;
@@ -47,10 +48,10 @@ py::object row_type() {
     return type;
 }
 
-std::vector<ImageRow> rows_of(const std::vector<std::vector<WorldImage>>& images) {
+std::vector<ImageRow> rows_of(const std::vector<PointProjection>& points) {
     std::vector<ImageRow> rows;
-    for (std::size_t p = 0; p < images.size(); ++p) {
-        for (const WorldImage& image : images[p]) {
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        for (const WorldImage& image : points[p].images) {
             ImageRow row;
             std::memset(&row, 0, sizeof row);  // the gaps too: equal images, equal bytes
             row.point = static_cast<std::int64_t>(p);
@@ -60,10 +61,18 @@ std::vector<ImageRow> rows_of(const std::vector<std::vector<WorldImage>>& images
             const std::string_view path = path_name(image.path);
             std::copy(path.begin(), path.end(), row.path);
             row.inside = image.inside, row.visible = image.visible, row.refined = image.refined;
+            row.complete = points[p].complete;
             rows.push_back(row);
         }
     }
     return rows;
+}
+
+/// What the facets have is all that can be told without refining.
+ImageSearch search_of(const std::string& search, bool refine) {
+    if (search != "complete" && search != "facets")
+        throw UsageError("search is \"complete\" or \"facets\", not \"" + search + "\"");
+    return search == "complete" && refine ? ImageSearch::kComplete : ImageSearch::kFacets;
 }
 
 }  // namespace
@@ -72,16 +81,24 @@ void bind_project(RendererClass& renderer) {
     renderer.def(
         "project",
         [](const Renderer& self, const Doubles& points, int resolution,
-           const std::optional<std::string>& camera, bool refine, bool visibility) {
+           const std::optional<std::string>& camera, const std::string& search, bool refine,
+           bool visibility) {
             const std::vector<Vec3> given = points_of(points, "points");
-            const ProjectRequest request{frame_params(self, resolution, camera), refine, visibility};
+            ProjectRequest request;
+            request.frame = frame_params(self, resolution, camera);
+            request.search = search_of(search, refine);
+            request.refine = refine;
+            request.visibility = visibility;
             return records_of(Talk().run([&] { return rows_of(self.project(given, request)); }), row_type());
         },
         py::arg("points"), py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(),
-        py::arg("refine") = true, py::arg("visibility") = true,
+        py::arg("search") = "complete", py::arg("refine") = true, py::arg("visibility") = true,
         "Where world points appear: directly and over every optic, all images of all points.\n\n"
         "points: (N, 3), world frame.\n"
-        "refine: on the exact surface by Newton, where an exact image is near; else as the facets have it.\n"
+        "search: \"complete\" looks at every part of the exact surfaces; \"facets\" only near what the "
+        "facets show,\n"
+        "faster, and may miss images.\n"
+        "refine: on the exact surface; False: as the facets have it, which only \"facets\" can say.\n"
         "visibility: ask what hides each image; else visible is False.\n"
         "Returns a structured array with one entry per image, in the order of the points:\n"
         "  point    index into points\n"
@@ -94,6 +111,7 @@ void bind_project(RendererClass& renderer) {
         "  inside   on the film\n"
         "  visible  nothing lies between\n"
         "  refined  on the exact surface\n"
+        "  complete no image of this point is missing from the list, which is proven\n"
         "Raises InputError for points that are not finite.");
 }
 

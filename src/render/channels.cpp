@@ -72,7 +72,8 @@ void Canvas::put_colour(const SampleColour& mean, std::size_t pixel) {
     const std::array<const Vec3*, 3> parts{&mean.direct, &mean.reflect, &mean.refract};
     for (int c = 0; c < 3; ++c) {
         const std::size_t k = static_cast<std::size_t>(c);
-        if (!std::isfinite(beauty[c])) throw ComputationError("a pixel's colour is not finite");
+        if (!std::isfinite(static_cast<float>(beauty[c])))
+            throw ComputationError("a pixel's colour is not finite");
         floats(rgba_[k])[pixel] = static_cast<float>(beauty[c]);
         for (std::size_t p = 0; p < parts.size(); ++p)
             if (parts_[p][k] != kNone) floats(parts_[p][k])[pixel] = static_cast<float>((*parts[p])[c]);
