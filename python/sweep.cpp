@@ -46,6 +46,8 @@ void bind_fits(py::module_& module) {
         field("r2", &SweepFit::r2, "Of the line in log-log."),
         field("n_for_1px", &SweepFit::n_for_1px, "Resolution for an error of one pixel (metrics in pixels)."),
         field("n_for_half_px", &SweepFit::n_for_half_px, "Likewise, of half a pixel."),
+        field("coverage", &SweepFit::coverage,
+              "The least share of pixels that a run behind the law measured (metrics in pixels)."),
         field("points", &SweepFit::points, "Every finished run that has the metric."));
     py::class_<Fit> law(module, "Fit", "error = constant * n^-order.");
     bind_fields(law, field("order", &Fit::order, "2: doubling n quarters the error."),

@@ -1,5 +1,5 @@
 // What a camera sees in a mirror: the surface grid's corners with mirrored rays, as a RayMesh (thesis,
-// chapter 6).
+// chapter 7).
 #pragma once
 
 #include "base/linear_camera.h"

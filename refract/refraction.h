@@ -1,5 +1,5 @@
 // What a camera sees through one interface: the surface grid's corners with refracted rays, as a RayMesh
-// (thesis, chapter 6).
+// (thesis, chapter 7).
 #pragma once
 
 #include "base/linear_camera.h"

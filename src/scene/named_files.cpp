@@ -10,7 +10,7 @@ namespace {
 /// Path from the scene's folder -> hash.
 std::map<std::string, std::string> named_files(const Scene& scene) {
     namespace fs = std::filesystem;
-    const fs::path own = fs::absolute(scene.file).lexically_normal();
+    const fs::path own = scene.file.empty() ? fs::path() : fs::absolute(scene.file).lexically_normal();
     std::map<std::string, std::string> named;
     for (const FileRead& file : scene.files) {
         const fs::path path = fs::path(file.path).lexically_normal();

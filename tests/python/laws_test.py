@@ -45,7 +45,7 @@ def equal(ours, theirs):
         ),
         (SPHERE, ["trace", "-n", 5], lambda renderer: renderer.trace()),
         (WATER, ["render", "-n", 5], lambda renderer: renderer.render(warn=silent)),
-        (WATER, ["trace", "-n", 5, "--surface", "facets"], lambda renderer: renderer.trace("facets")),
+        (WATER, ["trace", "-n", 5, "--surface", "facets"], lambda renderer: renderer.trace("facets", warn=silent)),
     ],
 )
 def test_a_picture_is_the_commands_bit_for_bit(command, tmp_path, scene, words, draw):
