@@ -1,0 +1,198 @@
+// The public face: what other programs may hand in is checked, told of, and ends nothing.
+#include "trilens/trilens.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "support/test.h"
+
+using namespace trilens;
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// A mirror sphere over a triangle.
+Scene small_scene() {
+    Scene scene;
+    scene.film = {64, 48, 1};
+    CameraDescription camera;
+    camera.name = "main";
+    camera.eye = {0, 0.5, 5};
+    scene.cameras.push_back(camera);
+    Material chrome, red;
+    chrome.metallic_factor = 1;
+    red.unlit = true;
+    scene.materials = {chrome, red};
+    Mesh ball;
+    ball.name = "ball";
+    ball.role = Role::kOptic;
+    ball.material = 0;
+    ball.primitive = Primitive{};
+    Mesh floor;
+    floor.name = "floor";
+    floor.object.points = {{-4, -1, -4}, {4, -1, -4}, {0, -1, 4}};
+    floor.object.triangles = {{0, 1, 2}};
+    floor.object.material = {1};
+    scene.meshes = {ball, floor};
+    return scene;
+}
+
+Renderer renderer_of(const std::function<void(Scene&)>& change) {
+    Scene scene = small_scene();
+    change(scene);
+    return Renderer(std::move(scene));
+}
+
+std::string shipped(const std::string& name) {
+    return trilens_test::source_dir() + "/scenes/" + name + ".json";
+}
+
+}  // namespace
+
+TEST_CASE("a scene built in memory is drawn, and one that is none is refused with its place", "[trilens]") {
+    const Picture picture = Renderer(small_scene()).draw({});
+    CHECK(picture.statistics.optic_pixels > 100);
+    CHECK(picture.image.width == 64);
+
+    const std::vector<std::pair<std::string, std::function<void(Scene&)>>> broken{
+        {"/film", [](Scene& s) { s.film.width = 0; }},
+        {"/film", [](Scene& s) { s.film.width = s.film.height = 1 << 20; }},
+        {"/film/spp", [](Scene& s) { s.film.spp = 0; }},
+        {"/cameras", [](Scene& s) { s.cameras.clear(); }},
+        {"/cameras/0", [](Scene& s) { s.cameras[0].eye.x = kNaN; }},
+        {"/materials/1/ior", [](Scene& s) { s.materials[1].ior = 0; }},
+        {"/materials/0/baseColorTexture",
+         [](Scene& s) {
+             auto texture = std::make_shared<Texture>();
+             texture->width = texture->height = 2;
+             s.materials[0].base_color_texture = texture;
+         }},
+        {"/meshes/0/material", [](Scene& s) { s.meshes[0].material = 9; }},
+        {"/meshes/0/resolution", [](Scene& s) { s.meshes[0].resolution = 0; }},
+        {"/meshes/0", [](Scene& s) { s.meshes[0].primitive.reset(); }},
+        {"/meshes/1/triangles/0", [](Scene& s) { s.meshes[1].object.triangles[0][1] = 3; }},
+        {"/meshes/1/points/2", [](Scene& s) { s.meshes[1].object.points[2].y = kNaN; }},
+        {"/meshes/1/material", [](Scene& s) { s.meshes[1].object.material.clear(); }},
+        {"/meshes/1/uvs", [](Scene& s) { s.meshes[1].object.uvs.resize(5); }}};
+    for (const auto& [place, change] : broken) {
+        INFO(place);
+        try {
+            renderer_of(change);
+            FAIL("not refused");
+        } catch (const InputError& error) {
+            CHECK(std::string(error.what()).find(place + ":") != std::string::npos);
+        }
+    }
+}
+
+TEST_CASE("requests that a scene cannot answer are refused", "[trilens]") {
+    const Renderer renderer(small_scene());
+    PictureRequest request;
+    request.frame.camera = 3;
+    CHECK_THROWS_AS(renderer.draw(request), UsageError);
+    request.frame = {0, 4096};
+    CHECK_THROWS_AS(renderer.draw(request), UsageError);
+    request.frame = {};
+    request.layers = {0, 0, 65, 48, {}};
+    CHECK_THROWS_AS(renderer.draw(request), UsageError);
+    request.layers = {0, 0, 0, 0, {"reflekt"}};
+    CHECK_THROWS_AS(renderer.draw(request), UsageError);
+    request.layers = {};
+    request.engine = ClassicParams{Curves::kSlices, Clip::kScene, 0};
+    CHECK_THROWS_AS(renderer.draw(request), UsageError);
+    CHECK_THROWS_AS(renderer.explain({}, 64, 0), UsageError);
+    CHECK_THROWS_AS(renderer.project(std::vector<Vec3>{{0, kNaN, 0}}), InputError);
+    CHECK_THROWS_AS(renderer.seen_triangle({}), UsageError);
+    Scene scene = small_scene();
+    CHECK_THROWS_AS(set_resolution(scene, 1025), InputError);
+    CHECK_THROWS_AS(find_camera(scene, "mian"), UsageError);
+}
+
+TEST_CASE("images, grids and meshes that do not fit together are refused", "[trilens]") {
+    Image image = Renderer(small_scene()).draw({}).image;
+    CHECK_NOTHROW(encode_image(image));
+    const auto refused = [&](const std::function<void(Image&)>& change) {
+        Image broken = image;
+        change(broken);
+        CHECK_THROWS_AS(encode_image(broken), InputError);
+    };
+    refused([](Image& i) { i.channels.clear(); });
+    refused([](Image& i) { i.channels[0].floats().pop_back(); });
+    refused([](Image& i) { i.channels[1].name = i.channels[0].name; });
+    refused([](Image& i) { i.data_width = 0; });
+    refused([](Image& i) { i.metadata["other"] = "x"; });
+    CHECK_THROWS_AS(write_image("picture.gif", image), UsageError);
+
+    const auto surface = make_surface(Primitive{});
+    CHECK_THROWS_AS(make_surface_grid(*surface, 0), InputError);
+    CHECK_THROWS_AS(make_surface_grid(*surface, 1025), InputError);
+    SurfaceGrid grid = make_surface_grid(*surface, 2);
+    const LinearCamera camera = make_perspective({});
+    CHECK_THROWS_AS(make_lens_mesh(grid, camera, 0), InputError);
+    RayMesh mesh = make_mirror_mesh(grid, camera);
+    TriangleScene scene{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {0}, {0}};
+    CHECK_NOTHROW(draw_through(mesh, scene, {0, 0, 8, 8, 1}));
+    CHECK_THROWS_AS(draw_through(mesh, scene, {0, 0, 0, 8, 1}), InputError);
+    mesh.facets[0][0] = 100'000;
+    CHECK_THROWS_AS(draw_through(mesh, scene, {0, 0, 8, 8, 1}), InputError);
+    grid.corner_normal.pop_back();
+    CHECK_THROWS_AS(make_mirror_mesh(grid, camera), InputError);
+}
+
+TEST_CASE("one renderer draws what fresh ones draw, whatever it drew before", "[trilens]") {
+    const SceneRequest file{shipped("saddle"), {{"/film/width", "80"}, {"/film/height", "60"}}, 0};
+    const Renderer kept(load_scene(file));
+    for (const int n : {3, 5, 3}) {
+        for (const Engine engine : {Engine::kExact, Engine::kFacetsTruth, Engine::kLimitTruth}) {
+            PictureRequest request;
+            request.frame.resolution = n;
+            request.engine = engine;
+            const Image again = kept.draw(request).image,
+                        fresh = Renderer(load_scene(file)).draw(request).image;
+            REQUIRE(again.channels.size() == fresh.channels.size());
+            for (std::size_t c = 0; c < fresh.channels.size(); ++c)
+                CHECK(again.channels[c].values == fresh.channels[c].values);
+        }
+    }
+}
+
+TEST_CASE("the complete search lists whatever fine facets lead to, and more than coarse ones", "[trilens]") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 150; ++i)
+        points.push_back({2 * uniform(random), 1.2 * uniform(random), 2 * uniform(random)});
+    for (const char* name : {"saddle", "torus"}) {
+        const Renderer renderer(load_scene(SceneRequest{shipped(name), {}, 0}));
+        const auto complete = renderer.project(points);
+        ProjectRequest by_facets;
+        by_facets.search = ImageSearch::kFacets;
+        by_facets.frame.resolution = 64;
+        const auto fine = renderer.project(points, by_facets);
+        by_facets.frame.resolution = 4;
+        const auto coarse = renderer.project(points, by_facets);
+        std::size_t proven = 0, total = 0, total_coarse = 0;
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            INFO(name << ", point " << p);
+            proven += complete[p].complete;
+            total += complete[p].images.size();
+            total_coarse += static_cast<std::size_t>(
+                std::count_if(coarse[p].images.begin(), coarse[p].images.end(),
+                              [](const WorldImage& image) { return image.refined; }));
+            for (const WorldImage& image : fine[p].images) {
+                // What the exact surface hides from the camera is in no list of the complete search.
+                if (!image.refined || !image.visible) continue;
+                CHECK(std::any_of(
+                    complete[p].images.begin(), complete[p].images.end(), [&](const WorldImage& other) {
+                        return other.path == image.path && length(other.pixel - image.pixel) < 1e-5;
+                    }));
+            }
+        }
+        CHECK(proven >= points.size() - 3);
+        CHECK(total >= total_coarse);
+    }
+}
