@@ -10,7 +10,7 @@ target_compile_options(trilens_options INTERFACE
   # GCC 12 sees overruns and overreads in std::string's own copies and, sanitized, uninitialized bytes in std::regex; there are none.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,14>>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict>
   $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>
-  $<$<BOOL:${TRILENS_SANITIZE}>:-Wno-maybe-uninitialized>
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${TRILENS_SANITIZE}>>:-Wno-maybe-uninitialized>
   $<$<BOOL:${TRILENS_SANITIZE}>:-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer>)
 target_link_options(trilens_options INTERFACE
   $<$<BOOL:${TRILENS_SANITIZE}>:-fsanitize=address,undefined>)

@@ -5,6 +5,7 @@
 
 #include "laws/worlds.h"
 #include "support/test.h"
+#include "surfaces/test_cages.h"
 
 using namespace trilens;
 using namespace trilens_test;
@@ -55,6 +56,11 @@ void check_cages(int width, int height, bool print) {
 
 TEST_CASE("projector and Embree agree on the shipped scenes", "[laws]") {
     check_shipped(160, 120, false);
+}
+
+TEST_CASE("projector and Embree agree on cages of every kind as mirrors", "[laws]") {
+    for (const auto& [name, cage] : made_cages())
+        for (const int n : {1, 4}) check_agreement(name, n, *cage_world(cage, n, 120, 90), false);
 }
 
 TEST_CASE("projector and Embree agree on Pixar's cages as mirrors", "[laws]") {

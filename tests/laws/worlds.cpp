@@ -59,6 +59,29 @@ std::string wall(const std::string& name, const std::string& points) {
            "\",\"points\":" + points + ",\"faceVertexCounts\":[4],\"faceVertexIndices\":[0,1,2,3]}";
 }
 
+/// A coloured room with a camera, an optic first among its meshes and a model. `optic`: the fields that give
+/// its shape.
+std::string room_json(const std::string& optic, const std::string& model_file, int width, int height) {
+    return "{\"version\":1,\"film\":{\"width\":" + std::to_string(width) +
+           ",\"height\":" + std::to_string(height) +
+           "},\"cameras\":[{\"name\":\"main\",\"type\":\"perspective\",\"yfov\":40,\"lookAt\":{\"eye\":[0.4,"
+           "0.9,4.4],\"at\":[0,0,0],\"up\":[0,1,0]}}],"
+           "\"materials\":[{\"name\":\"chrome\",\"metallicFactor\":1,\"roughnessFactor\":0},{\"name\":"
+           "\"floor\"},{\"name\":\"back\"},{\"name\":\"left\"},"
+           "{\"name\":\"right\"},{\"name\":\"ceiling\"},{\"name\":\"front\"},{\"name\":\"model\"}],"
+           "\"meshes\":"
+           "[{\"name\":\"cage\",\"role\":\"optic\",\"material\":\"chrome\"," +
+           optic + "},{\"name\":\"model\",\"role\":\"object\",\"material\":\"model\",\"file\":\"" +
+           model_file + "\",\"transform\":" + fit(obj_bounds(model_file), 1.6, Vec3(1.7, -0.6, 1.2)) + "}," +
+           wall("floor", "[[-3,-1.5,5],[3,-1.5,5],[3,-1.5,-3],[-3,-1.5,-3]]") + "," +
+           wall("back", "[[-3,-1.5,-3],[3,-1.5,-3],[3,2.8,-3],[-3,2.8,-3]]") + "," +
+           wall("left", "[[-3,-1.5,5],[-3,-1.5,-3],[-3,2.8,-3],[-3,2.8,5]]") + "," +
+           wall("right", "[[3,-1.5,-3],[3,-1.5,5],[3,2.8,5],[3,2.8,-3]]") + "," +
+           wall("ceiling", "[[-3,2.8,-3],[3,2.8,-3],[3,2.8,5],[-3,2.8,5]]") + "," +
+           wall("front", "[[3,-1.5,5],[-3,-1.5,5],[-3,2.8,5],[3,2.8,5]]") +
+           "],\"lights\":[{\"type\":\"ambient\"}]}";
+}
+
 }  // namespace
 
 const std::vector<std::string>& shipped_scenes() {
@@ -107,28 +130,26 @@ std::unique_ptr<World> world_from(const std::string& name, const std::string& js
 std::unique_ptr<World> cage_world(const std::string& cage, int n, int width, int height) {
     const std::string cage_file = data_dir() + "/cages/" + cage, model_file = data_dir() + "/models/spot.obj";
     const std::string scheme = cage.rfind("loop_", 0) == 0 ? "loop" : "catmullClark";
-    const std::string json =
-        "{\"version\":1,\"film\":{\"width\":" + std::to_string(width) +
-        ",\"height\":" + std::to_string(height) +
-        "},\"cameras\":[{\"name\":\"main\",\"type\":\"perspective\",\"yfov\":40,\"lookAt\":{\"eye\":[0.4,0.9,"
-        "4.4],\"at\":[0,0,0],\"up\":[0,1,0]}}],"
-        "\"materials\":[{\"name\":\"chrome\",\"metallicFactor\":1,\"roughnessFactor\":0},{\"name\":\"floor\"}"
-        ",{\"name\":\"back\"},{\"name\":\"left\"},"
-        "{\"name\":\"right\"},{\"name\":\"ceiling\"},{\"name\":\"front\"},{\"name\":\"spot\"}],\"meshes\":["
-        "{\"name\":\"cage\",\"role\":\"optic\",\"material\":\"chrome\",\"file\":\"" +
-        cage_file + "\",\"subdivisionScheme\":\"" + scheme +
-        "\",\"transform\":" + fit(obj_bounds(cage_file), 2.2, Vec3(0)) +
-        "},"
-        "{\"name\":\"spot\",\"role\":\"object\",\"material\":\"spot\",\"file\":\"" +
-        model_file + "\",\"transform\":" + fit(obj_bounds(model_file), 1.6, Vec3(1.7, -0.6, 1.2)) + "}," +
-        wall("floor", "[[-3,-1.5,5],[3,-1.5,5],[3,-1.5,-3],[-3,-1.5,-3]]") + "," +
-        wall("back", "[[-3,-1.5,-3],[3,-1.5,-3],[3,2.8,-3],[-3,2.8,-3]]") + "," +
-        wall("left", "[[-3,-1.5,5],[-3,-1.5,-3],[-3,2.8,-3],[-3,2.8,5]]") + "," +
-        wall("right", "[[3,-1.5,-3],[3,-1.5,5],[3,2.8,5],[3,2.8,-3]]") + "," +
-        wall("ceiling", "[[-3,2.8,-3],[3,2.8,-3],[3,2.8,5],[-3,2.8,5]]") + "," +
-        wall("front", "[[3,-1.5,5],[-3,-1.5,5],[-3,2.8,5],[3,2.8,5]]") +
-        "],\"lights\":[{\"type\":\"ambient\"}]}";
-    return world_from("cage_" + cage, json, n);
+    const std::string optic = "\"file\":\"" + cage_file + "\",\"subdivisionScheme\":\"" + scheme +
+                              "\",\"transform\":" + fit(obj_bounds(cage_file), 2.2, Vec3(0));
+    return world_from("cage_" + cage, room_json(optic, model_file, width, height), n);
+}
+
+std::unique_ptr<World> cage_world(const Cage& cage, int n, int width, int height) {
+    const std::string model_file = source_dir() + "/scenes/models/balloon.obj";
+    const std::string file = scratch_dir("worlds_made") + "/made.json";
+    std::ofstream(file) << room_json("\"primitive\":{\"type\":\"sphere\"}", model_file, width, height);
+    Scene scene = load_scene(file, {}, {read_texture, decode_texture});
+
+    Mesh& mesh = scene.meshes[0];
+    mesh.primitive.reset();
+    mesh.cage = cage;
+    Box box;
+    for (const Vec3& p : cage.points) box.include(p);
+    const Vec3 extent = box.size();
+    const double scale = 2.2 / std::max({extent.x, extent.y, extent.z});
+    for (Vec3& p : mesh.cage.points) p = scale * (p - 0.5 * (box.low + box.high));
+    return finish(std::move(scene), n);
 }
 
 }  // namespace trilens_test

@@ -21,6 +21,9 @@ std::unique_ptr<trilens::World> shipped_world(const std::string& name, int n, in
 /// A cage of the outside data as a mirror in a coloured room with a model in it; both scaled to fit.
 std::unique_ptr<trilens::World> cage_world(const std::string& cage, int n, int width, int height);
 
+/// A cage made in a test as a mirror in the same room, with the shipped model in it.
+std::unique_ptr<trilens::World> cage_world(const trilens::Cage& cage, int n, int width, int height);
+
 /// The outside data's cages, "catmark_cube.obj" and so on; empty where the data are missing.
 std::vector<std::string> data_cages();
 
