@@ -24,10 +24,12 @@ const char* verdict_name(Verdict verdict) {
 }
 
 HeldImage difference(const ImageComparison& self) {
-    const LayerComparison* main = self.main();
-    const DifferenceOptions options{self.options.layer, self.options.mask_object,
-                                    main ? &*main->displacement : nullptr};
-    return {Talk().run([&] { return make_difference(self.reference->image, self.test->image, options); }),
+    const DifferenceOptions options{self.options.layer, self.options.mask_object};
+    return {Talk().run([&] {
+                Image image = make_difference(self.reference->image, self.test->image, options);
+                add_shifts(self.layers, image);
+                return image;
+            }),
             {}};
 }
 
@@ -183,9 +185,11 @@ void bind_comparison(py::module_& module) {
              "place in\n"
              "the reference, x right and y down). Raises KeyError where it was not measured.")
         .def("difference", difference,
-             "The difference as an image: R G B test - reference, abs.R G B, mask.M; with a displacement "
-             "also\n"
-             "shift.X Y in pixels and shift.M (1 found, -1 lost, 0 nothing seen).")
+             "The difference as an image: R G B test - reference, abs.R G B, mask.M; of "
+             "each layer\n"
+             "that shows something <layer>.shift.X Y in pixels and <layer>.shift.M (1 found, -1 lost, 0 "
+             "nothing "
+             "seen).")
         .def("__repr__", [](const ImageComparison& self) {
             return std::string("<trilens.Comparison ") + verdict_name(self.comparison.verdict) + ", rmse " +
                    shortest_text(self.comparison.metrics.rmse) + ">";

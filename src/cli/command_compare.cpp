@@ -64,10 +64,9 @@ Image read_input(const CompareRequest& request, bool is_reference, Console& cons
 /// The difference as a file: all of it as .exr, its magnitude times the scale as .png.
 void write_difference(const CompareRequest& request, const ComparedInputs& inputs, Console& console) {
     const Stopwatch watch;
-    const LayerComparison* main = main_layer(inputs.layers, request.options.layer);
-    Image difference = make_difference(
-        inputs.images.reference, inputs.images.test,
-        {request.options.layer, request.options.mask_object, main ? &*main->displacement : nullptr});
+    Image difference = make_difference(inputs.images.reference, inputs.images.test,
+                                       {request.options.layer, request.options.mask_object});
+    add_shifts(inputs.layers, difference);
     if (is_png(request.difference)) {
         for (const char* colour : {"R", "G", "B"}) {
             std::vector<float>& values = difference.find(colour)->floats();

@@ -1,5 +1,7 @@
 #include "measure/compare_layers.h"
 
+#include "measure/difference.h"
+
 #include <utility>
 
 namespace trilens {
@@ -13,6 +15,12 @@ std::vector<LayerComparison> compare_layers(const Image& reference, const Image&
         if (layer.seen) layers.push_back(std::move(layer));
     }
     return layers;
+}
+
+void add_shifts(const std::vector<LayerComparison>& layers, Image& difference) {
+    for (const LayerComparison& layer : layers)
+        if (layer.displacement && layer.displacement->coverage)
+            add_shift(layer.layer, *layer.displacement, difference);
 }
 
 SeenMismatch total_seen(const std::vector<LayerComparison>& layers) {

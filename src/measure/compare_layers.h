@@ -21,6 +21,9 @@ struct LayerComparison {
 std::vector<LayerComparison> compare_layers(const Image& reference, const Image& test,
                                             const DisplacementOptions& options = {});
 
+/// Adds the shifts of every layer that shows something to the difference of the same two images (add_shift).
+void add_shifts(const std::vector<LayerComparison>& layers, Image& difference);
+
 /// Sums over the layers.
 SeenMismatch total_seen(const std::vector<LayerComparison>& layers);
 

@@ -13,17 +13,17 @@ void add_channel(Image& image, const std::string& name, std::vector<float> value
     image.channels.push_back({name, std::move(values)});
 }
 
-void add_shift(Image& image, const Displacement& displacement) {
-    TRILENS_CHECK(displacement.state.size() == image.pixels(), "a displacement of the same images");
+}  // namespace
+
+void add_shift(const std::string& layer, const Displacement& displacement, Image& difference) {
+    TRILENS_CHECK(displacement.state.size() == difference.pixels(), "a displacement of the same images");
     std::vector<float> state;
     for (const Shift shift : displacement.state)
         state.push_back(shift == Shift::kFound ? 1.0f : shift == Shift::kLost ? -1.0f : 0.0f);
-    add_channel(image, "shift.X", displacement.shift_x);
-    add_channel(image, "shift.Y", displacement.shift_y);
-    add_channel(image, "shift.M", std::move(state));
+    add_channel(difference, layer + ".shift.X", displacement.shift_x);
+    add_channel(difference, layer + ".shift.Y", displacement.shift_y);
+    add_channel(difference, layer + ".shift.M", std::move(state));
 }
-
-}  // namespace
 
 Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options) {
     require_comparable(reference, test);
@@ -45,7 +45,6 @@ Image make_difference(const Image& reference, const Image& test, const Differenc
         add_channel(image, std::string("abs.") + name, std::move(magnitudes));
     }
     add_channel(image, "mask.M", std::vector<float>(mask.begin(), mask.end()));
-    if (options.displacement) add_shift(image, *options.displacement);
     return image;
 }
 

@@ -11,18 +11,20 @@
 namespace trilens {
 
 struct DifferenceOptions {
-    std::string layer;                           // "": the beauty; as in CompareOptions
-    std::optional<Id> mask_object;               // as in CompareOptions
-    const Displacement* displacement = nullptr;  // of the same two images; null: no shift channels
+    std::string layer;              // "": the beauty; as in CompareOptions
+    std::optional<Id> mask_object;  // as in CompareOptions
 };
 
 /// An image with the window of the two and float channels
 ///   R G B        test - reference of the layer's R, G, B; zero outside the mask
 ///   abs.R G B    its magnitude
 ///   mask.M       1 where the pixel is compared, else 0
-///   shift.X Y    Displacement::shift_x, shift_y, in pixels        (only with a displacement)
-///   shift.M      1 found, -1 lost, 0 nothing seen                 (only with a displacement)
 /// Throws InputError where compare() would.
 Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options = {});
+
+/// Adds what `layer` ("reflect", "refract") shows, moved, to the difference of the same two images:
+///   <layer>.shift.X Y    Displacement::shift_x, shift_y, in pixels
+///   <layer>.shift.M      1 found, -1 lost, 0 nothing seen
+void add_shift(const std::string& layer, const Displacement& displacement, Image& difference);
 
 }  // namespace trilens

@@ -55,7 +55,11 @@ struct LayerStatistics {
 };
 
 struct Picture {
-    Image image;  // with the header fields of the interface
+    // With the header fields of the interface. A is 1 where a mesh is seen, an optic included whatever it
+    // shows, and 0 where the camera itself sees the environment; Z is the depth of the first surface, the
+    // optic's where one is first, and 1e30 in the environment. Where a path ends in the environment its
+    // object is 4294967295 and its position the unit direction.
+    Image image;
     LayerStatistics statistics;
     double prepare_seconds = 0, draw_seconds = 0;
 };

@@ -73,15 +73,6 @@ void measure_optics(const Image& test, const Image& truth, const std::string& la
     }
 }
 
-void append_shift(const std::string& layer, const Displacement& displacement, Image& diff) {
-    std::vector<float> mask;
-    for (const Shift state : displacement.state)
-        mask.push_back(state == Shift::kFound ? 1.0f : state == Shift::kLost ? -1.0f : 0.0f);
-    diff.channels.push_back({layer + ".shift.X", displacement.shift_x});
-    diff.channels.push_back({layer + ".shift.Y", displacement.shift_y});
-    diff.channels.push_back({layer + ".shift.M", std::move(mask)});
-}
-
 void add_mismatches(const Image& test, const Image& truth, const std::string& layer, MetricValues& metrics) {
     const std::optional<SeenMismatch> seen = compare_seen(truth, test, layer);
     if (!seen) return;
@@ -115,7 +106,7 @@ MeasuredRun measure_run(const Image& test, const Image& truth, const std::vector
         const MetricValues values = displacement_values(*displacement);
         take_worse(values, run.metrics);
         run.displacement.push_back({layer, "all", values});
-        append_shift(layer, *displacement, run.diff);
+        add_shift(layer, *displacement, run.diff);
         // A single optic is all optics.
         if (optics.size() == 1)
             run.displacement.push_back({layer, optics[0].name, values});

@@ -56,14 +56,14 @@ TEST_CASE("the difference image holds test minus reference, the mask and the shi
     displacement.state[1] = Shift::kNothing;
     displacement.shift_x.assign(63, 0.25f);
     displacement.shift_y.assign(63, -2);
-    DifferenceOptions options;
-    options.displacement = &displacement;
     const std::string file = trilens_test::scratch_dir("difference") + "/diff.exr";
-    write_exr(file, make_difference(a, b, options));
+    Image moved = make_difference(a, b);
+    add_shift("reflect", displacement, moved);
+    write_exr(file, moved);
     const Image read = read_exr(file);
     CHECK(read.channels.size() == 10);
-    CHECK(read.find("shift.X")->floats() == displacement.shift_x);
-    CHECK(read.find("shift.M")->floats()[0] == -1);
-    CHECK(read.find("shift.M")->floats()[1] == 0);
-    CHECK(read.find("shift.M")->floats()[2] == 1);
+    CHECK(read.find("reflect.shift.X")->floats() == displacement.shift_x);
+    CHECK(read.find("reflect.shift.M")->floats()[0] == -1);
+    CHECK(read.find("reflect.shift.M")->floats()[1] == 0);
+    CHECK(read.find("reflect.shift.M")->floats()[2] == 1);
 }

@@ -196,3 +196,80 @@ TEST_CASE("the complete search lists whatever fine facets lead to, and more than
         CHECK(total >= total_coarse);
     }
 }
+
+TEST_CASE("mirrors cast their exact shadow, whatever their resolution", "[trilens]") {
+    // A sphere of radius 1 about (0, 1.5, 0) over the floor y = -1, lit from straight above: its shadow is
+    // the disk of radius 1 about the origin.
+    Scene scene = small_scene();
+    scene.film = {200, 200, 1};
+    scene.cameras[0].eye = {0, -0.5, 6};
+    scene.cameras[0].at = {0, -1, 0};
+    scene.meshes[0].primitive->center = {0, 1.5, 0};
+    scene.materials[1].unlit = false;
+    scene.materials[1].base_color_factor = {1, 1, 1};
+    Light sun;
+    sun.type = Light::Type::kDirectional;
+    sun.direction = {0, -1, 0};
+    sun.shadows = true;
+    scene.lights = {sun};
+    const Renderer renderer(std::move(scene));
+    const LinearCamera camera = make_perspective({{{0, -0.5, 6}, {0, -1, 0}, {0, 1, 0}}, 40, 200, 200});
+    std::size_t dark = 0, bright = 0;
+    for (const int n : {1, 8}) {
+        PictureRequest request;
+        request.frame.resolution = n;
+        const Image image = renderer.draw(request).image;
+        for (int i = 0; i < 400; ++i) {
+            const double radius = i % 2 ? 0.98 : 1.02, angle = 0.01 * i * 3.14159265;
+            const Vec3 on_floor(radius * std::cos(angle), -1, radius * std::sin(angle));
+            const Vec3 screen = screen_from_world(camera, on_floor);
+            const int x = static_cast<int>(screen.x / screen.z), y = static_cast<int>(screen.y / screen.z);
+            const PixelExplanation pixel = renderer.explain(request, x, y);
+            if (!pixel.view().hit.seen()) continue;
+            const Vec3 seen = renderer.seen_triangle(pixel.view().hit).position;
+            const double from_axis = std::hypot(seen.x, seen.z);
+            if (std::fabs(from_axis - 1) < 1e-6) continue;
+            const float red = image.find("R")->floats()[static_cast<std::size_t>(y * 200 + x)];
+            CHECK((red == 0) == (from_axis < 1));
+            ++(from_axis < 1 ? dark : bright);
+        }
+    }
+    CHECK(dark > 100);
+    CHECK(bright > 100);
+}
+
+TEST_CASE("what a picture leaves out is said, and where it shows the environment stands its direction",
+          "[trilens]") {
+    std::vector<std::string> told;
+    const Warn warn = [&](const std::string& message) { told.push_back(message); };
+    const auto mentions = [&](const std::string& words) {
+        return std::any_of(told.begin(), told.end(),
+                           [&](const std::string& one) { return one.find(words) != std::string::npos; });
+    };
+    const Image image = Renderer(small_scene()).draw({}, {}, warn).image;
+    CHECK_FALSE(mentions("do not see each other"));
+    CHECK_FALSE(mentions("bends light once"));
+    const std::vector<Id>&object = image.find("reflectID.object")->ids(),
+          &optic = image.find("optic.object")->ids();
+    std::size_t environment = 0;
+    for (std::size_t p = 0; p < image.pixels(); ++p) {
+        const auto at = [&](const char* name) { return static_cast<double>(image.find(name)->floats()[p]); };
+        const Vec3 place(at("reflectP.X"), at("reflectP.Y"), at("reflectP.Z"));
+        if (optic[p] == kNone) CHECK(place == Vec3(0));
+        if (optic[p] == kNone || object[p] != kNone) continue;
+        CHECK(length(place) == Approx(1).epsilon(1e-6));
+        ++environment;
+    }
+    CHECK(environment > 100);
+
+    Scene two = small_scene();
+    two.materials[0] = {};
+    two.materials[0].transmission_factor = 1;
+    two.meshes.push_back(two.meshes[0]);
+    two.meshes.back().name = "other";
+    two.meshes.back().primitive->center = {2, 0, 0};
+    Renderer(std::move(two)).draw({}, {}, warn);
+    CHECK(mentions("optics do not see each other"));
+    CHECK(mentions("ball: glass bends light once"));
+    CHECK(mentions("other: glass bends light once"));
+}
