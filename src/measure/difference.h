@@ -23,8 +23,8 @@ struct DifferenceOptions {
 Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options = {});
 
 /// Adds what `layer` ("reflect", "refract") shows, moved, to the difference of the same two images:
-///   <layer>.shift.X Y    Displacement::shift_x, shift_y, in pixels
-///   <layer>.shift.M      1 found, -1 lost, 0 nothing seen
+///   LAYER.shift.X Y    Displacement::shift_x, shift_y, in pixels
+///   LAYER.shift.M      1 found, -1 lost, 0 nothing seen
 void add_shift(const std::string& layer, const Displacement& displacement, Image& difference);
 
 }  // namespace trilens
