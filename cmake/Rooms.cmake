@@ -58,13 +58,16 @@ function(trilens_library target)
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 endfunction()
 
-# trilens_client(NAME FOLDER [DOORS libraries...]): a room that stands on the public headers alone, as they are
-# installed.
+# trilens_client(NAME FOLDER [SEES clients...] [DOORS libraries...]): a room that stands on the public headers, as
+# they are installed, and on other such rooms.
 function(trilens_client name folder)
-  cmake_parse_arguments(CLIENT "" "" "DOORS" ${ARGN})
+  cmake_parse_arguments(CLIENT "" "" "SEES;DOORS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   add_library(trilens_${name} STATIC ${sources})
   target_include_directories(trilens_${name} BEFORE PUBLIC ${PROJECT_BINARY_DIR}/include)
   target_include_directories(trilens_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(trilens_${name} PUBLIC trilens PRIVATE trilens_options ${CLIENT_DOORS})
+  foreach(room IN LISTS CLIENT_SEES)
+    target_link_libraries(trilens_${name} PUBLIC trilens_${room})
+  endforeach()
 endfunction()

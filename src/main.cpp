@@ -1,6 +1,6 @@
 // The command `trilens`.
-#include "cli/command.h"
+#include "cli/commands.h"
 
 int main(int argc, char** argv) {
-    return trilens::run_command_line(argc, argv);
+    return trilens::run_program(trilens::make_commands(), argc, argv);
 }

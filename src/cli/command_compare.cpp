@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "cli/compare_report.h"
-#include "cli/format.h"
-#include "cli/option.h"
+#include "terminal/format.h"
+#include "terminal/option.h"
 
 namespace trilens {
 namespace {

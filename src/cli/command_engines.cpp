@@ -2,9 +2,9 @@
 // leaves uncovered.
 #include <trilens/engine_study.h>
 
-#include "cli/command.h"
-#include "cli/format.h"
+#include "cli/commands.h"
 #include "cli/scene_options.h"
+#include "terminal/format.h"
 
 namespace trilens {
 namespace {

@@ -1,7 +1,7 @@
 // trilens info: the build, its libraries and the machine, for bug reports.
 #include <trilens/version.h>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 
 namespace trilens {
 namespace {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "cli/command.h"
-#include "cli/format.h"
+#include "cli/commands.h"
 #include "cli/scene_options.h"
+#include "terminal/format.h"
 
 namespace trilens {
 namespace {

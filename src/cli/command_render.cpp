@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/explain.h"
-#include "cli/format.h"
 #include "cli/image_output.h"
 #include "cli/scene_options.h"
+#include "terminal/format.h"
 
 namespace trilens {
 namespace {

@@ -3,7 +3,7 @@
 #include <trilens/scene.h>
 #include <trilens/text.h>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/scene_options.h"
 
 namespace trilens {

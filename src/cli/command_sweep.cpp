@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <map>
 
-#include "cli/command.h"
-#include "cli/format.h"
+#include "cli/commands.h"
 #include "cli/scene_options.h"
+#include "terminal/format.h"
 
 namespace trilens {
 namespace {

@@ -1,7 +1,7 @@
 // What a comparison prints, and its JSON.
 #include "cli/compare_report.h"
 
-#include "cli/format.h"
+#include "terminal/format.h"
 
 namespace trilens {
 namespace {

@@ -1,4 +1,5 @@
-#include "cli/examples.h"
+// The examples of every command, for help and manual pages.
+#include "cli/commands.h"
 
 #include <map>
 
@@ -48,13 +49,7 @@ std::vector<Example> examples_of(const std::string& called) {
         {"trilens scene example",
          {{"trilens scene example", "their names"},
           {"trilens scene example mirror-sphere > scene.json", "one of them, to start from"}}},
-        {"trilens info", {{"trilens info", "for a report of a problem"}}},
-        {"trilens man",
-         {{"trilens man render | man -l -", "read a page that is not installed"},
-          {"trilens man --all share/man/man1", "write them all"}}},
-        {"trilens completion",
-         {{"source <(trilens completion bash)", "for this shell"},
-          {"trilens completion fish > ~/.config/fish/completions/trilens.fish", "for every fish to come"}}}};
+        {"trilens info", {{"trilens info", "for a report of a problem"}}}};
     const auto found = kExamples.find(called);
     return found == kExamples.end() ? std::vector<Example>{} : found->second;
 }

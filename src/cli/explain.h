@@ -3,7 +3,7 @@
 
 #include <trilens/render.h>
 
-#include "cli/json.h"
+#include "terminal/json.h"
 
 namespace trilens {
 

@@ -4,7 +4,7 @@
 #include <trilens/image.h>
 #include <string>
 
-#include "cli/command.h"
+#include "terminal/command.h"
 
 namespace trilens {
 

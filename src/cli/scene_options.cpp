@@ -7,7 +7,7 @@
 #include <iostream>
 #include <iterator>
 
-#include "cli/format.h"
+#include "terminal/format.h"
 
 namespace trilens {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
-#include "cli/option.h"
+#include "terminal/command.h"
+#include "terminal/option.h"
 
 namespace trilens {
 

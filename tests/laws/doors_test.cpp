@@ -80,12 +80,12 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"opensubdiv/", {"surfaces/"}},
     {"tiny_obj_loader.h", {}},
     {"tiny_gltf.h", {"src/scene/gltf"}},
-    {"nlohmann/", {"src/scene/json.h", "src/sweep/json.h", "src/cli/json.h"}},
+    {"nlohmann/", {"src/scene/json.h", "src/sweep/json.h", "src/terminal/json.h"}},
     {"OpenImageIO/", {"src/image/"}},
     {"OpenEXR/", {"src/image/"}},
     {"embree", {"src/intersect/"}},
-    {"CLI/", {"src/cli/parse.cpp"}},
-    {"fmt/", {"src/base/format.h", "src/cli/format.h"}},
+    {"CLI/", {"src/terminal/parse.cpp"}},
+    {"fmt/", {"src/base/format.h", "src/terminal/format.h"}},
     {"Imath/", {"src/image/"}},
 };
 
@@ -123,10 +123,10 @@ TEST_CASE("no header of ours brings an outside library with it, but for the voca
     const std::set<std::string> vocabulary{
         "src/base/vec.h",
         "src/base/format.h",
-        "src/cli/format.h",
+        "src/terminal/format.h",
         "src/scene/json.h",
         "src/sweep/json.h",
-        "src/cli/json.h",
+        "src/terminal/json.h",
         "src/intersect/embree_device.h"};  // the last is the door's own, for that room's .cpp files
     for (const std::string& folder : kFolders) {
         for (const Include& include : includes_under(folder)) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/file_roles.h"
+#include "terminal/file_roles.h"
 
 namespace trilens {
 

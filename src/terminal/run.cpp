@@ -1,4 +1,4 @@
-// Dispatch, and the one place where failures become exit codes.
+// One run of a program: parsed, run, answered; the one place where failures become exit codes.
 #include <trilens/files.h>
 #include <trilens/stopwatch.h>
 #include <trilens/text.h>
@@ -9,9 +9,9 @@
 #include <exception>
 #include <new>
 
-#include "cli/command.h"
-#include "cli/option.h"
-#include "cli/parse.h"
+#include "terminal/command.h"
+#include "terminal/option.h"
+#include "terminal/parse.h"
 
 namespace trilens {
 
@@ -220,23 +220,11 @@ int run_command(const Run& run, Console& console) {
     }
 }
 
-/// Every command that there is.
-Command make_root() {
-    Command root{.name = "trilens",
-                 .summary = "draw what curved mirrors and glass show, by projection, and measure its error"};
-    root.commands = render_commands();
-    for (Command& command : std::vector<Command>{compare_command(), sweep_command(), project_command(),
-                                                 scene_command(), info_command()})
-        root.commands.push_back(std::move(command));
-    return root;
-}
-
 }  // namespace
 
-int run_command_line(int argc, const char* const* argv) {
+int run_program(Command root, int argc, const char* const* argv) {
     install_signal_handlers();
     Run run;
-    Command root = make_root();
     for (Command& command : manual_commands(root)) root.commands.push_back(std::move(command));
     add_common(root, common_options(run.common));
     run.words = spelled_out(argc, argv);

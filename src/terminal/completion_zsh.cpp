@@ -1,6 +1,6 @@
 // Completion for zsh: one function of _arguments for each command.
-#include "cli/manual.h"
-#include "cli/option.h"
+#include "terminal/manual.h"
+#include "terminal/option.h"
 
 namespace trilens {
 namespace {

@@ -1,12 +1,11 @@
 // Manual pages in roff, with the macros of man(7).
-#include "cli/manual.h"
+#include "terminal/manual.h"
 
 #include <trilens/version.h>
 
 #include <algorithm>
 
-#include "cli/examples.h"
-#include "cli/option.h"
+#include "terminal/option.h"
 
 namespace trilens {
 namespace {
@@ -103,9 +102,9 @@ std::string commands_text(const NamedCommand& group) {
     return text;
 }
 
-std::string examples_text(const std::string& called) {
+std::string examples_text(const Command& command) {
     std::string text;
-    for (const Example& example : examples_of(called))
+    for (const Example& example : command.examples)
         text += (text.empty() ? "" : ".PP\n") + roff(example.what) + ":\n.PP\n.RS\n.nf\n" +
                 roff(example.line) + "\n.fi\n.RE\n";
     return text.empty() ? "" : ".SH EXAMPLES\n" + text;
@@ -162,7 +161,7 @@ ManualPage page_of(const NamedCommand& named, const std::vector<NamedCommand>& a
     const std::string own = options_text(*named.command, false);
     if (!own.empty()) text += ".SH OPTIONS\n" + own;
     text += ".SH COMMON OPTIONS\n" + options_text(*named.command, true);
-    return {name, text + kExitStatus + examples_text(named.called) + see_also(named, all)};
+    return {name, text + kExitStatus + examples_text(*named.command) + see_also(named, all)};
 }
 
 void collect(const Command& command, const std::string& above, std::vector<NamedCommand>& all) {

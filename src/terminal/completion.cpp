@@ -2,8 +2,8 @@
 #include <trilens/scene.h>
 #include <map>
 
-#include "cli/manual.h"
-#include "cli/option.h"
+#include "terminal/manual.h"
+#include "terminal/option.h"
 
 namespace trilens {
 namespace {

@@ -1,10 +1,9 @@
-#include "cli/parse.h"
+#include "terminal/parse.h"
 
 #include <trilens/text.h>
 #include <CLI/CLI.hpp>
 
-#include "cli/examples.h"
-#include "cli/option.h"
+#include "terminal/option.h"
 
 namespace trilens {
 namespace {
@@ -172,10 +171,9 @@ std::string help_text(const Located& located) {
     for (const Command& below : command.commands)
         app.add_subcommand(below.name, below.summary)->set_help_flag();
     std::string text = app.help();
-    const std::vector<Example> examples = examples_of(located.called());
-    if (!examples.empty()) text += "\nExamples:\n";
-    for (const Example& example : examples)
-        text += "  " + std::string(example.line) + "\n      " + example.what + "\n";
+    if (!command.examples.empty()) text += "\nExamples:\n";
+    for (const Example& example : command.examples)
+        text += "  " + example.line + "\n      " + example.what + "\n";
     return text;
 }
 

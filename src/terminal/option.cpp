@@ -1,4 +1,4 @@
-#include "cli/option.h"
+#include "terminal/option.h"
 
 #include <trilens/text.h>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "cli/format.h"
+#include "terminal/format.h"
 
 namespace trilens {
 namespace {

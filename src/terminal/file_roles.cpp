@@ -1,4 +1,4 @@
-#include "cli/file_roles.h"
+#include "terminal/file_roles.h"
 
 #include <trilens/error.h>
 #include <trilens/files.h>

@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "cli/console.h"
-#include "cli/json.h"
+#include "terminal/console.h"
+#include "terminal/json.h"
 
 namespace trilens {
 
@@ -57,6 +57,12 @@ struct Option {
     bool value_follows = false;  // its value stands behind "=" or is left out: --json
 };
 
+/// A line of a command's help and manual page: what one would type, and what for.
+struct Example {
+    std::string line;
+    std::string what;
+};
+
 /// A command, or a group of commands.
 struct Command {
     std::string name;
@@ -65,20 +71,14 @@ struct Command {
     std::vector<Command> commands = {};  // of a group
     std::string schema = "";             // the JSON's schema field is "trilens.<schema>/1"; empty for groups
     CommandBody body = {};
+    std::vector<Example> examples = {};
 };
-
-std::vector<Command> render_commands();  // render and trace
-Command compare_command();
-Command sweep_command();
-Command sweep_engines_command();
-Command project_command();
-Command scene_command();
-Command info_command();
 
 /// `help`, `man` and `completion` of the whole tree `root`, which must outlive them.
 std::vector<Command> manual_commands(const Command& root);
 
-/// The whole program: parses, runs one command, prints, and returns the exit code. Never throws.
-int run_command_line(int argc, const char* const* argv);
+/// Runs the program of these commands: adds the options that every command has and manual_commands, parses,
+/// runs one command, prints, and returns the exit code. Never throws: here failures become exit codes.
+int run_program(Command root, int argc, const char* const* argv);
 
 }  // namespace trilens

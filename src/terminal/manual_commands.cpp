@@ -1,10 +1,10 @@
 // trilens help, man and completion: what the program says of itself.
 #include <trilens/files.h>
 
-#include "cli/command.h"
-#include "cli/manual.h"
-#include "cli/option.h"
-#include "cli/parse.h"
+#include "terminal/command.h"
+#include "terminal/manual.h"
+#include "terminal/option.h"
+#include "terminal/parse.h"
 
 namespace trilens {
 namespace {
@@ -80,6 +80,8 @@ std::vector<Command> manual_commands(const Command& root) {
                     .help = "write every page into this folder",
                     .value = "DIR",
                     .offer = Offer::kFolder}};
+    man.examples = {{"trilens man render | man -l -", "read a page that is not installed"},
+                    {"trilens man --all share/man/man1", "write them all"}};
     man.body = [&root, paged, folder](Console&) { return manual(root, *paged, *folder); };
 
     Command completed{.name = "completion",
@@ -90,6 +92,9 @@ std::vector<Command> manual_commands(const Command& root) {
                                    .choices = {"bash", "zsh", "fish"},
                                    .is_required = true}},
                       .schema = "completion"};
+    completed.examples = {
+        {"source <(trilens completion bash)", "for this shell"},
+        {"trilens completion fish > ~/.config/fish/completions/trilens.fish", "for every fish to come"}};
     completed.body = [&root, shell](Console&) { return completion(root, *shell); };
     return {std::move(help_command), std::move(man), std::move(completed)};
 }

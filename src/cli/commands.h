@@ -1,0 +1,25 @@
+// The commands of trilens.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "terminal/command.h"
+
+namespace trilens {
+
+std::vector<Command> render_commands();  // render and trace
+Command compare_command();
+Command sweep_command();
+Command sweep_engines_command();
+Command project_command();
+Command scene_command();
+Command info_command();
+
+/// The whole program, each command with its examples.
+Command make_commands();
+
+/// The examples of a command by its whole name, "trilens sweep run"; none for names without.
+std::vector<Example> examples_of(const std::string& called);
+
+}  // namespace trilens
