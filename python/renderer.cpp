@@ -20,7 +20,7 @@ struct ClassicArguments {
     std::optional<double> tolerance;
 };
 
-const Names kEngines{"exact", "classic", "limit", "facets"};
+const Names kEngines{"exact", "classic", "limit", "facets", "envmap", "planar"};
 const Names kCurves{"arcs", "slices", "tessellate", "straight"};
 const Names kClips{"scene", "screen", "none"};
 
@@ -45,13 +45,13 @@ ClassicParams classic_params(const ClassicArguments& given) {
 }
 
 EngineChoice projecting_engine(const std::string& name, const ClassicArguments& classic) {
-    const Names projecting{"exact", "classic"};
+    const Names projecting{"exact", "classic", "envmap", "planar"};
     require_known("projecting engine", name, projecting);
     if (name == "classic") return classic_params(classic);
     if (classic.curves || classic.clip || classic.pieces || classic.tolerance)
         throw UsageError(
             "curves, clip, pieces and tolerance are the classic engine's; add engine=\"classic\"");
-    return Engine::kExact;
+    return engine_choice(name);
 }
 
 LayerRequest layer_request(const std::optional<Names>& layers, const std::optional<Window>& window) {
@@ -181,7 +181,10 @@ FrameParams frame_params(const Renderer& renderer, int resolution, const std::op
 EngineChoice engine_choice(const std::string& name) {
     require_known("engine", name, kEngines);
     if (name == "classic") return ClassicParams{};
-    return name == "exact" ? Engine::kExact : name == "limit" ? Engine::kLimitTruth : Engine::kFacetsTruth;
+    for (const Engine engine :
+         {Engine::kLimitTruth, Engine::kFacetsTruth, Engine::kEnvironment, Engine::kPlanar})
+        if (name == engine_name(engine)) return engine;
+    return Engine::kExact;
 }
 
 void bind_renderer(py::module_& module) {

@@ -42,14 +42,18 @@ std::string output_format(const RenderOptions& options, const std::string& comma
 }
 
 Json picture_fields(const Renderer& renderer, const Picture& picture) {
-    return {{"width", picture.image.width},
-            {"height", picture.image.height},
-            {"triangles", renderer.triangle_count()},
-            {"facets", renderer.facet_count()},
-            {"optic_pixels", picture.statistics.optic_pixels},
-            {"pixels_without_ray", picture.statistics.pixels_without_ray},
-            {"prepare_seconds", picture.prepare_seconds},
-            {"draw_seconds", picture.draw_seconds}};
+    return {
+        {"width", picture.image.width},
+        {"height", picture.image.height},
+        {"triangles", renderer.triangle_count()},
+        {"facets", renderer.facet_count()},
+        {"optic_pixels", picture.statistics.optic_pixels},
+        {"pixels_without_ray", picture.statistics.pixels_without_ray},
+        {"subdivided_pixels", picture.statistics.subdivided_pixels},
+        {"traced_pixels", picture.statistics.traced_pixels},
+        {"left_out", {{"faint", picture.statistics.faint_light}, {"deep", picture.statistics.deep_light}}},
+        {"prepare_seconds", picture.prepare_seconds},
+        {"draw_seconds", picture.draw_seconds}};
 }
 
 /// Outlines instead of pixels.
@@ -77,10 +81,12 @@ void check_options(const RenderOptions& options, const std::string& format, cons
 Answer draw(const RenderOptions& options, const std::string& format, const PictureRequest& request,
             const Renderer& renderer, Console& console, const std::string& command) {
     const Picture picture = renderer.draw(request, console.progress(command), console.warner());
-    console.note(
-        fmt::format("drew {} x {} pixels, {} of them of optics: prepared in {:.3f} s, drawn in {:.3f} s",
-                    picture.image.width, picture.image.height, picture.statistics.optic_pixels,
-                    picture.prepare_seconds, picture.draw_seconds));
+    console.note(fmt::format(
+        "drew {} x {} pixels, {} of them of optics ({} subdivided, {} traced): prepared in {:.3f} s, "
+        "drawn in {:.3f} s",
+        picture.image.width, picture.image.height, picture.statistics.optic_pixels,
+        picture.statistics.subdivided_pixels, picture.statistics.traced_pixels, picture.prepare_seconds,
+        picture.draw_seconds));
     Answer answer = write_output(options.output, picture.image,
                                  format == "png" ? ImageFormat::kPng : ImageFormat::kExr, console);
     answer.fields["engine"] = engine_name(request.engine.engine);
@@ -153,8 +159,9 @@ std::vector<Option> engine_options(RenderOptions& options) {
     return {
         {.names = "--engine",
          .target = &options.engine,
-         .help = "exact; classic: by the outlines of projected triangles; auto (which is exact for now)",
-         .choices = {"exact", "classic", "auto"}},
+         .help = "exact; classic: by the outlines of projected triangles; auto (which is exact for now); for "
+                 "comparison, envmap: an environment map at the optic's centre, planar: flat facets",
+         .choices = {"exact", "classic", "auto", "envmap", "planar"}},
         {.names = "--slices",
          .target = &options.slices,
          .help = "classic: curved edges by K straight pieces between levels of t, not arcs",
@@ -178,7 +185,9 @@ EngineChoice chosen_engine(const RenderOptions& options) {
         if (options.slices > 0 || options.tessellate > 0 || options.clip != "scene")
             throw UsageError(
                 "--slices, --tessellate and --clip are the classic engine's; add --engine classic");
-        return Engine::kExact;
+        return options.engine == "envmap"   ? Engine::kEnvironment
+               : options.engine == "planar" ? Engine::kPlanar
+                                            : Engine::kExact;
     }
     ClassicParams params;
     params.clip = options.clip == "scene"    ? Clip::kScene

@@ -20,4 +20,15 @@ struct PathMesh {
 /// kRefract, as make_refraction has it. Not for kDirect.
 PathMesh make_path_mesh(Path path, const SurfaceGrid& grid, const LinearCamera& camera, double ior);
 
+/// The usual approximations, as rivals of the projection.
+
+/// Environment mapping: the same rays, but all from one place, `centre` (world): what is near shows no
+/// parallax. Source: Blinn and Newell, Texture and Reflection in Computer Generated Images, 1976.
+PathMesh make_environment_mesh(PathMesh path, const Vec3& centre);
+
+/// Flat facets, the usual polygon mirror: every facet reflects or refracts by the normal of its plane, so
+/// that it has corners of its own. Facets without area or with total reflection have no rays. Arguments as
+/// make_path_mesh.
+PathMesh make_flat_mesh(Path path, const SurfaceGrid& grid, const LinearCamera& camera, double ior);
+
 }  // namespace trilens

@@ -23,6 +23,10 @@ std::string engine_name(Engine engine) {
             return "facets";
         case Engine::kLimitTruth:
             return "limit";
+        case Engine::kEnvironment:
+            return "envmap";
+        case Engine::kPlanar:
+            return "planar";
     }
     return "";
 }

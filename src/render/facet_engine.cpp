@@ -134,7 +134,9 @@ Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& en
     viewer->world = &world;
     viewer->frame = std::move(frame);
     for (std::size_t i = 0; i < viewer->frame.optics.size(); ++i)
-        viewer->paths.push_back(make_optic_paths(world, viewer->frame, i));
+        viewer->paths.push_back(follows_paths(engine.engine)
+                                    ? make_optic_paths(world, viewer->frame, i)
+                                    : make_approximate_paths(world, viewer->frame, i, engine.engine));
     const bool traces = engine.engine == Engine::kFacetsTruth;
     viewer->draw_first =
         traces ? trace_through(object_tracer(world)) : project_through(prepared_objects(world));

@@ -5,7 +5,7 @@
 
 namespace trilens {
 
-/// A viewer in which every optic is its N x N grid. `engine`: kExact, kClassic or kFacetsTruth. With
+/// A viewer in which every optic is its N x N grid. `engine`: any but kLimitTruth. With
 /// kClassic, too, the exact projector finds which facet each sample sees; the classic one draws the objects
 /// there, and those that the camera sees itself.
 Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/box.h"
+
 namespace trilens {
 namespace {
 
@@ -51,14 +53,47 @@ PathCamera path_camera(const LinearCamera& camera) {
     return of_paths;
 }
 
+namespace {
+
+Looking looking_at(const World& world, const Frame& frame, std::size_t optic) {
+    return {&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(),
+            path_camera(*frame.camera.linear)};
+}
+
+Vec3 middle_of(const SurfaceGrid& grid) {
+    Box box;
+    for (const Vec3& point : grid.points) box.include(point);
+    return 0.5 * (box.low + box.high);
+}
+
+}  // namespace
+
 std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic) {
     const FramedOptic& framed = frame.optics[optic];
-    const Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(),
-                          path_camera(*frame.camera.linear)};
     const SurfaceGrid& grid = framed.facets->grid();
+    const Looking looking = looking_at(world, frame, optic);
     if (world.scene.render.max_depth > 0) return std::make_unique<OpticPaths>(looking, grid, DivideParams{});
     return std::make_unique<OpticPaths>(looking, grid, find_path(framed, Path::kReflect),
                                         find_path(framed, Path::kRefract));
+}
+
+std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,
+                                                   Engine engine) {
+    const FramedOptic& framed = frame.optics[optic];
+    const SurfaceGrid& grid = framed.facets->grid();
+    const double ior = world.scene.materials[world.optics[optic].material].ior;
+    std::vector<PathMesh> meshes;
+    for (const PathMesh& path : framed.paths)
+        meshes.push_back(engine == Engine::kPlanar
+                             ? make_flat_mesh(path.path, grid, *frame.camera.linear, ior)
+                             : make_environment_mesh(path, middle_of(grid)));
+    const auto find = [&](Path path) -> const RayMesh* {
+        for (const PathMesh& one : meshes)
+            if (one.path == path) return &one.mesh;
+        return nullptr;
+    };
+    return std::make_unique<OpticPaths>(looking_at(world, frame, optic), grid, find(Path::kReflect),
+                                        find(Path::kRefract));
 }
 
 const RayMesh* find_path(const FramedOptic& optic, Path path) {

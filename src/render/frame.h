@@ -36,6 +36,10 @@ PathCamera path_camera(const LinearCamera& camera);
 /// The paths over an optic's facets, as far as the scene has them followed. The frame must live longer.
 std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic);
 
+/// The paths as one of the usual approximations has them: kEnvironment or kPlanar.
+std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,
+                                                   Engine engine);
+
 /// The mesh of this path, or null.
 const RayMesh* find_path(const FramedOptic& optic, Path path);
 

@@ -42,9 +42,11 @@ void tell(const World& world, const LayerRequest& window, const LayerStatistics&
 }
 
 /// What a picture leaves out of the scene.
-void tell_omissions(const World& world, const LayerStatistics& statistics, const Warn& warn) {
+void tell_omissions(const World& world, Engine engine, const LayerStatistics& statistics, const Warn& warn) {
     const RenderSettings& settings = world.scene.render;
-    if (settings.max_depth > 0) {
+    const std::string why =
+        follows_paths(engine) ? "maxDepth is 0" : "engine " + engine_name(engine) + " knows no others";
+    if (settings.max_depth > 0 && follows_paths(engine)) {
         // Less than half a step of 8 bits is nobody's concern.
         if (statistics.deep_light > kLeastWeight)
             warn(fmt::format(
@@ -54,7 +56,7 @@ void tell_omissions(const World& world, const LayerStatistics& statistics, const
         return;
     }
     if (world.optics.size() > 1 && (settings.reflect || settings.refract))
-        warn("optics do not see each other: maxDepth is 0, so a path ends after its first optic");
+        warn("optics do not see each other: a path ends after its first optic (" + why + ")");
     for (const Optic& optic : world.optics)
         if (!optic.mirror && settings.refract)
             warn(world.names[optic.mesh] +
@@ -96,7 +98,7 @@ void describe(const World& world, const PictureRequest& request, Image& image) {
     const Engine engine = request.engine.engine;
     auto& header = image.metadata;
     header["trilens:version"] = kVersion;
-    header["trilens:command"] = engine == Engine::kExact || engine == Engine::kClassic ? "render" : "trace";
+    header["trilens:command"] = projects(engine) ? "render" : "trace";
     header["trilens:engine"] = engine_name(engine);
     if (engine == Engine::kClassic) header["trilens:classic"] = classic_name(request.engine.classic);
     header["trilens:camera"] = world.scene.cameras[request.frame.camera].name;
@@ -124,7 +126,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     describe(world, request, picture.image);
     if (warn) {
         tell(world, layers, picture.statistics, warn);
-        tell_omissions(world, picture.statistics, warn);
+        tell_omissions(world, request.engine.engine, picture.statistics, warn);
     }
     return picture;
 }

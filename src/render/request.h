@@ -17,8 +17,20 @@ struct FrameParams {
 };
 
 /// kExact: the projector. kClassic: the thesis' engine. kFacetsTruth: Embree on the rays of the same facets.
-/// kLimitTruth: Embree on the exact surfaces.
-enum class Engine { kExact, kClassic, kFacetsTruth, kLimitTruth };
+/// kLimitTruth: Embree on the exact surfaces. The usual approximations, for comparison: kEnvironment: the
+/// projector on the facets' rays moved to the optic's centre, as an environment map made there has them;
+/// kPlanar: the projector on flat facets. Both end paths after the first optic.
+enum class Engine { kExact, kClassic, kFacetsTruth, kLimitTruth, kEnvironment, kPlanar };
+
+/// Whether an engine makes its picture by projection; else it traces rays.
+inline bool projects(Engine engine) {
+    return engine != Engine::kFacetsTruth && engine != Engine::kLimitTruth;
+}
+
+/// Whether an engine follows paths from optic to optic.
+inline bool follows_paths(Engine engine) {
+    return engine != Engine::kEnvironment && engine != Engine::kPlanar;
+}
 
 /// An engine with its settings.
 struct EngineChoice {
@@ -30,7 +42,7 @@ struct EngineChoice {
     EngineChoice(const ClassicParams& params) : engine(Engine::kClassic), classic(params) {}
 };
 
-/// "exact", "classic", "facets", "limit".
+/// "exact", "classic", "facets", "limit", "envmap", "planar".
 std::string engine_name(Engine engine);
 
 /// How the classic engine draws: "arcs", "slices 4, clip screen".
