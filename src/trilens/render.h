@@ -82,8 +82,7 @@ class Renderer {
     /// The picture as lines. `wire`: hidden edges too.
     LineDrawing draw_lines(const FrameParams& frame, bool wire = false, const Warn& warn = {}) const;
 
-    /// A digest (16 hexadecimal digits) of what the scene loaded from all its files: equal digests, equal
-    /// pictures of equal scene texts.
+    /// A digest (16 hexadecimal digits) of all that the scene holds: equal digests, equal pictures.
     std::string digest() const;
 
     /// What the renderer is made of; its type is no part of the public headers.
