@@ -1,5 +1,7 @@
 // Pictures of scenes: projected, or ray traced as the truth.
 //
+//     #include <trilens/image.h>
+//     #include <trilens/scene.h>
 //     const trilens::Renderer renderer(trilens::load_scene({"scene.json"}));
 //     trilens::PictureRequest request;
 //     request.frame.resolution = 16;

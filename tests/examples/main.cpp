@@ -1,5 +1,5 @@
-// Runs the examples of the public headers, each in a folder with the files that they read, and looks for
-// those that they write. Usage: header_examples FOLDER
+// Runs the examples of the public headers and of the README, each in a folder with the files that they read,
+// and looks for those that they write. Usage: header_examples FOLDER
 #include <trilens/trilens.h>
 
 #include <cstdio>
@@ -17,12 +17,13 @@ namespace {
 
 /// What an example has to leave behind.
 const std::map<std::string, std::vector<std::string>> kWritten{
-    {"trilens/engine_study.h", {"results/engines/engines.csv", "results/engines/clipping.csv"}},
-    {"trilens/files.h", {"out.json"}},
-    {"trilens/image.h", {"picture.png"}},
-    {"trilens/render.h", {"projected.exr", "truth.exr"}},
-    {"trilens/sweep.h", {"results/scene/report.html", "results/scene/summary.json"}},
-    {"trilens/trilens.h", {"mine.exr"}}};
+    {"engine_study", {"results/engines/engines.csv", "results/engines/clipping.csv"}},
+    {"files", {"out.json"}},
+    {"image", {"picture.png"}},
+    {"render", {"projected.exr", "truth.exr"}},
+    {"sweep", {"results/scene/report.html", "results/scene/summary.json"}},
+    {"trilens", {"mine.exr"}},
+    {"README", {"my.exr"}}};
 
 /// Makes `folder` anew and the working directory: a small scene, its picture and its truth.
 void enter(const fs::path& folder) {
@@ -32,7 +33,7 @@ void enter(const fs::path& folder) {
     const std::vector<trilens::SceneOverride> small{
         {"/film/width", "64"}, {"/film/height", "48"}, {"/film/spp", "1"}};
     const trilens::Scene scene = trilens::parse_scene(trilens::scene_examples()[0].json, "", small);
-    trilens::replace_text_file("scene.json", scene.resolved);
+    for (const char* name : {"scene.json", "my.json"}) trilens::replace_text_file(name, scene.resolved);
     const trilens::Renderer renderer(scene);
     trilens::PictureRequest request;
     trilens::write_image("picture.exr", renderer.draw(request).image);
@@ -42,22 +43,22 @@ void enter(const fs::path& folder) {
 }
 
 bool passes(const HeaderExample& example, const fs::path& folder) {
-    enter(folder / fs::path(example.header).stem());
-    const auto written = kWritten.find(example.header);
+    enter(folder / example.name);
+    const auto written = kWritten.find(example.name);
     if (written != kWritten.end())
         for (const std::string& file : written->second) fs::remove(file);
-    std::printf("%s\n", example.header);
+    std::printf("%s\n", example.name);
     try {
         example.run();
     } catch (const std::exception& error) {
-        std::printf("%s: FAILED: %s\n", example.header, error.what());
+        std::printf("%s: FAILED: %s\n", example.name, error.what());
         return false;
     }
     bool good = true;
     if (written != kWritten.end())
         for (const std::string& file : written->second) {
             if (fs::exists(file) && fs::file_size(file) > 0) continue;
-            std::printf("%s: FAILED: there is no %s\n", example.header, file.c_str());
+            std::printf("%s: FAILED: there is no %s\n", example.name, file.c_str());
             good = false;
         }
     return good;
@@ -67,6 +68,7 @@ bool passes(const HeaderExample& example, const fs::path& folder) {
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);  // what ran last is told, however it ends
     const fs::path folder = fs::absolute(argv[1]);
     int passed = 0, failed = 0;
     for (const HeaderExample& example : kExamples) ++(passes(example, folder) ? passed : failed);
