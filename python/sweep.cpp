@@ -2,6 +2,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <functional>
+#include <variant>
+
 #include "arrays.h"
 #include "scene.h"
 #include "talk.h"
@@ -107,29 +110,42 @@ void bind_summary(py::module_& module) {
         });
 }
 
+using SceneOrFile = std::variant<Path, std::reference_wrapper<const Scene>>;
+
+void set_scene(const SceneOrFile& scene, const py::dict& overrides, SweepRequest& request) {
+    if (const Path* const file = std::get_if<Path>(&scene)) {
+        request.scene = {file->string(), overrides_of(overrides), 0};
+        return;
+    }
+    if (!overrides.empty())
+        throw UsageError("overrides are for scene files; Scene.with_overrides changes a scene in memory");
+    request.loaded = std::get<1>(scene);
+}
+
 /// Binds run_sweep or plan_sweep: the same arguments, other work.
 template <class Work>
 void def_sweep(py::module_& module, const char* name, const Work& work, const char* doc) {
     module.def(
         name,
-        [work](const Path& scene, const Path& folder, const py::object& over, const std::string& truth,
+        [work](const SceneOrFile& scene, const Path& folder, const py::object& over, const std::string& truth,
                const std::optional<std::string>& camera, const py::dict& overrides, const std::string& shard,
-               const std::string& title, const py::object& progress, const py::object& warn) {
+               const std::string& title, bool replace, const py::object& progress, const py::object& warn) {
             SweepRequest request;
-            request.scene = {scene.string(), overrides_of(overrides), 0};
+            set_scene(scene, overrides, request);
             request.camera = camera.value_or("");
             request.over = axis_text(over);
             request.truth = truth;
             request.shard = shard;
             request.folder = folder.string();
             request.title = title;
+            request.replace = replace;
             Talk talk(progress, warn);
             return talk.run([&] { return work(request, talk_of(talk)); });
         },
         py::arg("scene"), py::arg("folder"), py::arg("over") = "resolution=1..16:x2", py::kw_only(),
         py::arg("truth") = "limit", py::arg("camera") = py::none(), py::arg("overrides") = py::dict(),
-        py::arg("shard") = "0/1", py::arg("title") = "", py::arg("progress") = py::none(),
-        py::arg("warn") = py::none(), doc);
+        py::arg("shard") = "0/1", py::arg("title") = "", py::arg("replace") = false,
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(), doc);
 }
 
 }  // namespace
@@ -143,11 +159,14 @@ void bind_sweep(py::module_& module) {
         "Renders, traces once and compares over the optics' resolutions, in a folder that can be resumed: "
         "what is\n"
         "done there already is not done again. Sums up with fits, tables, plots and report.html.\n\n"
-        "scene: a scene file. folder: where the results go.\n"
+        "scene: a scene file, or a Scene. folder: where the results go.\n"
         "over: resolutions as whole numbers, or as text: \"resolution=1,2,4\", \"resolution=1..64:x2\".\n"
         "truth: \"limit\" or \"facets\". shard: part \"i/n\" of it, or \"auto\" in a job array.\n"
+        "replace: starts the folder afresh, whichever sweep it belongs to.\n"
         "progress: called as progress(done, job); returning False raises Interrupted. What is done is kept.\n"
         "camera, overrides, warn: as in load_scene and render.\n"
+        "A Scene is known by its label; without one by all that it holds, so that a changed one is another\n"
+        "sweep's and raises UsageError in the folder of the first.\n"
         "A run that fails is recorded (SweepRun.error), and the others go on.");
     def_sweep(
         module, "plan_sweep",

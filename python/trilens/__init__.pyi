@@ -60,6 +60,7 @@ class Image:
     def __copy__(self) -> Image: ...
     def __deepcopy__(self, memo: dict[int, Any]) -> Image: ...
 
+def count_regions(image: Image, least: int = 12) -> int: ...
 def read_image(file: _File) -> Image: ...
 
 class Film:
@@ -110,6 +111,8 @@ class Scene:
     @property
     def file(self) -> str: ...
     @property
+    def label(self) -> str: ...
+    @property
     def folder(self) -> str: ...
     @property
     def film(self) -> Film: ...
@@ -136,6 +139,7 @@ def parse_scene(
     overrides: _Overrides = {},
     resolution: int = 0,
     *,
+    label: str = "",
     warn: _Warn = None,
 ) -> Scene: ...
 def scene_examples() -> dict[str, str]: ...
@@ -444,7 +448,7 @@ class SweepSummary:
     def fit(self, metric: str = "disp_mean_px", layer: str = "reflect", optic: str = "") -> Optional[SweepFit]: ...
 
 def sweep(
-    scene: _File,
+    scene: Union[_File, Scene],
     folder: _File,
     over: Union[str, Sequence[int]] = "resolution=1..16:x2",
     *,
@@ -453,11 +457,12 @@ def sweep(
     overrides: _Overrides = {},
     shard: str = "0/1",
     title: str = "",
+    replace: bool = False,
     progress: _Progress = None,
     warn: _Warn = None,
 ) -> SweepSummary: ...
 def plan_sweep(
-    scene: _File,
+    scene: Union[_File, Scene],
     folder: _File,
     over: Union[str, Sequence[int]] = "resolution=1..16:x2",
     *,
@@ -466,6 +471,7 @@ def plan_sweep(
     overrides: _Overrides = {},
     shard: str = "0/1",
     title: str = "",
+    replace: bool = False,
     progress: _Progress = None,
     warn: _Warn = None,
 ) -> str: ...

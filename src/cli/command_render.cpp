@@ -1,6 +1,7 @@
 // trilens render and trilens trace: one picture.
 #include <trilens/files.h>
 #include <trilens/image.h>
+#include <trilens/regions.h>
 #include <trilens/render.h>
 #include <trilens/stopwatch.h>
 
@@ -93,6 +94,7 @@ Answer draw(const RenderOptions& options, const std::string& format, const Pictu
     if (request.engine.engine == Engine::kClassic)
         answer.fields["classic"] = classic_name(request.engine.classic);
     answer.fields.update(picture_fields(renderer, picture));
+    if (console.wants_json()) answer.fields["regions"] = count_regions(picture.image);
     return answer;
 }
 

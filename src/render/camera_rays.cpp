@@ -13,7 +13,7 @@ void refuse_optics(const Scene& scene, std::size_t index) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         if (scene.meshes[m].role != Role::kOptic) continue;
         throw InputError(
-            scene.file, "/cameras/" + std::to_string(index),
+            scene_title(scene), "/cameras/" + std::to_string(index),
             "a rayMesh camera shows objects only, but mesh \"" + scene.meshes[m].name + "\" is an optic");
     }
 }

@@ -89,7 +89,7 @@ void check_film_fits(const World& world, const LayerRequest& window) {
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (needed < memory) return;
     throw InputError(
-        world.scene.file, "/film",
+        scene_title(world.scene), "/film",
         fmt::format("an image of {} x {} pixels needs about {:.0f} GiB; this machine has {:.0f}",
                     window.x1 - window.x0, window.y1 - window.y0, needed / (1 << 30), memory / (1 << 30)));
 }

@@ -82,12 +82,12 @@ std::size_t facet_count(const World& world, int resolution) {
 void check_facet_count(const World& world, int resolution) {
     const std::size_t total = facet_count(world, resolution);
     if (total > kMaxFacets)
-        throw InputError(world.scene.file, "/meshes",
+        throw InputError(scene_title(world.scene), "/meshes",
                          "the optics have " + std::to_string(total) + " facets, more than " +
                              std::to_string(kMaxFacets) + "; lower their resolution");
     check_memory({kBytesPerFacet * static_cast<double>(total),
                   "drawing the optics' " + std::to_string(total) + " facets", "lower their resolution"},
-                 {machine_memory(), world.scene.file});
+                 {machine_memory(), scene_title(world.scene)});
 }
 
 std::unique_ptr<World> make_world(Scene scene, const Warn& warn) {

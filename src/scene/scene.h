@@ -92,8 +92,9 @@ struct FileRead {
 };
 
 struct Scene {
-    std::string file;      // where it came from, for messages
+    std::string file;      // where it came from; empty: from memory
     std::string folder;    // absolute: where its relative paths start
+    std::string label;     // what messages call it where it has no file; may be empty
     std::string resolved;  // the scene as JSON after --set, one line: goes into image headers
     Film film;
     std::vector<CameraDescription> cameras;  // at least one
@@ -106,5 +107,13 @@ struct Scene {
     std::vector<FileRead> files;  // every file that the scene was made of, each once, in order of reading
     std::vector<std::string> warnings;
 };
+
+/// What messages call a scene that has neither file nor label.
+inline constexpr const char* kSceneLabel = "scene";
+
+/// What messages call the scene: its file, else its label.
+inline std::string scene_title(const Scene& scene) {
+    return !scene.file.empty() ? scene.file : !scene.label.empty() ? scene.label : kSceneLabel;
+}
 
 }  // namespace trilens

@@ -59,6 +59,9 @@ RunRecord load_run(const std::string& folder, const PlannedRun& plan) {
     const std::string home = run_folder(folder, plan.id);
     RunRecord missing;
     missing.plan = plan;
+    // The failure first: who finishes the run meanwhile writes DONE, and only then removes the failure.
+    const std::optional<RunRecord> failed =
+        parse_run(read_whole_file(home + "/error.json").value_or(""), plan);
     const std::optional<std::string> done = read_whole_file(home + "/DONE");
     if (done && done == done_text(folder, plan)) {
         std::optional<RunRecord> run = parse_run(read_whole_file(home + "/metrics.json").value_or(""), plan);
@@ -66,8 +69,6 @@ RunRecord load_run(const std::string& folder, const PlannedRun& plan) {
         run->image_hash = image_hash_in(*done);
         return *run;
     }
-    const std::optional<RunRecord> failed =
-        parse_run(read_whole_file(home + "/error.json").value_or(""), plan);
     return failed && failed->state == RunState::kFailed ? *failed : missing;
 }
 
@@ -75,7 +76,6 @@ void clear_run(const std::string& folder, const PlannedRun& plan) {
     const std::string home = run_folder(folder, plan.id);
     make_folder(home);
     remove_file(home + "/DONE");
-    remove_file(home + "/error.json");
 }
 
 RunRecord store_run(const std::string& folder, RunRecord run, const Image& image, const Image& diff) {
@@ -87,6 +87,7 @@ RunRecord store_run(const std::string& folder, RunRecord run, const Image& image
     const std::optional<std::string> done = done_text(folder, run.plan);
     if (!done) throw OutputError(home, "what was written cannot be read back");
     replace_text_file(home + "/DONE", *done);
+    remove_file(home + "/error.json");
     run.image_hash = image_hash_in(*done);
     return run;
 }

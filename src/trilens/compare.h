@@ -1,5 +1,6 @@
 // How far two pictures are apart: pixel by pixel, and in what their optics show.
 //
+//     #include <trilens/image.h>
 //     const trilens::Image truth = trilens::read_image("truth.exr"), image = trilens::read_image("mine.exr");
 //     const trilens::Comparison comparison = trilens::compare(truth, image);
 //     std::printf("rmse %g\n", comparison.metrics.rmse);

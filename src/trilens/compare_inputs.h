@@ -1,5 +1,10 @@
 // Images of different makers made comparable: which layer stands for a file, and which channels two images
 // share.
+//
+//     const trilens::Image truth = trilens::read_compared_image("truth.exr");
+//     const trilens::Image mine = trilens::read_compared_image("mine.exr");
+//     const trilens::CommonChannels common = trilens::keep_common_channels(truth, mine);
+//     for (const std::string& name : common.only_reference) std::printf("left out: %s\n", name.c_str());
 #pragma once
 
 #include <string>

@@ -1,4 +1,11 @@
 // Limits on any number that a comparison gives, by the number's name.
+//
+//     #include <trilens/image.h>
+//     const trilens::Image truth = trilens::read_image("truth.exr"), image = trilens::read_image("mine.exr");
+//     const std::vector<trilens::NamedMetric> metrics =
+//         trilens::named_metrics(trilens::compare(truth, image), trilens::compare_layers(truth, image));
+//     for (const std::string& sentence : trilens::broken_limits({{"displacement_p95", 0.5}}, metrics))
+//         std::puts(sentence.c_str());
 #pragma once
 
 #include <optional>

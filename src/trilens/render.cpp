@@ -6,8 +6,8 @@
 #include "base/format.h"
 #include "render/frame.h"
 #include "render/picture.h"
-#include "render/world_digest.h"
 #include "scene/check_scene.h"
+#include "scene/scene_digest.h"
 #include "vector/drawing.h"
 
 namespace trilens {
@@ -105,7 +105,7 @@ LineDrawing Renderer::draw_lines(const FrameParams& frame, bool wire, const Warn
 }
 
 std::string Renderer::digest() const {
-    return world_digest(*world_);
+    return scene_digest(world_->scene);
 }
 
 }  // namespace trilens

@@ -1,5 +1,7 @@
 // Pictures of scenes: projected, or ray traced as the truth.
 //
+//     #include <trilens/image.h>
+//     #include <trilens/scene.h>
 //     const trilens::Renderer renderer(trilens::load_scene({"scene.json"}));
 //     trilens::PictureRequest request;
 //     request.frame.resolution = 16;
@@ -82,8 +84,7 @@ class Renderer {
     /// The picture as lines. `wire`: hidden edges too.
     LineDrawing draw_lines(const FrameParams& frame, bool wire = false, const Warn& warn = {}) const;
 
-    /// A digest (16 hexadecimal digits) of what the scene loaded from all its files: equal digests, equal
-    /// pictures of equal scene texts.
+    /// A digest (16 hexadecimal digits) of all that the scene holds: equal digests, equal pictures.
     std::string digest() const;
 
     /// What the renderer is made of; its type is no part of the public headers.

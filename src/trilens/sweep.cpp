@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "base/format.h"
-#include "base/hash.h"
 #include "sweep/code_digest.h"
 #include "sweep/sweep.h"
 #include "trilens/render.h"
@@ -33,10 +32,13 @@ Shard shard_of(const std::string& text) {
     return parse_shard(text, [](const char* name) { return std::getenv(name); });
 }
 
-/// The scene file as seen from the sweep's folder, so that it is the same from wherever the sweep is called
-/// and after both have moved; and what is changed in it.
-std::string scene_name(const SweepRequest& request) {
+/// What tells the scene from others of the folder: a file as seen from the folder, so that it is the same
+/// from wherever the sweep is called and after both have moved, and what is changed in it. One in memory by
+/// its label, else by what it holds.
+std::string scene_name(const SweepRequest& request, const Renderer& renderer) {
     namespace fs = std::filesystem;
+    if (request.loaded && !request.loaded->label.empty()) return request.loaded->label;
+    if (request.loaded) return scene_title(*request.loaded) + " " + renderer.digest();
     std::error_code unreadable;
     const fs::path file = fs::weakly_canonical(request.scene.file, unreadable);
     const fs::path folder = fs::weakly_canonical(request.folder, unreadable);
@@ -50,11 +52,13 @@ std::string scene_name(const SweepRequest& request) {
 SweepSubject subject_of(const SweepRequest& request, const Renderer& renderer, std::size_t camera) {
     const std::vector<std::string> libraries = library_versions();
     SweepSubject subject;
-    subject.title =
-        request.title.empty() ? std::filesystem::path(request.scene.file).stem().string() : request.title;
-    subject.scene = request.scene.file;
-    subject.scene_name = scene_name(request);
-    subject.scene_digest = hash_text(renderer.scene().resolved + "\n" + renderer.digest());
+    const Scene& scene = renderer.scene();
+    subject.scene = scene_title(scene);
+    subject.title = !request.title.empty() ? request.title
+                    : scene.file.empty()   ? subject.scene
+                                           : std::filesystem::path(scene.file).stem().string();
+    subject.scene_name = scene_name(request, renderer);
+    subject.scene_digest = renderer.digest();
     subject.camera = renderer.scene().cameras[camera].name;
     subject.method = engine_name(Engine::kExact);
     subject.truth = request.truth;
@@ -79,13 +83,13 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk&
     job->params.shard = shard_of(request.shard);
     job->params.replace = request.replace;
 
-    Scene scene = load_scene(request.scene);
-    if (talk.warn)
+    Scene scene = request.loaded ? *request.loaded : load_scene(request.scene);
+    if (talk.warn && !request.loaded)
         for (const std::string& warning : scene.warnings) talk.warn(warning);
     const std::size_t camera = find_camera(scene, request.camera);
     job->renderer = std::make_unique<Renderer>(std::move(scene), talk.warn);
     if (job->renderer->optics().empty())
-        throw InputError(request.scene.file, "/meshes",
+        throw InputError(scene_title(job->renderer->scene()), "/meshes",
                          "a sweep needs an optic whose resolution it can vary");
 
     job->params.subject = subject_of(request, *job->renderer, camera);
@@ -104,6 +108,7 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk&
     job->callbacks.trace = [draw, truth](int n) {
         return draw(truth, truth == Engine::kFacetsTruth ? n : 0);
     };
+    // The text too: every picture carries it.
     job->callbacks.job_key = code_digest() + "\n" + job->params.subject.camera + "\n" +
                              job->renderer->scene().resolved + "\n" + job->renderer->digest();
     job->callbacks.truth_key = job->callbacks.job_key + "\n" + request.truth;

@@ -1,4 +1,7 @@
 // All of trilens: see the headers below, each with an example.
+//
+//     const trilens::Renderer renderer(trilens::load_scene(trilens::SceneRequest{"scene.json"}));
+//     trilens::write_image("mine.exr", renderer.draw({}).image);
 #pragma once
 
 #include <trilens/compare.h>
@@ -8,6 +11,7 @@
 #include <trilens/image.h>
 #include <trilens/project.h>
 #include <trilens/ray_mesh.h>
+#include <trilens/regions.h>
 #include <trilens/render.h>
 #include <trilens/scene.h>
 #include <trilens/stopwatch.h>

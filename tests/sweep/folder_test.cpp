@@ -1,4 +1,5 @@
 // A folder belongs to one sweep, and to as many processes of it as there are.
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -68,6 +69,7 @@ pid_t start_worker(const WorkerOrders& orders) {
     const pid_t child = fork();
     REQUIRE(child >= 0);
     if (child > 0) return child;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that ends early leaves no process behind
     setenv("TRILENS_TEST_WORKER_FOLDER", orders.folder.c_str(), 1);
     setenv("TRILENS_TEST_WORKER_TRUTH", orders.truth_per_run ? "per run" : "shared", 1);
     setenv("TRILENS_TEST_WORKER_HANG", std::to_string(orders.hang_at).c_str(), 1);
@@ -75,8 +77,12 @@ pid_t start_worker(const WorkerOrders& orders) {
     _exit(127);
 }
 
-void wait_for_file(const std::string& file) {
-    while (!fs::exists(file)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+/// Until the child has made it; fails where the child ends before.
+void wait_for_file(const std::string& file, pid_t child) {
+    while (!fs::exists(file)) {
+        REQUIRE(waitpid(child, nullptr, WNOHANG) == 0);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
 }
 
 int exit_code_of(pid_t child) {
@@ -253,10 +259,32 @@ TEST_CASE("sweep: processes at one folder at once do every run and the truth onc
     }
 }
 
+TEST_CASE(
+    "sweep: who sums up while a failed run is tried again sees the failure, and after it what came of it") {
+    FakeSweep fake(trilens_test::scratch_dir("folder_retry"), {1, 2});
+    fake.before_render = [](int n) {
+        if (n == 2) throw ComputationError("hard");
+    };
+    fake.run();
+    const bool is_mended = GENERATE(false, true);
+    FakeSweep again(fake.params.folder, {1, 2});
+    RunRecord meanwhile;
+    again.before_render = [&](int n) {
+        meanwhile = load_sweep(fake.params.folder).runs[1];
+        if (n == 2 && !is_mended) throw ComputationError("still hard");
+    };
+    const RunRecord after = again.run().runs[1];
+    CHECK(again.renders == 1);
+    CHECK(meanwhile.state == RunState::kFailed);
+    CHECK(meanwhile.error == "hard");
+    CHECK(after.state == (is_mended ? RunState::kDone : RunState::kFailed));
+    CHECK(after.error == (is_mended ? "" : "still hard"));
+}
+
 TEST_CASE("sweep: what a killed process was at is done by the next, which waits for nobody") {
     const std::string folder = trilens_test::scratch_dir("folder_killed");
     const pid_t child = start_worker({folder, false, 2});
-    wait_for_file(folder + "/hanging");
+    wait_for_file(folder + "/hanging", child);
     const std::string lock = run_folder(folder + "/sweep", "n0002") + "/lock";
     CHECK(!FileLock::try_lock(lock, LockKind::kOne));
     CHECK_THROWS_AS(clear_folder(folder + "/sweep"), UsageError);
