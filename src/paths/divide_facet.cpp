@@ -177,6 +177,7 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
     if (level >= params_.most_levels || screen_area(corners) < params_.least_area) {
         FacetPart part = part_of(corners, level);
         part.method = LeafMethod::kTraced;
+        part.centre = centre.screen;
         return end(cell, std::move(part));
     }
     const Id first = static_cast<Id>(divided_.cells.size());

@@ -19,6 +19,7 @@ struct PartCorner {
 struct FacetPart {
     std::uint8_t level = 0;
     LeafMethod method = LeafMethod::kProjected;
+    Vec3 centre{0};  // of kTraced: homogeneous screen position
     std::vector<PathSegment> histories;  // of kProjected: parents before children; empty: no rays
     std::array<PartCorner, 3> corners;
     std::array<std::vector<std::size_t>, 3> segment;  // per corner and history: of the corner's look; empty

@@ -162,7 +162,7 @@ void OpticPaths::append(Id facet, const DividedFacet& divided) {
     prepared_[facet] = 1;
     const Id first_leaf = static_cast<Id>(leaves_.size());
     for (const FacetPart& part : divided.parts) {
-        leaves_.push_back({facet, part.level, part.method});
+        leaves_.push_back({facet, part.level, part.method, part.centre});
         if (part.method == LeafMethod::kProjected) append_part(static_cast<Id>(leaves_.size() - 1), part);
     }
     // The facet's own cell stands at its number, the others at the end.

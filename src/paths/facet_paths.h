@@ -22,6 +22,7 @@ struct PathLeaf {
     Id facet = kNone;
     std::uint8_t level = 0;
     LeafMethod method = LeafMethod::kProjected;
+    Vec3 centre{0};  // of kTraced: homogeneous screen position
 };
 
 /// All rays of one history: its last step starts them.
