@@ -27,6 +27,7 @@ struct RenderOptions {
     std::string surface = "limit";
     std::string format;  // empty: by the output's ending
     bool wire = false;
+    std::string grid;  // empty: as the scene says
 };
 
 /// What an output is, by --format or its name's ending: "exr", "png" or "svg". Standard output gets OpenEXR
@@ -62,7 +63,7 @@ Answer run_vector(const RenderOptions& options, const Renderer& renderer, Consol
     if (!options.scene.crop.empty())
         throw UsageError("--crop is for pictures of pixels; an .svg shows the whole film");
     const std::size_t camera = find_camera(renderer.scene(), options.scene.camera);
-    const LineDrawing drawing = renderer.draw_lines({camera, 0}, options.wire, console.warner());
+    const LineDrawing drawing = renderer.draw_lines({.camera = camera}, options.wire, console.warner());
     Answer answer = write_output(options.output, drawing.svg, console);
     answer.fields.update(Json{{"engine", "exact"},
                               {"width", renderer.scene().film.width},
@@ -126,6 +127,8 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
     request.layers = layer_request(options.scene);
     const Renderer renderer = load_renderer(options.scene, console);
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
+    if (!options.grid.empty())
+        request.frame.grid = options.grid == "screen" ? GridKind::kScreen : GridKind::kSurface;
     check_on_film(options, request.layers, renderer.scene().film);
     if (options.pixel.empty())
         return format == "svg" ? run_vector(options, renderer, console)
@@ -151,6 +154,10 @@ std::vector<Option> picture_options(RenderOptions& options, const std::string& f
                      .help = "file to write, by its ending: " + formats + "; - for standard output",
                      .value = "OUT",
                      .offer = Offer::kImage},
+                    {.names = "--grid",
+                     .target = &options.grid,
+                     .help = "where the optics' facets lie: on the surface, or on the film over the optic",
+                     .choices = {"surface", "screen"}},
                     {.names = "--pixel",
                      .target = &options.pixel,
                      .help = "explain one pixel as JSON",

@@ -53,7 +53,8 @@ class Divider {
   public:
     Divider(const Looking& looking, const FacetToDivide& facet, const DivideParams& params)
         : looking_(looking), facet_(facet), params_(params) {
-        for (int k = 0; k < 3; ++k)
+        reach_ = facet.reach;
+        for (int k = 0; k < 3 && facet.reach == 0; ++k)
             reach_ = std::max(reach_, length(facet.points[static_cast<std::size_t>(k)] -
                                              facet.points[static_cast<std::size_t>((k + 1) % 3)]));
         mirror_ = looking.world->optics[looking.optic].mirror;
@@ -94,7 +95,7 @@ Point Divider::between(std::initializer_list<const Point*> points, double least_
         middle.chord += share * one->chord;
     }
     divided_.looks.push_back(look_through(looking_, {middle.screen, middle.chord, reach_},
-                                          {.front = facet_.front, .least_weight = least_weight}));
+                                          {.side = facet_.side, .least_weight = least_weight}));
     middle.look = &divided_.looks.back();
     note(middle.look->cut);
     return middle;
@@ -134,7 +135,7 @@ bool Divider::project(const Triangle& corners, const std::vector<const Look*>& i
     const Look& centre = *inside.back();
     if (centre.state != LookState::kSeen) return false;
     const auto agrees = [&](const Look& look, std::vector<std::size_t>& match) {
-        if (look.state != LookState::kSeen) return false;
+        if (look.state != LookState::kSeen || look.front != centre.front) return false;
         match = matched(centre.segments, look.segments);
         return match.size() == centre.segments.size() && covers(match, look.segments);
     };
@@ -150,7 +151,7 @@ bool Divider::project(const Triangle& corners, const std::vector<const Look*>& i
 void Divider::end(Id cell, FacetPart part) {
     if (part.method == LeafMethod::kProjected && !part.histories.empty())
         for (const PartCorner& corner : part.corners)
-            if (corner.shared == kNone) set_kappa(looking_, facet_.front, *corner.look);
+            if (corner.shared == kNone) set_kappa(looking_, *corner.look);
     divided_.cells[cell].part = static_cast<Id>(divided_.parts.size());
     divided_.parts.push_back(std::move(part));
 }
@@ -191,15 +192,16 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
 
 DividedFacet Divider::divide() {
     Triangle corners;
-    bool normals = true;
+    bool has_normals = true;
     for (std::size_t k = 0; k < 3; ++k) {
         const PartCorner& from = facet_.corners[k];
         corners[k] = {from.look, from.look->screen, facet_.points[k], from.shared};
-        normals = normals && from.look->place.normal != Vec3(0);
+        const bool missed = from.look->state == LookState::kMissed;
+        has_normals = has_normals && (missed || from.look->place.normal != Vec3(0));
         note(from.look->cut);
     }
     divided_.cells.resize(1);
-    if (normals)
+    if (has_normals)
         divide(0, corners, 0);
     else
         end(0, part_of(corners, 0));

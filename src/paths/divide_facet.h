@@ -19,7 +19,7 @@ struct PartCorner {
 struct FacetPart {
     std::uint8_t level = 0;
     LeafMethod method = LeafMethod::kProjected;
-    Vec3 centre{0};  // of kTraced: homogeneous screen position
+    Vec3 centre{0};                      // of kTraced: homogeneous screen position
     std::vector<PathSegment> histories;  // of kProjected: parents before children; empty: no rays
     std::array<PartCorner, 3> corners;
     std::array<std::vector<std::size_t>, 3> segment;  // per corner and history: of the corner's look; empty
@@ -41,8 +41,9 @@ struct DividedFacet {
 /// A facet to divide.
 struct FacetToDivide {
     std::array<PartCorner, 3> corners;
-    std::array<Vec3, 3> points;  // world
-    bool front = true;           // the side that it shows
+    std::array<Vec3, 3> points;        // world
+    LookSide side = LookSide::kFront;  // that it shows
+    double reach = 0;  // how far the surface may lie from the facet; 0: as far as the longest edge is long
 };
 
 /// Child k < 3 of a part keeps corner k of it, child 3 has the middles of its edges for corners, opposite to

@@ -15,7 +15,7 @@ struct HistoryQuery {
     std::function<Ray(const Vec2& pixel)> camera_ray;  // exact; pixels from the film's top left
     std::vector<PathSegment> history;  // a chain: each segment the parent of the next; only steps, colours
                                        // and `ends` are asked, and the last one ends
-    Vec3 point{0};  // world
+    Vec3 point{0};                     // world
 };
 
 /// One image of the point.

@@ -7,11 +7,14 @@
 namespace trilens {
 namespace {
 
-FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamera& camera, int resolution) {
+FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamera& camera,
+                        const FrameParams& params) {
     const Optic& optic = world.optics[index];
     const RenderSettings& settings = world.scene.render;
     FramedOptic framed;
-    framed.facets = optic_facets(world, index, grid_resolution(optic, resolution));
+    framed.resolution = grid_resolution(optic, params.resolution);
+    framed.grid = params.grid.value_or(world.scene.meshes[optic.mesh].grid);
+    framed.facets = optic_facets(world, index, framed.resolution);
     const auto add = [&](Path path) {
         framed.paths.push_back(
             make_path_mesh(path, framed.facets->grid(), camera, world.scene.materials[optic.material].ior));
@@ -24,15 +27,15 @@ FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamer
 }  // namespace
 
 Frame make_frame(const World& world, const FrameParams& params, const Warn& warn) {
-    return make_frame(world, make_camera_rays(world.scene, params.camera), params.resolution, warn);
+    return make_frame(world, make_camera_rays(world.scene, params.camera), params, warn);
 }
 
-Frame make_frame(const World& world, CameraRays camera, int resolution, const Warn& warn) {
+Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn) {
     Frame frame;
     frame.camera = std::move(camera);
-    check_facet_count(world, resolution);
+    check_facet_count(world, params.resolution);
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
-        frame.optics.push_back(frame_optic(world, i, *frame.camera.linear, resolution));
+        frame.optics.push_back(frame_optic(world, i, *frame.camera.linear, params));
         const std::vector<Vec3>& normals = frame.optics.back().facets->grid().corner_normal;
         const auto bad = std::count(normals.begin(), normals.end(), Vec3(0));
         if (bad > 0 && warn)
@@ -46,6 +49,15 @@ PathCamera path_camera(const LinearCamera& camera) {
     PathCamera of_paths;
     of_paths.parallel = camera.parallel;
     of_paths.screen = [&camera](const Vec3& point) { return screen_from_world(camera, point); };
+    // The rows of the map, inverted; parallel cameras have w = 1, their depth is free: the image plane's.
+    const Mat3 rows(Vec3(camera.screen_x), Vec3(camera.screen_y),
+                    camera.parallel ? camera.view_direction : Vec3(camera.screen_w));
+    of_paths.point = [&camera, inverse = glm::inverse(glm::transpose(rows))](const Vec3& screen) {
+        const Vec3 offset(camera.screen_x.w, camera.screen_y.w,
+                          camera.parallel ? -dot(camera.view_direction, camera.eye) : camera.screen_w.w);
+        const Vec3 wanted = camera.parallel ? Vec3(Vec2(screen) / screen.z, 0) : screen;
+        return inverse * (wanted - offset);
+    };
     of_paths.ray = [&camera](const Vec3&, const Vec3& chord) {
         const Vec3 incident = incident_direction(camera, chord);
         return Ray{chord - incident, incident};
@@ -60,6 +72,34 @@ Looking looking_at(const World& world, const Frame& frame, std::size_t optic) {
             path_camera(*frame.camera.linear)};
 }
 
+/// The optic's bounds on the film.
+FilmWindow film_window(const World& world, const LinearCamera& camera, const SurfaceGrid& grid, int n) {
+    const Vec2 film(world.scene.film.width, world.scene.film.height);
+    FilmWindow window{Vec2(1e300), Vec2(-1e300), n};
+    Box box;
+    double depth = 0;
+    for (const Vec3& point : grid.points) {
+        const Vec3 s = screen_from_world(camera, point);
+        box.include(point);
+        depth += std::max(s.z, 0.0) / static_cast<double>(grid.points.size());
+        if (s.z > 0) {
+            window.low = glm::min(window.low, Vec2(s) / s.z);
+            window.high = glm::max(window.high, Vec2(s) / s.z);
+        } else {  // it reaches behind the eye
+            window.low = Vec2(0);
+            window.high = film;
+        }
+    }
+    // A pixel more, for the exact outline stands over the facets' by less than that at useful n.
+    window.low = glm::clamp(window.low - 1.0, Vec2(0), film);
+    window.high = glm::clamp(window.high + 1.0, Vec2(0), film);
+    if (!(window.low.x < window.high.x && window.low.y < window.high.y))
+        window.low = Vec2(0), window.high = film;
+    window.depth = depth > 0 ? depth : 1;
+    window.reach = length(box.size());
+    return window;
+}
+
 Vec3 middle_of(const SurfaceGrid& grid) {
     Box box;
     for (const Vec3& point : grid.points) box.include(point);
@@ -72,6 +112,9 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
     const FramedOptic& framed = frame.optics[optic];
     const SurfaceGrid& grid = framed.facets->grid();
     const Looking looking = looking_at(world, frame, optic);
+    if (framed.grid == GridKind::kScreen)
+        return std::make_unique<OpticPaths>(
+            looking, film_window(world, *frame.camera.linear, grid, framed.resolution), DivideParams{});
     if (world.scene.render.max_depth > 0) return std::make_unique<OpticPaths>(looking, grid, DivideParams{});
     return std::make_unique<OpticPaths>(looking, grid, find_path(framed, Path::kReflect),
                                         find_path(framed, Path::kRefract));

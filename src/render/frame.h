@@ -16,6 +16,8 @@ namespace trilens {
 /// One optic as facets that the camera sees. Facets of the RayMeshes are those of the grid.
 struct FramedOptic {
     std::shared_ptr<const OpticFacets> facets;
+    int resolution = 0;
+    GridKind grid = GridKind::kSurface;  // where its facets for whole paths lie
     std::vector<PathMesh> paths;  // those that the scene draws and the optic has, up to the first optic
 };
 
@@ -27,8 +29,8 @@ struct Frame {
 /// Throws InputError where the optics together have too many facets to hold, or the camera cannot show them.
 Frame make_frame(const World& world, const FrameParams& params, const Warn& warn);
 
-/// The same for a camera's rays that no scene describes; `resolution` as in FrameParams.
-Frame make_frame(const World& world, CameraRays camera, int resolution, const Warn& warn);
+/// The same for a camera's rays that no scene describes; FrameParams::camera is not asked.
+Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn);
 
 /// The camera as facets ask it. `camera` must live longer.
 PathCamera path_camera(const LinearCamera& camera);

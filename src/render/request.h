@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/grid_kind.h"
 #include "base/image.h"
 #include "projector/classic_params.h"
 
@@ -12,8 +14,9 @@ namespace trilens {
 
 /// What a picture's rays depend on.
 struct FrameParams {
-    std::size_t camera = 0;  // index into Scene::cameras
-    int resolution = 0;      // of every optic's grid, 1..1024; 0: each optic's own
+    std::size_t camera = 0;        // index into Scene::cameras
+    int resolution = 0;            // of every optic's grid, 1..1024; 0: each optic's own
+    std::optional<GridKind> grid = std::nullopt;  // of every optic; none: each optic's own
 };
 
 /// kExact: the projector. kClassic: the thesis' engine. kFacetsTruth: Embree on the rays of the same facets.
