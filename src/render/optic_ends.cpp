@@ -137,6 +137,7 @@ void NodeDrawer::draw(Id index, OpticEnds& out) {
                     if (goes_on[s]) continue;
                 }
                 finish(node, s, weights, ends[i]);
+                ends[i].node = index;
                 ends[i].first_step = first_step;
                 ends[i].step_count = node.step_count;
                 ends[i].hit = hits[s];
@@ -211,6 +212,7 @@ OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, con
     for (std::size_t s = 0; s < leaf.size(); ++s) {
         if (leaf[s] == kNone) continue;
         const PathLeaf& of_sample = paths.leaves()[leaf[s]];
+        views.samples[s].leaf = leaf[s];
         views.samples[s].level = of_sample.level;
         views.samples[s].cut = paths.cut();
         if (of_sample.method == LeafMethod::kTraced) traced.push_back(static_cast<Id>(s));

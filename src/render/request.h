@@ -14,8 +14,8 @@ namespace trilens {
 
 /// What a picture's rays depend on.
 struct FrameParams {
-    std::size_t camera = 0;        // index into Scene::cameras
-    int resolution = 0;            // of every optic's grid, 1..1024; 0: each optic's own
+    std::size_t camera = 0;                       // index into Scene::cameras
+    int resolution = 0;                           // of every optic's grid, 1..1024; 0: each optic's own
     std::optional<GridKind> grid = std::nullopt;  // of every optic; none: each optic's own
 };
 
