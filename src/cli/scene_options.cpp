@@ -119,15 +119,17 @@ std::vector<Option> scene_overrides(SceneOptions& options) {
 }
 
 std::vector<Option> window_options(SceneOptions& options) {
-    return {{.names = "--crop",
-             .target = &options.crop,
-             .help = "draw this window of pixels only",
-             .value = "x0,y0,x1,y1"},
-            {.names = "--aov",
-             .target = &options.aov,
-             .help = "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract,path,stat; "
-                     "without it, all but the last two",
-             .value = "LIST"}};
+    return {
+        {.names = "--crop",
+         .target = &options.crop,
+         .help = "draw this window of pixels only",
+         .value = "x0,y0,x1,y1"},
+        {.names = "--aov",
+         .target = &options.aov,
+         .help =
+             "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract,path,stat,magnification; "
+             "without it, all but the last three",
+         .value = "LIST"}};
 }
 
 SceneRequest scene_request(const SceneOptions& options) {

@@ -51,6 +51,11 @@ struct PathEnd {
     Vec3 weight{1};                // of the light, for all that happens behind the first optic
     Ray ray;                       // world frame; not unit
     Hit hit;                       // of the scene's objects; unset where the ray meets none
+
+    /// Square pixels of the film per unit of area at right angles to the ray where it meets the object:
+    /// positive where orientations are as in a direct view, negative where they are mirrored; it changes its
+    /// sign through infinity, at folds (the eye's caustics). Of the facet, in closed form; 0: not known.
+    double magnification = 0;
 };
 
 }  // namespace trilens

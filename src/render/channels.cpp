@@ -35,6 +35,7 @@ const std::vector<std::string>& layer_names() {
         for (const Path path : kPaths) all.push_back(path_name(path));
         all.push_back("path");
         all.push_back("stat");
+        all.push_back("magnification");
         return all;
     }();
     return names;
@@ -52,7 +53,7 @@ std::size_t Canvas::add_ids(const std::string& name) {
 
 Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std::move(image)) {
     const auto wanted = [&](const std::string& layer) {
-        if (layers.empty()) return layer != "path" && layer != "stat";
+        if (layers.empty()) return layer != "path" && layer != "stat" && layer != "magnification";
         return std::find(layers.begin(), layers.end(), layer) != layers.end();
     };
     for (std::size_t c = 0; c < 4; ++c) rgba_[c] = add_floats(kColours[c]);
@@ -79,6 +80,7 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
         end.y = add_floats(layer + "P.Y");
         end.z = add_floats(layer + "P.Z");
         end.length = add_floats(layer + "P.length");
+        if (wanted("magnification")) end.area = add_floats(layer + "M.area");
         ends_.push_back(end);
     }
     if (wanted("path")) path_count_ = add_ids("path.count");
@@ -113,6 +115,8 @@ void Canvas::put_end(const World& world, const PathEnd* end, const EndChannels& 
     floats(channels.x)[pixel] = static_cast<float>(point.x);
     floats(channels.y)[pixel] = static_cast<float>(point.y);
     floats(channels.z)[pixel] = static_cast<float>(point.z);
+    if (channels.area != kNone)
+        floats(channels.area)[pixel] = end ? static_cast<float>(end->magnification) : 0;
     floats(channels.length)[pixel] = seen ? static_cast<float>(path_length(*end)) : 0.0f;
 }
 

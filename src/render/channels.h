@@ -30,6 +30,7 @@ class Canvas {
     struct EndChannels {
         Path path = Path::kReflect;
         std::size_t object = kNone, primitive = kNone, x = kNone, y = kNone, z = kNone, length = kNone;
+        std::size_t area = kNone;
     };
 
     std::size_t add_floats(const std::string& name);

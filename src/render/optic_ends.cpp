@@ -54,6 +54,11 @@ std::vector<Id> leaves_of_samples(const OpticPaths& paths, const FacetSamples& o
     return leaf;
 }
 
+Vec3 share_of(const FacetWeights& weights, const Vec2& at) {
+    const Vec3 e = weights.unnormalised(at.x, at.y);
+    return e / (e.x + e.y + e.z);
+}
+
 /// One history drawn: for each sample of it what it sees, and whether its path goes on.
 class NodeDrawer {
   public:
@@ -89,9 +94,7 @@ std::vector<Id> NodeDrawer::owners(const PathNode& node) const {
 
 void NodeDrawer::finish(const PathNode& node, Id sample, const FacetWeights& weights, PathEnd& end) const {
     const Id leaf = leaf_[sample];
-    const Vec2 at = grid_.position(sample);
-    const Vec3 e = weights.unnormalised(at.x, at.y);
-    const Vec3 share = e / (e.x + e.y + e.z);
+    const Vec3 share = share_of(weights, grid_.position(sample));
     const IdTriple& corner = node.mesh.facets[leaf];
     end.path = node.path;
     end.principal = node.principal[leaf];
@@ -101,6 +104,24 @@ void NodeDrawer::finish(const PathNode& node, Id sample, const FacetWeights& wei
     end.weight = Vec3(0);
     for (int k = 0; k < 3; ++k) end.weight += share[k] * node.weight[corner[static_cast<std::size_t>(k)]];
     end.weight = glm::max(end.weight, Vec3(0));
+}
+
+/// By the derivatives of origin(w) + t direction(w) and of the film position with respect to the weights.
+double magnification(const RayMesh& mesh, Id facet, const Vec3& weights, double t) {
+    const IdTriple& corner = mesh.facets[facet];
+    const Ray &a = mesh.rays[corner[0]], &b = mesh.rays[corner[1]], &c = mesh.rays[corner[2]];
+    const Vec3 &sa = mesh.screen[corner[0]], &sb = mesh.screen[corner[1]], &sc = mesh.screen[corner[2]];
+    const Vec3 along_b = b.origin - a.origin + t * (b.direction - a.direction);
+    const Vec3 along_c = c.origin - a.origin + t * (c.direction - a.direction);
+    const Vec3 ray = weights.x * a.direction + weights.y * b.direction + weights.z * c.direction;
+    const double area = triple(normalize_or_zero(ray), along_b, along_c);
+
+    const Vec3 screen = weights.x * sa + weights.y * sb + weights.z * sc;
+    const Vec2 pixel = Vec2(screen) / screen.z;
+    const Vec2 film_b = (Vec2(sb - sa) - pixel * (sb.z - sa.z)) / screen.z;
+    const Vec2 film_c = (Vec2(sc - sa) - pixel * (sc.z - sa.z)) / screen.z;
+    const double film = film_b.x * film_c.y - film_b.y * film_c.x;
+    return area != 0 && std::isfinite(film / area) ? film / area : 0;
 }
 
 void NodeDrawer::draw(Id index, OpticEnds& out) {
@@ -128,11 +149,10 @@ void NodeDrawer::draw(Id index, OpticEnds& out) {
             for (std::size_t i = owned.first[l]; i < owned.first[l + 1]; ++i) {
                 const Id s = owned.sample[i];
                 if (!node.ends[l]) {
-                    const Vec2 at = grid_.position(s);
-                    const Vec3 e = weights.unnormalised(at.x, at.y);
+                    const Vec3 share = share_of(weights, grid_.position(s));
                     double next = 0;
                     for (int k = 0; k < 3; ++k)
-                        next += e[k] / (e.x + e.y + e.z) * node.next[corner[static_cast<std::size_t>(k)]];
+                        next += share[k] * node.next[corner[static_cast<std::size_t>(k)]];
                     goes_on[s] = !(hits[s].seen() && hits[s].t < next);
                     if (goes_on[s]) continue;
                 }
@@ -141,6 +161,9 @@ void NodeDrawer::draw(Id index, OpticEnds& out) {
                 ends[i].first_step = first_step;
                 ends[i].step_count = node.step_count;
                 ends[i].hit = hits[s];
+                if (hits[s].seen())
+                    ends[i].magnification = magnification(node.mesh, static_cast<Id>(l),
+                                                          share_of(weights, grid_.position(s)), hits[s].t);
                 is_end[i] = 1;
             }
         }

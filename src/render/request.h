@@ -54,7 +54,8 @@ std::string classic_name(const ClassicParams& params);
 /// The window of the film that is drawn, in pixels [x0, x1) x [y0, y1), and its layers.
 struct LayerRequest {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
-    // Names to keep beside RGBA, of layer_names(); empty: all but "path" and "stat".
+    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat" and
+    // "magnification".
     std::vector<std::string> layers;
 };
 
@@ -85,8 +86,8 @@ struct Picture {
     double prepare_seconds = 0, draw_seconds = 0;
 };
 
-/// The layers that may be asked for beside R G B A: "Z", "optic", "direct", the paths' names, "path" and
-/// "stat".
+/// The layers that may be asked for beside R G B A: "Z", "optic", "direct", the paths' names, "path",
+/// "stat" and "magnification" (which goes with a path's own layer).
 const std::vector<std::string>& layer_names();
 
 }  // namespace trilens

@@ -145,3 +145,51 @@ TEST_CASE("what another optic cuts off is no image, and depth 0 knows no other o
     const std::vector<std::size_t> first = histories(scene);
     CHECK(std::all_of(first.begin(), first.end(), [](std::size_t steps) { return steps == 1; }));
 }
+
+TEST_CASE("the magnification that facets have in closed form is that of the exact images", "[laws]") {
+    const Renderer renderer(two_balls());
+    PictureRequest picture;
+    picture.frame.resolution = 48;
+    const PixelExplanation none = renderer.explain(picture, 0, 0);
+    CHECK(none.views.ends.empty());
+    ProjectRequest request;
+    request.derivatives = true;
+    struct Seen {
+        std::vector<Step> steps;
+        Vec2 pixel{0};
+        Vec3 towards{0};  // unit
+        double magnification = 0;
+    };
+    std::vector<Seen> seen;
+    std::vector<Vec3> points;
+    for (int y = 9; y < 48; y += 6)
+        for (int x = 8; x < 64; x += 5) {
+            const PixelExplanation pixel = renderer.explain(picture, x, y);
+            for (const PathEnd& end : pixel.views.ends_of(pixel.view())) {
+                if (!end.principal || !end.hit.seen() || end.magnification == 0) continue;
+                const auto steps = pixel.views.steps_of(end);
+                seen.push_back({{steps.begin(), steps.end()},
+                                {x + 0.5, y + 0.5},
+                                normalize(end.ray.direction),
+                                end.magnification});
+                points.push_back(renderer.seen_triangle(end.hit).position);
+            }
+        }
+    const std::vector<PointProjection> found = renderer.project(points, request);
+    std::size_t mirrored = 0;
+    std::vector<double> error;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const WorldImage* image = image_at(found[i], seen[i].steps, seen[i].pixel, 0.5);
+        if (!image || !image->has_derivative) continue;
+        // The film's area for a unit square at right angles to the ray.
+        const double exact = dot(seen[i].towards, cross(image->derivative[0], image->derivative[1]));
+        error.push_back(std::fabs(seen[i].magnification / exact - 1));
+        mirrored += exact < 0;
+    }
+    const std::size_t compared = error.size();
+    std::sort(error.begin(), error.end());
+    REQUIRE(compared > 20);
+    CHECK(mirrored > 5);
+    CHECK(error[compared / 2] < 0.02);
+    CHECK(error[compared * 9 / 10] < 0.1);
+}
