@@ -362,6 +362,10 @@ class Fit:
     @property
     def order(self) -> float: ...
     @property
+    def order_low(self) -> Optional[float]: ...
+    @property
+    def order_high(self) -> Optional[float]: ...
+    @property
     def constant(self) -> float: ...
     @property
     def r2(self) -> float: ...
@@ -379,7 +383,7 @@ def fit_power_law(
 
 class SweepPoint:
     @property
-    def n(self) -> int: ...
+    def n(self) -> float: ...
     @property
     def value(self) -> float: ...
     @property
@@ -393,6 +397,14 @@ class SweepFit:
     def layer(self) -> str: ...
     @property
     def optic(self) -> str: ...
+    @property
+    def axis(self) -> str: ...
+    @property
+    def group(self) -> dict[str, str]: ...
+    @property
+    def order_low(self) -> Optional[float]: ...
+    @property
+    def order_high(self) -> Optional[float]: ...
     @property
     def order(self) -> Optional[float]: ...
     @property
@@ -420,6 +432,10 @@ class OpticDisplacement:
 
 class SweepRun:
     @property
+    def id(self) -> str: ...
+    @property
+    def point(self) -> dict[str, str]: ...
+    @property
     def n(self) -> int: ...
     @property
     def state(self) -> str: ...
@@ -446,26 +462,32 @@ class SweepSummary:
 def sweep(
     scene: _File,
     folder: _File,
-    over: Union[str, Sequence[int]] = "resolution=1..16:x2",
+    over: Union[str, Sequence[int], Sequence[str], Mapping[str, Union[str, Sequence[Any]]]] = "resolution=1..16:x2",
     *,
     truth: str = "limit",
     camera: Optional[str] = None,
     overrides: _Overrides = {},
     shard: str = "0/1",
     title: str = "",
+    zip: bool = False,
+    jobs: int = 1,
+    repeats: int = 1,
     progress: _Progress = None,
     warn: _Warn = None,
 ) -> SweepSummary: ...
 def plan_sweep(
     scene: _File,
     folder: _File,
-    over: Union[str, Sequence[int]] = "resolution=1..16:x2",
+    over: Union[str, Sequence[int], Sequence[str], Mapping[str, Union[str, Sequence[Any]]]] = "resolution=1..16:x2",
     *,
     truth: str = "limit",
     camera: Optional[str] = None,
     overrides: _Overrides = {},
     shard: str = "0/1",
     title: str = "",
+    zip: bool = False,
+    jobs: int = 1,
+    repeats: int = 1,
     progress: _Progress = None,
     warn: _Warn = None,
 ) -> str: ...
