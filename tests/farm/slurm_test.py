@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A sweep as a Slurm job array on this machine: two nodes, one of which dies in the middle.
 
-usage: slurm_test.py TRILENS SCRATCH_FOLDER. Starts a controller and two daemons of its own, hands in what
+usage: slurm_test.py TRILENS SCRATCH_FOLDER [JOBS, a multiple of 4]. Starts a controller and two daemons of its own, hands in what
 `trilens sweep submit --print` writes, kills one node with its jobs, and compares the summary with that of an
 unbroken run. Exits 77 where Slurm is missing or cannot run here.
 """
@@ -49,6 +49,7 @@ NodeName=n[0-1] NodeHostname=localhost Port=[{first}-{second}] CPUs=1 RealMemory
 PartitionName=main Nodes=n[0-1] Default=YES MaxTime=INFINITE State=UP
 """
 JOBS = 200
+SECONDS_PER_JOB = 30  # at most, on a busy machine
 # Of the machine, and so of no summary that is compared.
 MACHINE = ("t_", "peak_", "machine_", "jobs", "threads", "repeats")
 
@@ -151,7 +152,7 @@ def done_runs(folder):
     return sum(os.path.exists(f"{folder}/runs/{run}/DONE") for run in os.listdir(folder + "/runs"))
 
 
-def main(trilens, scratch):
+def main(trilens, scratch, jobs):
     if not all(shutil.which(name) for name in ("slurmctld", "slurmd", "sbatch", "squeue")):
         skip("Slurm is not installed")
     shutil.rmtree(scratch, ignore_errors=True)
@@ -159,34 +160,34 @@ def main(trilens, scratch):
     scene = scratch + "/scene.json"
     with open(scene, "w") as file:
         file.write(call(trilens, "scene", "example", "mirror-sphere"))
-    axes = ["--over", "/cameras/0/yfov=30..79:+1", "--over", "engine=exact,classic", "--over", "resolution=1,2",
+    axes = ["--over", f"/cameras/0/yfov=30..{29 + jobs // 4}:+1", "--over", "engine=exact,classic", "--over", "resolution=1,2",
             "--size", "48x36", "--spp", "1"]
     whole, farm = scratch + "/whole", scratch + "/farm"
     call(trilens, "sweep", "run", scene, *axes, "-o", whole, "-q", "-j", "2")
     script = call(trilens, "sweep", "submit", scene, *axes, "-o", farm, "--system", "slurm", "--print")
     with open(scratch + "/submit.sh", "w") as file:
         file.write(script)
-    assert f"#SBATCH --array=0-{JOBS - 1}\n" in script, script
+    assert f"#SBATCH --array=0-{jobs - 1}\n" in script, script
 
     cluster = Cluster(scratch + "/slurm")
     try:
         started = time.monotonic()
         call("sbatch", scratch + "/submit.sh")
-        assert cluster.wait(lambda: done_runs(farm) >= JOBS // 4, 300), "the array does not get going"
+        assert cluster.wait(lambda: done_runs(farm) >= jobs // 4, jobs * SECONDS_PER_JOB), "the array does not get going"
         before = done_runs(farm)
         killed = cluster.kill_node("n1")
-        assert 0 < before < JOBS, "the node was to die in the middle"
-        ended = cluster.wait(lambda: not call("squeue", "-h").strip() and os.path.exists(farm + "/report.html"), 900)
+        assert 0 < before < jobs, "the node was to die in the middle"
+        ended = cluster.wait(lambda: not call("squeue", "-h").strip() and os.path.exists(farm + "/report.html"), jobs * SECONDS_PER_JOB)
         states = call("squeue")
-        assert ended, f"{done_runs(farm)} of {JOBS} runs are done, and in the queue is\n{states}"
+        assert ended, f"{done_runs(farm)} of {jobs} runs are done, and in the queue is\n{states}"
         seconds = time.monotonic() - started
         assert call("sinfo", "-h", "-n", "n1", "-o", "%t").startswith("down"), "the killed node is not down"
     finally:
         cluster.end()
-    assert done_runs(farm) == JOBS
+    assert done_runs(farm) == jobs
     assert comparable(farm) == comparable(whole), "the farm's summary is another than that of an unbroken run"
-    print(f"{JOBS} jobs; a node with {killed} processes killed after {before} runs; all done after {seconds:.0f} s; same summary")
+    print(f"{jobs} jobs; a node with {killed} processes killed after {before} runs; all done after {seconds:.0f} s; same summary")
 
 
 if __name__ == "__main__":
-    main(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]))
+    main(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else JOBS)
