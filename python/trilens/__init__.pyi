@@ -366,6 +366,10 @@ class Fit:
     @property
     def order(self) -> float: ...
     @property
+    def order_low(self) -> Optional[float]: ...
+    @property
+    def order_high(self) -> Optional[float]: ...
+    @property
     def constant(self) -> float: ...
     @property
     def r2(self) -> float: ...
@@ -383,7 +387,7 @@ def fit_power_law(
 
 class SweepPoint:
     @property
-    def n(self) -> int: ...
+    def n(self) -> float: ...
     @property
     def value(self) -> float: ...
     @property
@@ -397,6 +401,14 @@ class SweepFit:
     def layer(self) -> str: ...
     @property
     def optic(self) -> str: ...
+    @property
+    def axis(self) -> str: ...
+    @property
+    def group(self) -> dict[str, str]: ...
+    @property
+    def order_low(self) -> Optional[float]: ...
+    @property
+    def order_high(self) -> Optional[float]: ...
     @property
     def order(self) -> Optional[float]: ...
     @property
@@ -424,6 +436,10 @@ class OpticDisplacement:
 
 class SweepRun:
     @property
+    def id(self) -> str: ...
+    @property
+    def point(self) -> dict[str, str]: ...
+    @property
     def n(self) -> int: ...
     @property
     def state(self) -> str: ...
@@ -450,7 +466,7 @@ class SweepSummary:
 def sweep(
     scene: Union[_File, Scene],
     folder: _File,
-    over: Union[str, Sequence[int]] = "resolution=1..16:x2",
+    over: Union[str, Sequence[int], Sequence[str], Mapping[str, Union[str, Sequence[Any]]]] = "resolution=1..16:x2",
     *,
     truth: str = "limit",
     camera: Optional[str] = None,
@@ -458,13 +474,16 @@ def sweep(
     shard: str = "0/1",
     title: str = "",
     replace: bool = False,
+    zip: bool = False,
+    jobs: int = 1,
+    repeats: int = 1,
     progress: _Progress = None,
     warn: _Warn = None,
 ) -> SweepSummary: ...
 def plan_sweep(
     scene: Union[_File, Scene],
     folder: _File,
-    over: Union[str, Sequence[int]] = "resolution=1..16:x2",
+    over: Union[str, Sequence[int], Sequence[str], Mapping[str, Union[str, Sequence[Any]]]] = "resolution=1..16:x2",
     *,
     truth: str = "limit",
     camera: Optional[str] = None,
@@ -472,6 +491,9 @@ def plan_sweep(
     shard: str = "0/1",
     title: str = "",
     replace: bool = False,
+    zip: bool = False,
+    jobs: int = 1,
+    repeats: int = 1,
     progress: _Progress = None,
     warn: _Warn = None,
 ) -> str: ...

@@ -48,6 +48,12 @@ struct EngineChoice {
 /// "exact", "classic", "facets", "limit", "envmap", "planar".
 std::string engine_name(Engine engine);
 
+/// The names of all engines.
+const std::vector<std::string>& engine_names();
+
+/// The engine of that name. Throws UsageError, with the nearest name, where there is none.
+Engine find_engine(const std::string& name);
+
 /// How the classic engine draws: "arcs", "slices 4, clip screen".
 std::string classic_name(const ClassicParams& params);
 

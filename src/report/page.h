@@ -20,7 +20,8 @@ std::string html_pictures(const std::vector<PagePicture>& pictures);
 /// A two-column list.
 std::string html_facts(const Facts& facts);
 
-/// A table; every row has as many cells as there are columns. All is text.
+/// A table; every row has as many cells as there are columns. All is text. With scripts a click on a column's
+/// head sorts by it, and of eight rows and more a field shows those that hold the words typed there.
 std::string html_table(const std::vector<std::string>& columns,
                        const std::vector<std::vector<std::string>>& rows);
 

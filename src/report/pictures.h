@@ -27,6 +27,9 @@ struct PagePicture {
     std::vector<unsigned char> png = {};      // empty: there is none, and the caption says why
     std::optional<ColourLegend> legend = {};  // of a colour-mapped one
     bool is_over_previous = false;  // shows the same as the picture before it: a slider between them
+    std::string file = {};  // where the page finds it, a path from its folder; empty: it carries the bytes
+
+    bool is_there() const { return !png.empty() || !file.empty(); }
 };
 
 /// R G B of the whole film (black outside the data window), scaled down to kLargestPicture where wider;

@@ -114,7 +114,7 @@ TEST_CASE("sweep: a folder of one sweep refuses another, names both, and stays a
         named = other.params.subject.truth = "facets";
     }
     SECTION("another axis") {
-        named = other.params.axis.name = "/materials/0/ior";
+        named = other.params.axes.axes[0].kind.name = "/materials/0/ior";
     }
     CHECK_THROWS_AS(other.run(), UsageError);
     CHECK_THROWS_AS(plan_sweep(other.params, other.callbacks), UsageError);
@@ -139,7 +139,7 @@ TEST_CASE("sweep: the same sweep goes on in its folder: more values, an edited s
     fake.params.subject.scene_digest = "digest 1";
     fake.run();
     SECTION("more values") {
-        fake.params.axis.values = {1, 2, 4};
+        fake.params.axes = trilens_test::resolution_axes({1, 2, 4});
     }
     SECTION("edited") {
         fake.params.subject.scene_digest = "digest 2";
@@ -222,15 +222,15 @@ TEST_CASE("sweep: one process of several (started by the tests of shared folders
         replace_text_file(log, read_whole_file(log).value_or("") + line + "\n");
     };
     FakeSweep fake(folder + "/sweep", {1, 2, 4, 8, 16});
-    fake.callbacks.truth_per_run = std::getenv("TRILENS_TEST_WORKER_TRUTH") == std::string("per run");
+    fake.truth_per_run = std::getenv("TRILENS_TEST_WORKER_TRUTH") == std::string("per run");
     fake.before_render = [&](int n) {
         note("render " + std::to_string(n));
         if (n == hang_at) replace_text_file(folder + "/hanging", "");
         while (n == hang_at) pause();
         if (n == 4) throw ComputationError("a run that fails");
     };
-    fake.callbacks.trace = [&](int n) {
-        note(fake.callbacks.truth_per_run ? "trace " + std::to_string(n) : "trace");
+    fake.trace = [&](int n) {
+        note(fake.truth_per_run ? "trace " + std::to_string(n) : "trace");
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         return trilens_test::fake_image(0, 0);
     };
@@ -298,10 +298,10 @@ TEST_CASE("sweep: what a killed process was at is done by the next, which waits 
 
 TEST_CASE("sweep: a truth of each run: traced at its n, kept by itself, and a failure of its run alone") {
     FakeSweep fake(trilens_test::scratch_dir("folder_truths"), {2, 4, 8});
-    fake.callbacks.truth_per_run = true;
+    fake.truth_per_run = true;
     std::vector<int> traced;
     bool is_hard = true;
-    fake.callbacks.trace = [&](int n) {
+    fake.trace = [&](int n) {
         traced.push_back(n);
         if (n == 4 && is_hard) throw ComputationError("no truth");
         const double fall = std::pow(n, -2);
@@ -322,7 +322,7 @@ TEST_CASE("sweep: a truth of each run: traced at its n, kept by itself, and a fa
     CHECK(summary.runs[0].plan.truth != summary.runs[1].plan.truth);
 
     // Shared truths are one.
-    fake.callbacks.truth_per_run = false;
+    fake.truth_per_run = false;
     fake.params.replace = true;
     summary = fake.run();
     CHECK(summary.runs[0].plan.truth == summary.runs[2].plan.truth);
