@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "suite/render_test.h"
 
 namespace trilens {
 namespace {
@@ -43,6 +44,15 @@ std::string name_of(const fs::path& test, const std::string& folder, bool is_alo
     return fs::weakly_canonical(test, none).filename().generic_string();
 }
 
+/// A test whose test.json is broken has none: it is run, and says what is wrong.
+std::vector<std::string> tags_of(const std::string& folder) {
+    try {
+        return read_render_test(folder).tags;
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
 /// `*` is any text, `?` one character.
 bool is_glob_of(const std::string& pattern, const std::string& text) {
     std::size_t p = 0, t = 0, star = std::string::npos, from = 0;
@@ -71,7 +81,8 @@ std::vector<FoundTest> find_tests(const std::vector<std::string>& folders) {
         for (const fs::path& test : tests_below(folder)) {
             std::error_code none;
             if (known.insert(fs::weakly_canonical(test, none).string()).second)
-                found.push_back({name_of(test, folder, folders.size() == 1), test.string()});
+                found.push_back(
+                    {name_of(test, folder, folders.size() == 1), test.string(), tags_of(test.string())});
         }
     }
     if (found.empty()) {
@@ -79,6 +90,17 @@ std::vector<FoundTest> find_tests(const std::vector<std::string>& folders) {
         for (const std::string& folder : folders) named += (named.empty() ? "" : ", ") + folder;
         throw InputError(named, "", "holds no test: a test is a folder with a test.json");
     }
+    return found;
+}
+
+std::vector<FoundTest> meant_tests(const std::vector<std::string>& folders, const std::string& pattern) {
+    std::vector<FoundTest> found = find_tests(folders);
+    const std::size_t all = found.size();
+    std::erase_if(found,
+                  [&](const FoundTest& test) { return !matches_pattern(pattern, test.name, test.tags); });
+    if (found.empty())
+        throw UsageError("none of the " + std::to_string(all) + " tests has \"" + pattern +
+                         "\" in its name or tags");
     return found;
 }
 

@@ -67,7 +67,6 @@ void add_orders(const RenderTest& test, const Image& reference, const std::vecto
                 std::vector<NamedMetric>& metrics) {
     std::map<std::string, std::vector<FitPoint>> points = {{"", {}}, {"reflect", {}}, {"refract", {}}};
     for (const TestPicture& picture : pictures) {
-        if (!asks_for_order(test)) break;
         const CommonChannels common = keep_common_channels(reference, picture.image);
         const std::vector<LayerComparison> layers =
             compare_layers(common.reference, common.test, {test.radius, test.compare.mask_object});
@@ -99,7 +98,7 @@ Judgement judge(const RenderTest& test, const Image& reference, std::vector<Test
         const std::vector<LayerComparison> layers =
             compare_layers(common.reference, common.test, {test.radius, test.compare.mask_object});
         judgement.metrics = named_metrics(comparison, layers);
-        if (pictures.size() > 1) add_orders(test, reference, pictures, judgement.metrics);
+        if (asks_for_order(test)) add_orders(test, reference, pictures, judgement.metrics);
         if (comparison.verdict == Verdict::kFailure)
             judgement.reasons.insert(judgement.reasons.end(), comparison.reasons.begin(),
                                      comparison.reasons.end());

@@ -171,6 +171,7 @@ std::vector<MetricLimit> read_limits(const TestReader& reader, std::size_t resol
     std::vector<MetricLimit> all;
     if (!reader.json.contains("max")) return all;
     if (!reader.json["max"].is_object()) reader.fail("max", "expected an object of metric: number");
+    if (reader.json["max"].empty()) reader.fail("max", "limits nothing, so that nothing could fail");
     const std::vector<std::string> known = limited_names();
     for (const auto& [metric, value] : reader.json["max"].items()) {
         if (std::find(known.begin(), known.end(), metric) == known.end())
@@ -236,7 +237,7 @@ RenderTest read_render_test(const std::string& folder) {
 
     RenderTest test;
     test.folder = folder;
-    const auto beside = [&](const std::string& name) { return (fs::path(folder) / name).string(); };
+    const auto beside = [&](const std::string& name) { return (fs::path(folder) / name).lexically_normal().string(); };
     test.scene = beside(reader.text_or("scene", "scene.json"));
     test.reference = beside(reader.text_or("reference", "ref/main.exr"));
     test.against = read_against(reader);

@@ -1,5 +1,6 @@
 #include "suite/run_test.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <new>
 #include <system_error>
@@ -98,7 +99,11 @@ TestOutcome run_test(const FoundTest& found, const SuiteCallbacks& callbacks, co
             return outcome;
         }
         if (options.update) result.update = update_reference(test, callbacks);
-        const auto note = [&](const std::string& message) { result.notes.push_back(message); };
+        // Every picture of the scene says the same.
+        const auto note = [&](const std::string& message) {
+            if (std::find(result.notes.begin(), result.notes.end(), message) == result.notes.end())
+                result.notes.push_back(message);
+        };
         judge_all(test, callbacks.open(test, note), callbacks, options, outcome);
     } catch (const Interrupted&) {
         throw;

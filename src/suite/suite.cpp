@@ -21,27 +21,6 @@
 namespace trilens {
 namespace {
 
-/// A test whose test.json is broken has no tags.
-std::vector<std::string> tags_of(const FoundTest& found) {
-    try {
-        return read_render_test(found.folder).tags;
-    } catch (const InputError&) {
-        return {};
-    }
-}
-
-std::vector<FoundTest> meant_tests(const SuiteParams& params) {
-    std::vector<FoundTest> found = find_tests(params.folders);
-    const std::size_t all = found.size();
-    std::erase_if(found, [&](const FoundTest& test) {
-        return !matches_pattern(params.pattern, test.name, tags_of(test));
-    });
-    if (found.empty())
-        throw UsageError("none of the " + std::to_string(all) + " tests has \"" + params.pattern +
-                         "\" in its name or tags");
-    return found;
-}
-
 /// The tests, taken one after the other by a few threads.
 class SuiteRun {
   public:
@@ -120,7 +99,7 @@ class SuiteRun {
 
 SuiteResult run_suite(const SuiteParams& params, const SuiteCallbacks& callbacks) {
     const Stopwatch watch;
-    SuiteRun run(params, callbacks, meant_tests(params));
+    SuiteRun run(params, callbacks, meant_tests(params.folders, params.pattern));
     run.run();
     std::map<std::string, std::vector<TestPictures>> pictures;
     SuiteResult result = run.take(pictures);

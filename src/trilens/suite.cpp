@@ -68,4 +68,8 @@ SuiteResult run_suite(const SuiteRequest& request, const SuiteTalk& talk) {
     return run_suite(params, callbacks);
 }
 
+std::vector<FoundTest> list_suite(const std::vector<std::string>& folders, const std::string& pattern) {
+    return meant_tests(folders, pattern);
+}
+
 }  // namespace trilens

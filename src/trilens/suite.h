@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "suite/find_tests.h"
 #include "suite/results.h"
 
 namespace trilens {
@@ -39,5 +40,9 @@ struct SuiteTalk {
 /// own (TestState::kError), and the others go on; results do not depend on `jobs`. Throws InputError for
 /// folders without tests, UsageError where the pattern means none, OutputError, Interrupted.
 SuiteResult run_suite(const SuiteRequest& request, const SuiteTalk& talk = {});
+
+/// The tests that run_suite would run, in the order in which they are found; nothing is drawn. Throws as
+/// run_suite does.
+std::vector<FoundTest> list_suite(const std::vector<std::string>& folders, const std::string& pattern = "");
 
 }  // namespace trilens
