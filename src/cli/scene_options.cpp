@@ -125,7 +125,8 @@ std::vector<Option> window_options(SceneOptions& options) {
              .value = "x0,y0,x1,y1"},
             {.names = "--aov",
              .target = &options.aov,
-             .help = "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract",
+             .help = "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract,path,stat; "
+                     "without it, all but the last two",
              .value = "LIST"}};
 }
 
@@ -162,7 +163,11 @@ LayerRequest layer_request(const SceneOptions& options) {
             throw UsageError("--crop " + options.crop + " is no window of the film");
         request = {window[0], window[1], window[2], window[3], {}};
     }
-    if (options.aov == "all") return request;
+    if (options.aov.empty()) return request;
+    if (options.aov == "all") {
+        request.layers = layer_names();
+        return request;
+    }
     std::size_t from = 0;
     while (from <= options.aov.size()) {
         const std::size_t comma = std::min(options.aov.find(',', from), options.aov.size());

@@ -14,7 +14,7 @@ namespace trilens {
 /// An image under work, with its channels by what they hold. Names: interface, "Images".
 class Canvas {
   public:
-    /// `image`: with its windows set, without channels. `layers`: those to keep beside RGBA; empty: all.
+    /// `image`: with its windows set, without channels. `layers`: as LayerRequest has them.
     Canvas(Image image, const std::vector<std::string>& layers);
 
     /// Throws ComputationError where the colour is not finite.
@@ -43,6 +43,7 @@ class Canvas {
     std::array<std::array<std::size_t, 3>, 3> parts_{};  // direct, reflect, refract
     std::size_t depth_ = kNone;
     std::size_t optic_object_ = kNone, optic_facet_ = kNone, optic_u_ = kNone, optic_v_ = kNone;
+    std::size_t path_count_ = kNone, method_ = kNone, level_ = kNone;
     std::vector<EndChannels> ends_;
 };
 

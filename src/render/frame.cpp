@@ -40,6 +40,27 @@ Frame make_frame(const World& world, CameraRays camera, int resolution, const Wa
     return frame;
 }
 
+PathCamera path_camera(const LinearCamera& camera) {
+    PathCamera of_paths;
+    of_paths.parallel = camera.parallel;
+    of_paths.screen = [&camera](const Vec3& point) { return screen_from_world(camera, point); };
+    of_paths.ray = [&camera](const Vec3&, const Vec3& chord) {
+        const Vec3 incident = incident_direction(camera, chord);
+        return Ray{chord - incident, incident};
+    };
+    return of_paths;
+}
+
+std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic) {
+    const FramedOptic& framed = frame.optics[optic];
+    const Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(),
+                          path_camera(*frame.camera.linear)};
+    const SurfaceGrid& grid = framed.facets->grid();
+    if (world.scene.render.max_depth > 0) return std::make_unique<OpticPaths>(looking, grid, DivideParams{});
+    return std::make_unique<OpticPaths>(looking, grid, find_path(framed, Path::kReflect),
+                                        find_path(framed, Path::kRefract));
+}
+
 const RayMesh* find_path(const FramedOptic& optic, Path path) {
     for (const PathMesh& one : optic.paths)
         if (one.path == path) return &one.mesh;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "paths/corner_rays.h"
+#include "paths/facet_paths.h"
 #include "render/camera_rays.h"
 #include "render/geometry.h"
 #include "render/request.h"
@@ -15,7 +16,7 @@ namespace trilens {
 /// One optic as facets that the camera sees. Facets of the RayMeshes are those of the grid.
 struct FramedOptic {
     std::shared_ptr<const OpticFacets> facets;
-    std::vector<PathMesh> paths;  // those that the scene draws and the optic has
+    std::vector<PathMesh> paths;  // those that the scene draws and the optic has, up to the first optic
 };
 
 struct Frame {
@@ -28,6 +29,12 @@ Frame make_frame(const World& world, const FrameParams& params, const Warn& warn
 
 /// The same for a camera's rays that no scene describes; `resolution` as in FrameParams.
 Frame make_frame(const World& world, CameraRays camera, int resolution, const Warn& warn);
+
+/// The camera as facets ask it. `camera` must live longer.
+PathCamera path_camera(const LinearCamera& camera);
+
+/// The paths over an optic's facets, as far as the scene has them followed. The frame must live longer.
+std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic);
 
 /// The mesh of this path, or null.
 const RayMesh* find_path(const FramedOptic& optic, Path path);

@@ -18,7 +18,7 @@ bool lacks_ray(const World& world, const SampleViews& views, const SampleView& v
     const Optic& optic = world.optics[view.optic];
     const RenderSettings& settings = world.scene.render;
     if (optic.mirror) return settings.reflect && !views.find(view, Path::kReflect);
-    return settings.refract && !views.find(view, Path::kRefract) &&
+    return settings.refract && !views.find(view, Path::kRefract) && !view.traced &&
            !reflects_totally(world.scene.materials[optic.material], view.incidence);
 }
 
@@ -76,6 +76,10 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
         for (const SampleView& view : middle.samples) {
             counts.optic_pixels += view.optic != kNone;
             counts.pixels_without_ray += lacks_ray(world, middle, view);
+            counts.traced_pixels += view.traced;
+            counts.subdivided_pixels += !view.traced && view.level > 0;
+            counts.faint_light = std::max(counts.faint_light, view.cut.faint);
+            counts.deep_light = std::max(counts.deep_light, view.cut.too_deep);
         }
         progress(static_cast<double>(grid.y1 - request.y0) / height);
     }

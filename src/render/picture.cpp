@@ -9,6 +9,7 @@
 #include "base/nearest.h"
 #include "base/stopwatch.h"
 #include "base/version.h"
+#include "paths/follow.h"
 #include "render/engine.h"
 #include "render/layers.h"
 #include "scene/named_files.h"
@@ -40,16 +41,26 @@ void tell(const World& world, const LayerRequest& window, const LayerStatistics&
                         statistics.pixels_without_ray));
 }
 
-/// What a picture leaves out of the scene, whatever it shows.
-void tell_omissions(const World& world, const Warn& warn) {
+/// What a picture leaves out of the scene.
+void tell_omissions(const World& world, const LayerStatistics& statistics, const Warn& warn) {
     const RenderSettings& settings = world.scene.render;
+    if (settings.max_depth > 0) {
+        // Less than half a step of 8 bits is nobody's concern.
+        if (statistics.deep_light > kLeastWeight)
+            warn(fmt::format(
+                "paths end after {} optics (maxDepth {}): up to {:.1f} % of a pixel's light would go "
+                "on to another",
+                settings.max_depth + 1, settings.max_depth, 100 * statistics.deep_light));
+        return;
+    }
     if (world.optics.size() > 1 && (settings.reflect || settings.refract))
-        warn("optics do not see each other: a path ends after its first optic");
+        warn("optics do not see each other: maxDepth is 0, so a path ends after its first optic");
     for (const Optic& optic : world.optics)
         if (!optic.mirror && settings.refract)
             warn(world.names[optic.mesh] +
-                 ": glass bends light once, at the surface that is seen; where light leaves a body is not "
-                 "followed");
+                 ": glass bends light once, at the surface that is seen: maxDepth is 0, so where light "
+                 "leaves a "
+                 "body is not followed");
 }
 
 /// The window as it is drawn: the whole film where none is asked for.
@@ -113,7 +124,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     describe(world, request, picture.image);
     if (warn) {
         tell(world, layers, picture.statistics, warn);
-        tell_omissions(world, warn);
+        tell_omissions(world, picture.statistics, warn);
     }
     return picture;
 }

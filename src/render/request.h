@@ -39,7 +39,8 @@ std::string classic_name(const ClassicParams& params);
 /// The window of the film that is drawn, in pixels [x0, x1) x [y0, y1), and its layers.
 struct LayerRequest {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
-    std::vector<std::string> layers;     // names to keep beside RGBA, of layer_names(); empty: all
+    // Names to keep beside RGBA, of layer_names(); empty: all but "path" and "stat".
+    std::vector<std::string> layers;
 };
 
 struct PictureRequest {
@@ -52,6 +53,11 @@ struct PictureRequest {
 struct LayerStatistics {
     std::size_t optic_pixels = 0;
     std::size_t pixels_without_ray = 0;  // pixels on an optic that lack a ray a path asked for
+    std::size_t subdivided_pixels = 0;   // of the optics' pixels, those of a part of a facet
+    std::size_t traced_pixels = 0;       // and those whose own rays were followed
+    // The most that was left out of any pixel, as a share of its light: paths that carry too little, and
+    // paths that would go on to another optic after the last that is followed.
+    double faint_light = 0, deep_light = 0;
 };
 
 struct Picture {
@@ -64,7 +70,8 @@ struct Picture {
     double prepare_seconds = 0, draw_seconds = 0;
 };
 
-/// The layers that may be asked for beside R G B A: "Z", "optic", "direct", and the paths' names.
+/// The layers that may be asked for beside R G B A: "Z", "optic", "direct", the paths' names, "path" and
+/// "stat".
 const std::vector<std::string>& layer_names();
 
 }  // namespace trilens

@@ -143,7 +143,7 @@ Light read_light(const Node& node) {
     return light;
 }
 
-RenderSettings read_render(const Node& scene, Reading& reading) {
+RenderSettings read_render(const Node& scene) {
     RenderSettings render;
     if (!scene.has("render")) return render;
     const Node node = scene["render"];
@@ -158,7 +158,6 @@ RenderSettings read_render(const Node& scene, Reading& reading) {
         render.reflect = named("reflect");
         render.refract = named("refract");
     }
-    if (render.max_depth > 0) reading.warn(node["maxDepth"].place, "first hits only are drawn so far");
     return render;
 }
 
@@ -182,7 +181,6 @@ Material read_material(const Node& node, Reading& reading) {
         material.attenuation_distance =
             number_or(volume, "attenuationDistance", material.attenuation_distance);
     }
-    if (material.dispersion != 0) reading.warn(node["dispersion"].place, "dispersion is ignored so far");
     return material;
 }
 

@@ -71,6 +71,7 @@ struct Mesh {
     int resolution = 8;          // optic: N x N facets per quad face
     std::size_t face_count = 0;  // polygons of the file, holes among them; 0 for a primitive
     NormalOverride normals;      // optic
+    int priority = 0;            // optic of glass: where bodies overlap the one of higher priority is inside
 
     // An object has `object`; an optic has either `primitive` or `cage` (world frame, transform applied).
     ObjectMesh object;
@@ -79,7 +80,7 @@ struct Mesh {
 };
 
 struct RenderSettings {
-    int max_depth = 0;
+    int max_depth = 8;  // optic hits after the first
     bool direct = true, reflect = true, refract = true;
     bool fresnel = true;
 };

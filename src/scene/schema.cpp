@@ -100,7 +100,7 @@ const char* scene_schema() {
       "roughnessFactor": { "$ref": "#/definitions/share", "default": 0 },
       "transmissionFactor": { "$ref": "#/definitions/share", "default": 0 },
       "ior": { "type": "number", "exclusiveMinimum": 0, "maximum": 10, "default": 1.5 },
-      "dispersion": { "$ref": "#/definitions/notNegative", "default": 0 },
+      "dispersion": { "$ref": "#/definitions/notNegative", "default": 0, "description": "glTF's: 20 / Abbe number; light then parts into three colours." },
       "volume": {
         "title": "a volume",
         "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
@@ -189,6 +189,7 @@ const char* scene_schema() {
       "role": { "enum": ["object", "optic"] },
       "material": { "type": "string", "minLength": 1, "description": "A name of 'materials'; 'inherit' (the default of an object from a file): the file's own." },
       "resolution": { "type": "integer", "minimum": 1, "maximum": 1024, "default": 8, "description": "optic: N x N facets per quad face." },
+      "priority": { "type": "integer", "minimum": -1000, "maximum": 1000, "default": 0, "description": "optic of glass: where bodies overlap the one of higher priority is inside, as a glass around its liquid." },
       "transform": { "$ref": "#/definitions/transform" },
       "file": { "type": "string", "minLength": 1, "description": "OBJ; for objects glTF and GLB too." },
       "primitive": { "$ref": "#/definitions/primitive" },
@@ -247,7 +248,7 @@ const char* scene_schema() {
     "title": "render settings",
     "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
     "properties": {
-      "maxDepth": { "type": "integer", "minimum": 0, "maximum": 64, "default": 0, "description": "Optic hits after the first." },
+      "maxDepth": { "type": "integer", "minimum": 0, "maximum": 64, "default": 8, "description": "Optic hits after the first; 0: paths end after their first optic, as if there were no other." },
       "paths": { "type": "array", "minItems": 1, "uniqueItems": true, "items": { "enum": ["direct", "reflect", "refract"] }, "default": ["direct", "reflect", "refract"] },
       "fresnel": { "type": "boolean", "default": true }
     }

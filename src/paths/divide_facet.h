@@ -1,0 +1,63 @@
+// A facet divided until the rays at its corners tell the truth about those between them.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "paths/facet_paths.h"
+
+namespace trilens {
+
+/// A corner of a part of a facet.
+struct PartCorner {
+    Id shared = kNone;  // a number that the facet's neighbours know it by; kNone: this facet's alone
+    Look* look = nullptr;
+};
+
+/// A leaf before it has a number.
+struct FacetPart {
+    std::uint8_t level = 0;
+    LeafMethod method = LeafMethod::kProjected;
+    std::vector<PathSegment> histories;  // of kProjected: parents before children; empty: no rays
+    std::array<PartCorner, 3> corners;
+    std::array<std::vector<std::size_t>, 3> segment;  // per corner and history: of the corner's look; empty
+                                                      // for a corner that is turned away from the eye
+};
+
+/// A facet's parts as a tree: cells[0] is the facet.
+struct DividedFacet {
+    struct Cell {
+        Id children = kNone;  // the first of four
+        Id part = kNone;
+    };
+    std::vector<Cell> cells;
+    std::vector<FacetPart> parts;
+    std::deque<Look> looks;  // at points that are no corners of the grid
+    CutPaths cut;            // the most at any point
+};
+
+/// A facet to divide.
+struct FacetToDivide {
+    std::array<PartCorner, 3> corners;
+    std::array<Vec3, 3> points;  // world
+    bool front = true;           // the side that it shows
+};
+
+/// Child k < 3 of a part keeps corner k of it, child 3 has the middles of its edges for corners, opposite to
+/// its corners. Weights of a part's corners become those of the child's.
+inline int child_of(const Vec3& weights) {
+    for (int k = 0; k < 3; ++k)
+        if (weights[k] > 0.5) return k;
+    return 3;
+}
+inline Vec3 child_weights(const Vec3& weights, int child) {
+    if (child == 3) return Vec3(1) - 2.0 * weights;
+    Vec3 of_child = 2.0 * weights;
+    of_child[child] -= 1;
+    return of_child;
+}
+
+DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, const DivideParams& params);
+
+}  // namespace trilens

@@ -1,0 +1,285 @@
+#include "paths/facet_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "paths/divide_facet.h"
+#include "reflect/mirror.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::size_t kCornersPerTask = 64, kFacetsPerTask = 16;
+constexpr double kFainter = 1.0 / 8;  // as divide_facet has it
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A corner as one history needs it.
+struct NodeCorner {
+    Ray ray;
+    Vec3 screen{0};
+    double next = kInfinity;
+    Vec3 weight{1};
+};
+
+/// The first reflection: the mirrored ray as long as the eye ray, which keeps a flat mirror exact.
+NodeCorner first_reflection(const Look& look, const PathSegment* segment) {
+    NodeCorner corner;
+    corner.ray = {look.place.point, mirrored(look.incident, look.place.normal)};
+    corner.screen = look.screen;
+    if (segment) corner.next = segment->next / length(look.incident);
+    return corner;
+}
+
+/// Later ones are as long as the eye ray times kappa. After reflections alone the chord whose weights hold is
+/// the one seen in the mirrors, farther away by the way between them: flat mirrors then stay exact.
+NodeCorner later(const Look& look, const PathSegment& segment, double kappa, bool reflects_only) {
+    const double eye = length(look.incident);
+    const double farther = reflects_only ? segment.way / eye : 1;
+    const double size = eye * farther * kappa;
+    return {{segment.ray.origin, size * segment.ray.direction},
+            farther * look.screen,
+            segment.next / size,
+            segment.weight};
+}
+
+}  // namespace
+
+OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams params)
+    : looking_(std::move(looking)), grid_(&grid), params_(params) {
+    places_.resize(grid.corner_point.size());
+    for (std::size_t f = 0; f < grid.facets.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Id corner = grid.facets[f][k];
+            places_[corner] = {grid.facet_face[f], grid.facet_uv[f][k],
+                               grid.points[grid.corner_point[corner]], grid.corner_normal[corner]};
+        }
+    outline_.rays.resize(places_.size());
+    outline_.facets = grid.facets;
+    outline_.screen.reserve(places_.size());
+    for (const Place& place : places_) outline_.screen.push_back(looking_.camera.screen(place.point));
+    corner_looks_.resize(2 * places_.size());
+    cells_.resize(grid.facets.size());
+    prepared_.resize(grid.facets.size());
+}
+
+OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, const RayMesh* reflection,
+                       const RayMesh* refraction)
+    : OpticPaths(std::move(looking), grid, DivideParams{}) {
+    const std::size_t facets = grid.facets.size();
+    for (std::size_t f = 0; f < facets; ++f) {
+        leaves_.push_back({static_cast<Id>(f)});
+        cells_[f].leaf = static_cast<Id>(f);
+    }
+    std::fill(prepared_.begin(), prepared_.end(), 1);
+    const auto add = [&](const RayMesh& mesh, Event event, Id medium) -> PathNode& {
+        PathSegment segment;
+        segment.step = {looking_.optic, event};
+        segment.path = event == Event::kReflect ? Path::kReflect : Path::kRefract;
+        segment.medium = medium;
+        PathNode& node = nodes_[node_of(kNone, segment)];
+        node.mesh = mesh;
+        node.ends.assign(facets, 1);
+        node.principal.assign(facets, 1);
+        node.next.assign(mesh.rays.size(), kInfinity);
+        node.weight.assign(mesh.rays.size(), Vec3(1));
+        return node;
+    };
+    if (reflection) add(*reflection, Event::kReflect, kNone);
+    if (!refraction) return;
+    // Facets seen from the front show what is in the glass, those seen from behind what is outside.
+    for (const bool into : {true, false}) {
+        PathNode& node = add(*refraction, Event::kTransmit, into ? looking_.optic : kNone);
+        for (std::size_t f = 0; f < facets; ++f)
+            if (shows_front(static_cast<Id>(f)) != into) node.mesh.facets[f] = {kNone, kNone, kNone};
+    }
+}
+
+bool OpticPaths::shows_front(Id facet) const {
+    const Id corner = grid_->facets[facet][0];
+    return faces_front(*grid_, grid_->facets[facet],
+                       looking_.camera.ray(outline_.screen[corner], places_[corner].point).direction);
+}
+
+void OpticPaths::look_at_corners(std::span<const Id> facets) {
+    std::vector<Id> wanted;  // corner and side
+    for (const Id f : facets)
+        for (const Id corner : grid_->facets[f]) {
+            const Id key = 2 * corner + (shows_front(f) ? 1 : 0);
+            if (!corner_looks_[key]) wanted.push_back(key);
+        }
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    parallel_for(wanted.size(), kCornersPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const bool front = wanted[i] % 2 == 1;
+            auto look = std::make_unique<Look>(look_at(
+                looking_, places_[wanted[i] / 2], {.front = front, .least_weight = kFainter * kLeastWeight}));
+            // The first reflection alone needs no kappa.
+            if (look->segments.size() > 1 ||
+                (look->segments.size() == 1 && look->segments[0].step.event != Event::kReflect))
+                set_kappa(looking_, front, *look);
+            else
+                look->kappa.assign(look->segments.size(), 1.0);
+            corner_looks_[wanted[i]] = std::move(look);
+        }
+    });
+}
+
+void OpticPaths::prepare(std::span<const Id> facets) {
+    std::vector<Id> fresh;
+    for (const Id f : facets)
+        if (!prepared_[f]) fresh.push_back(f);
+    std::sort(fresh.begin(), fresh.end());
+    fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
+    look_at_corners(fresh);
+
+    std::vector<DividedFacet> divided(fresh.size());
+    parallel_for(fresh.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            FacetToDivide facet;
+            const IdTriple& corners = grid_->facets[fresh[i]];
+            facet.front = shows_front(fresh[i]);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Id key = 2 * corners[k] + (facet.front ? 1 : 0);
+                facet.corners[k] = {key, corner_looks_[key].get()};
+                facet.points[k] = places_[corners[k]].point;
+            }
+            divided[i] = divide_facet(looking_, facet, params_);
+        }
+    });
+    for (std::size_t i = 0; i < fresh.size(); ++i) append(fresh[i], divided[i]);
+    for (PathNode& node : nodes_) {
+        node.mesh.facets.resize(leaves_.size(), {kNone, kNone, kNone});
+        node.ends.resize(leaves_.size(), 1);
+        node.principal.resize(leaves_.size(), 0);
+    }
+}
+
+void OpticPaths::append(Id facet, const DividedFacet& divided) {
+    prepared_[facet] = 1;
+    const Id first_leaf = static_cast<Id>(leaves_.size());
+    for (const FacetPart& part : divided.parts) {
+        leaves_.push_back({facet, part.level, part.method});
+        if (part.method == LeafMethod::kProjected) append_part(static_cast<Id>(leaves_.size() - 1), part);
+    }
+    // The facet's own cell stands at its number, the others at the end.
+    const Id behind = static_cast<Id>(cells_.size()) - 1;
+    for (std::size_t c = 0; c < divided.cells.size(); ++c) {
+        const DividedFacet::Cell& from = divided.cells[c];
+        const Cell cell{from.children == kNone ? kNone : behind + from.children,
+                        from.part == kNone ? kNone : first_leaf + from.part};
+        if (c == 0)
+            cells_[facet] = cell;
+        else
+            cells_.push_back(cell);
+    }
+    cut_.faint = std::max(cut_.faint, divided.cut.faint);
+    cut_.too_deep = std::max(cut_.too_deep, divided.cut.too_deep);
+    cut_.lost = std::max(cut_.lost, divided.cut.lost);
+}
+
+Id OpticPaths::node_of(Id parent, const PathSegment& segment) {
+    const auto [found, added] = node_by_step_.insert(
+        {{parent, segment.step.optic, segment.step.event, segment.colours, segment.medium},
+         static_cast<Id>(nodes_.size())});
+    if (!added) return found->second;
+    PathNode node;
+    node.parent = parent;
+    node.step = segment.step;
+    node.path = segment.path;
+    node.colours = segment.colours;
+    node.medium = segment.medium;
+    node.reflects_only = segment.step.event != Event::kTransmit;
+    if (parent != kNone) {
+        node.reflects_only = node.reflects_only && nodes_[parent].reflects_only;
+        node.step_count = static_cast<std::uint16_t>(nodes_[parent].step_count + 1);
+    }
+    nodes_.push_back(std::move(node));
+    corner_of_node_.emplace_back();
+    return found->second;
+}
+
+void OpticPaths::append_part(Id leaf, const FacetPart& part) {
+    std::vector<Id> node_index(part.histories.size(), kNone);
+    for (std::size_t h = 0; h < part.histories.size(); ++h) {
+        const PathSegment& history = part.histories[h];
+        node_index[h] = node_of(history.parent == kNone ? kNone : node_index[history.parent], history);
+        PathNode& node = nodes_[node_index[h]];
+        const bool first = node.parent == kNone && node.step.event == Event::kReflect;
+
+        // Kappa of corners where it is not known: the others' mean.
+        std::array<double, 3> kappa{0, 0, 0};
+        double sum = 0, known = 0;
+        for (std::size_t k = 0; k < 3 && !first; ++k) {
+            kappa[k] = part.corners[k].look->kappa[part.segment[k][h]];
+            sum += kappa[k];
+            known += kappa[k] > 0;
+        }
+        IdTriple facet{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Look& look = *part.corners[k].look;
+            const bool seen = !part.segment[k].empty();
+            const PathSegment* segment = seen ? &look.segments[part.segment[k][h]] : nullptr;
+            const bool guessed = !first && kappa[k] == 0;
+            const Id shared = guessed ? kNone : part.corners[k].shared;
+            if (shared != kNone) {
+                const auto found = corner_of_node_[node_index[h]].find(shared);
+                if (found != corner_of_node_[node_index[h]].end()) {
+                    facet[k] = found->second;
+                    continue;
+                }
+            }
+            const double mean = known > 0 ? sum / known : 1;
+            const NodeCorner corner =
+                first ? first_reflection(look, segment)
+                      : later(look, *segment, guessed ? mean : kappa[k], node.reflects_only);
+            facet[k] = static_cast<Id>(node.mesh.rays.size());
+            node.mesh.rays.push_back(corner.ray);
+            node.mesh.screen.push_back(corner.screen);
+            node.next.push_back(corner.next);
+            node.weight.push_back(corner.weight);
+            if (shared != kNone) corner_of_node_[node_index[h]].insert({shared, facet[k]});
+        }
+        node.mesh.facets.resize(leaf + 1, {kNone, kNone, kNone});
+        node.mesh.facets[leaf] = facet;
+        node.ends.resize(leaf + 1, 1);
+        node.ends[leaf] = history.ends;
+        node.principal.resize(leaf + 1, 0);
+        node.principal[leaf] = history.principal;
+    }
+}
+
+Id OpticPaths::leaf_at(Id facet, const Vec3& weights) const {
+    Cell cell = cells_[facet];
+    Vec3 local = weights;
+    while (cell.children != kNone) {
+        const int child = child_of(local);
+        local = child_weights(local, child);
+        cell = cells_[cell.children + static_cast<Id>(child)];
+    }
+    return cell.leaf;
+}
+
+std::vector<Id> OpticPaths::nodes_in_order() const {
+    std::vector<Id> order;
+    const auto key = [&](Id n) {
+        return std::tuple(nodes_[n].step.optic, nodes_[n].step.event, nodes_[n].colours, nodes_[n].medium);
+    };
+    const std::function<void(Id)> visit = [&](Id parent) {
+        std::vector<Id> children;
+        for (std::size_t n = 0; n < nodes_.size(); ++n)
+            if (nodes_[n].parent == parent) children.push_back(static_cast<Id>(n));
+        std::sort(children.begin(), children.end(), [&](Id a, Id b) { return key(a) < key(b); });
+        for (const Id child : children) {
+            order.push_back(child);
+            visit(child);
+        }
+    };
+    visit(kNone);
+    return order;
+}
+
+}  // namespace trilens

@@ -1,0 +1,113 @@
+// The RayMeshes that leave an optic: one for each history of the paths over it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
+
+#include "base/ray_mesh.h"
+#include "paths/look.h"
+
+namespace trilens {
+
+/// How a part of a facet is drawn: its corners' rays stand for all between them, or each sample's own rays
+/// are followed.
+enum class LeafMethod : std::uint8_t { kProjected, kTraced };
+
+/// A part of a facet: the facet itself (level 0) or one of four parts of a part.
+struct PathLeaf {
+    Id facet = kNone;
+    std::uint8_t level = 0;
+    LeafMethod method = LeafMethod::kProjected;
+};
+
+/// All rays of one history: its last step starts them.
+struct PathNode {
+    Id parent = kNone;  // of OpticPaths::nodes
+    Step step;
+    Path path = Path::kReflect;
+    Colours colours = kAllColours;
+    Id medium = kNone;
+    std::uint16_t step_count = 1;
+    bool reflects_only = true;    // all steps are reflections, or pass
+    RayMesh mesh;                 // facet l: leaf l; {kNone, kNone, kNone}: no such path there
+    std::vector<char> ends;       // per leaf: no other optic follows
+    std::vector<char> principal;  // per leaf: see PathSegment
+    std::vector<double> next;     // per corner: t of the next optic; infinity: none
+    std::vector<Vec3> weight;     // per corner: see PathSegment::weight
+};
+
+/// How finely facets are divided whose corners do not tell the truth about the rays between them.
+struct DivideParams {
+    double least_area = 8;  // square pixels: parts below this are traced
+    int most_levels = 6;
+};
+
+struct DividedFacet;
+struct FacetPart;
+
+/// The paths over one optic's facets for one camera. Facets are worked out when they are first asked for.
+///
+/// A facet stands for the rays between its corners where the exact paths from its corners, the middles of its
+/// edges and its centre have the same histories; else it is divided on the screen, in four, and what is left
+/// at the smallest size is traced. Parts of a facet lie on the facet's own plane, so no gaps open; a corner
+/// ray of a part is the camera's exact ray through that point.
+class OpticPaths {
+  public:
+    /// `grid` must live longer.
+    OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams params);
+
+    /// Paths that end after the first optic (thesis 7.2.1, 7.3.1): these meshes alone, whose facets are the
+    /// grid's; null: not asked for. No exact ray is followed.
+    OpticPaths(Looking looking, const SurfaceGrid& grid, const RayMesh* reflection,
+               const RayMesh* refraction);
+
+    /// Works out these facets, those that are known already among them. Same leaves, rays and histories
+    /// whatever was asked before; only their numbers differ.
+    void prepare(std::span<const Id> facets);
+
+    /// The leaf of a prepared facet for a point with these weights of the facet's corners.
+    Id leaf_at(Id facet, const Vec3& weights) const;
+    /// Whether the whole of a prepared facet is one leaf, and which.
+    bool is_whole(Id facet) const { return cells_[facet].children == kNone; }
+
+    const std::vector<PathLeaf>& leaves() const { return leaves_; }
+    const std::vector<PathNode>& nodes() const { return nodes_; }
+    /// The nodes with parents before children, in an order that histories alone decide.
+    std::vector<Id> nodes_in_order() const;
+    /// The grid's facets on the screen; its rays are not set.
+    const RayMesh& outline() const { return outline_; }
+    /// The most that was left out at any point looked at.
+    const CutPaths& cut() const { return cut_; }
+    const Looking& looking() const { return looking_; }
+
+  private:
+    struct Cell {
+        Id children = kNone;  // the first of four
+        Id leaf = kNone;
+    };
+    bool shows_front(Id facet) const;
+    void look_at_corners(std::span<const Id> facets);
+    void append(Id facet, const DividedFacet& divided);
+    void append_part(Id leaf, const FacetPart& part);
+    Id node_of(Id parent, const PathSegment& segment);
+
+    Looking looking_;
+    const SurfaceGrid* grid_;
+    DivideParams params_;
+    RayMesh outline_;
+    std::vector<Place> places_;                        // per grid corner
+    std::vector<std::unique_ptr<Look>> corner_looks_;  // per grid corner and side, where asked for
+    std::vector<Cell> cells_;                          // one per facet, then parts
+    std::vector<char> prepared_;
+    std::vector<PathLeaf> leaves_;
+    std::vector<PathNode> nodes_;
+    std::map<std::tuple<Id, Id, Event, Colours, Id>, Id> node_by_step_;
+    std::vector<std::unordered_map<Id, Id>> corner_of_node_;  // per node: shared corner -> corner of its mesh
+    CutPaths cut_;
+};
+
+}  // namespace trilens

@@ -1,0 +1,106 @@
+#include "paths/look.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trilens {
+namespace {
+
+constexpr double kStep = 1e-4;      // of a face's parameters, for differences
+constexpr double kSoftened = 0.15;  // 0.05 to 0.3 differ by 5 %
+/// A fold of the directions, or a focus of the bundle, would make corner rays endless or nothing.
+constexpr double kMostKappa = 50;
+
+Meeting meeting_at(const Looking& looking, const Place& place, const Vec3& incident, bool front) {
+    return {looking.optic, normalize_or_zero(incident), place.point, place.normal, front};
+}
+
+/// The paths from `place`, where this ray of the camera arrives.
+Look arrive(const Looking& looking, const Place& place, const Vec3& incident, const LookParams& params) {
+    Look look;
+    look.incident = incident;
+    look.place = place;
+    const double cosine = dot(incident, place.normal);
+    if (params.front ? cosine >= 0 : cosine <= 0) {
+        look.state = LookState::kTurned;
+        return look;
+    }
+    look.state = LookState::kSeen;
+    FollowedPaths followed =
+        follow_paths(*looking.world, meeting_at(looking, place, incident, params.front), length(incident),
+                     {.objects = nullptr, .least_weight = params.least_weight});
+    look.segments = std::move(followed.segments);
+    look.cut = followed.cut;
+    return look;
+}
+
+/// A place beside this one on the same face; `axis` 0: u, 1: v.
+Place beside(const Surface& surface, const Place& place, int axis) {
+    Vec2 uv = place.uv;
+    const double room = surface.domain(place.face) == FaceDomain::kTriangle ? 1 - uv.x - uv.y : 1 - uv[axis];
+    uv[axis] += room > kStep ? kStep : -kStep;
+    const SurfacePoint at = surface.eval(place.face, uv);
+    return {place.face, uv, at.position, at.normal};
+}
+
+}  // namespace
+
+Look look_at(const Looking& looking, const Place& place, const LookParams& params) {
+    const Vec3 screen = looking.camera.screen(place.point);
+    Look look = arrive(looking, place, looking.camera.ray(screen, place.point).direction, params);
+    look.screen = screen;
+    return look;
+}
+
+Look look_through(const Looking& looking, const Chord& chord, const LookParams& params) {
+    const Ray to_chord = looking.camera.ray(chord.screen, chord.point);
+    const Vec3 along = normalize_or_zero(to_chord.direction);
+    const Ray near{chord.point - chord.reach * along, along};
+    Look look;
+    look.screen = chord.screen;
+    look.incident = to_chord.direction;
+    const LimitTracer& tracer = *looking.world->optics[looking.optic].tracer;
+    for (double from = 0; from < 2 * chord.reach;) {
+        const std::optional<SurfaceHit> hit = tracer.first_hit(near, from);
+        if (!hit || hit->t > 2 * chord.reach) break;
+        from = hit->t + 1e-9 * chord.reach;
+        if ((dot(along, hit->point.normal) < 0) != params.front) continue;
+        // As long as the way to the surface itself.
+        const Vec3 incident =
+            looking.camera.parallel ? to_chord.direction : hit->point.position - to_chord.origin;
+        look =
+            arrive(looking, {hit->face, hit->uv, hit->point.position, hit->point.normal}, incident, params);
+        look.screen = chord.screen;
+        break;
+    }
+    return look;
+}
+
+void set_kappa(const Looking& looking, bool front, Look& look) {
+    if (look.state != LookState::kSeen || !look.kappa.empty()) return;
+    look.kappa.assign(look.segments.size(), 0.0);
+    std::array<Place, 2> side;
+    std::array<std::vector<std::optional<PathSegment>>, 2> again;
+    for (int axis = 0; axis < 2; ++axis) {
+        const std::size_t k = static_cast<std::size_t>(axis);
+        side[k] = beside(*looking.surface, look.place, axis);
+        const Vec3 incident =
+            looking.camera.ray(looking.camera.screen(side[k].point), side[k].point).direction;
+        again[k] = repeat_paths(*looking.world, meeting_at(looking, side[k], incident, front),
+                                length(incident), look.segments);
+    }
+    const Vec3 area = cross(side[0].point - look.place.point, side[1].point - look.place.point);
+    const double eye = length(look.incident);
+    const double cosine = std::fabs(dot(look.place.normal, look.incident)) / eye;
+    const double before = std::sqrt(cosine * cosine + kSoftened * kSoftened) * length(area) / (eye * eye);
+    for (std::size_t i = 0; i < look.segments.size(); ++i) {
+        if (!again[0][i] || !again[1][i]) continue;
+        const Vec3& u = look.segments[i].ray.direction;
+        const double after =
+            std::fabs(triple(u, again[0][i]->ray.direction - u, again[1][i]->ray.direction - u));
+        if (!(after > 0)) continue;
+        look.kappa[i] = std::clamp(std::cbrt(before / after), 1 / kMostKappa, kMostKappa);
+    }
+}
+
+}  // namespace trilens
