@@ -31,6 +31,8 @@ def test_rows_that_appear_or_vanish_are_named():
 def test_the_kept_tables_hold():
     """Measured anew from every scene."""
     import trilens
+    if not reference.TABLE.exists():
+        pytest.skip("no table is kept yet: scripts/reference-results --update makes it")
     rows = [row for file in reference.scenes() for row in reference.rows_of(trilens, file)]
     assert len(rows) >= 5 * len(reference.RESOLUTIONS)
     assert reference.complaints(rows, reference.read_table()) == []
