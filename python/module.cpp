@@ -37,5 +37,6 @@ PYBIND11_MODULE(_trilens, module) {
     bindings::bind_renderer(module);
     bindings::bind_compare(module);
     bindings::bind_sweep(module);
+    bindings::bind_suite(module);
     pybind11::delattr(module, "__module__");
 }

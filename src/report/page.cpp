@@ -40,6 +40,10 @@ tbody tr:hover{background:var(--panel)}
 .zoom{border:0;padding:0;max-width:100vw;max-height:100vh;width:100vw;height:100vh;background:var(--paper);color:var(--ink);overflow:auto}
 .zoom figure{width:max(var(--width),min(96vw,110vh));padding:12px}.zoom .view{cursor:default}.zoom img{image-rendering:pixelated}
 .zoom button{position:sticky;left:12px;top:8px;z-index:1;margin:8px 12px 0;font:inherit;padding:8px 16px;border:1px solid var(--line);border-radius:8px;background:var(--panel);color:var(--ink)}
+.flip button{display:none}.flip .under{display:none}.js .flip button{display:block;font:inherit;font-size:13px;margin-top:4px;padding:6px 12px;border:1px solid var(--line);border-radius:8px;background:var(--panel);color:var(--ink)}
+.js .flip .view{grid-template-columns:1fr}.js .flip img{grid-area:1/1}.js .flip .under{display:block;visibility:hidden}
+.js .flip .view:hover .under,.flipped .flip .under,.flip.turned .under{visibility:visible}.flipped .flip .view:hover .under,.flipped .flip.turned .under{visibility:hidden}
+.small .view img{image-rendering:pixelated}
 @media screen{.js .wipe .view{grid-template-columns:1fr;position:relative}.js .wipe img{grid-area:1/1}
 .js .wipe img+img{clip-path:inset(0 0 0 var(--cut))}
 .js .wipe .view::after{content:"";position:absolute;top:0;bottom:0;left:var(--cut);border-left:2px solid #fff;box-shadow:-1px 0 0 #0008,1px 0 0 #0008}
@@ -70,6 +74,8 @@ constexpr const char* kDarkVariables =
 constexpr const char* kScript = R"(
 document.documentElement.classList.add('js');
 document.addEventListener('input',e=>{const pair=e.target.closest('.wipe');if(pair)pair.style.setProperty('--cut',e.target.value+'%')});
+document.addEventListener('keydown',e=>{if((e.key==='f'||e.key==='F')&&!e.ctrlKey&&!e.metaKey&&!e.altKey&&!e.target.closest('input,textarea,select'))document.documentElement.classList.toggle('flipped')});
+document.addEventListener('click',e=>{const turn=e.target.closest('.flip button');if(turn){const on=turn.closest('.flip').classList.toggle('turned');turn.setAttribute('aria-pressed',on)}});
 const zoom=document.createElement('dialog'),close=document.createElement('button');zoom.className='zoom';close.textContent='Close';
 close.addEventListener('click',()=>zoom.close());document.body.append(zoom);
 const open=view=>{const figure=view.closest('figure').cloneNode(true),own=figure.querySelector('.view');
@@ -162,6 +168,23 @@ std::string html_pictures(const std::vector<PagePicture>& pictures) {
         html += is_pair ? pair_figure(pictures[i], pictures[i + 1]) : single_figure(pictures[i]);
         i += is_pair;
     }
+    return html + "</div>\n";
+}
+
+std::string html_flip(const PagePicture& first, const PagePicture& second,
+                      const std::vector<PagePicture>& others) {
+    std::string html = "<div class=\"pictures small\">\n" + single_figure(first);
+    if (first.png.empty() || second.png.empty()) {
+        html += single_figure(second);
+    } else {
+        std::string under = image_element(first);
+        under.insert(4, " class=\"under\"");
+        html += "<figure class=\"flip\"><div class=\"view\">" + image_element(second) + under + "</div>" +
+                html_text("figcaption", second.caption) +
+                "<button type=\"button\" aria-pressed=\"false\">Show " + escape_markup(first.caption) +
+                "</button></figure>\n";
+    }
+    for (const PagePicture& picture : others) html += single_figure(picture);
     return html + "</div>\n";
 }
 

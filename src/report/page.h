@@ -17,6 +17,12 @@ std::string html_page(const std::string& title, const std::string& body);
 /// Without scripts all lie side by side.
 std::string html_pictures(const std::vector<PagePicture>& pictures);
 
+/// A row of pictures whose first two show the same: the second is exchanged for the first under the pointer,
+/// with the key F all over the page, and by a button, for fingers. Without scripts all stand still side by
+/// side. Pictures without PNG bytes are captions.
+std::string html_flip(const PagePicture& first, const PagePicture& second,
+                      const std::vector<PagePicture>& others);
+
 /// A two-column list.
 std::string html_facts(const Facts& facts);
 

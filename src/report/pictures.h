@@ -45,6 +45,10 @@ PagePicture difference_picture(const Image& test, const Image& truth, double sca
 PagePicture displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
                                  const std::string& caption);
 
+/// Viridis from 0 (dark) to 1 (yellow) over a film of width x height values, rows from the top: NaN is grey.
+/// Where it is scaled down, a pixel shows the largest value under it.
+PagePicture share_picture(std::span<const float> shares, int width, const std::string& caption);
+
 /// The largest power of two, between 1 and 2^20, that keeps scale * difference below 1.
 double difference_scale(double difference);
 

@@ -15,6 +15,7 @@
 #include <trilens/render.h>
 #include <trilens/scene.h>
 #include <trilens/stopwatch.h>
+#include <trilens/suite.h>
 #include <trilens/surface.h>
 #include <trilens/sweep.h>
 #include <trilens/text.h>

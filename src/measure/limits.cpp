@@ -1,4 +1,4 @@
-#include "trilens/compare_limits.h"
+#include "measure/limits.h"
 
 #include <algorithm>
 #include <utility>
@@ -11,6 +11,9 @@ namespace trilens {
 namespace {
 
 using Metric = std::optional<double>;
+using Layers = std::vector<const LayerComparison*>;
+
+constexpr const char* kLayerNames[] = {"reflect", "refract"};
 
 double number(std::size_t count) {
     return static_cast<double>(count);
@@ -33,21 +36,29 @@ void add_colours(const Comparison& comparison, std::vector<NamedMetric>& all) {
                            {"p99", m.p99},
                            {"psnr_db", m.psnr_db, true},
                            {"ssim", m.ssim, true},
+                           {"rgb_flip", m.flip},
                            {"fail", number(c.fail)},
                            {"warn", number(c.warn)},
                            {"hard", number(c.hard)}});
 }
 
-void add_seen(const std::vector<LayerComparison>& layers, std::vector<NamedMetric>& all) {
-    const SeenMismatch seen = total_seen(layers);
-    const bool is_measured = std::any_of(layers.begin(), layers.end(),
-                                         [](const LayerComparison& l) { return l.seen.has_value(); });
+void add_seen(const Layers& layers, const std::string& prefix, std::vector<NamedMetric>& all) {
+    SeenMismatch seen;
+    bool is_measured = false;
+    for (const LayerComparison* layer : layers) {
+        if (!layer->seen) continue;
+        is_measured = true;
+        seen.pixels += layer->seen->pixels;
+        seen.object_mismatch += layer->seen->object_mismatch;
+        seen.primitive_mismatch += layer->seen->primitive_mismatch;
+        seen.coverage_mismatch += layer->seen->coverage_mismatch;
+    }
     const std::pair<const char*, std::size_t> counts[] = {{"object_mismatch", seen.object_mismatch},
                                                           {"primitive_mismatch", seen.primitive_mismatch},
                                                           {"coverage_mismatch", seen.coverage_mismatch}};
     for (const auto& [name, count] : counts) {
-        all.push_back({name, is_measured ? Metric(number(count)) : std::nullopt});
-        all.push_back({std::string(name) + "_percent", percent(count, seen.pixels)});
+        all.push_back({prefix + name, is_measured ? Metric(number(count)) : std::nullopt});
+        all.push_back({prefix + name + "_percent", percent(count, seen.pixels)});
     }
 }
 
@@ -56,20 +67,20 @@ Metric largest(const Metric& one, const Metric& other) {
     return std::max(*one, *other);
 }
 
-void add_displacement(const std::vector<LayerComparison>& layers, std::vector<NamedMetric>& all) {
+void add_displacement(const Layers& layers, const std::string& prefix, std::vector<NamedMetric>& all) {
     const std::pair<const char*, double Summary::*> statistics[] = {{"displacement_mean", &Summary::mean},
                                                                     {"displacement_p50", &Summary::p50},
                                                                     {"displacement_p95", &Summary::p95},
                                                                     {"displacement_p99", &Summary::p99},
                                                                     {"displacement_max", &Summary::max}};
     std::vector<const Displacement*> measured;
-    for (const LayerComparison& layer : layers)
-        if (layer.displacement) measured.push_back(&*layer.displacement);
+    for (const LayerComparison* layer : layers)
+        if (layer->displacement) measured.push_back(&*layer->displacement);
     for (const auto& [name, which] : statistics) {
         Metric worst;
         for (const Displacement* d : measured)
             if (d->summary) worst = largest(worst, (*d->summary).*which);
-        all.push_back({name, worst});
+        all.push_back({prefix + name, worst});
     }
 
     Metric off_folds, coverage;
@@ -85,12 +96,12 @@ void add_displacement(const std::vector<LayerComparison>& layers, std::vector<Na
     const auto counted = [&](std::size_t count) {
         return measured.empty() ? Metric() : Metric(number(count));
     };
-    all.push_back({"displacement_mean_off_folds", off_folds});
-    all.push_back({"lost", counted(lost)});
-    all.push_back({"lost_percent", percent(lost, found + lost)});
-    all.push_back({"beyond_radius", counted(beyond)});
-    all.push_back({"missing", counted(missing)});
-    all.push_back({"coverage", coverage, true});
+    all.push_back({prefix + "displacement_mean_off_folds", off_folds});
+    all.push_back({prefix + "lost", counted(lost)});
+    all.push_back({prefix + "lost_percent", percent(lost, found + lost)});
+    all.push_back({prefix + "beyond_radius", counted(beyond)});
+    all.push_back({prefix + "missing", counted(missing)});
+    all.push_back({prefix + "coverage", coverage, true});
 }
 
 }  // namespace
@@ -99,8 +110,16 @@ std::vector<NamedMetric> named_metrics(const Comparison& comparison,
                                        const std::vector<LayerComparison>& layers) {
     std::vector<NamedMetric> all;
     add_colours(comparison, all);
-    add_seen(layers, all);
-    add_displacement(layers, all);
+    Layers every;
+    for (const LayerComparison& layer : layers) every.push_back(&layer);
+    add_seen(every, "", all);
+    add_displacement(every, "", all);
+    for (const std::string name : kLayerNames) {
+        Layers one = every;
+        std::erase_if(one, [&](const LayerComparison* layer) { return layer->layer != name; });
+        add_seen(one, name + ".", all);
+        add_displacement(one, name + ".", all);
+    }
     return all;
 }
 
