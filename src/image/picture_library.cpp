@@ -36,7 +36,7 @@ void* open_library(std::string& reason) {
     std::error_code none;
     const std::filesystem::path beside = own_file().parent_path() / kFile;
     const bool is_there = std::filesystem::exists(beside, none);
-    void* handle = dlopen(is_there ? beside.c_str() : kFile, RTLD_NOW | RTLD_LOCAL);
+    void* handle = dlopen(is_there ? beside.c_str() : kFile, RTLD_LAZY | RTLD_LOCAL);
     if (!handle) {
         const char* why = dlerror();
         reason = one_line(why ? why : "unknown reason");
