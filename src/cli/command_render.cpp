@@ -82,15 +82,21 @@ void check_options(const RenderOptions& options, const std::string& format, cons
 
 Answer draw(const RenderOptions& options, const std::string& format, const PictureRequest& request,
             const Renderer& renderer, Console& console, const std::string& command) {
-    const Picture picture = renderer.draw(request, console.progress(command), console.warner());
+    // An OpenEXR file is encoded while it is drawn; other formats have the beauty alone.
+    EncodedPicture encoded;
+    if (format == "png")
+        encoded.picture = renderer.draw(request, console.progress(command), console.warner());
+    else
+        encoded = renderer.draw_exr(request, console.progress(command), console.warner());
+    const Picture& picture = encoded.picture;
     console.note(fmt::format(
         "drew {} x {} pixels, {} of them of optics ({} subdivided, {} traced): prepared in {:.3f} s, "
         "drawn in {:.3f} s",
         picture.image.width, picture.image.height, picture.statistics.optic_pixels,
         picture.statistics.subdivided_pixels, picture.statistics.traced_pixels, picture.prepare_seconds,
         picture.draw_seconds));
-    Answer answer = write_output(options.output, picture.image,
-                                 format == "png" ? ImageFormat::kPng : ImageFormat::kExr, console);
+    Answer answer = format == "png" ? write_output(options.output, picture.image, ImageFormat::kPng, console)
+                                    : write_output(options.output, encoded.exr, console);
     answer.fields["engine"] = engine_name(request.engine.engine);
     if (request.engine.engine == Engine::kClassic)
         answer.fields["classic"] = classic_name(request.engine.classic);

@@ -90,6 +90,21 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
     }
 }
 
+Image Canvas::layout() const {
+    Image layout;
+    layout.width = image_.width;
+    layout.height = image_.height;
+    layout.x0 = image_.x0;
+    layout.y0 = image_.y0;
+    layout.data_width = image_.data_width;
+    layout.data_height = image_.data_height;
+    for (const Channel& channel : image_.channels) {
+        layout.channels.push_back({channel.name, {}});
+        if (channel.is_id()) layout.channels.back().values = std::vector<Id>();
+    }
+    return layout;
+}
+
 void Canvas::put_colour(const SampleColour& mean, std::size_t pixel) {
     const Vec3 beauty = mean.direct + mean.reflect + mean.refract;
     const std::array<const Vec3*, 3> parts{&mean.direct, &mean.reflect, &mean.refract};

@@ -23,6 +23,8 @@ class Canvas {
     void put_centre(const World& world, const SampleViews& views, const SampleView& view, std::size_t pixel);
 
     const Image& image() const { return image_; }
+    /// The image without its values.
+    Image layout() const;
     Image take() { return std::move(image_); }
 
   private:

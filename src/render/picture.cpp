@@ -82,9 +82,10 @@ LayerRequest checked_layers(const World& world, LayerRequest asked) {
 
 /// Refuses a film whose layers alone would fill the machine's memory: the system would end the program
 /// without a word.
-void check_film_fits(const World& world, const LayerRequest& window) {
-    constexpr double kBytesPerPixel = 2 * 34 * 4;  // up to 34 channels, once more while they are encoded
-    const double needed = kBytesPerPixel * (window.x1 - window.x0) * (window.y1 - window.y0);
+void check_film_fits(const World& world, const LayerRequest& window, bool in_strips) {
+    // Up to 34 channels, once more while they are encoded; in strips only the encoded ones are held.
+    const double bytes_per_pixel = (in_strips ? 1 : 2) * 34 * 4;
+    const double needed = bytes_per_pixel * (window.x1 - window.x0) * (window.y1 - window.y0);
     const double memory =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (needed < memory) return;
@@ -112,16 +113,25 @@ void describe(const World& world, const PictureRequest& request, Image& image) {
 }  // namespace
 
 Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
-                     const Warn& warn) {
+                     const Warn& warn, const StripSink* sink) {
     const LayerRequest layers = checked_layers(world, request.layers);
-    check_film_fits(world, layers);
+    check_film_fits(world, layers, sink != nullptr);
     Picture picture;
     const Stopwatch preparing;
     const Viewer viewer = make_viewer(world, request.frame, request.engine, warn);
     picture.prepare_seconds = preparing.seconds();
 
+    StripSink described;
+    if (sink) {
+        described.begin = [&](Image layout) {
+            describe(world, request, layout);
+            sink->begin(layout);
+        };
+        described.add = sink->add;
+    }
     const Stopwatch drawing;
-    picture.image = draw_layers(world, viewer, layers, progress, &picture.statistics);
+    picture.image =
+        draw_layers(world, viewer, layers, progress, &picture.statistics, sink ? &described : nullptr);
     picture.draw_seconds = drawing.seconds();
     describe(world, request, picture.image);
     if (warn) {

@@ -1,9 +1,11 @@
 #include "trilens/render.h"
 
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "base/format.h"
+#include "image/exr_strips.h"
 #include "render/frame.h"
 #include "render/picture.h"
 #include "scene/check_scene.h"
@@ -69,6 +71,20 @@ Picture Renderer::draw(const PictureRequest& request, const Progress& progress, 
     check_frame(*world_, request.frame);
     check_engine(request.engine);
     return draw_picture(*world_, request, progress, warn);
+}
+
+EncodedPicture Renderer::draw_exr(const PictureRequest& request, const Progress& progress,
+                                  const Warn& warn) const {
+    check_frame(*world_, request.frame);
+    check_engine(request.engine);
+    std::optional<ExrStrips> strips;
+    const StripSink sink{
+        [&](const Image& layout) { strips.emplace("image", layout); },
+        [&](const std::vector<Channel>& channels, int rows) { strips->add(channels, 0, rows); }};
+    EncodedPicture encoded;
+    encoded.picture = draw_picture(*world_, request, progress, warn, &sink);
+    encoded.exr = strips->finish();
+    return encoded;
 }
 
 PixelExplanation Renderer::explain(const PictureRequest& request, int x, int y) const {

@@ -40,6 +40,12 @@ struct SeenTriangle {
     Vec3 position{0};  // the world point that is seen
 };
 
+/// A picture as the bytes of an OpenEXR file.
+struct EncodedPicture {
+    Picture picture;  // its image has windows and header, but no channels
+    std::vector<unsigned char> exr;
+};
+
 /// The outlines of what a camera and its optics show.
 struct LineDrawing {
     std::string svg;                   // one document; see the command's help for its attributes
@@ -69,6 +75,11 @@ class Renderer {
     /// camera that the scene does not have, InputError where it does not fit in memory, ComputationError for
     /// pixels that are not finite, Interrupted once `progress` says so.
     Picture draw(const PictureRequest& request, const Progress& progress = {}, const Warn& warn = {}) const;
+
+    /// The same picture as write_image would write it, encoded while it is drawn: it is never held whole.
+    /// Throws as draw does, and OutputError where it cannot be encoded.
+    EncodedPicture draw_exr(const PictureRequest& request, const Progress& progress = {},
+                            const Warn& warn = {}) const;
 
     /// How one pixel comes about.
     PixelExplanation explain(const PictureRequest& request, int x, int y) const;
