@@ -12,4 +12,10 @@ PathMesh make_path_mesh(Path path, const SurfaceGrid& grid, const LinearCamera& 
     return {path, make_refraction(grid, camera, ior)};
 }
 
+PathMesh make_path_mesh(Path path, const SurfaceGrid& grid, std::span<const CornerView> views, double ior) {
+    TRILENS_CHECK(path != Path::kDirect, "the direct path meets no optic");
+    if (path == Path::kReflect) return {path, make_reflection(grid, views)};
+    return {path, make_refraction(grid, views, ior)};
+}
+
 }  // namespace trilens

@@ -7,15 +7,24 @@
 
 #include "paths/corner_rays.h"
 #include "render/camera_rays.h"
+#include "render/film_grid.h"
 #include "render/geometry.h"
 #include "render/request.h"
 
 namespace trilens {
 
-/// One optic as facets that the camera sees. Facets of the RayMeshes are those of the grid.
+/// One optic as facets that the camera sees. Facets of the RayMeshes are those of the grid, or, where there
+/// is a film_grid, of that.
 struct FramedOptic {
     std::shared_ptr<const OpticFacets> facets;
-    std::vector<PathMesh> paths;  // those that the scene draws and the optic has
+    std::vector<PathMesh> paths;                // those that the scene draws and the optic has
+    std::shared_ptr<const FilmGrid> film_grid;  // of a camera that is not linear
+    std::shared_ptr<const CameraModel> model;   // that camera's
+
+    /// The RayMeshes' facet by which the film shows facet f of the grid at that place; kNone: none does.
+    Id mesh_facet(Id f, const Vec2& at) const { return film_grid ? film_grid->facet_at(f, at, *model) : f; }
+    /// The grid's facet that a facet of the RayMeshes is.
+    Id grid_facet(Id f) const { return film_grid ? film_grid->original[f] : f; }
 };
 
 struct Frame {

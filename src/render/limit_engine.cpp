@@ -48,12 +48,14 @@ void LimitViewer::follow(const Optic& optic, const SurfaceHit& hit, SampleView& 
 }
 
 void LimitViewer::view_sample(SampleView& view, std::vector<PathEnd>& ends) const {
+    const double reach = camera.far_depth - camera.near_depth;
     view.hit = objects->first_hit(view.ray);
+    if (view.hit.seen() && view.hit.t > reach) view.hit = {};
     if (view.hit.seen()) view.depth = view.hit.t;
     std::optional<SurfaceHit> nearest;
     for (std::size_t i = 0; i < optics.size(); ++i) {
         const std::optional<SurfaceHit> hit = optics[i]->first_hit(view.ray);
-        if (!hit || hit->t >= view.depth || (nearest && hit->t >= nearest->t)) continue;
+        if (!hit || hit->t > reach || hit->t >= view.depth || (nearest && hit->t >= nearest->t)) continue;
         nearest = hit;
         view.optic = static_cast<Id>(i);
     }
@@ -64,8 +66,13 @@ void LimitViewer::view_sample(SampleView& view, std::vector<PathEnd>& ends) cons
 
 void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     views.reset(grid.size());
-    const FacetSamples owned = rasterize_facets(camera.mesh, grid);
-    set_camera_rays(camera.mesh, owned, grid, views.samples);
+    FacetSamples owned;
+    if (camera.model) {
+        owned = set_exact_rays(*camera.model, grid, views.samples);
+    } else {
+        owned = rasterize_facets(camera.mesh, grid);
+        set_camera_rays(camera.mesh, owned, grid, views.samples);
+    }
 
     // Each task keeps its own ends; put one after the other they do not depend on who did which.
     const std::size_t count = owned.sample.size();
@@ -82,6 +89,7 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
         for (const Id s : samples_of(task)) views.samples[s].first_end += views.ends.size();
         views.ends.insert(views.ends.end(), ends[task].begin(), ends[task].end());
     }
+    count_from_eye(camera, views.samples);
 }
 
 }  // namespace

@@ -51,11 +51,11 @@ SampleIds look(const Viewer& viewer, const SampleGrid& grid, const std::vector<I
     return ids;
 }
 
-/// The facets that show an optic.
-std::vector<Id> facets_of(const SampleIds& ids, Id optic) {
+/// The facets of the optic's RayMeshes that show it.
+std::vector<Id> facets_of(const SampleIds& ids, Id optic, const FramedOptic& framed, const SampleGrid& grid) {
     std::vector<Id> facet(ids.optic.size(), kNone);
     for (std::size_t s = 0; s < facet.size(); ++s)
-        if (ids.optic[s] == optic) facet[s] = ids.optic_facet[s];
+        if (ids.optic[s] == optic) facet[s] = framed.mesh_facet(ids.optic_facet[s], grid.position(s));
     return facet;
 }
 
@@ -93,7 +93,7 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     }
     const DrawnEdges edges = drawn_edges(world.objects, {material, world.objects.size()});
     for (Id i = 0; i < world.optics.size(); ++i) {
-        const std::vector<Id> facet = facets_of(ids, i);
+        const std::vector<Id> facet = facets_of(ids, i, frame.optics[i], grid);
         for (const PathMesh& path : frame.optics[i].paths) {
             if (path.mesh.facets.empty()) continue;
             const std::vector<Id>& seen = path.path == Path::kReflect ? ids.reflected : ids.refracted;
