@@ -55,7 +55,8 @@ ModelPointer make_general_linear(const ModelSource& source);
 ModelPointer make_distortion(const ModelSource& source);
 
 /// Several cameras, each in its window; where windows meet, rays pass from one to the next over `blend`
-/// (Vallance 2005, chapter 6 and appendix F).
+/// (Vallance 2005, chapter 6 and appendix F). A blend may show a point several times; it is cut into strips,
+/// and of several images inside one strip one is found.
 ModelPointer make_multi_perspective(const ModelSource& source);
 
 /// Rays from all around a sphere to its centre and on; the film's middle is the sphere's point nearest to
