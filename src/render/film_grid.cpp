@@ -81,6 +81,12 @@ void Builder::append(std::size_t facet, std::size_t branch, const Places& places
     result.original.push_back(static_cast<Id>(facet));
     result.branch.push_back(branch);
     result.middle.push_back(middle);
+    double reach = 0;
+    for (const Id corner : corners) {
+        const Vec3& screen = result.views[corner].screen;
+        reach = std::max(reach, length(Vec2(screen.x, screen.y) - middle));
+    }
+    result.reach.push_back((1 + kReach) * reach + kReachPixels);
 }
 
 /// False where the branch has no place for the facet as a whole.
@@ -126,12 +132,18 @@ void Builder::add_branch(std::size_t branch) {
 
 Id FilmGrid::facet_at(Id f, const Vec2& at, const CameraModel& model) const {
     Id best = kNone;
+    bool best_is_own = false;
     double nearest = 0;
     for (std::size_t i = first[f]; i < first[f + 1]; ++i) {
         const std::size_t facet = placed[i];
-        if (!model.shows(branch[facet], at)) continue;
+        const bool own = model.shows(branch[facet], at);
         const double distance = length(middle[facet] - at);
-        if (best == kNone || distance < nearest) best = static_cast<Id>(facet), nearest = distance;
+        if (own ? best_is_own && distance >= nearest
+                : best_is_own || distance > reach[facet] || (best != kNone && distance >= nearest))
+            continue;
+        best = static_cast<Id>(facet);
+        best_is_own = own;
+        nearest = distance;
     }
     return best;
 }

@@ -19,10 +19,13 @@ struct FilmGrid {
         placed;                       // original facet f is at placed[first[f]] .. placed[first[f+1]-1]
     std::vector<std::size_t> branch;  // per facet of `grid`
     std::vector<Vec2> middle;         // likewise, pixels
+    std::vector<double> reach;        // how far from its middle the film may show it, pixels
     std::size_t lost = 0;  // facets with a corner on the film and none to be placed: across a pole, or partly
                            // where the camera has no image
 
-    /// The facet of `grid` by which the film shows original facet f at that place; kNone where none does.
+    /// The facet of `grid` by which the film shows original facet f at that place: the nearest of the branch
+    /// that the film shows there; where that has none, the nearest of another that reaches so far (branches
+    /// go on smoothly). kNone where none does.
     Id facet_at(Id f, const Vec2& at, const CameraModel& model) const;
 };
 

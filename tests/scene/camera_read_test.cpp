@@ -34,14 +34,14 @@ TEST_CASE("cameras of the shipped scene are read with their types") {
     const Scene scene = load_text(text.str());
     const SceneInfo info = make_scene_info(scene);
     REQUIRE(info.camera_types.size() == scene.cameras.size());
-    CHECK(info.camera_types[0] == "fisheye");
-    CHECK(info.cameras[0] == "fisheye");
+    CHECK(info.camera_types[1] == "fisheye");
+    CHECK(info.cameras[1] == "fisheye");
     std::size_t of_types = 0;
     for (std::size_t type = 0; type < kCameraTypeNames.size(); ++type)
         of_types +=
             std::count(info.camera_types.begin(), info.camera_types.end(), kCameraTypeNames[type]) > 0;
     CHECK(of_types == kCameraTypeNames.size() - 2);  // but planarContext and rayMesh
-    const CameraDescription& several = scene.cameras[12];
+    const CameraDescription& several = scene.cameras[13];
     REQUIRE(several.views.size() == 3);
     CHECK(several.views[1].camera.yfov == 50);
     CHECK(several.views[1].window == std::array<double, 4>{0.3, 0, 0.7, 1});
