@@ -135,11 +135,15 @@ void bind_camera(py::module_& module) {
     module.def(
         "make_perspective",
         [](const Triple& eye, const Triple& at, const Triple& up, double yfov, int width, int height) {
-            return make_perspective({{vec3(eye), vec3(at), vec3(up)}, yfov, width, height});
+            return make_perspective({{vec3(eye), vec3(at), vec3(up)},
+                                     yfov,
+                                     static_cast<double>(width),
+                                     static_cast<double>(height)});
         },
         py::arg("eye") = tuple_of(look.eye), py::arg("at") = tuple_of(look.at),
         py::arg("up") = tuple_of(look.up), py::arg("yfov") = perspective.yfov_degrees,
-        py::arg("width") = perspective.width, py::arg("height") = perspective.height,
+        py::arg("width") = static_cast<int>(perspective.width),
+        py::arg("height") = static_cast<int>(perspective.height),
         "A pinhole at eye, square pixels. yfov: the whole vertical angle, degrees. width, height: pixels.\n"
         "Raises InputError where this leaves no camera.");
     const OrthographicParams orthographic;
@@ -147,11 +151,15 @@ void bind_camera(py::module_& module) {
         "make_orthographic",
         [](const Triple& eye, const Triple& at, const Triple& up, double world_height, int width,
            int height) {
-            return make_orthographic({{vec3(eye), vec3(at), vec3(up)}, world_height, width, height});
+            return make_orthographic({{vec3(eye), vec3(at), vec3(up)},
+                                      world_height,
+                                      static_cast<double>(width),
+                                      static_cast<double>(height)});
         },
         py::arg("eye") = tuple_of(look.eye), py::arg("at") = tuple_of(look.at),
         py::arg("up") = tuple_of(look.up), py::arg("world_height") = orthographic.world_height,
-        py::arg("width") = orthographic.width, py::arg("height") = orthographic.height,
+        py::arg("width") = static_cast<int>(orthographic.width),
+        py::arg("height") = static_cast<int>(orthographic.height),
         "Parallel rays; the film's middle is at eye. world_height: what the film's height covers, scene "
         "units.");
 }

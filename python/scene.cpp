@@ -65,12 +65,10 @@ void bind_parts(py::module_& module) {
     py::class_<CameraDescription>(module, "Camera", "A camera as the scene gives it.")
         .def_readonly("name", &CameraDescription::name)
         .def_property_readonly(
-            "type",
-            [](const CameraDescription& camera) {
-                return camera.type == CameraDescription::Type::kRayMesh ? "rayMesh" : "perspective";
-            },
-            "\"perspective\" or \"rayMesh\".")
-        .def_readonly("yfov", &CameraDescription::yfov, "The whole vertical angle, degrees (perspective).")
+            "type", [](const CameraDescription& camera) { return camera_type_name(camera.type); },
+            "As in scene files: \"perspective\", \"fisheye\", \"rayMesh\", ...")
+        .def_readonly("yfov", &CameraDescription::yfov,
+                      "The whole vertical angle, degrees (of types that have it).")
         .def_property_readonly(
             "eye", [](const CameraDescription& camera) { return tuple_of(camera.eye); }, "World frame.")
         .def_property_readonly(

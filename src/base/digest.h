@@ -1,6 +1,7 @@
 // A digest of values of many kinds: tells whether inputs changed (see hash.h).
 #pragma once
 
+#include <array>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -28,6 +29,11 @@ class Digest {
     void add(const std::vector<T>& list) {
         static_assert(std::is_trivially_copyable_v<T>);
         add_bytes(list.data(), list.size() * sizeof(T));
+    }
+    template <typename T, std::size_t N>
+    void add(const std::array<T, N>& list) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        add_bytes(list.data(), N * sizeof(T));
     }
     template <typename... T>
     void add_all(const T&... values) {

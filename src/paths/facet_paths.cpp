@@ -59,7 +59,10 @@ OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams pa
     outline_.rays.resize(places_.size());
     outline_.facets = grid.facets;
     outline_.screen.reserve(places_.size());
-    for (const Place& place : places_) outline_.screen.push_back(looking_.camera.screen(place.point));
+    for (const Place& place : places_) {
+        outline_.screen.push_back(looking_.camera.screen(place.point));
+        incident_.push_back(looking_.camera.ray(outline_.screen.back(), place.point).direction);
+    }
     corner_looks_.resize(2 * places_.size());
     cells_.resize(grid.facets.size());
     prepared_.resize(grid.facets.size());
@@ -67,19 +70,13 @@ OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams pa
 
 void OpticPaths::set_film_corner(Id corner, const Vec2& pixel) {
     // A point at the surface's depth first; where the ray meets the surface, that point.
-    const auto chord_at = [&](double depth) {
-        const Vec3 screen(pixel * depth, depth);
-        const Vec3 point = looking_.camera.point(screen);
-        return Chord{screen, point,
-                     2 * window_.reach +
-                         length(point - looking_.camera.point(Vec3(pixel * window_.depth, window_.depth)))};
-    };
-    Chord chord = chord_at(window_.depth);
+    const Vec3 at = looking_.camera.affine ? Vec3(pixel, 1) : Vec3(pixel * window_.depth, window_.depth);
+    Chord chord{at, looking_.camera.point(at), 2 * window_.reach};
     auto look = std::make_unique<Look>(
         look_through(looking_, chord, {.side = LookSide::kNearest, .least_weight = kFainter * kLeastWeight}));
     if (look->state != LookState::kMissed) {
         chord.point = look->place.point;
-        chord.screen = look->screen = looking_.camera.screen(chord.point);
+        if (!looking_.camera.affine) chord.screen = look->screen = looking_.camera.screen(chord.point);
         if (look->segments.size() > 1 ||
             (look->segments.size() == 1 && look->segments[0].step.event != Event::kReflect))
             set_kappa(looking_, *look);
@@ -123,9 +120,18 @@ Id OpticPaths::film_facet(const Vec2& pixel) const {
     return static_cast<Id>(2 * (j * window_.n + i) + (above ? 1 : 0));
 }
 
-OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, const RayMesh* reflection,
-                       const RayMesh* refraction)
-    : OpticPaths(std::move(looking), grid, DivideParams{}) {
+OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
+    : looking_(std::move(looking)), grid_(first.grid) {
+    const SurfaceGrid& grid = *first.grid;
+    const RayMesh *const reflection = first.reflection, *const refraction = first.refraction;
+    outline_.facets = grid.facets;
+    outline_.rays.resize(first.views.size());
+    for (const CornerView& view : first.views) {
+        outline_.screen.push_back(view.screen);
+        incident_.push_back(view.incident);
+    }
+    cells_.resize(grid.facets.size());
+    prepared_.resize(grid.facets.size());
     const std::size_t facets = grid.facets.size();
     for (std::size_t f = 0; f < facets; ++f) {
         leaves_.push_back({static_cast<Id>(f)});
@@ -156,10 +162,7 @@ OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, const RayMesh* 
 }
 
 bool OpticPaths::shows_front(Id facet) const {
-    if (!grid_) return true;
-    const Id corner = grid_->facets[facet][0];
-    return faces_front(*grid_, grid_->facets[facet],
-                       looking_.camera.ray(outline_.screen[corner], places_[corner].point).direction);
+    return !grid_ || faces_front(*grid_, grid_->facets[facet], incident_[grid_->facets[facet][0]]);
 }
 
 void OpticPaths::look_at_corners(std::span<const Id> facets) {

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/corner_view.h"
 #include "base/ray_mesh.h"
 #include "paths/look.h"
 
@@ -58,6 +59,16 @@ struct FilmWindow {
     double reach = 0;  // the size of the surface, world units
 };
 
+/// The paths over one optic up to that optic itself: their meshes, whose facets are the grid's, or null where
+/// not asked for; and how the camera sees each corner. All must live while the paths are made; the grid
+/// longer.
+struct FirstPaths {
+    const SurfaceGrid* grid = nullptr;
+    std::span<const CornerView> views;
+    const RayMesh* reflection = nullptr;
+    const RayMesh* refraction = nullptr;
+};
+
 /// The paths over one optic's facets for one camera. Facets are worked out when they are first asked for.
 ///
 /// A facet stands for the rays between its corners where the exact paths from its corners, the middles of its
@@ -78,10 +89,8 @@ class OpticPaths {
     Id film_facet(const Vec2& pixel) const;
     bool is_on_film() const { return window_.n > 0; }
 
-    /// Paths that end after the first optic (thesis 7.2.1, 7.3.1): these meshes alone, whose facets are the
-    /// grid's; null: not asked for. No exact ray is followed.
-    OpticPaths(Looking looking, const SurfaceGrid& grid, const RayMesh* reflection,
-               const RayMesh* refraction);
+    /// Paths that end after the first optic (thesis 7.2.1, 7.3.1). No exact ray is followed.
+    OpticPaths(Looking looking, const FirstPaths& first);
 
     /// Works out these facets, those that are known already among them. Same leaves, rays and histories
     /// whatever was asked before; only their numbers differ.
@@ -119,7 +128,8 @@ class OpticPaths {
     FilmWindow window_;
     DivideParams params_;
     RayMesh outline_;
-    std::vector<Place> places_;                        // per grid corner
+    std::vector<Vec3> incident_;                       // per corner of the grid: the camera's ray there
+    std::vector<Place> places_;                        // per corner; on the film the point alone: the facet's
     std::vector<std::unique_ptr<Look>> corner_looks_;  // per grid corner and side, where asked for
     std::vector<Cell> cells_;                          // one per facet, then parts
     std::vector<char> prepared_;

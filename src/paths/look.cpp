@@ -90,7 +90,9 @@ void set_kappa(const Looking& looking, Look& look) {
         const std::size_t k = static_cast<std::size_t>(axis);
         side[k] = beside(*looking.surface, look.place, axis);
         const Vec3 incident =
-            looking.camera.ray(looking.camera.screen(side[k].point), side[k].point).direction;
+            looking.camera.affine
+                ? side[k].point - (look.place.point - look.incident)
+                : looking.camera.ray(looking.camera.screen(side[k].point), side[k].point).direction;
         again[k] = repeat_paths(*looking.world, meeting_at(looking, side[k], incident, look.front),
                                 length(incident), look.segments);
     }

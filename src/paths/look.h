@@ -12,6 +12,7 @@ namespace trilens {
 /// A camera as facets ask it.
 struct PathCamera {
     bool parallel = false;  // its directions are unit, whatever they lead to
+    bool affine = false;    // it is not linear: screen positions are (x, y, 1), and `screen` is not asked
     /// Homogeneous screen position of a world point, as RayMesh::screen.
     std::function<Vec3(const Vec3& point)> screen;
     /// The world point of a homogeneous screen position (w the depth): screen's inverse.

@@ -39,6 +39,8 @@ struct FacetViewer {
     void operator()(const SampleGrid& grid, SampleViews& views) const;
 
   private:
+    /// Along the camera's rays as far as its far plane.
+    double reach() const { return frame.camera.far_depth - frame.camera.near_depth; }
     void view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                     SampleViews& views) const;
@@ -76,7 +78,7 @@ void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid
     std::vector<Hit> hits(grid.size());
     draw_first(frame.camera.mesh, owned, grid, hits);
     for (std::size_t s = 0; s < hits.size(); ++s) {
-        if (!hits[s].seen()) continue;
+        if (!hits[s].seen() || hits[s].t > reach()) continue;
         views.samples[s].hit = hits[s];
         views.samples[s].depth = hits[s].t;
     }
@@ -90,7 +92,7 @@ void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const
     parallel_for(hits.size(), 1024, [&](std::size_t from, std::size_t to) {
         for (std::size_t s = from; s < to; ++s) {
             SampleView& view = views.samples[s];
-            if (!hits[s].seen()) continue;
+            if (!hits[s].seen() || hits[s].t > reach()) continue;
             const bool sees_optic = view.optic != kNone, sees_object = view.hit.seen();
             if (sees_optic || sees_object) {
                 const Id other =
@@ -109,8 +111,8 @@ void FacetViewer::redraw_direct(const FacetSamples& owned, const SampleGrid& gri
     for (std::size_t s = 0; s < hits.size(); ++s) {
         SampleView& view = views.samples[s];
         if (view.optic != kNone) continue;
-        view.hit = hits[s];
-        view.depth = hits[s].seen() ? hits[s].t : SampleView().depth;
+        view.hit = hits[s].seen() && hits[s].t <= reach() ? hits[s] : Hit();
+        view.depth = view.hit.seen() ? view.hit.t : SampleView().depth;
     }
 }
 
@@ -121,9 +123,11 @@ void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     view_objects(owned, grid, views);
     for (std::size_t i = 0; i < frame.optics.size(); ++i) view_optic(i, owned, grid, views);
     if (redraws_direct) redraw_direct(owned, grid, views);
+    count_from_eye(frame.camera, views.samples);
     std::vector<OpticEnds> ends;
     for (std::size_t i = 0; i < frame.optics.size(); ++i)
-        ends.push_back(draw_optic_paths({*world, static_cast<Id>(i), draw_objects}, *paths[i], grid, views));
+        ends.push_back(draw_optic_paths({*world, static_cast<Id>(i), draw_objects, frame.optics[i]},
+                                        *paths[i], grid, views));
     collect_ends(ends, views);
 }
 

@@ -7,7 +7,7 @@
 namespace trilens {
 namespace {
 
-FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamera& camera,
+FramedOptic frame_optic(const World& world, std::size_t index, const CameraRays& camera,
                         const FrameParams& params) {
     const Optic& optic = world.optics[index];
     const RenderSettings& settings = world.scene.render;
@@ -15,9 +15,16 @@ FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamer
     framed.resolution = grid_resolution(optic, params.resolution);
     framed.grid = params.grid.value_or(world.scene.meshes[optic.mesh].grid);
     framed.facets = optic_facets(world, index, framed.resolution);
+    if (camera.model) {
+        framed.model = camera.model;
+        framed.film_grid =
+            std::make_shared<FilmGrid>(make_film_grid(framed.facets->grid(), *camera.model, camera.film));
+    }
     const auto add = [&](Path path) {
+        const double ior = world.scene.materials[optic.material].ior;
         framed.paths.push_back(
-            make_path_mesh(path, framed.facets->grid(), camera, world.scene.materials[optic.material].ior));
+            camera.linear ? make_path_mesh(path, framed.facets->grid(), *camera.linear, ior)
+                          : make_path_mesh(path, framed.film_grid->grid, framed.film_grid->views, ior));
     };
     if (settings.reflect) add(Path::kReflect);
     if (settings.refract && !optic.mirror) add(Path::kRefract);
@@ -35,12 +42,17 @@ Frame make_frame(const World& world, CameraRays camera, const FrameParams& param
     frame.camera = std::move(camera);
     check_facet_count(world, params.resolution);
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
-        frame.optics.push_back(frame_optic(world, i, *frame.camera.linear, params));
+        frame.optics.push_back(frame_optic(world, i, frame.camera, params));
         const std::vector<Vec3>& normals = frame.optics.back().facets->grid().corner_normal;
         const auto bad = std::count(normals.begin(), normals.end(), Vec3(0));
         if (bad > 0 && warn)
             warn(world.names[world.optics[i].mesh] + ": " + std::to_string(bad) +
                  " grid corners have no normal; the facets there show nothing");
+        const std::shared_ptr<const FilmGrid>& placed = frame.optics.back().film_grid;
+        if (placed && placed->lost > 0 && warn)
+            warn(world.names[world.optics[i].mesh] + ": " + std::to_string(placed->lost) +
+                 " facets lie across a pole of the camera or reach where it has no image; what they reflect "
+                 "or refract is not drawn");
     }
     return frame;
 }
@@ -65,23 +77,41 @@ PathCamera path_camera(const LinearCamera& camera) {
     return of_paths;
 }
 
-namespace {
-
-Looking looking_at(const World& world, const Frame& frame, std::size_t optic) {
-    return {&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(),
-            path_camera(*frame.camera.linear)};
+PathCamera path_camera(const CameraRays& camera, double depth) {
+    if (camera.linear) return path_camera(*camera.linear);
+    PathCamera of_paths;
+    of_paths.affine = true;
+    const auto ray_at = [&camera](const Vec3& screen) {
+        return exact_ray(camera, Vec2(screen) / screen.z).value_or(Ray{});
+    };
+    of_paths.point = [ray_at, depth](const Vec3& screen) {
+        const Ray ray = ray_at(screen);
+        return ray.origin + depth * normalize_or_zero(ray.direction);
+    };
+    // As long as the way to the chord's point.
+    of_paths.ray = [ray_at](const Vec3& screen, const Vec3& chord) {
+        const Ray ray = ray_at(screen);
+        return Ray{ray.origin, length(chord - ray.origin) * normalize_or_zero(ray.direction)};
+    };
+    return of_paths;
 }
 
+namespace {
+
+/// How many squares along the film's side do for n facets along a face's: a body shows about three faces.
+constexpr int kSquaresPerFacet = 2;
+
 /// The optic's bounds on the film.
-FilmWindow film_window(const World& world, const LinearCamera& camera, const SurfaceGrid& grid, int n) {
+FilmWindow film_window(const World& world, const FramedOptic& framed, std::span<const CornerView> views) {
     const Vec2 film(world.scene.film.width, world.scene.film.height);
-    FilmWindow window{Vec2(1e300), Vec2(-1e300), n};
+    FilmWindow window{Vec2(1e300), Vec2(-1e300), framed.resolution};
+    if (framed.model) window.n *= kSquaresPerFacet;
     Box box;
     double depth = 0;
-    for (const Vec3& point : grid.points) {
-        const Vec3 s = screen_from_world(camera, point);
-        box.include(point);
-        depth += std::max(s.z, 0.0) / static_cast<double>(grid.points.size());
+    for (const Vec3& point : framed.facets->grid().points) box.include(point);
+    for (const CornerView& view : views) {
+        const Vec3& s = view.screen;
+        depth += length(view.incident) / static_cast<double>(views.size());
         if (s.z > 0) {
             window.low = glm::min(window.low, Vec2(s) / s.z);
             window.high = glm::max(window.high, Vec2(s) / s.z);
@@ -106,37 +136,57 @@ Vec3 middle_of(const SurfaceGrid& grid) {
     return 0.5 * (box.low + box.high);
 }
 
+/// The grid that the optic's first paths are of, and how the camera sees its corners.
+struct SeenGrid {
+    const SurfaceGrid* grid = nullptr;
+    std::vector<CornerView> views;
+};
+
+SeenGrid seen_grid(const Frame& frame, const FramedOptic& framed) {
+    if (framed.film_grid) return {&framed.film_grid->grid, framed.film_grid->views};
+    return {&framed.facets->grid(), corner_views(framed.facets->grid(), *frame.camera.linear)};
+}
+
 }  // namespace
 
 std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic) {
     const FramedOptic& framed = frame.optics[optic];
-    const SurfaceGrid& grid = framed.facets->grid();
-    const Looking looking = looking_at(world, frame, optic);
-    if (framed.grid == GridKind::kScreen)
-        return std::make_unique<OpticPaths>(
-            looking, film_window(world, *frame.camera.linear, grid, framed.resolution), DivideParams{});
-    if (world.scene.render.max_depth > 0) return std::make_unique<OpticPaths>(looking, grid, DivideParams{});
-    return std::make_unique<OpticPaths>(looking, grid, find_path(framed, Path::kReflect),
-                                        find_path(framed, Path::kRefract));
+    const bool whole = world.scene.render.max_depth > 0;
+    const SeenGrid seen = seen_grid(frame, framed);
+    Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
+    // A camera that is not linear has whole paths by facets on the film: there its rays are exact.
+    if (framed.grid == GridKind::kScreen || (framed.model && whole)) {
+        const FilmWindow window = film_window(world, framed, seen.views);
+        looking.camera = path_camera(frame.camera, window.depth);
+        return std::make_unique<OpticPaths>(looking, window, DivideParams{});
+    }
+    if (whole) {
+        looking.camera = path_camera(*frame.camera.linear);
+        return std::make_unique<OpticPaths>(looking, *seen.grid, DivideParams{});
+    }
+    return std::make_unique<OpticPaths>(looking,
+                                        FirstPaths{seen.grid, seen.views, find_path(framed, Path::kReflect),
+                                                   find_path(framed, Path::kRefract)});
 }
 
 std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,
                                                    Engine engine) {
     const FramedOptic& framed = frame.optics[optic];
-    const SurfaceGrid& grid = framed.facets->grid();
+    const SeenGrid seen = seen_grid(frame, framed);
     const double ior = world.scene.materials[world.optics[optic].material].ior;
     std::vector<PathMesh> meshes;
     for (const PathMesh& path : framed.paths)
         meshes.push_back(engine == Engine::kPlanar
-                             ? make_flat_mesh(path.path, grid, *frame.camera.linear, ior)
-                             : make_environment_mesh(path, middle_of(grid)));
+                             ? make_flat_mesh(path.path, *seen.grid, seen.views, ior)
+                             : make_environment_mesh(path, middle_of(framed.facets->grid())));
     const auto find = [&](Path path) -> const RayMesh* {
         for (const PathMesh& one : meshes)
             if (one.path == path) return &one.mesh;
         return nullptr;
     };
-    return std::make_unique<OpticPaths>(looking_at(world, frame, optic), grid, find(Path::kReflect),
-                                        find(Path::kRefract));
+    const Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
+    return std::make_unique<OpticPaths>(
+        looking, FirstPaths{seen.grid, seen.views, find(Path::kReflect), find(Path::kRefract)});
 }
 
 const RayMesh* find_path(const FramedOptic& optic, Path path) {

@@ -32,12 +32,14 @@ struct LimitViewer {
 };
 
 void LimitViewer::view_sample(SampleView& view, Found& found) const {
+    const double reach = camera.far_depth - camera.near_depth;
     view.hit = objects->first_hit(view.ray);
+    if (view.hit.seen() && view.hit.t > reach) view.hit = {};
     if (view.hit.seen()) view.depth = view.hit.t;
     std::optional<SurfaceHit> nearest;
     for (std::size_t i = 0; i < paths->optics.size(); ++i) {
         const std::optional<SurfaceHit> hit = paths->optics[i].tracer->first_hit(view.ray);
-        if (!hit || hit->t >= view.depth || (nearest && hit->t >= nearest->t)) continue;
+        if (!hit || hit->t > reach || hit->t >= view.depth || (nearest && hit->t >= nearest->t)) continue;
         nearest = hit;
         view.optic = static_cast<Id>(i);
     }
@@ -54,8 +56,13 @@ void LimitViewer::view_sample(SampleView& view, Found& found) const {
 
 void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     views.reset(grid.size());
-    const FacetSamples owned = rasterize_facets(camera.mesh, grid);
-    set_camera_rays(camera.mesh, owned, grid, views.samples);
+    FacetSamples owned;
+    if (camera.model) {
+        owned = set_exact_rays(*camera.model, grid, views.samples);
+    } else {
+        owned = rasterize_facets(camera.mesh, grid);
+        set_camera_rays(camera.mesh, owned, grid, views.samples);
+    }
 
     const std::size_t count = owned.sample.size();
     std::vector<Found> found((count + kSamplesPerTask - 1) / kSamplesPerTask);
@@ -73,6 +80,7 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
         views.ends.insert(views.ends.end(), found[task].ends.begin(), found[task].ends.end());
         views.steps.insert(views.steps.end(), found[task].steps.begin(), found[task].steps.end());
     }
+    count_from_eye(camera, views.samples);
 }
 
 }  // namespace

@@ -13,14 +13,17 @@ namespace {
 constexpr std::size_t kSamplesPerTask = 256;
 
 /// The samples that see the optic, by facet of its paths.
-FacetSamples samples_by_facet(const OpticPaths& paths, Id optic, const SampleGrid& grid,
+FacetSamples samples_by_facet(const OpticEndsParams& params, const OpticPaths& paths, const SampleGrid& grid,
                               const SampleViews& views) {
     std::vector<Id> owner(views.samples.size());
     for (std::size_t s = 0; s < owner.size(); ++s) {
         const SampleView& view = views.samples[s];
-        owner[s] = view.optic != optic  ? kNone
-                   : paths.is_on_film() ? paths.film_facet(grid.position(s))
-                                        : view.facet;
+        if (view.optic != params.optic)
+            owner[s] = kNone;
+        else if (paths.is_on_film())
+            owner[s] = paths.film_facet(grid.position(s));
+        else
+            owner[s] = params.framed.mesh_facet(view.facet, grid.position(s));
     }
     return group_by_facet(owner, paths.outline().facets.size());
 }
@@ -222,7 +225,7 @@ void follow_samples(const OpticEndsParams& params, const std::vector<Id>& sample
 OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, const SampleGrid& grid,
                            SampleViews& views) {
     OpticEnds out;
-    const FacetSamples owned = samples_by_facet(paths, params.optic, grid, views);
+    const FacetSamples owned = samples_by_facet(params, paths, grid, views);
     const std::vector<Id> seen = seen_facets(owned);
     if (seen.empty()) return out;
     paths.prepare(seen);

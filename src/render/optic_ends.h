@@ -7,6 +7,7 @@
 
 #include "base/facet_samples.h"
 #include "paths/facet_paths.h"
+#include "render/frame.h"
 #include "render/views.h"
 #include "render/world.h"
 
@@ -27,6 +28,7 @@ struct OpticEndsParams {
     const World& world;
     Id optic = kNone;
     const DrawMesh& draw;  // of the objects
+    const FramedOptic& framed;
 };
 
 /// The ends of all samples whose first surface is the optic's, and their method, level, and what was not

@@ -33,8 +33,9 @@ HistoryQuery history_query(const World& world, const Frame& frame, const std::ve
                            const Vec3& point) {
     HistoryQuery query;
     query.world = &path_world(world);
-    query.camera_ray = [&mesh = frame.camera.mesh, weights = facet_weights(frame.camera.mesh, 0)](
-                           const Vec2& pixel) { return sample_ray(mesh, 0, weights, pixel); };
+    query.camera_ray = [&camera = frame.camera](const Vec2& pixel) {
+        return exact_ray(camera, pixel).value_or(Ray{});
+    };
     for (std::size_t i = 0; i < steps.size(); ++i) {
         PathSegment segment;
         segment.parent = i == 0 ? kNone : static_cast<Id>(i - 1);

@@ -9,6 +9,7 @@ double path_length(const PathEnd& end) {
 SampleColour sample_colour(const World& world, const SampleViews& views, const SampleView& view) {
     const RenderSettings& settings = world.scene.render;
     SampleColour colour;
+    if (view.ray.direction == Vec3(0)) return colour;  // the camera has no ray there
     colour.coverage = view.hit.seen() || view.optic != kNone ? 1 : 0;
     if (view.optic == kNone) {
         if (settings.direct) colour.direct = shade_ray(world.shading, view.hit, view.ray);

@@ -9,6 +9,7 @@
 
 #include "base/appearance.h"
 #include "base/cage.h"
+#include "base/camera_description.h"
 #include "base/grid_kind.h"
 #include "base/triangle_scene.h"
 #include "base/vec.h"
@@ -25,20 +26,6 @@ inline constexpr int kMaxResolution = 1024;
 struct Film {
     int width = 640, height = 480;
     int spp = 1;  // S: S x S samples per pixel
-};
-
-/// A camera as the file gives it; the camera room makes rays of it.
-struct CameraDescription {
-    enum class Type { kPerspective, kRayMesh };
-    std::string name;
-    Type type = Type::kPerspective;
-    double yfov = 40;  // degrees, the whole vertical angle
-    Vec3 eye{0, 0, 1}, at{0}, up{0, 1, 0};
-
-    // kRayMesh: one entry per corner; screen in 0..1 from the film's top left.
-    std::vector<Vec3> points, directions;
-    std::vector<Vec2> screen;
-    std::vector<IdTriple> triangles;
 };
 
 enum class Role { kObject, kOptic };

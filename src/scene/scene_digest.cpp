@@ -16,8 +16,27 @@ void add(const std::shared_ptr<const Texture>& texture, Digest& digest) {
 }
 
 void add(const CameraDescription& camera, Digest& digest) {
-    const auto& [name, type, yfov, eye, at, up, points, directions, screen, triangles] = camera;
-    digest.add_all(name, type, yfov, eye, at, up, points, directions, screen, triangles);
+    const auto& [name, type, eye, at, up, yfov, shift, near_depth, far_depth, ymag, angle, scale, volume,
+                 hfov, vfov, mapping, fov, lens, travel, slits, window, placed_rays, detail, context_fov,
+                 views, blend, center, radius, ground_point, ground_normal, bend, facets, tolerance, points,
+                 directions, screen, triangles] = camera;
+    digest.add_all(name, type, eye, at, up, yfov, shift, near_depth, far_depth, ymag, angle, scale, hfov,
+                   vfov, mapping, fov, travel, window, detail, context_fov, blend, center, radius,
+                   ground_point, ground_normal, bend, facets, tolerance, points, directions, screen,
+                   triangles);
+    {
+        const auto& [vrp, vpn, vup, prp, of_window, parallel, front, back] = volume;
+        digest.add_all(vrp, vpn, vup, prp, of_window, parallel, front, back);
+    }
+    const auto& [fisheye, fx, fy, cx, cy, distortion] = lens;
+    digest.add_all(fisheye, fx, fy, cx, cy, distortion);
+    for (const auto& [point, direction] : slits) digest.add_all(point, direction);
+    for (const auto& [point, direction, place] : placed_rays) digest.add_all(point, direction, place);
+    digest.add(views.size());
+    for (const auto& [one, of_film] : views) {
+        add(one, digest);
+        digest.add(of_film);
+    }
 }
 
 void add(const Background& background, Digest& digest) {

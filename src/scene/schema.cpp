@@ -1,11 +1,14 @@
 // The scene format as a JSON Schema (draft 7): the one table that the checks, --set and the documentation
 // read.
+#include <string>
+
 #include "scene/load.h"
+#include "scene/schema_parts.h"
 
 namespace trilens {
 
 const char* scene_schema() {
-    return R"json({
+    static const std::string text = R"json({
 "$schema": "http://json-schema.org/draft-07/schema#",
 "$id": "trilens-scene-1.schema.json",
 "title": "a scene",
@@ -43,37 +46,8 @@ const char* scene_schema() {
       "spp": { "type": "integer", "minimum": 1, "maximum": 64, "default": 1, "description": "S: S x S samples per pixel." }
     }
   },
-
-  "camera": {
-    "title": "a camera",
-    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
-    "properties": {
-      "name": { "$ref": "#/definitions/name" },
-      "type": { "enum": ["perspective", "rayMesh"], "default": "perspective" },
-      "yfov": { "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 180, "default": 40, "description": "The whole vertical angle, degrees." },
-      "lookAt": {
-        "title": "a lookAt",
-        "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
-        "required": ["eye", "at"],
-        "properties": {
-          "eye": { "$ref": "#/definitions/vec3" }, "at": { "$ref": "#/definitions/vec3" },
-          "up": { "$ref": "#/definitions/vec3", "default": [0, 1, 0] }
-        }
-      },
-      "points": { "type": "array", "minItems": 3, "items": { "$ref": "#/definitions/vec3" }, "description": "rayMesh: origin of each corner's ray." },
-      "directions": { "type": "array", "minItems": 3, "items": { "$ref": "#/definitions/vec3" }, "description": "rayMesh: one per corner, any length but 0." },
-      "screen": { "type": "array", "minItems": 3, "description": "rayMesh: one per corner, 0..1 from the film's top left; a facet may reach beyond the film.",
-        "items": { "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number", "minimum": -1000, "maximum": 1000 } } },
-      "triangles": { "type": "array", "minItems": 1, "description": "rayMesh: three corners each.",
-        "items": { "type": "array", "minItems": 3, "maxItems": 3, "items": { "$ref": "#/definitions/index" } } }
-    },
-    "if": { "required": ["type"], "properties": { "type": { "const": "rayMesh" } } },
-    "then": { "title": "a rayMesh camera", "required": ["points", "directions", "screen", "triangles"],
-      "properties": { "yfov": false, "lookAt": false } },
-    "else": { "title": "a perspective camera", "required": ["lookAt"],
-      "properties": { "points": false, "directions": false, "screen": false, "triangles": false } }
-  },
-
+)json" + std::string(camera_schema()) +
+                                    R"json(
   "background": {
     "title": "a background", "description": "A colour, or a latitude-longitude picture turned about +Y by 'rotate' degrees.",
     "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
@@ -125,7 +99,7 @@ const char* scene_schema() {
     "then": { "title": "a transform with a matrix", "properties": { "translate": false, "rotate": false, "scale": false } }
   },
 )json"
-           R"json(
+                                    R"json(
   "primitive": {
     "title": "a primitive", "description": "An optic given by a formula. axis: paraboloid from apex to focus, cylinder along it; tangent: where u begins.",
     "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
@@ -256,6 +230,7 @@ const char* scene_schema() {
   }
 }
 })json";
+    return text.c_str();
 }
 
 }  // namespace trilens

@@ -126,7 +126,7 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
                     {world.objects, edges, paths.nodes()[node].mesh, grid, leaves_at(ids, i, p, node),
                      ids.seen[p], wire});
                 for (EdgeCurve& curve : drawing->layers.back()->curves)
-                    curve.facet = paths.leaves()[curve.facet].facet;
+                    curve.facet = frame.optics[i].grid_facet(paths.leaves()[curve.facet].facet);
             }
     return drawing;
 }
