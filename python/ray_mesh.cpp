@@ -166,8 +166,13 @@ void bind_camera(py::module_& module) {
 
 void bind_makers(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> released;
-    module.def("camera_mesh", make_camera_mesh, py::arg("camera"), py::arg("width"), py::arg("height"),
-               "The film as two facets; t is the depth along the view axis.");
+    module.def(
+        "camera_mesh",
+        [](const LinearCamera& camera, double width, double height) {
+            return make_camera_mesh(camera, width, height);
+        },
+        py::arg("camera"), py::arg("width"), py::arg("height"),
+        "The film as two facets; t is the depth along the view axis.");
     module.def("mirror_mesh", make_mirror_mesh, py::arg("grid"), py::arg("camera"), released,
                "What the camera sees in a mirror of this grid; facet f is facet f of the grid.");
     module.def("lens_mesh", make_lens_mesh, py::arg("grid"), py::arg("camera"), py::arg("ior"), released,

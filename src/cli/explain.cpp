@@ -58,10 +58,9 @@ Json explanation_json(const Renderer& renderer, const EngineChoice& engine, cons
                            {"front", view.incidence.front}};
         for (const Path path : {Path::kReflect, Path::kRefract})
             fields[path_name(path)] = end_json(renderer, pixel.views, pixel.views.find(view, path));
-        Json ends = Json::array();
+        fields["ends"] = Json::array();
         for (const PathEnd& end : pixel.views.ends_of(view))
-            ends.push_back(end_json(renderer, pixel.views, &end));
-        fields["ends"] = ends;
+            fields["ends"].push_back(end_json(renderer, pixel.views, &end));
         fields["method"] = view.traced ? "traced" : view.level > 0 ? "subdivided" : "projected";
         fields["level"] = view.level;
     }

@@ -26,7 +26,7 @@ struct CountedSweep {
 
     explicit CountedSweep(const std::string& folder) {
         request.folder = folder;
-        request.over = "resolution=2,4,8";
+        request.over = {{"resolution", {"2", "4", "8"}}};
     }
     SweepSummary run() {
         drawn.clear();
@@ -67,7 +67,7 @@ TEST_CASE("a scene in memory is swept as its file is, and either goes on with th
     CHECK((in_memory.drawn["render"] == 0 && in_memory.drawn["trace"] == 0));
 
     in_memory.request.folder = from_file.request.folder;
-    in_memory.request.over = "resolution=2,4,8,16";
+    in_memory.request.over = {{"resolution", {"2", "4", "8", "16"}}};
     CHECK(in_memory.run().count(RunState::kDone) == 4);
     CHECK((in_memory.drawn["render"] == 1 && in_memory.drawn["trace"] == 0));
 }
