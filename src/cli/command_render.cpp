@@ -82,9 +82,11 @@ void check_options(const RenderOptions& options, const std::string& format, cons
 
 Answer draw(const RenderOptions& options, const std::string& format, const PictureRequest& request,
             const Renderer& renderer, Console& console, const std::string& command) {
-    // An OpenEXR file is encoded while it is drawn; other formats have the beauty alone.
+    // An OpenEXR file is encoded while it is drawn, unless the whole picture is asked something; other
+    // formats have the beauty alone.
+    const bool is_encoded = format != "png" && !console.wants_json();
     EncodedPicture encoded;
-    if (format == "png")
+    if (!is_encoded)
         encoded.picture = renderer.draw(request, console.progress(command), console.warner());
     else
         encoded = renderer.draw_exr(request, console.progress(command), console.warner());
@@ -95,8 +97,10 @@ Answer draw(const RenderOptions& options, const std::string& format, const Pictu
         picture.image.width, picture.image.height, picture.statistics.optic_pixels,
         picture.statistics.subdivided_pixels, picture.statistics.traced_pixels, picture.prepare_seconds,
         picture.draw_seconds));
-    Answer answer = format == "png" ? write_output(options.output, picture.image, ImageFormat::kPng, console)
-                                    : write_output(options.output, encoded.exr, console);
+    Answer answer = is_encoded
+                        ? write_output(options.output, encoded.exr, console)
+                        : write_output(options.output, picture.image,
+                                       format == "png" ? ImageFormat::kPng : ImageFormat::kExr, console);
     answer.fields["engine"] = engine_name(request.engine.engine);
     if (request.engine.engine == Engine::kClassic)
         answer.fields["classic"] = classic_name(request.engine.classic);

@@ -45,13 +45,9 @@ Scene read_standard_input(const SceneRequest& request) {
     if (std::cin.bad()) throw InputError(kStandardInput, "", "cannot be read");
     if (text.empty()) throw InputError(kStandardInput, "", "is empty; a scene is expected there");
     if (is_exr(text)) throw InputError(kStandardInput, "", "is an image; name its file instead of -");
-    try {
-        Scene scene = parse_scene(text, "", request.overrides);
-        if (request.resolution != 0) set_resolution(scene, request.resolution);
-        return scene;
-    } catch (const InputError& error) {
-        throw InputError(kStandardInput, "", error.what());
-    }
+    Scene scene = parse_scene(text, "", request.overrides, kStandardInput);
+    if (request.resolution != 0) set_resolution(scene, request.resolution);
+    return scene;
 }
 
 std::string scene_note(const SceneOptions& options, const Scene& scene) {

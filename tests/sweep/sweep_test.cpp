@@ -122,7 +122,8 @@ TEST_CASE("sweep: every file of the interface is there, and the pictures are wha
         CHECK(run.image_hash == hash_text(read_whole_file(home + "/image.exr").value()));
     }
     for (const auto& plot : fs::directory_iterator(folder + "/plots"))
-        CHECK_NOTHROW(trilens_test::read_xml(read_whole_file(plot.path().string()).value()));
+        if (plot.path().extension() == ".svg")
+            CHECK_NOTHROW(trilens_test::read_xml(read_whole_file(plot.path().string()).value()));
 }
 
 TEST_CASE("sweep: runs.csv reads back to the numbers of the runs; words with commas and quotes survive") {
@@ -139,7 +140,7 @@ TEST_CASE("sweep: runs.csv reads back to the numbers of the runs; words with com
         CHECK(row["facets"] == std::to_string(12 * run.plan.n() * run.plan.n()));
         CHECK(row["width"] == "96");
         CHECK(row["status"] == "done");
-        CHECK(row.count("seed") + row.count("isa") + row.count("rgb_flip") == 0);  // nobody has them
+        CHECK(row.count("seed") + row.count("isa") == 0);  // nobody has them
         CHECK(number(row["disp_coverage"]) == run.metrics.at("disp_coverage"));
         CHECK((row.count("disp_lost") == 1 && row.count("disp_missing") == 1));
         CHECK(row["image_fnv1a"] == run.image_hash);

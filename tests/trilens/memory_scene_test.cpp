@@ -118,8 +118,7 @@ TEST_CASE("a scene in memory that cannot be swept is named", "[trilens][sweep]")
 }
 
 TEST_CASE("messages about a scene in memory name it by its label, or as a scene", "[trilens]") {
-    const std::vector<SceneOverride> doubtful{{"/render", R"({"maxDepth": 3})"}},
-        broken{{"/film/width", "0"}};
+    const std::vector<SceneOverride> doubtful{{"/meshes/1/name", R"("ball")"}}, broken{{"/film/width", "0"}};
     for (const std::string label : {"", "my ball"}) {
         const std::string start = (label.empty() ? "scene" : label) + ": ";
         INFO(start);
