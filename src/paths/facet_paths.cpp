@@ -33,11 +33,10 @@ NodeCorner first_reflection(const Look& look, const PathSegment* segment) {
     return corner;
 }
 
-/// Later ones are as long as the eye ray times kappa. After reflections alone the chord whose weights hold is
-/// the one seen in the mirrors, farther away by the way between them: flat mirrors then stay exact.
-NodeCorner later(const Look& look, const PathSegment& segment, double kappa, bool reflects_only) {
+/// Later ones are as long as the eye ray times kappa. The chord whose weights hold is `farther` times as far
+/// away as the facet's own.
+NodeCorner later(const Look& look, const PathSegment& segment, double kappa, double farther) {
     const double eye = length(look.incident);
-    const double farther = reflects_only ? segment.way / eye : 1;
     const double size = eye * farther * kappa;
     return {{segment.ray.origin, size * segment.ray.direction},
             farther * look.screen,
@@ -298,9 +297,12 @@ void OpticPaths::append_part(Id leaf, const FacetPart& part) {
                 }
             }
             const double mean = known > 0 ? sum / known : 1;
-            const NodeCorner corner =
-                first ? first_reflection(look, segment)
-                      : later(look, *segment, guessed ? mean : kappa[k], node.reflects_only);
+            // After reflections alone the chord is the one seen in the mirrors, farther away by the way
+            // between them: flat mirrors then stay exact. To a parallel camera nothing is farther.
+            const bool unfolds = !first && node.reflects_only && !looking_.camera.parallel;
+            const double farther = unfolds ? segment->way / length(look.incident) : 1;
+            const NodeCorner corner = first ? first_reflection(look, segment)
+                                            : later(look, *segment, guessed ? mean : kappa[k], farther);
             facet[k] = static_cast<Id>(node.mesh.rays.size());
             node.mesh.rays.push_back(corner.ray);
             node.mesh.screen.push_back(corner.screen);

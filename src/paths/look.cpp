@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kStep = 1e-4;      // of a face's parameters, for differences
 constexpr double kSoftened = 0.15;  // 0.05 to 0.3 differ by 5 %
+/// A bundle that opens less than this, as a share of its patch seen head-on, is parallel but for rounding.
+constexpr double kNoSpread = 1e-9;
 /// A fold of the directions, or a focus of the bundle, would make corner rays endless or nothing.
 constexpr double kMostKappa = 50;
 
@@ -33,6 +35,11 @@ Look arrive(const Looking& looking, const Place& place, const Vec3& incident, co
     look.segments = std::move(followed.segments);
     look.cut = followed.cut;
     return look;
+}
+
+/// Six times the volume between a unit direction and two others near it: twice the solid angle they enclose.
+double spread(const Vec3& u, const Vec3& a, const Vec3& b) {
+    return std::fabs(triple(u, a - u, b - u));
 }
 
 /// A place beside this one on the same face; `axis` 0: u, 1: v.
@@ -85,28 +92,37 @@ void set_kappa(const Looking& looking, Look& look) {
     if (look.state != LookState::kSeen || !look.kappa.empty()) return;
     look.kappa.assign(look.segments.size(), 0.0);
     std::array<Place, 2> side;
+    std::array<Vec3, 2> incident;
     std::array<std::vector<std::optional<PathSegment>>, 2> again;
     for (int axis = 0; axis < 2; ++axis) {
         const std::size_t k = static_cast<std::size_t>(axis);
         side[k] = beside(*looking.surface, look.place, axis);
-        const Vec3 incident =
-            looking.camera.affine
-                ? side[k].point - (look.place.point - look.incident)
-                : looking.camera.ray(looking.camera.screen(side[k].point), side[k].point).direction;
-        again[k] = repeat_paths(*looking.world, meeting_at(looking, side[k], incident, look.front),
-                                length(incident), look.segments);
+        incident[k] = looking.camera.affine
+                          ? side[k].point - (look.place.point - look.incident)
+                          : looking.camera.ray(looking.camera.screen(side[k].point), side[k].point).direction;
+        again[k] = repeat_paths(*looking.world, meeting_at(looking, side[k], incident[k], look.front),
+                                length(incident[k]), look.segments);
     }
-    const Vec3 area = cross(side[0].point - look.place.point, side[1].point - look.place.point);
+    // Solid angles over that of the same patch seen head-on. Those before and after are differences of the
+    // same rays, so that flat mirrors and plates have 1 to rounding.
     const double eye = length(look.incident);
-    const double cosine = std::fabs(dot(look.place.normal, look.incident)) / eye;
-    const double before = std::sqrt(cosine * cosine + kSoftened * kSoftened) * length(area) / (eye * eye);
+    const double head_on =
+        length(cross(side[0].point - look.place.point, side[1].point - look.place.point)) / (eye * eye);
+    const Vec3 v = normalize_or_zero(look.incident);
+    const double before =
+        looking.camera.parallel
+            ? std::fabs(dot(look.place.normal, v))
+            : spread(v, normalize_or_zero(incident[0]), normalize_or_zero(incident[1])) / head_on;
     for (std::size_t i = 0; i < look.segments.size(); ++i) {
         if (!again[0][i] || !again[1][i]) continue;
-        const Vec3& u = look.segments[i].ray.direction;
         const double after =
-            std::fabs(triple(u, again[0][i]->ray.direction - u, again[1][i]->ray.direction - u));
-        if (!(after > 0)) continue;
-        look.kappa[i] = std::clamp(std::cbrt(before / after), 1 / kMostKappa, kMostKappa);
+            spread(look.segments[i].ray.direction, again[0][i]->ray.direction, again[1][i]->ray.direction) /
+            head_on;
+        if (!(after > kNoSpread)) continue;
+        // Grazing bundles that stay as they are need no softening.
+        const double softened = kSoftened * (after - before) / (after + before);
+        look.kappa[i] = std::clamp(std::cbrt(std::sqrt(before * before + softened * softened) / after),
+                                   1 / kMostKappa, kMostKappa);
     }
 }
 

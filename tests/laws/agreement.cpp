@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "render/facet_engine.h"
 
@@ -14,13 +15,20 @@ namespace {
 /// What a pixel shows, in ids.
 struct Seen {
     Id direct, optic, facet, reflect, refract;
+    std::vector<Id> ends;  // of all its paths
     bool operator==(const Seen&) const = default;
 };
 
 Seen seen(const SampleViews& views, std::size_t sample) {
     const SampleView& view = views.samples[sample];
-    return {view.hit.triangle, view.optic, view.facet, views.hit(view, Path::kReflect).triangle,
-            views.hit(view, Path::kRefract).triangle};
+    std::vector<Id> ends;
+    for (const PathEnd& end : views.ends_of(view)) ends.push_back(end.hit.triangle);
+    return {view.hit.triangle,
+            view.optic,
+            view.facet,
+            views.hit(view, Path::kReflect).triangle,
+            views.hit(view, Path::kRefract).triangle,
+            std::move(ends)};
 }
 
 bool covers_same(const Seen& a, const Seen& b) {
