@@ -294,7 +294,7 @@ TEST_CASE("flat plates and flat mirrors have kappa 1") {
         place.normal = at.normal;
         Look look = look_at(looking, place, {});
         REQUIRE(look.state == LookState::kSeen);
-        set_kappa(looking, true, look);
+        set_kappa(looking, look);
         for (std::size_t s = 0; s < look.segments.size(); ++s) {
             if (!look.segments[s].ends || look.kappa[s] == 0) continue;
             const std::vector<Step> steps = steps_to(look.segments, static_cast<Id>(s));
