@@ -76,31 +76,36 @@ Look look_through(const Looking& looking, const Chord& chord, const LookParams& 
     return look;
 }
 
+void set_beside(const Looking& looking, bool front, Look& look) {
+    if (look.state != LookState::kSeen || !look.beside.empty()) return;
+    for (int axis = 0; axis < 2; ++axis) {
+        const Place place = beside(*looking.surface, look.place, axis);
+        const Vec3 incident = looking.camera.ray(looking.camera.screen(place.point), place.point).direction;
+        look.beside.push_back(
+            {place, repeat_paths(*looking.world, meeting_at(looking, place, incident, front),
+                                 length(incident), look.segments)});
+    }
+}
+
 void set_kappa(const Looking& looking, bool front, Look& look) {
     if (look.state != LookState::kSeen || !look.kappa.empty()) return;
     look.kappa.assign(look.segments.size(), 0.0);
-    std::array<Place, 2> side;
-    std::array<std::vector<std::optional<PathSegment>>, 2> again;
-    for (int axis = 0; axis < 2; ++axis) {
-        const std::size_t k = static_cast<std::size_t>(axis);
-        side[k] = beside(*looking.surface, look.place, axis);
-        const Vec3 incident =
-            looking.camera.ray(looking.camera.screen(side[k].point), side[k].point).direction;
-        again[k] = repeat_paths(*looking.world, meeting_at(looking, side[k], incident, front),
-                                length(incident), look.segments);
-    }
-    const Vec3 area = cross(side[0].point - look.place.point, side[1].point - look.place.point);
+    const bool kept = !look.beside.empty();
+    set_beside(looking, front, look);
+    const std::vector<Beside>& side = look.beside;
+    const Vec3 area = cross(side[0].place.point - look.place.point, side[1].place.point - look.place.point);
     const double eye = length(look.incident);
     const double cosine = std::fabs(dot(look.place.normal, look.incident)) / eye;
     const double before = std::sqrt(cosine * cosine + kSoftened * kSoftened) * length(area) / (eye * eye);
     for (std::size_t i = 0; i < look.segments.size(); ++i) {
-        if (!again[0][i] || !again[1][i]) continue;
+        if (!side[0].segments[i] || !side[1].segments[i]) continue;
         const Vec3& u = look.segments[i].ray.direction;
-        const double after =
-            std::fabs(triple(u, again[0][i]->ray.direction - u, again[1][i]->ray.direction - u));
+        const double after = std::fabs(
+            triple(u, side[0].segments[i]->ray.direction - u, side[1].segments[i]->ray.direction - u));
         if (!(after > 0)) continue;
         look.kappa[i] = std::clamp(std::cbrt(before / after), 1 / kMostKappa, kMostKappa);
     }
+    if (!kept) look.beside.clear();
 }
 
 }  // namespace trilens

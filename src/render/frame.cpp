@@ -3,18 +3,28 @@
 #include <algorithm>
 
 #include "base/box.h"
+#include "paths/fit_first.h"
 
 namespace trilens {
 namespace {
 
-FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamera& camera, int resolution) {
+/// Where an error is asked for, facets are divided down to DivideParams::least_area, whatever their size.
+constexpr int kMostLevelsForError = 12;
+
+FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamera& camera,
+                        const FrameParams& params) {
     const Optic& optic = world.optics[index];
     const RenderSettings& settings = world.scene.render;
     FramedOptic framed;
-    framed.facets = optic_facets(world, index, grid_resolution(optic, resolution));
+    framed.rays = optic_rays(world, index, params);
+    framed.facets = optic_facets(world, index, grid_resolution(optic, params.resolution));
+    const double ior = world.scene.materials[optic.material].ior;
+    const SurfaceGrid& grid = framed.facets->grid();
     const auto add = [&](Path path) {
-        framed.paths.push_back(
-            make_path_mesh(path, framed.facets->grid(), camera, world.scene.materials[optic.material].ior));
+        framed.paths.push_back(make_path_mesh(path, grid, camera, ior));
+        // Where paths go on, whole paths are fitted instead.
+        if (framed.rays == CornerRays::kFitted && settings.max_depth == 0)
+            fit_first_rays({*optic.surface, grid, camera, ior}, framed.paths.back());
     };
     if (settings.reflect) add(Path::kReflect);
     if (settings.refract && !optic.mirror) add(Path::kRefract);
@@ -24,15 +34,20 @@ FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamer
 }  // namespace
 
 Frame make_frame(const World& world, const FrameParams& params, const Warn& warn) {
-    return make_frame(world, make_camera_rays(world.scene, params.camera), params.resolution, warn);
+    return make_frame(world, make_camera_rays(world.scene, params.camera), params, warn);
 }
 
-Frame make_frame(const World& world, CameraRays camera, int resolution, const Warn& warn) {
+CornerRays optic_rays(const World& world, std::size_t optic, const FrameParams& params) {
+    return params.rays.value_or(world.scene.meshes[world.optics[optic].mesh].rays);
+}
+
+Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn) {
     Frame frame;
     frame.camera = std::move(camera);
-    check_facet_count(world, resolution);
+    frame.max_error = params.max_error.value_or(world.scene.render.max_error);
+    check_facet_count(world, params.resolution);
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
-        frame.optics.push_back(frame_optic(world, i, *frame.camera.linear, resolution));
+        frame.optics.push_back(frame_optic(world, i, *frame.camera.linear, params));
         const std::vector<Vec3>& normals = frame.optics.back().facets->grid().corner_normal;
         const auto bad = std::count(normals.begin(), normals.end(), Vec3(0));
         if (bad > 0 && warn)
@@ -56,8 +71,10 @@ PathCamera path_camera(const LinearCamera& camera) {
 namespace {
 
 Looking looking_at(const World& world, const Frame& frame, std::size_t optic) {
-    return {&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(),
-            path_camera(*frame.camera.linear)};
+    Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(),
+                    path_camera(*frame.camera.linear)};
+    looking.camera.film = Vec2(world.scene.film.width, world.scene.film.height);
+    return looking;
 }
 
 Vec3 middle_of(const SurfaceGrid& grid) {
@@ -72,7 +89,14 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
     const FramedOptic& framed = frame.optics[optic];
     const SurfaceGrid& grid = framed.facets->grid();
     const Looking looking = looking_at(world, frame, optic);
-    if (world.scene.render.max_depth > 0) return std::make_unique<OpticPaths>(looking, grid, DivideParams{});
+    if (world.scene.render.max_depth > 0 || frame.max_error > 0) {
+        DivideParams params;
+        params.fit = framed.rays == CornerRays::kFitted;
+        params.max_error = frame.max_error;
+        params.objects = &object_tracer(world);
+        if (frame.max_error > 0) params.most_levels = kMostLevelsForError;
+        return std::make_unique<OpticPaths>(looking, grid, params);
+    }
     return std::make_unique<OpticPaths>(looking, grid, find_path(framed, Path::kReflect),
                                         find_path(framed, Path::kRefract));
 }

@@ -17,18 +17,23 @@ namespace trilens {
 struct FramedOptic {
     std::shared_ptr<const OpticFacets> facets;
     std::vector<PathMesh> paths;  // those that the scene draws and the optic has, up to the first optic
+    CornerRays rays = CornerRays::kInterpolated;
 };
 
 struct Frame {
     CameraRays camera;
     std::vector<FramedOptic> optics;  // as World::optics
+    double max_error = 0;             // as RenderSettings
 };
 
 /// Throws InputError where the optics together have too many facets to hold, or the camera cannot show them.
 Frame make_frame(const World& world, const FrameParams& params, const Warn& warn);
 
-/// The same for a camera's rays that no scene describes; `resolution` as in FrameParams.
-Frame make_frame(const World& world, CameraRays camera, int resolution, const Warn& warn);
+/// The same for a camera's rays that no scene describes; params.camera says nothing.
+Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn);
+
+/// The rays that an optic's corners are asked to have.
+CornerRays optic_rays(const World& world, std::size_t optic, const FrameParams& params);
 
 /// The camera as facets ask it. `camera` must live longer.
 PathCamera path_camera(const LinearCamera& camera);

@@ -57,7 +57,7 @@ void close_edge_ties(const World& world, std::vector<Differing>& open) {
                            Vec2(c, -c), Vec2(-c, -c)}) {
         if (open.empty()) return;
         const CameraRays camera = shifted(make_camera_rays(world.scene, 0), by);
-        const Frame frame = make_frame(world, camera, 0, ignore);
+        const Frame frame = make_frame(world, camera, FrameParams{}, ignore);
         const Viewer project = make_facet_viewer(world, frame, Engine::kExact);
         const Viewer trace = make_facet_viewer(world, frame, Engine::kFacetsTruth);
         std::erase_if(open, [&](const Differing& pixel) {
