@@ -30,6 +30,7 @@ struct RenderOptions {
     bool wire = false;
     std::string rays;       // empty: each optic's own
     double max_error = -1;  // < 0: as the scene says
+    std::string grid;       // empty: as the scene says
 };
 
 /// What an output is, by --format or its name's ending: "exr", "png" or "svg". Standard output gets OpenEXR
@@ -143,6 +144,8 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
     request.frame.rays = chosen_rays(options);
     if (options.max_error >= 0) request.frame.max_error = options.max_error;
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
+    if (!options.grid.empty())
+        request.frame.grid = options.grid == "screen" ? GridKind::kScreen : GridKind::kSurface;
     check_on_film(options, request.layers, renderer.scene().film);
     if (options.pixel.empty())
         return format == "svg" ? run_vector(options, renderer, console)
@@ -168,6 +171,10 @@ std::vector<Option> picture_options(RenderOptions& options, const std::string& f
                      .help = "file to write, by its ending: " + formats + "; - for standard output",
                      .value = "OUT",
                      .offer = Offer::kImage},
+                    {.names = "--grid",
+                     .target = &options.grid,
+                     .help = "where the optics' facets lie: on the surface, or on the film over the optic",
+                     .choices = {"surface", "screen"}},
                     {.names = "--pixel",
                      .target = &options.pixel,
                      .help = "explain one pixel as JSON",

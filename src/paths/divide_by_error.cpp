@@ -78,9 +78,7 @@ void OpticPaths::divide_by_error(std::vector<FittedLeaf> open) {
         parallel_for(open.size(), kLeavesPerTask, [&](std::size_t from, std::size_t to) {
             for (std::size_t i = from; i < to; ++i) {
                 error[i] = predicted(open[i]);
-                if (error[i] > params_.max_error)
-                    divided[i] = divide_part(looking_, *open[i].part,
-                                             shows_front(leaves_[open[i].leaf].facet), params_);
+                if (error[i] > params_.max_error) divided[i] = divide_part(looking_, *open[i].part, params_);
             }
         });
         std::vector<FittedLeaf> next;

@@ -51,8 +51,8 @@ bool covers(const std::vector<std::size_t>& match, const Segments& segments) {
 
 class Divider {
   public:
-    Divider(const Looking& looking, bool front, double reach, const DivideParams& params)
-        : looking_(looking), front_(front), params_(params), reach_(reach) {
+    Divider(const Looking& looking, LookSide side, double reach, const DivideParams& params)
+        : looking_(looking), side_(side), params_(params), reach_(reach) {
         mirror_ = looking.world->optics[looking.optic].mirror;
     }
     DividedFacet divide(const std::array<PartCorner, 3>& from);
@@ -77,7 +77,7 @@ class Divider {
     FacetPart part_of(const Triangle& corners, int level) const;
 
     const Looking& looking_;
-    bool front_ = true;
+    LookSide side_ = LookSide::kFront;
     const DivideParams& params_;
     double reach_ = 0;
     bool mirror_ = true;
@@ -99,9 +99,9 @@ Point Divider::between(std::initializer_list<const Point*> points, double least_
         middle.chord += share * one->chord;
     }
     divided_.looks.push_back(look_through(looking_, {middle.screen, middle.chord, reach_},
-                                          {.front = front_, .least_weight = least_weight}));
+                                          {.side = side_, .least_weight = least_weight}));
     middle.look = &divided_.looks.back();
-    if (params_.max_error > 0) set_beside(looking_, front_, *middle.look);
+    if (params_.max_error > 0) set_beside(looking_, *middle.look);
     note(middle.look->cut);
     return middle;
 }
@@ -110,6 +110,7 @@ FacetPart Divider::part_of(const Triangle& corners, int level) const {
     FacetPart part;
     part.level = static_cast<std::uint8_t>(level);
     part.reach = reach_;
+    part.side = side_;
     for (std::size_t k = 0; k < 3; ++k)
         part.corners[k] = {corners[k].shared, corners[k].look, corners[k].chord};
     return part;
@@ -145,7 +146,7 @@ bool Divider::project(const Triangle& corners, const Inside& inside, int level) 
     const Look& centre = *inside.back().look;
     if (centre.state != LookState::kSeen) return false;
     const auto agrees = [&](const Look& look, std::vector<std::size_t>& match) {
-        if (look.state != LookState::kSeen) return false;
+        if (look.state != LookState::kSeen || look.front != centre.front) return false;
         match = matched(centre.segments, look.segments);
         return match.size() == centre.segments.size() && covers(match, look.segments);
     };
@@ -160,7 +161,7 @@ bool Divider::project(const Triangle& corners, const Inside& inside, int level) 
 void Divider::end(Id cell, FacetPart part) {
     if (part.method == LeafMethod::kProjected && !part.histories.empty())
         for (const PartCorner& corner : part.corners)
-            if (corner.shared == kNone) set_kappa(looking_, front_, *corner.look);
+            if (corner.shared == kNone) set_kappa(looking_, *corner.look);
     divided_.cells[cell].part = static_cast<Id>(divided_.parts.size());
     divided_.parts.push_back(std::move(part));
 }
@@ -194,6 +195,7 @@ void Divider::split(Id cell, const Triangle& corners, const Inside& inside, int 
     if (is_least(corners, level)) {
         FacetPart part = part_of(corners, level);
         part.method = LeafMethod::kTraced;
+        part.centre = inside[3].screen;
         return end(cell, std::move(part));
     }
     const Id first = static_cast<Id>(divided_.cells.size());
@@ -207,14 +209,15 @@ void Divider::split(Id cell, const Triangle& corners, const Inside& inside, int 
 
 DividedFacet Divider::divide(const std::array<PartCorner, 3>& from) {
     Triangle corners;
-    bool normals = true;
+    bool has_normals = true;
     for (std::size_t k = 0; k < 3; ++k) {
         corners[k] = point_of(from[k]);
-        normals = normals && from[k].look->place.normal != Vec3(0);
+        const bool missed = from[k].look->state == LookState::kMissed;
+        has_normals = has_normals && (missed || from[k].look->place.normal != Vec3(0));
         note(from[k].look->cut);
     }
     divided_.cells.resize(1);
-    if (normals)
+    if (has_normals)
         divide(0, corners, 0);
     else
         end(0, part_of(corners, 0));
@@ -234,15 +237,14 @@ DividedFacet Divider::divide_on(const FacetPart& part) {
 }  // namespace
 
 DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, const DivideParams& params) {
-    double reach = 0;
-    for (std::size_t k = 0; k < 3; ++k)
+    double reach = facet.reach;
+    for (std::size_t k = 0; k < 3 && facet.reach == 0; ++k)
         reach = std::max(reach, length(facet.corners[k].chord - facet.corners[(k + 1) % 3].chord));
-    return Divider(looking, facet.front, reach, params).divide(facet.corners);
+    return Divider(looking, facet.side, reach, params).divide(facet.corners);
 }
 
-DividedFacet divide_part(const Looking& looking, const FacetPart& part, bool front,
-                         const DivideParams& params) {
-    return Divider(looking, front, part.reach, params).divide_on(part);
+DividedFacet divide_part(const Looking& looking, const FacetPart& part, const DivideParams& params) {
+    return Divider(looking, part.side, part.reach, params).divide_on(part);
 }
 
 }  // namespace trilens

@@ -26,11 +26,13 @@ struct PartInside {
 struct FacetPart {
     std::uint8_t level = 0;
     LeafMethod method = LeafMethod::kProjected;
+    Vec3 centre{0};                      // of kTraced: homogeneous screen position
     std::vector<PathSegment> histories;  // of kProjected: parents before children; empty: no rays
     std::vector<Id> node;                // per history: of OpticPaths::nodes, once it has one
     std::array<PartCorner, 3> corners;
     std::array<std::vector<std::size_t>, 3> segment;  // per corner and history: of the corner's look; empty
                                                       // for a corner that is turned away from the eye
+    LookSide side = LookSide::kFront;                 // the one that the facet shows
     double reach = 0;  // how far the surface may be from the facet's plane: the facet's longest edge
     std::vector<PartInside>
         inside;  // of kProjected: the edges' middles, opposite to the corners, and the centre
@@ -55,7 +57,8 @@ struct DividedFacet {
 /// A facet to divide.
 struct FacetToDivide {
     std::array<PartCorner, 3> corners;
-    bool front = true;  // the side that it shows
+    LookSide side = LookSide::kFront;  // that it shows
+    double reach = 0;  // how far the surface may lie from the facet; 0: as far as the longest edge is long
 };
 
 /// Child k < 3 of a part keeps corner k of it, child 3 has the middles of its edges for corners, opposite to
@@ -77,7 +80,6 @@ DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, co
 /// A projected part divided in four, and on where their histories differ: cells[0] is the part, and has
 /// children. One that is too small is a traced part instead. What the part's corners point to must live as
 /// long as the result.
-DividedFacet divide_part(const Looking& looking, const FacetPart& part, bool front,
-                         const DivideParams& params);
+DividedFacet divide_part(const Looking& looking, const FacetPart& part, const DivideParams& params);
 
 }  // namespace trilens

@@ -37,6 +37,65 @@ OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams pa
     prepared_.resize(grid.facets.size());
 }
 
+void OpticPaths::set_film_corner(Id corner, const Vec2& pixel) {
+    // A point at the surface's depth first; where the ray meets the surface, that point.
+    const auto chord_at = [&](double depth) {
+        const Vec3 screen(pixel * depth, depth);
+        const Vec3 point = looking_.camera.point(screen);
+        return Chord{screen, point,
+                     2 * window_.reach +
+                         length(point - looking_.camera.point(Vec3(pixel * window_.depth, window_.depth)))};
+    };
+    Chord chord = chord_at(window_.depth);
+    auto look = std::make_unique<Look>(
+        look_through(looking_, chord, {.side = LookSide::kNearest, .least_weight = kFainter * kLeastWeight}));
+    if (params_.max_error > 0) set_beside(looking_, *look);
+    if (look->state != LookState::kMissed) {
+        chord.point = look->place.point;
+        chord.screen = look->screen = looking_.camera.screen(chord.point);
+        if (look->segments.size() > 1 ||
+            (look->segments.size() == 1 && look->segments[0].step.event != Event::kReflect))
+            set_kappa(looking_, *look);
+        else
+            look->kappa.assign(look->segments.size(), 1.0);
+    }
+    places_[corner].point = chord.point;
+    outline_.screen[corner] = chord.screen;
+    corner_looks_[2 * corner + 1] = std::move(look);
+}
+
+OpticPaths::OpticPaths(Looking looking, const FilmWindow& window, DivideParams params)
+    : looking_(std::move(looking)), window_(window), params_(params) {
+    const Id n = static_cast<Id>(window.n), side = n + 1;
+    const std::size_t corners = static_cast<std::size_t>(side) * side;
+    places_.resize(corners);
+    outline_.rays.resize(corners);
+    outline_.screen.resize(corners);
+    corner_looks_.resize(2 * corners);
+    parallel_for(corners, kCornersPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t c = from; c < to; ++c) {
+            const Vec2 share(static_cast<double>(c % side) / n, static_cast<double>(c / side) / n);
+            set_film_corner(static_cast<Id>(c), window.low + share * (window.high - window.low));
+        }
+    });
+    for (Id j = 0; j < n; ++j)
+        for (Id i = 0; i < n; ++i) {
+            const Id a = j * side + i, b = a + 1, c = b + side, d = a + side;
+            outline_.facets.push_back({a, b, c});
+            outline_.facets.push_back({a, c, d});
+        }
+    cells_.resize(outline_.facets.size());
+    prepared_.resize(outline_.facets.size());
+}
+
+Id OpticPaths::film_facet(const Vec2& pixel) const {
+    const Vec2 at = (pixel - window_.low) / (window_.high - window_.low) * static_cast<double>(window_.n);
+    const auto cell = [&](double x) { return std::clamp(static_cast<int>(std::floor(x)), 0, window_.n - 1); };
+    const int i = cell(at.x), j = cell(at.y);
+    const bool above = at.y - j > at.x - i;  // of the diagonal from (i, j)
+    return static_cast<Id>(2 * (j * window_.n + i) + (above ? 1 : 0));
+}
+
 OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, const RayMesh* reflection,
                        const RayMesh* refraction)
     : OpticPaths(std::move(looking), grid, DivideParams{}) {
@@ -70,6 +129,7 @@ OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, const RayMesh* 
 }
 
 bool OpticPaths::shows_front(Id facet) const {
+    if (!grid_) return true;
     const Id corner = grid_->facets[facet][0];
     return faces_front(*grid_, grid_->facets[facet],
                        looking_.camera.ray(outline_.screen[corner], places_[corner].point).direction);
@@ -78,7 +138,7 @@ bool OpticPaths::shows_front(Id facet) const {
 void OpticPaths::look_at_corners(std::span<const Id> facets) {
     std::vector<Id> wanted;  // corner and side
     for (const Id f : facets)
-        for (const Id corner : grid_->facets[f]) {
+        for (const Id corner : outline_.facets[f]) {
             const Id key = 2 * corner + (shows_front(f) ? 1 : 0);
             if (!corner_looks_[key]) wanted.push_back(key);
         }
@@ -87,13 +147,14 @@ void OpticPaths::look_at_corners(std::span<const Id> facets) {
     parallel_for(wanted.size(), kCornersPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const bool front = wanted[i] % 2 == 1;
-            auto look = std::make_unique<Look>(look_at(
-                looking_, places_[wanted[i] / 2], {.front = front, .least_weight = kFainter * kLeastWeight}));
-            if (params_.max_error > 0) set_beside(looking_, front, *look);
+            auto look = std::make_unique<Look>(look_at(looking_, places_[wanted[i] / 2],
+                                                       {.side = front ? LookSide::kFront : LookSide::kBack,
+                                                        .least_weight = kFainter * kLeastWeight}));
+            if (params_.max_error > 0) set_beside(looking_, *look);
             // The first reflection alone needs no kappa.
             if (look->segments.size() > 1 ||
                 (look->segments.size() == 1 && look->segments[0].step.event != Event::kReflect))
-                set_kappa(looking_, front, *look);
+                set_kappa(looking_, *look);
             else
                 look->kappa.assign(look->segments.size(), 1.0);
             corner_looks_[wanted[i]] = std::move(look);
@@ -105,7 +166,7 @@ bool OpticPaths::on_film(Id facet) const {
     constexpr double kMargin = 1;  // pixels
     const Vec2& film = looking_.camera.film;
     Vec2 low(kInfinity), high(-kInfinity);
-    for (const Id corner : grid_->facets[facet]) {
+    for (const Id corner : outline_.facets[facet]) {
         const Vec3& s = outline_.screen[corner];
         if (!(s.z > 0)) return true;
         low = glm::min(low, Vec2(s.x, s.y) / s.z);
@@ -127,7 +188,7 @@ std::vector<Id> OpticPaths::wanted_facets(std::span<const Id> facets) {
         for (std::size_t side = 0; side < 2; ++side) {
             if (!begins[side] || side_fitted_[side]) continue;
             side_fitted_[side] = true;
-            for (Id f = 0; f < grid_->facets.size(); ++f)
+            for (Id f = 0; f < outline_.facets.size(); ++f)
                 if (shows_front(f) == (side == 1) && on_film(f)) fresh.push_back(f);
         }
     std::sort(fresh.begin(), fresh.end());
@@ -151,10 +212,12 @@ void OpticPaths::prepare(std::span<const Id> facets) {
     parallel_for(fresh.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             FacetToDivide facet;
-            const IdTriple& corners = grid_->facets[fresh[i]];
-            facet.front = shows_front(fresh[i]);
+            const IdTriple& corners = outline_.facets[fresh[i]];
+            const bool front = shows_front(fresh[i]);
+            facet.side = !grid_ ? LookSide::kNearest : front ? LookSide::kFront : LookSide::kBack;
+            facet.reach = grid_ ? 0 : 2 * window_.reach;
             for (std::size_t k = 0; k < 3; ++k) {
-                const Id key = 2 * corners[k] + (facet.front ? 1 : 0);
+                const Id key = 2 * corners[k] + (front ? 1 : 0);
                 facet.corners[k] = {key, corner_looks_[key].get(), places_[corners[k]].point};
             }
             divided[i] = divide_facet(looking_, facet, params_);
@@ -190,7 +253,7 @@ void OpticPaths::append(Id facet, Id cell, DividedFacet& divided) {
         if (from.part != kNone) leaf_cell_[first_leaf + from.part] = number(c);
     }
     for (FacetPart& part : divided.parts) {
-        leaves_.push_back({facet, part.level, part.method});
+        leaves_.push_back({facet, part.level, part.method, part.centre});
         if (part.method != LeafMethod::kProjected) continue;
         ++projected_count_;
         append_part(static_cast<Id>(leaves_.size() - 1), part);

@@ -23,6 +23,7 @@ struct PathLeaf {
     Id facet = kNone;
     std::uint8_t level = 0;
     LeafMethod method = LeafMethod::kProjected;
+    Vec3 centre{0};        // of kTraced: homogeneous screen position
     double predicted = 0;  // of kProjected: displacement in pixels, where an error is asked for
 };
 
@@ -56,6 +57,14 @@ struct DividedFacet;
 struct FacetPart;
 struct FittedLeaf;
 
+/// A window of the film, in pixels, and how finely it is cut.
+struct FilmWindow {
+    Vec2 low{0}, high{0};
+    int n = 0;         // squares along each side
+    double depth = 1;  // about how far the surface is, along the view axis
+    double reach = 0;  // the size of the surface, world units
+};
+
 /// The paths over one optic's facets for one camera. Facets are worked out when they are first asked for.
 ///
 /// A facet stands for the rays between its corners where the exact paths from its corners, the middles of its
@@ -69,6 +78,15 @@ class OpticPaths {
   public:
     /// `grid` must live longer.
     OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams params);
+
+    /// Facets on the film instead (thesis 7.2.2): n x n squares of two facets each over a window, whose
+    /// corner rays are the camera's exact ones, whatever the surface. A sample's facet is then the one that
+    /// it lies in: film_facet.
+    OpticPaths(Looking looking, const FilmWindow& window, DivideParams params);
+
+    /// The facet of the film at a place within the window; places outside count as on its border.
+    Id film_facet(const Vec2& pixel) const;
+    bool is_on_film() const { return window_.n > 0; }
 
     /// Paths that end after the first optic (thesis 7.2.1, 7.3.1): these meshes alone, whose facets are the
     /// grid's; null: not asked for. No exact ray is followed.
@@ -104,6 +122,7 @@ class OpticPaths {
     bool shows_front(Id facet) const;
     bool on_film(Id facet) const;
     std::vector<Id> wanted_facets(std::span<const Id> facets);
+    void set_film_corner(Id corner, const Vec2& pixel);
     void look_at_corners(std::span<const Id> facets);
     void append(Id facet, Id cell, DividedFacet& divided);
     void append_part(Id leaf, FacetPart& part);
@@ -113,7 +132,8 @@ class OpticPaths {
     Id node_of(Id parent, const PathSegment& segment);
 
     Looking looking_;
-    const SurfaceGrid* grid_;
+    const SurfaceGrid* grid_ = nullptr;  // null on the film
+    FilmWindow window_;
     DivideParams params_;
     RayMesh outline_;
     std::vector<Place> places_;                        // per grid corner

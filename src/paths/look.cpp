@@ -21,13 +21,14 @@ Look arrive(const Looking& looking, const Place& place, const Vec3& incident, co
     look.incident = incident;
     look.place = place;
     const double cosine = dot(incident, place.normal);
-    if (params.front ? cosine >= 0 : cosine <= 0) {
+    look.front = params.side == LookSide::kNearest ? cosine <= 0 : params.side == LookSide::kFront;
+    if (look.front ? cosine >= 0 : cosine <= 0) {
         look.state = LookState::kTurned;
         return look;
     }
     look.state = LookState::kSeen;
     FollowedPaths followed =
-        follow_paths(*looking.world, meeting_at(looking, place, incident, params.front), length(incident),
+        follow_paths(*looking.world, meeting_at(looking, place, incident, look.front), length(incident),
                      {.objects = nullptr, .least_weight = params.least_weight});
     look.segments = std::move(followed.segments);
     look.cut = followed.cut;
@@ -55,16 +56,20 @@ Look look_at(const Looking& looking, const Place& place, const LookParams& param
 Look look_through(const Looking& looking, const Chord& chord, const LookParams& params) {
     const Ray to_chord = looking.camera.ray(chord.screen, chord.point);
     const Vec3 along = normalize_or_zero(to_chord.direction);
-    const Ray near{chord.point - chord.reach * along, along};
+    const double back =
+        looking.camera.parallel ? chord.reach : std::min(chord.reach, length(to_chord.direction));
+    const Ray near{chord.point - back * along, along};
     Look look;
     look.screen = chord.screen;
     look.incident = to_chord.direction;
     const LimitTracer& tracer = *looking.world->optics[looking.optic].tracer;
-    for (double from = 0; from < 2 * chord.reach;) {
+    const double far = back + chord.reach;
+    for (double from = 0; from < far;) {
         const std::optional<SurfaceHit> hit = tracer.first_hit(near, from);
-        if (!hit || hit->t > 2 * chord.reach) break;
+        if (!hit || hit->t > far) break;
         from = hit->t + 1e-9 * chord.reach;
-        if ((dot(along, hit->point.normal) < 0) != params.front) continue;
+        const bool front = dot(along, hit->point.normal) < 0;
+        if (params.side != LookSide::kNearest && front != (params.side == LookSide::kFront)) continue;
         // As long as the way to the surface itself.
         const Vec3 incident =
             looking.camera.parallel ? to_chord.direction : hit->point.position - to_chord.origin;
@@ -76,22 +81,22 @@ Look look_through(const Looking& looking, const Chord& chord, const LookParams& 
     return look;
 }
 
-void set_beside(const Looking& looking, bool front, Look& look) {
+void set_beside(const Looking& looking, Look& look) {
     if (look.state != LookState::kSeen || !look.beside.empty()) return;
     for (int axis = 0; axis < 2; ++axis) {
         const Place place = beside(*looking.surface, look.place, axis);
         const Vec3 incident = looking.camera.ray(looking.camera.screen(place.point), place.point).direction;
         look.beside.push_back(
-            {place, repeat_paths(*looking.world, meeting_at(looking, place, incident, front),
+            {place, repeat_paths(*looking.world, meeting_at(looking, place, incident, look.front),
                                  length(incident), look.segments)});
     }
 }
 
-void set_kappa(const Looking& looking, bool front, Look& look) {
+void set_kappa(const Looking& looking, Look& look) {
     if (look.state != LookState::kSeen || !look.kappa.empty()) return;
     look.kappa.assign(look.segments.size(), 0.0);
     const bool kept = !look.beside.empty();
-    set_beside(looking, front, look);
+    set_beside(looking, look);
     const std::vector<Beside>& side = look.beside;
     const Vec3 area = cross(side[0].place.point - look.place.point, side[1].place.point - look.place.point);
     const double eye = length(look.incident);

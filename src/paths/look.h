@@ -14,6 +14,8 @@ struct PathCamera {
     bool parallel = false;  // its directions are unit, whatever they lead to
     /// Homogeneous screen position of a world point, as RayMesh::screen.
     std::function<Vec3(const Vec3& point)> screen;
+    /// The world point of a homogeneous screen position (w the depth): screen's inverse.
+    std::function<Vec3(const Vec3& screen)> point;
     /// The camera's ray through a homogeneous screen position whose point on the facet is `chord`; unless
     /// parallel, origin + direction lies at the chord's point or, for a camera that is not linear, near it.
     std::function<Ray(const Vec3& screen, const Vec3& chord)> ray;
@@ -49,8 +51,9 @@ struct Beside {
 
 struct Look {
     LookState state = LookState::kMissed;
-    Vec3 screen{0};    // homogeneous
-    Vec3 incident{0};  // the camera's ray to the point, not unit: the eye-to-point length
+    Vec3 screen{0};     // homogeneous
+    Vec3 incident{0};   // the camera's ray to the point, not unit: the eye-to-point length
+    bool front = true;  // it looks at the surface's front
     Place place;
     std::vector<PathSegment> segments;  // of kSeen
     CutPaths cut;
@@ -58,13 +61,16 @@ struct Look {
     std::vector<double> kappa;   // per segment; see set_kappa; 0: unknown
 };
 
-/// A side of a facet to look at, and how faint paths are followed.
+/// Which side of the surface is looked at. kNearest: the one that the ray meets first.
+enum class LookSide : std::uint8_t { kFront, kBack, kNearest };
+
+/// A side to look at, and how faint paths are followed.
 struct LookParams {
-    bool front = true;  // the side that the facet shows
+    LookSide side = LookSide::kFront;
     double least_weight = kLeastWeight;
 };
 
-/// The paths from a place that is known to lie on the surface.
+/// The paths from a place that is known to lie on the surface. Not for kNearest.
 Look look_at(const Looking& looking, const Place& place, const LookParams& params);
 
 /// The paths of the camera's ray through a facet's point `chord` (world) on the screen at `screen`: where it
@@ -76,13 +82,13 @@ struct Chord {
 };
 Look look_through(const Looking& looking, const Chord& chord, const LookParams& params);
 
-/// Follows the paths of a look once more from two places beside it. `front`: the side that is seen.
-void set_beside(const Looking& looking, bool front, Look& look);
+/// Follows the paths of a look once more from two places beside it.
+void set_beside(const Looking& looking, Look& look);
 
 /// Sets kappa of each segment: the cube root of the solid angle that a bundle of the camera's rays has before
 /// the first optic over that which it has on the segment, by differences of exact rays on the surface;
 /// grazing incidence is softened by 0.15 (mathematics, section 6). A corner ray is the better for being the
 /// eye length times kappa long: the directions' second derivatives then have no part along the direction.
-void set_kappa(const Looking& looking, bool front, Look& look);
+void set_kappa(const Looking& looking, Look& look);
 
 }  // namespace trilens

@@ -46,6 +46,7 @@ struct PathEnd {
     Colours colours = kAllColours;
     std::uint16_t step_count = 0;  // meetings with optics, the first among them
     std::size_t first_step = 0;    // of SampleViews::steps
+    Id node = kNone;               // of its optic's OpticPaths; kNone: it was followed by itself
     Id medium = kNone;             // the optic in whose glass the ray runs; kNone: in air
     Vec3 weight{1};                // of the light, for all that happens behind the first optic
     Ray ray;                       // world frame; not unit

@@ -130,6 +130,10 @@ void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
 }  // namespace
 
 Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine) {
+    return make_facet_views(world, std::move(frame), engine).viewer;
+}
+
+FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine) {
     auto viewer = std::make_shared<FacetViewer>();
     viewer->world = &world;
     viewer->frame = std::move(frame);
@@ -148,7 +152,8 @@ Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& en
         viewer->draw_objects = classic_through(prepared_objects(world), engine.classic);
         viewer->redraws_direct = true;
     }
-    return [viewer](const SampleGrid& grid, SampleViews& views) { (*viewer)(grid, views); };
+    return {[viewer](const SampleGrid& grid, SampleViews& views) { (*viewer)(grid, views); },
+            [viewer](std::size_t optic) -> const OpticPaths& { return *viewer->paths[optic]; }};
 }
 
 }  // namespace trilens

@@ -10,4 +10,12 @@ namespace trilens {
 /// there, and those that the camera sees itself.
 Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine);
 
+/// The same, with the paths over each optic that it has worked out so far: SampleView::leaf and PathEnd::node
+/// count in them.
+struct FacetViews {
+    Viewer viewer;
+    std::function<const OpticPaths&(std::size_t optic)> paths;
+};
+FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine);
+
 }  // namespace trilens

@@ -17,7 +17,9 @@ FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamer
     const RenderSettings& settings = world.scene.render;
     FramedOptic framed;
     framed.rays = optic_rays(world, index, params);
-    framed.facets = optic_facets(world, index, grid_resolution(optic, params.resolution));
+    framed.resolution = grid_resolution(optic, params.resolution);
+    framed.grid = params.grid.value_or(world.scene.meshes[optic.mesh].grid);
+    framed.facets = optic_facets(world, index, framed.resolution);
     const double ior = world.scene.materials[optic.material].ior;
     const SurfaceGrid& grid = framed.facets->grid();
     const auto add = [&](Path path) {
@@ -61,6 +63,15 @@ PathCamera path_camera(const LinearCamera& camera) {
     PathCamera of_paths;
     of_paths.parallel = camera.parallel;
     of_paths.screen = [&camera](const Vec3& point) { return screen_from_world(camera, point); };
+    // The rows of the map, inverted; parallel cameras have w = 1, their depth is free: the image plane's.
+    const Mat3 rows(Vec3(camera.screen_x), Vec3(camera.screen_y),
+                    camera.parallel ? camera.view_direction : Vec3(camera.screen_w));
+    of_paths.point = [&camera, inverse = glm::inverse(glm::transpose(rows))](const Vec3& screen) {
+        const Vec3 offset(camera.screen_x.w, camera.screen_y.w,
+                          camera.parallel ? -dot(camera.view_direction, camera.eye) : camera.screen_w.w);
+        const Vec3 wanted = camera.parallel ? Vec3(Vec2(screen) / screen.z, 0) : screen;
+        return inverse * (wanted - offset);
+    };
     of_paths.ray = [&camera](const Vec3&, const Vec3& chord) {
         const Vec3 incident = incident_direction(camera, chord);
         return Ray{chord - incident, incident};
@@ -77,6 +88,34 @@ Looking looking_at(const World& world, const Frame& frame, std::size_t optic) {
     return looking;
 }
 
+/// The optic's bounds on the film.
+FilmWindow film_window(const World& world, const LinearCamera& camera, const SurfaceGrid& grid, int n) {
+    const Vec2 film(world.scene.film.width, world.scene.film.height);
+    FilmWindow window{Vec2(1e300), Vec2(-1e300), n};
+    Box box;
+    double depth = 0;
+    for (const Vec3& point : grid.points) {
+        const Vec3 s = screen_from_world(camera, point);
+        box.include(point);
+        depth += std::max(s.z, 0.0) / static_cast<double>(grid.points.size());
+        if (s.z > 0) {
+            window.low = glm::min(window.low, Vec2(s) / s.z);
+            window.high = glm::max(window.high, Vec2(s) / s.z);
+        } else {  // it reaches behind the eye
+            window.low = Vec2(0);
+            window.high = film;
+        }
+    }
+    // A pixel more, for the exact outline stands over the facets' by less than that at useful n.
+    window.low = glm::clamp(window.low - 1.0, Vec2(0), film);
+    window.high = glm::clamp(window.high + 1.0, Vec2(0), film);
+    if (!(window.low.x < window.high.x && window.low.y < window.high.y))
+        window.low = Vec2(0), window.high = film;
+    window.depth = depth > 0 ? depth : 1;
+    window.reach = length(box.size());
+    return window;
+}
+
 Vec3 middle_of(const SurfaceGrid& grid) {
     Box box;
     for (const Vec3& point : grid.points) box.include(point);
@@ -89,14 +128,16 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
     const FramedOptic& framed = frame.optics[optic];
     const SurfaceGrid& grid = framed.facets->grid();
     const Looking looking = looking_at(world, frame, optic);
-    if (world.scene.render.max_depth > 0 || frame.max_error > 0) {
-        DivideParams params;
-        params.fit = framed.rays == CornerRays::kFitted;
-        params.max_error = frame.max_error;
-        params.objects = &object_tracer(world);
-        if (frame.max_error > 0) params.most_levels = kMostLevelsForError;
+    DivideParams params;
+    params.fit = framed.rays == CornerRays::kFitted;
+    params.max_error = frame.max_error;
+    params.objects = &object_tracer(world);
+    if (frame.max_error > 0) params.most_levels = kMostLevelsForError;
+    if (framed.grid == GridKind::kScreen)
+        return std::make_unique<OpticPaths>(
+            looking, film_window(world, *frame.camera.linear, grid, framed.resolution), params);
+    if (world.scene.render.max_depth > 0 || frame.max_error > 0)
         return std::make_unique<OpticPaths>(looking, grid, params);
-    }
     return std::make_unique<OpticPaths>(looking, grid, find_path(framed, Path::kReflect),
                                         find_path(framed, Path::kRefract));
 }

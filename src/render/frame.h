@@ -16,6 +16,8 @@ namespace trilens {
 /// One optic as facets that the camera sees. Facets of the RayMeshes are those of the grid.
 struct FramedOptic {
     std::shared_ptr<const OpticFacets> facets;
+    int resolution = 0;
+    GridKind grid = GridKind::kSurface;  // where its facets for whole paths lie
     std::vector<PathMesh> paths;  // those that the scene draws and the optic has, up to the first optic
     CornerRays rays = CornerRays::kInterpolated;
 };
@@ -29,7 +31,7 @@ struct Frame {
 /// Throws InputError where the optics together have too many facets to hold, or the camera cannot show them.
 Frame make_frame(const World& world, const FrameParams& params, const Warn& warn);
 
-/// The same for a camera's rays that no scene describes; params.camera says nothing.
+/// The same for a camera's rays that no scene describes; FrameParams::camera is not asked.
 Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn);
 
 /// The rays that an optic's corners are asked to have.

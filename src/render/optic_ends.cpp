@@ -12,12 +12,17 @@ namespace {
 
 constexpr std::size_t kSamplesPerTask = 256;
 
-/// The samples that see the optic, by facet.
-FacetSamples samples_by_facet(Id optic, std::size_t facets, const SampleViews& views) {
+/// The samples that see the optic, by facet of its paths.
+FacetSamples samples_by_facet(const OpticPaths& paths, Id optic, const SampleGrid& grid,
+                              const SampleViews& views) {
     std::vector<Id> owner(views.samples.size());
-    for (std::size_t s = 0; s < owner.size(); ++s)
-        owner[s] = views.samples[s].optic == optic ? views.samples[s].facet : kNone;
-    return group_by_facet(owner, facets);
+    for (std::size_t s = 0; s < owner.size(); ++s) {
+        const SampleView& view = views.samples[s];
+        owner[s] = view.optic != optic  ? kNone
+                   : paths.is_on_film() ? paths.film_facet(grid.position(s))
+                                        : view.facet;
+    }
+    return group_by_facet(owner, paths.outline().facets.size());
 }
 
 std::vector<Id> seen_facets(const FacetSamples& owned) {
@@ -133,6 +138,7 @@ void NodeDrawer::draw(Id index, OpticEnds& out) {
                     if (goes_on[s]) continue;
                 }
                 finish(node, s, weights, ends[i]);
+                ends[i].node = index;
                 ends[i].first_step = first_step;
                 ends[i].step_count = node.step_count;
                 ends[i].hit = hits[s];
@@ -194,7 +200,7 @@ void follow_samples(const OpticEndsParams& params, const std::vector<Id>& sample
 OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, const SampleGrid& grid,
                            SampleViews& views) {
     OpticEnds out;
-    const FacetSamples owned = samples_by_facet(params.optic, paths.outline().facets.size(), views);
+    const FacetSamples owned = samples_by_facet(paths, params.optic, grid, views);
     const std::vector<Id> seen = seen_facets(owned);
     if (seen.empty()) return out;
     paths.prepare(seen);
@@ -207,6 +213,7 @@ OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, con
     for (std::size_t s = 0; s < leaf.size(); ++s) {
         if (leaf[s] == kNone) continue;
         const PathLeaf& of_sample = paths.leaves()[leaf[s]];
+        views.samples[s].leaf = leaf[s];
         views.samples[s].level = of_sample.level;
         views.samples[s].predicted = of_sample.predicted;
         views.samples[s].cut = paths.cut();

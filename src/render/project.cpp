@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "camera/specular_search.h"
 #include "render/facet_images.h"
+#include "render/path_images.h"
 
 namespace trilens {
 namespace {
@@ -50,6 +51,9 @@ class PointProjector {
     void add_direct(const Vec3& point, PointProjection& result) const;
     void add_camera_mesh(const Vec3& point, PointProjection& result) const;
     void add_optic_path(const OpticPath& path, const Vec3& point, PointProjection& result) const;
+    void add_several(const SeveralOpticsImages& several, const Vec3& point, PointProjection& result) const;
+    void differentiate(WorldImage& image, const Vec3& point) const;
+    bool goes_straight(const Vec3& from, const Vec3& to) const;
     SpecularSearch search(const OpticPath& path, const Vec3& point) const;
     bool on_film(const Vec2& pixel) const;
     bool is_free_of_objects(const Vec3& from, const Vec3& to) const;
@@ -64,6 +68,7 @@ class PointProjector {
     std::vector<std::unique_ptr<SpecularSearcher>> searcher_;  // per optic; kComplete
     std::vector<FacetsAround> facets_of_face_;  // per optic: facets at each face of its surface
     std::vector<OpticPath> paths_;
+    std::vector<std::unique_ptr<SeveralOpticsImages>> several_;  // per optic, where paths go on
 };
 
 PointProjector::PointProjector(const World& world, const ProjectRequest& request)
@@ -91,6 +96,9 @@ void PointProjector::add_optic(std::size_t index) {
         if (!path.mesh.facets.empty())
             paths_.push_back({path.path, static_cast<Id>(index),
                               std::make_unique<FacetImages>(world_, frame_, index, path)});
+    path_world(world_);
+    if (world_.scene.render.max_depth > 0)
+        several_.push_back(std::make_unique<SeveralOpticsImages>(world_, frame_, index));
 }
 
 bool PointProjector::on_film(const Vec2& pixel) const {
@@ -118,6 +126,51 @@ bool PointProjector::sees(const Vec3& from, const Vec3& to) const {
     return true;
 }
 
+/// Whether light that leaves an optic at `from` comes to `to` without meeting another, or the same once more.
+bool PointProjector::goes_straight(const Vec3& from, const Vec3& to) const {
+    const Ray segment{from, to - from};
+    for (std::size_t i = 0; i < world_.optics.size(); ++i) {
+        const std::optional<SurfaceHit> hit = limit_tracer(world_, i).first_hit(segment, kFreeShare);
+        if (hit && hit->t < 1 - kFreeShare) return false;
+    }
+    return true;
+}
+
+/// By the exact paths around the image.
+void PointProjector::differentiate(WorldImage& image, const Vec3& point) const {
+    const auto exact = refine_history_image(history_query(world_, frame_, image.steps, point), image.pixel);
+    if (!exact || length(exact->pixel - image.pixel) > kSamePixels) return;
+    image.has_derivative = true;
+    image.derivative = exact->derivative;
+}
+
+void PointProjector::add_several(const SeveralOpticsImages& several, const Vec3& point,
+                                 PointProjection& result) const {
+    if (several.may_miss()) result.complete = false;
+    for (const SeveralOpticsImage& found : several.images(point)) {
+        const std::vector<Vec3>& corner = found.exact.corners;
+        if (!goes_straight(corner.back(), point)) continue;
+        WorldImage image;
+        image.path = found.path;
+        image.optic = found.optic;
+        image.object = world_.optics[found.optic].mesh;
+        image.facet = found.facet;
+        image.pixel = found.exact.pixel;
+        image.length = found.exact.distance;
+        image.t = found.exact.distance / found.exact.first_way;
+        image.refined = true;
+        image.steps = found.steps;
+        image.has_derivative = true;
+        image.derivative = found.exact.derivative;
+        image.inside = on_film(image.pixel);
+        image.visible = request_.visibility && image.inside && is_free_of_objects(corner.back(), point) &&
+                        sees(camera_.linear->eye, corner.front());
+        for (std::size_t i = 0; i + 1 < corner.size() && image.visible; ++i)
+            image.visible = is_free_of_objects(corner[i], corner[i + 1]);
+        result.images.push_back(std::move(image));
+    }
+}
+
 void PointProjector::add_direct(const Vec3& point, PointProjection& result) const {
     const Vec3 screen = screen_from_world(*camera_.linear, point);
     // Nor has the eye itself an image, which rounding may put in front of it.
@@ -130,6 +183,14 @@ void PointProjector::add_direct(const Vec3& point, PointProjection& result) cons
     image.inside = on_film(image.pixel);
     image.refined = true;
     image.visible = request_.visibility && image.inside && sees(camera_.linear->eye, point);
+
+    // d (s / w) = (ds - (s / w) dw) / w.
+    image.has_derivative = true;
+    for (int axis = 0; axis < 2; ++axis) {
+        const Vec4& row = axis == 0 ? camera_.linear->screen_x : camera_.linear->screen_y;
+        image.derivative[static_cast<std::size_t>(axis)] =
+            (Vec3(row) - image.pixel[axis] * Vec3(camera_.linear->screen_w)) / screen.z;
+    }
     result.images.push_back(image);
 }
 
@@ -177,8 +238,10 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, Po
         if (request_.search == ImageSearch::kComplete && one.refined &&
             !is_free_of_optic(eye, one.from, path.optic))
             continue;
+        if (world_.scene.render.max_depth > 0 && !goes_straight(one.from, point)) continue;
         WorldImage image;
         image.path = path.path;
+        image.steps = {{path.optic, path.path == Path::kReflect ? Event::kReflect : Event::kTransmit}};
         image.optic = path.optic;
         image.object = world_.optics[path.optic].mesh;
         image.facet = one.facet;
@@ -189,7 +252,8 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, Po
         image.inside = on_film(image.pixel);
         image.visible =
             request_.visibility && image.inside && is_free_of_objects(one.from, point) && sees(eye, one.from);
-        result.images.push_back(image);
+        if (request_.derivatives && image.refined) differentiate(image, point);
+        result.images.push_back(std::move(image));
     }
 }
 
@@ -199,6 +263,7 @@ PointProjection PointProjector::images(const Vec3& point) const {
     if (camera_mesh_) add_camera_mesh(point, result);
     if (camera_.linear && world_.scene.render.direct) add_direct(point, result);
     for (const OpticPath& path : paths_) add_optic_path(path, point, result);
+    for (const auto& several : several_) add_several(*several, point, result);
     return result;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/corner_rays.h"
+#include "base/grid_kind.h"
 #include "base/image.h"
 #include "projector/classic_params.h"
 
@@ -16,6 +17,7 @@ namespace trilens {
 struct FrameParams {
     std::size_t camera = 0;                          // index into Scene::cameras
     int resolution = 0;                              // of every optic's grid, 1..1024; 0: each optic's own
+    std::optional<GridKind> grid = std::nullopt;     // of every optic; none: each optic's own
     std::optional<CornerRays> rays = std::nullopt;   // of every optic; none: each optic's own
     std::optional<double> max_error = std::nullopt;  // RenderSettings::max_error; none: the scene's
 };

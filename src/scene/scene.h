@@ -10,6 +10,7 @@
 #include "base/appearance.h"
 #include "base/cage.h"
 #include "base/corner_rays.h"
+#include "base/grid_kind.h"
 #include "base/triangle_scene.h"
 #include "base/vec.h"
 
@@ -69,11 +70,12 @@ struct ObjectMesh {
 struct Mesh {
     std::string name;
     Role role = Role::kObject;
-    Id material = kNone;         // index into Scene::materials; kNone where the triangles carry their own
-    int resolution = 8;          // optic: N x N facets per quad face
-    std::size_t face_count = 0;  // polygons of the file, holes among them; 0 for a primitive
-    NormalOverride normals;      // optic
+    Id material = kNone;  // index into Scene::materials; kNone where the triangles carry their own
+    int resolution = 8;   // optic: N x N facets per quad face
+    GridKind grid = GridKind::kSurface;     // optic
     CornerRays rays = CornerRays::kFitted;  // optic
+    std::size_t face_count = 0;             // polygons of the file, holes among them; 0 for a primitive
+    NormalOverride normals;                 // optic
     int priority = 0;  // optic of glass: where bodies overlap the one of higher priority is inside
 
     // An object has `object`; an optic has either `primitive` or `cage` (world frame, transform applied).

@@ -52,9 +52,9 @@ void add(const Cage& cage, Digest& digest) {
 }
 
 void add(const Mesh& mesh, Digest& digest) {
-    const auto& [name, role, material, resolution, face_count, normals, rays, priority, object, primitive,
-                 cage] = mesh;
-    digest.add_all(name, role, material, resolution, face_count, rays, priority);
+    const auto& [name, role, material, resolution, grid, rays, face_count, normals, priority, object,
+                 primitive, cage] = mesh;
+    digest.add_all(name, role, material, resolution, grid, rays, face_count, priority);
     const auto& [type, center, seed, amplitude, scale] = normals;
     digest.add_all(type, center, seed, amplitude, scale);
     const auto& [points, triangles, uvs, corner_normals, materials] = object;

@@ -180,3 +180,44 @@ TEST_CASE("fitted pictures do not depend on crops or threads") {
         set_thread_count(0);
     }
 }
+
+TEST_CASE("facets divided for an error keep it, whatever they began with") {
+    struct Case {
+        const std::string& optic;
+        int max_depth;
+        const char* layer;
+    };
+    for (const Case& one : {Case{kBall, 0, "reflect"}, Case{kGlassBall, 4, "refract"}}) {
+        const auto world = room_with(one.optic, one.max_depth, 4);
+        const Image truth = draw(*world, {}, Engine::kLimitTruth).image;
+        for (const CornerRays rays : {CornerRays::kInterpolated, CornerRays::kFitted}) {
+            FrameParams frame = with(rays);
+            const Picture plain = draw(*world, frame, Engine::kExact);
+            frame.max_error = 0.5;
+            const Picture divided = draw(*world, frame, Engine::kExact);
+            const auto before = measure_displacement(truth, plain.image, one.layer);
+            const auto after = measure_displacement(truth, divided.image, one.layer);
+            REQUIRE((before && before->summary && after && after->summary));
+            CHECK(before->summary->p99 > 1);
+            CHECK(after->summary->p99 <= 0.5);
+            CHECK(divided.statistics.predicted_error <= 0.5);
+            CHECK(divided.statistics.predicted_error > 0.1);
+            CHECK(divided.statistics.projected_facets > plain.statistics.projected_facets);
+            CHECK(divided.statistics.traced_pixels < divided.statistics.optic_pixels / 10);
+        }
+    }
+}
+
+TEST_CASE("an error asked for does not depend on crops or threads") {
+    const auto world = room_with(kGlassBall, 3, 4);
+    FrameParams frame;
+    frame.max_error = 0.5;
+    LayerRequest window;
+    window.layers = layer_names();
+    set_thread_count(1);
+    const Image whole = draw(*world, frame, Engine::kExact, window).image;
+    set_thread_count(4);
+    window.x0 = 80, window.y0 = 55, window.x1 = 120, window.y1 = 90;
+    CHECK(same_in(whole, draw(*world, frame, Engine::kExact, window).image));
+    set_thread_count(0);
+}
