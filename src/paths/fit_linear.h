@@ -27,7 +27,7 @@ struct FitSample {
 ///
 /// The normal equations have the mesh's mass matrix. Over its row sums its eigenvalues lie within (0, 1], for
 /// facets of even measure within [1/4, 1] on any mesh (Wathen, Realistic eigenvalue bounds for the Galerkin
-/// mass matrix, 1987), so Chebyshev's iteration gains a factor of about 3 with each step, without inner
+/// mass matrix, 1987), so Chebyshev's iteration gains a factor of 2.6 with each step, without inner
 /// products (Wathen and Rees, Chebyshev semi-iteration in preconditioning for problems including the mass
 /// matrix, 2009).
 void fit_linear(std::span<const FitSample> samples, std::span<FitValue> values);
