@@ -199,6 +199,8 @@ class Renderer:
         clip: Optional[str] = None,
         pieces: Optional[int] = None,
         tolerance: Optional[float] = None,
+        rays: Optional[str] = None,
+        max_error: Optional[float] = None,
         progress: _Progress = None,
         warn: _Warn = None,
     ) -> Image: ...
@@ -210,6 +212,8 @@ class Renderer:
         layers: Optional[Sequence[str]] = None,
         window: Optional[_Window] = None,
         *,
+        rays: Optional[str] = None,
+        max_error: Optional[float] = None,
         progress: _Progress = None,
         warn: _Warn = None,
     ) -> Image: ...

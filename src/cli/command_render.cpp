@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/explain.h"
@@ -27,7 +28,9 @@ struct RenderOptions {
     std::string surface = "limit";
     std::string format;  // empty: by the output's ending
     bool wire = false;
-    std::string grid;  // empty: as the scene says
+    std::string rays;       // empty: each optic's own
+    double max_error = -1;  // < 0: as the scene says
+    std::string grid;       // empty: as the scene says
 };
 
 /// What an output is, by --format or its name's ending: "exr", "png" or "svg". Standard output gets OpenEXR
@@ -53,9 +56,16 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
         {"pixels_without_ray", picture.statistics.pixels_without_ray},
         {"subdivided_pixels", picture.statistics.subdivided_pixels},
         {"traced_pixels", picture.statistics.traced_pixels},
+        {"projected_facets", picture.statistics.projected_facets},
+        {"predicted_error", picture.statistics.predicted_error},
         {"left_out", {{"faint", picture.statistics.faint_light}, {"deep", picture.statistics.deep_light}}},
         {"prepare_seconds", picture.prepare_seconds},
         {"draw_seconds", picture.draw_seconds}};
+}
+
+std::optional<CornerRays> chosen_rays(const RenderOptions& options) {
+    if (options.rays.empty()) return std::nullopt;
+    return options.rays == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
 }
 
 /// Outlines instead of pixels.
@@ -63,7 +73,10 @@ Answer run_vector(const RenderOptions& options, const Renderer& renderer, Consol
     if (!options.scene.crop.empty())
         throw UsageError("--crop is for pictures of pixels; an .svg shows the whole film");
     const std::size_t camera = find_camera(renderer.scene(), options.scene.camera);
-    const LineDrawing drawing = renderer.draw_lines({.camera = camera}, options.wire, console.warner());
+    FrameParams frame;
+    frame.camera = camera;
+    frame.rays = chosen_rays(options);
+    const LineDrawing drawing = renderer.draw_lines(frame, options.wire, console.warner());
     Answer answer = write_output(options.output, drawing.svg, console);
     answer.fields.update(Json{{"engine", "exact"},
                               {"width", renderer.scene().film.width},
@@ -77,6 +90,8 @@ Answer run_vector(const RenderOptions& options, const Renderer& renderer, Consol
 void check_options(const RenderOptions& options, const std::string& format, const EngineChoice& engine) {
     if (format == "svg" && engine.engine == Engine::kClassic)
         throw UsageError("an .svg is drawn by the exact engine; leave out --engine classic");
+    if (format == "svg" && options.max_error >= 0)
+        throw UsageError("--max-error is for pictures of pixels; an .svg shows the facets undivided");
     if (options.wire && format != "svg") throw UsageError("--wire is for .svg outputs");
 }
 
@@ -136,6 +151,8 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
     request.engine = engine;
     request.layers = layer_request(options.scene);
     const Renderer renderer = load_renderer(options.scene, console);
+    request.frame.rays = chosen_rays(options);
+    if (options.max_error >= 0) request.frame.max_error = options.max_error;
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
     if (!options.grid.empty())
         request.frame.grid = options.grid == "screen" ? GridKind::kScreen : GridKind::kSurface;
@@ -172,6 +189,21 @@ std::vector<Option> picture_options(RenderOptions& options, const std::string& f
                      .target = &options.pixel,
                      .help = "explain one pixel as JSON",
                      .value = "x,y"}}});
+}
+
+std::vector<Option> facet_options(RenderOptions& options) {
+    return {
+        {.names = "--rays",
+         .target = &options.rays,
+         .help = "of every optic's facets, whatever the scene says: fitted to the exact rays in the mean, or "
+                 "exact at the corners and interpolated between them",
+         .choices = {"fitted", "interpolated"}},
+        {.names = "--max-error",
+         .target = &options.max_error,
+         .help = "divide facets until they show things this many pixels from their place at most, as "
+                 "predicted, and trace where that does not help; 0: leave them as they are",
+         .value = "PX",
+         .range = {0, 1000}}};
 }
 
 std::vector<Option> engine_options(RenderOptions& options) {
@@ -227,6 +259,7 @@ std::vector<Command> render_commands() {
     by_projection.options =
         joined({picture_options(*render, ".exr (all layers), .png (beauty) or .svg (outlines)"),
                 engine_options(*render),
+                facet_options(*render),
                 {{.names = "--format",
                   .target = &render->format,
                   .help = "what to write, whatever the output is called",
@@ -239,6 +272,7 @@ std::vector<Command> render_commands() {
     Command by_rays{
         .name = "trace", .summary = "draw the same scene by ray tracing: the truth", .schema = "trace"};
     by_rays.options = joined({picture_options(*trace, ".exr (all layers) or .png (beauty)"),
+                              facet_options(*trace),
                               {{.names = "--format",
                                 .target = &trace->format,
                                 .help = "what to write, whatever the output is called",
@@ -248,6 +282,8 @@ std::vector<Command> render_commands() {
                                 .help = "facets: the rays of render's facets; limit: the exact surface",
                                 .choices = {"facets", "limit"}}}});
     by_rays.body = [trace](Console& console) {
+        if (trace->surface == "limit" && (!trace->rays.empty() || trace->max_error >= 0))
+            throw UsageError("--rays and --max-error are about facets; add --surface facets");
         return run(*trace, "trace", trace->surface == "facets" ? Engine::kFacetsTruth : Engine::kLimitTruth,
                    console);
     };

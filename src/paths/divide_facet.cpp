@@ -51,29 +51,33 @@ bool covers(const std::vector<std::size_t>& match, const Segments& segments) {
 
 class Divider {
   public:
-    Divider(const Looking& looking, const FacetToDivide& facet, const DivideParams& params)
-        : looking_(looking), facet_(facet), params_(params) {
-        reach_ = facet.reach;
-        for (int k = 0; k < 3 && facet.reach == 0; ++k)
-            reach_ = std::max(reach_, length(facet.points[static_cast<std::size_t>(k)] -
-                                             facet.points[static_cast<std::size_t>((k + 1) % 3)]));
+    Divider(const Looking& looking, LookSide side, double reach, const DivideParams& params)
+        : looking_(looking), side_(side), params_(params), reach_(reach) {
         mirror_ = looking.world->optics[looking.optic].mirror;
     }
-    DividedFacet divide();
+    DividedFacet divide(const std::array<PartCorner, 3>& from);
+    DividedFacet divide_on(const FacetPart& part);
 
   private:
     using Triangle = std::array<Point, 3>;
 
+    using Inside = std::array<Point, 4>;  // the edges' middles, opposite to the corners, and the centre
+
+    static Point point_of(const PartCorner& corner) {
+        return {corner.look, corner.look->screen, corner.chord, corner.shared};
+    }
     Point between(std::initializer_list<const Point*> points, double least_weight);
     void divide(Id cell, const Triangle& corners, int level);
-    bool project(const Triangle& corners, const std::vector<const Look*>& inside, int level);
-    bool mirror_alone(const Triangle& corners, const std::vector<const Look*>& inside) const;
+    void split(Id cell, const Triangle& corners, const Inside& inside, int level);
+    bool is_least(const Triangle& corners, int level) const;
+    bool project(const Triangle& corners, const Inside& inside, int level);
+    bool mirror_alone(const Triangle& corners, const Inside& inside) const;
     void note(const CutPaths& cut);
     void end(Id cell, FacetPart part);
     FacetPart part_of(const Triangle& corners, int level) const;
 
     const Looking& looking_;
-    const FacetToDivide& facet_;
+    LookSide side_ = LookSide::kFront;
     const DivideParams& params_;
     double reach_ = 0;
     bool mirror_ = true;
@@ -95,8 +99,9 @@ Point Divider::between(std::initializer_list<const Point*> points, double least_
         middle.chord += share * one->chord;
     }
     divided_.looks.push_back(look_through(looking_, {middle.screen, middle.chord, reach_},
-                                          {.side = facet_.side, .least_weight = least_weight}));
+                                          {.side = side_, .least_weight = least_weight}));
     middle.look = &divided_.looks.back();
+    if (params_.max_error > 0) set_beside(looking_, *middle.look);
     note(middle.look->cut);
     return middle;
 }
@@ -104,12 +109,15 @@ Point Divider::between(std::initializer_list<const Point*> points, double least_
 FacetPart Divider::part_of(const Triangle& corners, int level) const {
     FacetPart part;
     part.level = static_cast<std::uint8_t>(level);
-    for (std::size_t k = 0; k < 3; ++k) part.corners[k] = {corners[k].shared, corners[k].look};
+    part.reach = reach_;
+    part.side = side_;
+    for (std::size_t k = 0; k < 3; ++k)
+        part.corners[k] = {corners[k].shared, corners[k].look, corners[k].chord};
     return part;
 }
 
 /// A mirror that shows no other optic there has rays beyond its silhouette too: the mirror law goes on.
-bool Divider::mirror_alone(const Triangle& corners, const std::vector<const Look*>& inside) const {
+bool Divider::mirror_alone(const Triangle& corners, const Inside& inside) const {
     if (!mirror_) return false;
     const auto alone = [](const Look& look) {
         return look.state != LookState::kSeen || (look.segments.size() == 1 && look.segments[0].ends);
@@ -118,11 +126,12 @@ bool Divider::mirror_alone(const Triangle& corners, const std::vector<const Look
                        [&](const Point& corner) {
                            return corner.look->state != LookState::kMissed && alone(*corner.look);
                        }) &&
-           std::all_of(inside.begin(), inside.end(), [&](const Look* look) { return alone(*look); });
+           std::all_of(inside.begin(), inside.end(), [&](const Point& point) { return alone(*point.look); });
 }
 
-bool Divider::project(const Triangle& corners, const std::vector<const Look*>& inside, int level) {
+bool Divider::project(const Triangle& corners, const Inside& inside, int level) {
     projected_ = part_of(corners, level);
+    for (const Point& point : inside) projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
     if (!looking_.world->reflect && mirror_) return true;
     if (mirror_alone(corners, inside)) {
         PathSegment segment;
@@ -130,18 +139,19 @@ bool Divider::project(const Triangle& corners, const std::vector<const Look*>& i
         projected_.histories = {segment};
         for (std::size_t k = 0; k < 3; ++k)
             if (corners[k].look->state == LookState::kSeen) projected_.segment[k] = {0};
+        for (PartInside& point : projected_.inside)
+            if (point.at.look->state == LookState::kSeen) point.segment = {0};
         return true;
     }
-    const Look& centre = *inside.back();
+    const Look& centre = *inside.back().look;
     if (centre.state != LookState::kSeen) return false;
     const auto agrees = [&](const Look& look, std::vector<std::size_t>& match) {
         if (look.state != LookState::kSeen || look.front != centre.front) return false;
         match = matched(centre.segments, look.segments);
         return match.size() == centre.segments.size() && covers(match, look.segments);
     };
-    std::vector<std::size_t> match;
-    for (const Look* look : inside)
-        if (look != &centre && !agrees(*look, match)) return false;
+    for (PartInside& point : projected_.inside)
+        if (!agrees(*point.at.look, point.segment)) return false;
     for (std::size_t k = 0; k < 3; ++k)
         if (!agrees(*corners[k].look, projected_.segment[k])) return false;
     projected_.histories = centre.segments;
@@ -167,38 +177,44 @@ double screen_area(const std::array<Point, 3>& corners) {
     return 0.5 * std::fabs(b.x * c.y - b.y * c.x);
 }
 
+bool Divider::is_least(const Triangle& corners, int level) const {
+    return level >= params_.most_levels || screen_area(corners) < params_.least_area;
+}
+
 void Divider::divide(Id cell, const Triangle& corners, int level) {
     const double fainter = kFainter * kLeastWeight;
-    const std::array<Point, 3> middle{between({&corners[1], &corners[2]}, fainter),
-                                      between({&corners[2], &corners[0]}, fainter),
-                                      between({&corners[0], &corners[1]}, fainter)};
-    const Point centre = between({&corners[0], &corners[1], &corners[2]}, kLeastWeight);
-    if (project(corners, {middle[0].look, middle[1].look, middle[2].look, centre.look}, level))
-        return end(cell, std::move(projected_));
-    if (level >= params_.most_levels || screen_area(corners) < params_.least_area) {
+    const Inside inside{between({&corners[1], &corners[2]}, fainter),
+                        between({&corners[2], &corners[0]}, fainter),
+                        between({&corners[0], &corners[1]}, fainter),
+                        between({&corners[0], &corners[1], &corners[2]}, kLeastWeight)};
+    if (project(corners, inside, level)) return end(cell, std::move(projected_));
+    split(cell, corners, inside, level);
+}
+
+void Divider::split(Id cell, const Triangle& corners, const Inside& inside, int level) {
+    if (is_least(corners, level)) {
         FacetPart part = part_of(corners, level);
         part.method = LeafMethod::kTraced;
-        part.centre = centre.screen;
+        part.centre = inside[3].screen;
         return end(cell, std::move(part));
     }
     const Id first = static_cast<Id>(divided_.cells.size());
     divided_.cells[cell].children = first;
     divided_.cells.resize(divided_.cells.size() + 4);
-    divide(first, {corners[0], middle[2], middle[1]}, level + 1);
-    divide(first + 1, {middle[2], corners[1], middle[0]}, level + 1);
-    divide(first + 2, {middle[1], middle[0], corners[2]}, level + 1);
-    divide(first + 3, {middle[0], middle[1], middle[2]}, level + 1);
+    divide(first, {corners[0], inside[2], inside[1]}, level + 1);
+    divide(first + 1, {inside[2], corners[1], inside[0]}, level + 1);
+    divide(first + 2, {inside[1], inside[0], corners[2]}, level + 1);
+    divide(first + 3, {inside[0], inside[1], inside[2]}, level + 1);
 }
 
-DividedFacet Divider::divide() {
+DividedFacet Divider::divide(const std::array<PartCorner, 3>& from) {
     Triangle corners;
     bool has_normals = true;
     for (std::size_t k = 0; k < 3; ++k) {
-        const PartCorner& from = facet_.corners[k];
-        corners[k] = {from.look, from.look->screen, facet_.points[k], from.shared};
-        const bool missed = from.look->state == LookState::kMissed;
-        has_normals = has_normals && (missed || from.look->place.normal != Vec3(0));
-        note(from.look->cut);
+        corners[k] = point_of(from[k]);
+        const bool missed = from[k].look->state == LookState::kMissed;
+        has_normals = has_normals && (missed || from[k].look->place.normal != Vec3(0));
+        note(from[k].look->cut);
     }
     divided_.cells.resize(1);
     if (has_normals)
@@ -208,10 +224,27 @@ DividedFacet Divider::divide() {
     return std::move(divided_);
 }
 
+DividedFacet Divider::divide_on(const FacetPart& part) {
+    Triangle corners;
+    Inside inside;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = point_of(part.corners[k]);
+    for (std::size_t k = 0; k < 4; ++k) inside[k] = point_of(part.inside[k].at);
+    divided_.cells.resize(1);
+    split(0, corners, inside, part.level);
+    return std::move(divided_);
+}
+
 }  // namespace
 
 DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, const DivideParams& params) {
-    return Divider(looking, facet, params).divide();
+    double reach = facet.reach;
+    for (std::size_t k = 0; k < 3 && facet.reach == 0; ++k)
+        reach = std::max(reach, length(facet.corners[k].chord - facet.corners[(k + 1) % 3].chord));
+    return Divider(looking, facet.side, reach, params).divide(facet.corners);
+}
+
+DividedFacet divide_part(const Looking& looking, const FacetPart& part, const DivideParams& params) {
+    return Divider(looking, part.side, part.reach, params).divide_on(part);
 }
 
 }  // namespace trilens

@@ -7,7 +7,8 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "paths/divide_facet.h"
-#include "reflect/mirror.h"
+#include "paths/fit_nodes.h"
+#include "paths/node_corner.h"
 
 namespace trilens {
 namespace {
@@ -15,34 +16,6 @@ namespace {
 constexpr std::size_t kCornersPerTask = 64, kFacetsPerTask = 16;
 constexpr double kFainter = 1.0 / 8;  // as divide_facet has it
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// A corner as one history needs it.
-struct NodeCorner {
-    Ray ray;
-    Vec3 screen{0};
-    double next = kInfinity;
-    Vec3 weight{1};
-};
-
-/// The first reflection: the mirrored ray as long as the eye ray, which keeps a flat mirror exact.
-NodeCorner first_reflection(const Look& look, const PathSegment* segment) {
-    NodeCorner corner;
-    corner.ray = {look.place.point, mirrored(look.incident, look.place.normal)};
-    corner.screen = look.screen;
-    if (segment) corner.next = segment->next / length(look.incident);
-    return corner;
-}
-
-/// Later ones are as long as the eye ray times kappa. The chord whose weights hold is `farther` times as far
-/// away as the facet's own.
-NodeCorner later(const Look& look, const PathSegment& segment, double kappa, double farther) {
-    const double eye = length(look.incident);
-    const double size = eye * farther * kappa;
-    return {{segment.ray.origin, size * segment.ray.direction},
-            farther * look.screen,
-            segment.next / size,
-            segment.weight};
-}
 
 }  // namespace
 
@@ -73,6 +46,7 @@ void OpticPaths::set_film_corner(Id corner, const Vec2& pixel) {
     Chord chord{at, looking_.camera.point(at), 2 * window_.reach};
     auto look = std::make_unique<Look>(
         look_through(looking_, chord, {.side = LookSide::kNearest, .least_weight = kFainter * kLeastWeight}));
+    if (params_.max_error > 0) set_beside(looking_, *look);
     if (look->state != LookState::kMissed) {
         chord.point = look->place.point;
         if (!looking_.camera.affine) chord.screen = look->screen = looking_.camera.screen(chord.point);
@@ -179,6 +153,7 @@ void OpticPaths::look_at_corners(std::span<const Id> facets) {
             auto look = std::make_unique<Look>(look_at(looking_, places_[wanted[i] / 2],
                                                        {.side = front ? LookSide::kFront : LookSide::kBack,
                                                         .least_weight = kFainter * kLeastWeight}));
+            if (params_.max_error > 0) set_beside(looking_, *look);
             // The first reflection alone needs no kappa.
             if (look->segments.size() > 1 ||
                 (look->segments.size() == 1 && look->segments[0].step.event != Event::kReflect))
@@ -190,12 +165,50 @@ void OpticPaths::look_at_corners(std::span<const Id> facets) {
     });
 }
 
-void OpticPaths::prepare(std::span<const Id> facets) {
+bool OpticPaths::on_film(Id facet) const {
+    constexpr double kMargin = 1;  // pixels
+    const Vec2& film = looking_.camera.film;
+    Vec2 low(kInfinity), high(-kInfinity);
+    for (const Id corner : outline_.facets[facet]) {
+        const Vec3& s = outline_.screen[corner];
+        if (!(s.z > 0)) return true;
+        low = glm::min(low, Vec2(s.x, s.y) / s.z);
+        high = glm::max(high, Vec2(s.x, s.y) / s.z);
+    }
+    return low.x < film.x + kMargin && low.y < film.y + kMargin && high.x > -kMargin && high.y > -kMargin;
+}
+
+/// Those of `facets` that are not known, and those that are fitted with them; ascending.
+std::vector<Id> OpticPaths::wanted_facets(std::span<const Id> facets) {
     std::vector<Id> fresh;
-    for (const Id f : facets)
-        if (!prepared_[f]) fresh.push_back(f);
+    std::array<bool, 2> begins{};
+    for (const Id f : facets) {
+        if (prepared_[f]) continue;
+        fresh.push_back(f);
+        begins[shows_front(f) ? 1 : 0] = true;
+    }
+    if (params_.fit)
+        for (std::size_t side = 0; side < 2; ++side) {
+            if (!begins[side] || side_fitted_[side]) continue;
+            side_fitted_[side] = true;
+            for (Id f = 0; f < outline_.facets.size(); ++f)
+                if (shows_front(f) == (side == 1) && on_film(f)) fresh.push_back(f);
+        }
     std::sort(fresh.begin(), fresh.end());
     fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
+    return fresh;
+}
+
+void OpticPaths::complete_nodes() {
+    for (PathNode& node : nodes_) {
+        node.mesh.facets.resize(leaves_.size(), {kNone, kNone, kNone});
+        node.ends.resize(leaves_.size(), 1);
+        node.principal.resize(leaves_.size(), 0);
+    }
+}
+
+void OpticPaths::prepare(std::span<const Id> facets) {
+    const std::vector<Id> fresh = wanted_facets(facets);
     look_at_corners(fresh);
 
     std::vector<DividedFacet> divided(fresh.size());
@@ -208,37 +221,45 @@ void OpticPaths::prepare(std::span<const Id> facets) {
             facet.reach = grid_ ? 0 : 2 * window_.reach;
             for (std::size_t k = 0; k < 3; ++k) {
                 const Id key = 2 * corners[k] + (front ? 1 : 0);
-                facet.corners[k] = {key, corner_looks_[key].get()};
-                facet.points[k] = places_[corners[k]].point;
+                facet.corners[k] = {key, corner_looks_[key].get(), places_[corners[k]].point};
             }
             divided[i] = divide_facet(looking_, facet, params_);
         }
     });
-    for (std::size_t i = 0; i < fresh.size(); ++i) append(fresh[i], divided[i]);
-    for (PathNode& node : nodes_) {
-        node.mesh.facets.resize(leaves_.size(), {kNone, kNone, kNone});
-        node.ends.resize(leaves_.size(), 1);
-        node.principal.resize(leaves_.size(), 0);
+    std::vector<FittedLeaf> whole, open;
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        prepared_[fresh[i]] = 1;
+        const Id first_leaf = static_cast<Id>(leaves_.size());
+        append(fresh[i], fresh[i], divided[i]);
+        for (std::size_t p = 0; p < divided[i].parts.size(); ++p) {
+            const FittedLeaf leaf{static_cast<Id>(first_leaf + p), &divided[i].parts[p]};
+            if (leaf.part->method != LeafMethod::kProjected) continue;
+            open.push_back(leaf);
+            if (leaf.part->level == 0) whole.push_back(leaf);
+        }
     }
+    complete_nodes();
+    if (params_.fit) fit_nodes(whole, nodes_);
+    if (params_.max_error > 0) divide_by_error(std::move(open));
 }
 
-void OpticPaths::append(Id facet, const DividedFacet& divided) {
-    prepared_[facet] = 1;
-    const Id first_leaf = static_cast<Id>(leaves_.size());
-    for (const FacetPart& part : divided.parts) {
-        leaves_.push_back({facet, part.level, part.method, part.centre});
-        if (part.method == LeafMethod::kProjected) append_part(static_cast<Id>(leaves_.size() - 1), part);
-    }
-    // The facet's own cell stands at its number, the others at the end.
-    const Id behind = static_cast<Id>(cells_.size()) - 1;
+/// Cell 0 of `divided` becomes `cell`, the others stand at the end.
+void OpticPaths::append(Id facet, Id cell, DividedFacet& divided) {
+    const Id first_leaf = static_cast<Id>(leaves_.size()), behind = static_cast<Id>(cells_.size()) - 1;
+    const auto number = [&](std::size_t c) { return c == 0 ? cell : behind + static_cast<Id>(c); };
+    cells_.resize(cells_.size() + divided.cells.size() - 1);
+    leaf_cell_.resize(leaves_.size() + divided.parts.size(), kNone);
     for (std::size_t c = 0; c < divided.cells.size(); ++c) {
         const DividedFacet::Cell& from = divided.cells[c];
-        const Cell cell{from.children == kNone ? kNone : behind + from.children,
-                        from.part == kNone ? kNone : first_leaf + from.part};
-        if (c == 0)
-            cells_[facet] = cell;
-        else
-            cells_.push_back(cell);
+        cells_[number(c)] = {from.children == kNone ? kNone : number(from.children),
+                             from.part == kNone ? kNone : first_leaf + from.part};
+        if (from.part != kNone) leaf_cell_[first_leaf + from.part] = number(c);
+    }
+    for (FacetPart& part : divided.parts) {
+        leaves_.push_back({facet, part.level, part.method, part.centre});
+        if (part.method != LeafMethod::kProjected) continue;
+        ++projected_count_;
+        append_part(static_cast<Id>(leaves_.size() - 1), part);
     }
     cut_.faint = std::max(cut_.faint, divided.cut.faint);
     cut_.too_deep = std::max(cut_.too_deep, divided.cut.too_deep);
@@ -256,9 +277,9 @@ Id OpticPaths::node_of(Id parent, const PathSegment& segment) {
     node.path = segment.path;
     node.colours = segment.colours;
     node.medium = segment.medium;
-    node.reflects_only = segment.step.event != Event::kTransmit;
+    node.unfolds = segment.step.event != Event::kTransmit && !looking_.camera.parallel;
     if (parent != kNone) {
-        node.reflects_only = node.reflects_only && nodes_[parent].reflects_only;
+        node.unfolds = node.unfolds && nodes_[parent].unfolds;
         node.step_count = static_cast<std::uint16_t>(nodes_[parent].step_count + 1);
     }
     nodes_.push_back(std::move(node));
@@ -266,8 +287,11 @@ Id OpticPaths::node_of(Id parent, const PathSegment& segment) {
     return found->second;
 }
 
-void OpticPaths::append_part(Id leaf, const FacetPart& part) {
-    std::vector<Id> node_index(part.histories.size(), kNone);
+void OpticPaths::append_part(Id leaf, FacetPart& part) {
+    std::vector<Id>& node_index = part.node;
+    node_index.assign(part.histories.size(), kNone);
+    // Parts keep their exact rays at corners where whole facets have fitted ones.
+    const Id own = params_.fit && part.level > 0 ? 2 * static_cast<Id>(places_.size()) : 0;
     for (std::size_t h = 0; h < part.histories.size(); ++h) {
         const PathSegment& history = part.histories[h];
         node_index[h] = node_of(history.parent == kNone ? kNone : node_index[history.parent], history);
@@ -288,7 +312,8 @@ void OpticPaths::append_part(Id leaf, const FacetPart& part) {
             const bool seen = !part.segment[k].empty();
             const PathSegment* segment = seen ? &look.segments[part.segment[k][h]] : nullptr;
             const bool guessed = !first && kappa[k] == 0;
-            const Id shared = guessed ? kNone : part.corners[k].shared;
+            const Id shared =
+                guessed || part.corners[k].shared == kNone ? kNone : own + part.corners[k].shared;
             if (shared != kNone) {
                 const auto found = corner_of_node_[node_index[h]].find(shared);
                 if (found != corner_of_node_[node_index[h]].end()) {
@@ -297,12 +322,9 @@ void OpticPaths::append_part(Id leaf, const FacetPart& part) {
                 }
             }
             const double mean = known > 0 ? sum / known : 1;
-            // After reflections alone the chord is the one seen in the mirrors, farther away by the way
-            // between them: flat mirrors then stay exact. To a parallel camera nothing is farther.
-            const bool unfolds = !first && node.reflects_only && !looking_.camera.parallel;
-            const double farther = unfolds ? segment->way / length(look.incident) : 1;
-            const NodeCorner corner = first ? first_reflection(look, segment)
-                                            : later(look, *segment, guessed ? mean : kappa[k], farther);
+            const NodeCorner corner =
+                first ? first_reflection(look, segment)
+                      : later_corner(look, *segment, guessed ? mean : kappa[k], node.unfolds);
             facet[k] = static_cast<Id>(node.mesh.rays.size());
             node.mesh.rays.push_back(corner.ray);
             node.mesh.screen.push_back(corner.screen);

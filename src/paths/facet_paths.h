@@ -1,6 +1,7 @@
 // The RayMeshes that leave an optic: one for each history of the paths over it.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <span>
@@ -23,7 +24,8 @@ struct PathLeaf {
     Id facet = kNone;
     std::uint8_t level = 0;
     LeafMethod method = LeafMethod::kProjected;
-    Vec3 centre{0};  // of kTraced: homogeneous screen position
+    Vec3 centre{0};        // of kTraced: homogeneous screen position
+    double predicted = 0;  // of kProjected: displacement in pixels, where an error is asked for
 };
 
 /// All rays of one history: its last step starts them.
@@ -34,9 +36,9 @@ struct PathNode {
     Colours colours = kAllColours;
     Id medium = kNone;
     std::uint16_t step_count = 1;
-    bool reflects_only = true;    // all steps are reflections, or pass
-    RayMesh mesh;                 // facet l: leaf l; {kNone, kNone, kNone}: no such path there
-    std::vector<char> ends;       // per leaf: no other optic follows
+    bool unfolds = true;     // all steps are reflections, or pass, and the camera has an eye: see farther
+    RayMesh mesh;            // facet l: leaf l; {kNone, kNone, kNone}: no such path there
+    std::vector<char> ends;  // per leaf: no other optic follows
     std::vector<char> principal;  // per leaf: see PathSegment
     std::vector<double> next;     // per corner: t of the next optic; infinity: none
     std::vector<Vec3> weight;     // per corner: see PathSegment::weight
@@ -46,10 +48,15 @@ struct PathNode {
 struct DivideParams {
     double least_area = 8;  // square pixels: parts below this are traced
     int most_levels = 6;
+    double max_error = 0;             // pixels: parts whose predicted displacement is more are divided too;
+                                      // 0: whatever it is
+    const Tracer* objects = nullptr;  // for the prediction: what is seen
+    bool fit = false;                 // corner rays of whole facets are fitted
 };
 
 struct DividedFacet;
 struct FacetPart;
+struct FittedLeaf;
 
 /// A window of the film, in pixels, and how finely it is cut.
 struct FilmWindow {
@@ -75,6 +82,9 @@ struct FirstPaths {
 /// edges and its centre have the same histories; else it is divided on the screen, in four, and what is left
 /// at the smallest size is traced. Parts of a facet lie on the facet's own plane, so no gaps open; a corner
 /// ray of a part is the camera's exact ray through that point.
+///
+/// Fitted rays depend on the facets all around, so with DivideParams::fit the first facet of a side that is
+/// asked for has all facets of that side worked out that are on the film: no crop changes them.
 class OpticPaths {
   public:
     /// `grid` must live longer.
@@ -109,6 +119,8 @@ class OpticPaths {
     const RayMesh& outline() const { return outline_; }
     /// The most that was left out at any point looked at.
     const CutPaths& cut() const { return cut_; }
+    /// Leaves that are projected, of the facets worked out.
+    std::size_t projected_count() const { return projected_count_; }
     const Looking& looking() const { return looking_; }
 
   private:
@@ -117,10 +129,15 @@ class OpticPaths {
         Id leaf = kNone;
     };
     bool shows_front(Id facet) const;
+    bool on_film(Id facet) const;
+    std::vector<Id> wanted_facets(std::span<const Id> facets);
     void set_film_corner(Id corner, const Vec2& pixel);
     void look_at_corners(std::span<const Id> facets);
-    void append(Id facet, const DividedFacet& divided);
-    void append_part(Id leaf, const FacetPart& part);
+    void append(Id facet, Id cell, DividedFacet& divided);
+    void append_part(Id leaf, FacetPart& part);
+    void complete_nodes();
+    void divide_by_error(std::vector<FittedLeaf> open);
+    double predicted(const FittedLeaf& open) const;
     Id node_of(Id parent, const PathSegment& segment);
 
     Looking looking_;
@@ -137,6 +154,9 @@ class OpticPaths {
     std::vector<PathNode> nodes_;
     std::map<std::tuple<Id, Id, Event, Colours, Id>, Id> node_by_step_;
     std::vector<std::unordered_map<Id, Id>> corner_of_node_;  // per node: shared corner -> corner of its mesh
+    std::array<bool, 2> side_fitted_{};                       // back, front
+    std::vector<Id> leaf_cell_;                               // per leaf
+    std::size_t projected_count_ = 0;
     CutPaths cut_;
 };
 

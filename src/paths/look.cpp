@@ -88,42 +88,49 @@ Look look_through(const Looking& looking, const Chord& chord, const LookParams& 
     return look;
 }
 
+void set_beside(const Looking& looking, Look& look) {
+    if (look.state != LookState::kSeen || !look.beside.empty()) return;
+    for (int axis = 0; axis < 2; ++axis) {
+        const Place place = beside(*looking.surface, look.place, axis);
+        const Vec3 incident =
+            looking.camera.affine
+                ? place.point - (look.place.point - look.incident)
+                : looking.camera.ray(looking.camera.screen(place.point), place.point).direction;
+        look.beside.push_back({place, incident,
+                               repeat_paths(*looking.world, meeting_at(looking, place, incident, look.front),
+                                            length(incident), look.segments)});
+    }
+}
+
 void set_kappa(const Looking& looking, Look& look) {
     if (look.state != LookState::kSeen || !look.kappa.empty()) return;
     look.kappa.assign(look.segments.size(), 0.0);
-    std::array<Place, 2> side;
-    std::array<Vec3, 2> incident;
-    std::array<std::vector<std::optional<PathSegment>>, 2> again;
-    for (int axis = 0; axis < 2; ++axis) {
-        const std::size_t k = static_cast<std::size_t>(axis);
-        side[k] = beside(*looking.surface, look.place, axis);
-        incident[k] = looking.camera.affine
-                          ? side[k].point - (look.place.point - look.incident)
-                          : looking.camera.ray(looking.camera.screen(side[k].point), side[k].point).direction;
-        again[k] = repeat_paths(*looking.world, meeting_at(looking, side[k], incident[k], look.front),
-                                length(incident[k]), look.segments);
-    }
+    const bool kept = !look.beside.empty();
+    set_beside(looking, look);
+    const std::vector<Beside>& side = look.beside;
     // Solid angles over that of the same patch seen head-on. Those before and after are differences of the
     // same rays, so that flat mirrors and plates have 1 to rounding.
     const double eye = length(look.incident);
     const double head_on =
-        length(cross(side[0].point - look.place.point, side[1].point - look.place.point)) / (eye * eye);
+        length(cross(side[0].place.point - look.place.point, side[1].place.point - look.place.point)) /
+        (eye * eye);
     const Vec3 v = normalize_or_zero(look.incident);
     const double before =
         looking.camera.parallel
             ? std::fabs(dot(look.place.normal, v))
-            : spread(v, normalize_or_zero(incident[0]), normalize_or_zero(incident[1])) / head_on;
+            : spread(v, normalize_or_zero(side[0].incident), normalize_or_zero(side[1].incident)) / head_on;
     for (std::size_t i = 0; i < look.segments.size(); ++i) {
-        if (!again[0][i] || !again[1][i]) continue;
-        const double after =
-            spread(look.segments[i].ray.direction, again[0][i]->ray.direction, again[1][i]->ray.direction) /
-            head_on;
+        if (!side[0].segments[i] || !side[1].segments[i]) continue;
+        const double after = spread(look.segments[i].ray.direction, side[0].segments[i]->ray.direction,
+                                    side[1].segments[i]->ray.direction) /
+                             head_on;
         if (!(after > kNoSpread)) continue;
         // Grazing bundles that stay as they are need no softening.
         const double softened = kSoftened * (after - before) / (after + before);
         look.kappa[i] = std::clamp(std::cbrt(std::sqrt(before * before + softened * softened) / after),
                                    1 / kMostKappa, kMostKappa);
     }
+    if (!kept) look.beside.clear();
 }
 
 }  // namespace trilens

@@ -20,6 +20,7 @@ struct PathCamera {
     /// The camera's ray through a homogeneous screen position whose point on the facet is `chord`; unless
     /// parallel, origin + direction lies at the chord's point or, for a camera that is not linear, near it.
     std::function<Ray(const Vec3& screen, const Vec3& chord)> ray;
+    Vec2 film{0};  // its size in pixels; nothing off it is seen
 };
 
 /// Who looks at which optic of what world; what is pointed to must live longer.
@@ -42,6 +43,14 @@ struct Place {
 /// silhouette). kMissed: the camera's ray meets no surface there.
 enum class LookState : std::uint8_t { kSeen, kTurned, kMissed };
 
+/// The paths of a look once more, from a place a small step away on the surface; none where they have another
+/// history there.
+struct Beside {
+    Place place;
+    Vec3 incident{0};  // the camera's ray there, as Look has it
+    std::vector<std::optional<PathSegment>> segments;
+};
+
 struct Look {
     LookState state = LookState::kMissed;
     Vec3 screen{0};     // homogeneous
@@ -50,7 +59,8 @@ struct Look {
     Place place;
     std::vector<PathSegment> segments;  // of kSeen
     CutPaths cut;
-    std::vector<double> kappa;  // per segment; see set_kappa; 0: unknown
+    std::vector<Beside> beside;  // two, along u and along v, where set_beside was asked; else none
+    std::vector<double> kappa;   // per segment; see set_kappa; 0: unknown
 };
 
 /// Which side of the surface is looked at. kNearest: the one that the ray meets first.
@@ -73,6 +83,9 @@ struct Chord {
     double reach = 0;
 };
 Look look_through(const Looking& looking, const Chord& chord, const LookParams& params);
+
+/// Follows the paths of a look once more from two places beside it.
+void set_beside(const Looking& looking, Look& look);
 
 /// Sets kappa of each segment: the cube root of the solid angle that a bundle of the camera's rays has before
 /// the first optic over that which it has on the segment, by differences of exact rays on the surface;

@@ -14,7 +14,10 @@ Viewer make_viewer(const World& world, const FrameParams& frame, const EngineCho
     prepare_shadows(world);
     if (engine.engine == Engine::kLimitTruth)
         return make_limit_viewer(world, make_camera_rays(world.scene, frame.camera));
-    return make_facet_viewer(world, make_frame(world, frame, warn), engine);
+    FrameParams params = frame;
+    if (engine.engine == Engine::kEnvironment || engine.engine == Engine::kPlanar)
+        params.rays = CornerRays::kInterpolated;
+    return make_facet_viewer(world, make_frame(world, params, warn), engine);
 }
 
 namespace {

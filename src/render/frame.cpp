@@ -3,15 +3,20 @@
 #include <algorithm>
 
 #include "base/box.h"
+#include "paths/fit_first.h"
 
 namespace trilens {
 namespace {
+
+/// Where an error is asked for, facets are divided down to DivideParams::least_area, whatever their size.
+constexpr int kMostLevelsForError = 12;
 
 FramedOptic frame_optic(const World& world, std::size_t index, const CameraRays& camera,
                         const FrameParams& params) {
     const Optic& optic = world.optics[index];
     const RenderSettings& settings = world.scene.render;
     FramedOptic framed;
+    framed.rays = optic_rays(world, index, params);
     framed.resolution = grid_resolution(optic, params.resolution);
     framed.grid = params.grid.value_or(world.scene.meshes[optic.mesh].grid);
     framed.facets = optic_facets(world, index, framed.resolution);
@@ -25,6 +30,9 @@ FramedOptic frame_optic(const World& world, std::size_t index, const CameraRays&
         framed.paths.push_back(
             camera.linear ? make_path_mesh(path, framed.facets->grid(), *camera.linear, ior)
                           : make_path_mesh(path, framed.film_grid->grid, framed.film_grid->views, ior));
+        // Where paths go on, whole paths are fitted instead; other cameras have exact corners.
+        if (camera.linear && framed.rays == CornerRays::kFitted && settings.max_depth == 0)
+            fit_first_rays({*optic.surface, framed.facets->grid(), *camera.linear, ior}, framed.paths.back());
     };
     if (settings.reflect) add(Path::kReflect);
     if (settings.refract && !optic.mirror) add(Path::kRefract);
@@ -37,9 +45,14 @@ Frame make_frame(const World& world, const FrameParams& params, const Warn& warn
     return make_frame(world, make_camera_rays(world.scene, params.camera), params, warn);
 }
 
+CornerRays optic_rays(const World& world, std::size_t optic, const FrameParams& params) {
+    return params.rays.value_or(world.scene.meshes[world.optics[optic].mesh].rays);
+}
+
 Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn) {
     Frame frame;
     frame.camera = std::move(camera);
+    frame.max_error = params.max_error.value_or(world.scene.render.max_error);
     check_facet_count(world, params.resolution);
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
         frame.optics.push_back(frame_optic(world, i, frame.camera, params));
@@ -151,18 +164,26 @@ SeenGrid seen_grid(const Frame& frame, const FramedOptic& framed) {
 
 std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic) {
     const FramedOptic& framed = frame.optics[optic];
-    const bool whole = world.scene.render.max_depth > 0;
+    const bool whole = world.scene.render.max_depth > 0 || frame.max_error > 0;
     const SeenGrid seen = seen_grid(frame, framed);
     Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
+    const Vec2 film(world.scene.film.width, world.scene.film.height);
+    DivideParams params;
+    params.fit = framed.rays == CornerRays::kFitted;
+    params.max_error = frame.max_error;
+    params.objects = &object_tracer(world);
+    if (frame.max_error > 0) params.most_levels = kMostLevelsForError;
     // A camera that is not linear has whole paths by facets on the film: there its rays are exact.
     if (framed.grid == GridKind::kScreen || (framed.model && whole)) {
         const FilmWindow window = film_window(world, framed, seen.views);
         looking.camera = path_camera(frame.camera, window.depth);
-        return std::make_unique<OpticPaths>(looking, window, DivideParams{});
+        looking.camera.film = film;
+        return std::make_unique<OpticPaths>(looking, window, params);
     }
     if (whole) {
         looking.camera = path_camera(*frame.camera.linear);
-        return std::make_unique<OpticPaths>(looking, *seen.grid, DivideParams{});
+        looking.camera.film = film;
+        return std::make_unique<OpticPaths>(looking, *seen.grid, params);
     }
     return std::make_unique<OpticPaths>(looking,
                                         FirstPaths{seen.grid, seen.views, find_path(framed, Path::kReflect),

@@ -28,11 +28,13 @@ struct FramedOptic {
     Id mesh_facet(Id f, const Vec2& at) const { return film_grid ? film_grid->facet_at(f, at, *model) : f; }
     /// The grid's facet that a facet of the RayMeshes is.
     Id grid_facet(Id f) const { return film_grid ? film_grid->original[f] : f; }
+    CornerRays rays = CornerRays::kInterpolated;
 };
 
 struct Frame {
     CameraRays camera;
     std::vector<FramedOptic> optics;  // as World::optics
+    double max_error = 0;             // as RenderSettings
 };
 
 /// Throws InputError where the optics together have too many facets to hold, or the camera cannot show them.
@@ -40,6 +42,9 @@ Frame make_frame(const World& world, const FrameParams& params, const Warn& warn
 
 /// The same for a camera's rays that no scene describes; FrameParams::camera is not asked.
 Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn);
+
+/// The rays that an optic's corners are asked to have.
+CornerRays optic_rays(const World& world, std::size_t optic, const FrameParams& params);
 
 /// The camera as facets ask it. `camera` must live longer. `depth`: of a camera that is not linear, about how
 /// far what it looks at is.

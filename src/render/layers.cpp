@@ -93,9 +93,11 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
             counts.traced_pixels += view.traced;
             counts.subdivided_pixels += !view.traced && view.level > 0;
             counts.faint_light = std::max(counts.faint_light, view.cut.faint);
+            counts.predicted_error = std::max(counts.predicted_error, view.predicted);
             counts.deep_light = std::max(counts.deep_light, view.cut.too_deep);
         }
         if (sink) sink->add(canvas.image().channels, grid.height());
+        counts.projected_facets = std::max(counts.projected_facets, middle.projected_facets);
         progress(static_cast<double>(grid.y1 - request.y0) / height);
     }
     if (statistics) *statistics = counts;

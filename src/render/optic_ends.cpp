@@ -87,6 +87,7 @@ class NodeDrawer {
 std::vector<Id> NodeDrawer::owners(const PathNode& node) const {
     std::vector<Id> owner(grid_.size(), kNone);
     const std::vector<char>* parent = node.parent == kNone ? nullptr : &goes_on_[node.parent];
+    if (parent && parent->empty()) return owner;  // no sample came as far as the node before
     for (std::size_t s = 0; s < owner.size(); ++s) {
         const Id leaf = leaf_[s];
         if (leaf == kNone || leaf >= node.mesh.facets.size() || !node.mesh.has_rays(leaf)) continue;
@@ -240,10 +241,12 @@ OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, con
         const PathLeaf& of_sample = paths.leaves()[leaf[s]];
         views.samples[s].leaf = leaf[s];
         views.samples[s].level = of_sample.level;
+        views.samples[s].predicted = of_sample.predicted;
         views.samples[s].cut = paths.cut();
         if (of_sample.method == LeafMethod::kTraced) traced.push_back(static_cast<Id>(s));
     }
     follow_samples(params, traced, views, out);
+    views.projected_facets += paths.projected_count();
     return out;
 }
 

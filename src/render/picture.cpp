@@ -24,6 +24,13 @@ std::string resolution_text(const World& world, int asked) {
     return text;
 }
 
+std::string rays_text(const World& world, const FrameParams& frame) {
+    std::string text;
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        text += (text.empty() ? "" : ",") + std::string(corner_rays_name(optic_rays(world, i, frame)));
+    return text;
+}
+
 void tell(const World& world, const LayerRequest& window, const LayerStatistics& statistics,
           const Warn& warn) {
     const Film& film = world.scene.film;
@@ -104,6 +111,11 @@ void describe(const World& world, const PictureRequest& request, Image& image) {
     if (engine == Engine::kClassic) header["trilens:classic"] = classic_name(request.engine.classic);
     header["trilens:camera"] = world.scene.cameras[request.frame.camera].name;
     header["trilens:resolution"] = resolution_text(world, request.frame.resolution);
+    if (engine != Engine::kLimitTruth) {
+        header["trilens:rays"] = rays_text(world, request.frame);
+        const double max_error = request.frame.max_error.value_or(world.scene.render.max_error);
+        if (max_error > 0) header["trilens:max_error"] = fmt::format("{}", max_error);
+    }
     header["trilens:facets"] = std::to_string(facet_count(world, request.frame.resolution));
     header["trilens:scene"] = world.scene.resolved;
     header["trilens:folder"] = world.scene.folder;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/corner_rays.h"
 #include "base/grid_kind.h"
 #include "base/image.h"
 #include "projector/classic_params.h"
@@ -14,9 +15,11 @@ namespace trilens {
 
 /// What a picture's rays depend on.
 struct FrameParams {
-    std::size_t camera = 0;                       // index into Scene::cameras
-    int resolution = 0;                           // of every optic's grid, 1..1024; 0: each optic's own
-    std::optional<GridKind> grid = std::nullopt;  // of every optic; none: each optic's own
+    std::size_t camera = 0;                          // index into Scene::cameras
+    int resolution = 0;                              // of every optic's grid, 1..1024; 0: each optic's own
+    std::optional<GridKind> grid = std::nullopt;     // of every optic; none: each optic's own
+    std::optional<CornerRays> rays = std::nullopt;   // of every optic; none: each optic's own
+    std::optional<double> max_error = std::nullopt;  // RenderSettings::max_error; none: the scene's
 };
 
 /// kExact: the projector. kClassic: the thesis' engine. kFacetsTruth: Embree on the rays of the same facets.
@@ -77,6 +80,8 @@ struct LayerStatistics {
     std::size_t pixels_without_ray = 0;  // pixels on an optic that lack a ray a path asked for
     std::size_t subdivided_pixels = 0;   // of the optics' pixels, those of a part of a facet
     std::size_t traced_pixels = 0;       // and those whose own rays were followed
+    std::size_t projected_facets = 0;    // facets and parts of facets that were drawn through
+    double predicted_error = 0;  // pixels: the most that was left of those seen; 0 where none was asked for
     // The most that was left out of any pixel, as a share of its light: paths that carry too little, and
     // paths that would go on to another optic after the last that is followed.
     double faint_light = 0, deep_light = 0;

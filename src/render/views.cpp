@@ -12,6 +12,7 @@ void SampleViews::reset(std::size_t count) {
     samples.assign(count, {});
     ends.clear();
     steps.clear();
+    projected_facets = 0;
 }
 
 }  // namespace trilens

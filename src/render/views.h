@@ -23,6 +23,7 @@ struct SampleView {
     Id leaf = kNone;         // of its optic's OpticPaths; limit truth: none
     bool traced = false;     // its own paths were followed, those of no facet
     std::uint8_t level = 0;  // how often its facet was divided
+    double predicted = 0;    // displacement that its facet may have, pixels, where an error was asked for
 
     CutPaths cut;  // what was not followed
 
@@ -38,9 +39,10 @@ struct SampleColour {
 
 /// What the samples of a grid show.
 struct SampleViews {
-    std::vector<SampleView> samples;  // one per sample
-    std::vector<PathEnd> ends;        // of all samples, those of one side by side
-    std::vector<Step> steps;          // of all ends; ends with one history may share theirs
+    std::vector<SampleView> samples;   // one per sample
+    std::vector<PathEnd> ends;         // of all samples, those of one side by side
+    std::vector<Step> steps;           // of all ends; ends with one history may share theirs
+    std::size_t projected_facets = 0;  // facets and parts of facets that the optics have by now
 
     std::span<const PathEnd> ends_of(const SampleView& sample) const {
         return {ends.data() + sample.first_end, sample.end_count};

@@ -83,6 +83,7 @@ RenderSettings read_render(const Node& scene) {
     if (!scene.has("render")) return render;
     const Node node = scene["render"];
     render.max_depth = int_or(node, "maxDepth", render.max_depth);
+    render.max_error = number_or(node, "maxError", render.max_error);
     render.fresnel = bool_or(node, "fresnel", render.fresnel);
     if (node.has("paths")) {
         const auto named = [&](const char* path) {

@@ -10,6 +10,7 @@
 #include "base/appearance.h"
 #include "base/cage.h"
 #include "base/camera_description.h"
+#include "base/corner_rays.h"
 #include "base/grid_kind.h"
 #include "base/triangle_scene.h"
 #include "base/vec.h"
@@ -22,6 +23,7 @@ inline constexpr long long kMostPixels = 1LL << 28;  // of a film
 inline constexpr double kLargestCoordinate = 1e30;
 inline constexpr int kMaxSpp = 64;
 inline constexpr int kMaxResolution = 1024;
+inline constexpr double kMostMaxError = 1000;  // pixels
 
 struct Film {
     int width = 640, height = 480;
@@ -57,9 +59,10 @@ struct Mesh {
     Role role = Role::kObject;
     Id material = kNone;  // index into Scene::materials; kNone where the triangles carry their own
     int resolution = 8;   // optic: N x N facets per quad face
-    GridKind grid = GridKind::kSurface;  // optic
-    std::size_t face_count = 0;          // polygons of the file, holes among them; 0 for a primitive
-    NormalOverride normals;              // optic
+    GridKind grid = GridKind::kSurface;           // optic
+    CornerRays rays = CornerRays::kInterpolated;  // optic
+    std::size_t face_count = 0;                   // polygons of the file, holes among them; 0 for a primitive
+    NormalOverride normals;                       // optic
     int priority = 0;  // optic of glass: where bodies overlap the one of higher priority is inside
 
     // An object has `object`; an optic has either `primitive` or `cage` (world frame, transform applied).
@@ -72,6 +75,7 @@ struct RenderSettings {
     int max_depth = 8;  // optic hits after the first
     bool direct = true, reflect = true, refract = true;
     bool fresnel = true;
+    double max_error = 0;  // pixels of displacement that facets are divided for; 0: they are not
 };
 
 /// A file as it was when it was read.

@@ -71,9 +71,9 @@ void add(const Cage& cage, Digest& digest) {
 }
 
 void add(const Mesh& mesh, Digest& digest) {
-    const auto& [name, role, material, resolution, grid, face_count, normals, priority, object, primitive,
-                 cage] = mesh;
-    digest.add_all(name, role, material, resolution, grid, face_count, priority);
+    const auto& [name, role, material, resolution, grid, rays, face_count, normals, priority, object,
+                 primitive, cage] = mesh;
+    digest.add_all(name, role, material, resolution, grid, rays, face_count, priority);
     const auto& [type, center, seed, amplitude, scale] = normals;
     digest.add_all(type, center, seed, amplitude, scale);
     const auto& [points, triangles, uvs, corner_normals, materials] = object;
@@ -102,8 +102,8 @@ std::string scene_digest(const Scene& scene) {
     add(materials, digest);
     add(meshes, digest);
     add(lights, digest);
-    const auto& [max_depth, direct, reflect, refract, fresnel] = render;
-    digest.add_all(max_depth, direct, reflect, refract, fresnel);
+    const auto& [max_depth, direct, reflect, refract, fresnel, max_error] = render;
+    digest.add_all(max_depth, direct, reflect, refract, fresnel, max_error);
     return digest.digits();
 }
 

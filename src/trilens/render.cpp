@@ -26,6 +26,8 @@ void check_frame(const World& world, const FrameParams& frame) {
                                      world.scene.cameras.size()));
     if (frame.resolution < 0 || frame.resolution > kMaxResolution)
         throw UsageError(fmt::format("a resolution of {} is not in 1..{}", frame.resolution, kMaxResolution));
+    if (frame.max_error && !(*frame.max_error >= 0 && *frame.max_error <= kMostMaxError))
+        throw UsageError(fmt::format("an error of {} pixels is not in 0..{}", *frame.max_error, kMostMaxError));
 }
 
 void check_engine(const EngineChoice& engine) {

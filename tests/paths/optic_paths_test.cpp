@@ -141,7 +141,7 @@ void check_flat_mirrors(const std::vector<Primitive>& planes, const Vec3& eye, b
         const PathNode& node = paths.nodes()[n];
         const std::vector<Step> steps = steps_of(paths, static_cast<Id>(n));
         const Vec3 image = virtual_eye(eye, steps, planes);
-        CHECK(node.reflects_only);
+        CHECK(node.unfolds);
         for (const Ray& ray : node.mesh.rays) CHECK(length(ray.origin - ray.direction - image) < 1e-10);
         most_steps = std::max(most_steps, steps.size());
     }
