@@ -79,7 +79,7 @@ TEST_CASE("bash completes commands, options, choices, examples and files", "[cli
     const std::string script = write_file(folder, "trilens.bash", run_trilens("completion bash").out);
     for (const char* file : {"room.json", "room.exr", "notes.txt"}) write_file(folder, file, "");
     const auto offered = [&](const std::string& words) { return offered_by_bash(script, words); };
-    CHECK(offered("trilens re") == "render\nreport\n");
+    CHECK(offered("trilens re") == "render report\n");
     CHECK(offered("trilens render --eng") == "--engine\n");
     CHECK(offered("trilens render --engine \"\"") == "exact classic auto envmap planar\n");
     CHECK(offered("trilens render --engine = c") == "classic\n");

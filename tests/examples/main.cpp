@@ -34,6 +34,10 @@ void enter(const fs::path& folder) {
         {"/film/width", "64"}, {"/film/height", "48"}, {"/film/spp", "1"}};
     const trilens::Scene scene = trilens::parse_scene(trilens::scene_examples()[0].json, "", small);
     for (const char* name : {"scene.json", "my.json"}) trilens::replace_text_file(name, scene.resolved);
+    fs::create_directories("tests/render/ball");
+    trilens::replace_text_file("tests/render/ball/test.json",
+                               R"({ "scene": "../../../scene.json", "against": "truth", "resolution": 8,
+                                    "max": { "displacement_p95": 5 } })");
     const trilens::Renderer renderer(scene);
     trilens::PictureRequest request;
     trilens::write_image("picture.exr", renderer.draw(request).image);

@@ -35,7 +35,7 @@ def test_every_camera_shows_points_of_its_rays_where_they_leave(scene):
 
 
 def test_types_are_the_scene_files(scene):
-    types = [entry["type"] for entry in scene.to_dict()["cameras"]]
+    types = [entry.get("type", "perspective") for entry in scene.to_dict()["cameras"]]
     assert [camera.type for camera in scene.cameras] == types
     assert trilens.FilmCamera(scene, "left half").is_linear
     assert not trilens.FilmCamera(scene, "fisheye").is_linear
