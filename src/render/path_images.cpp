@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/box.h"
 #include "camera/specular_point.h"
 #include "render/geometry.h"
 
@@ -10,6 +11,8 @@ namespace {
 
 /// Rays of traced parts that one search starts from.
 constexpr std::size_t kLoneStarts = 6;
+/// A point is free if what its ray meets lies within this share of the way.
+constexpr double kFreeShare = 1e-6;
 
 /// Whether a facet may be seen on the film: some corner behind the eye, or its box on the film.
 bool may_be_on_film(const RayMesh& outline, std::size_t facet, const Film& film) {
@@ -25,6 +28,27 @@ bool may_be_on_film(const RayMesh& outline, std::size_t facet, const Film& film)
 
 bool same_image(const SeveralOpticsImage& a, const SeveralOpticsImage& b) {
     return a.steps == b.steps && length(a.exact.pixel - b.exact.pixel) < kSamePixels;
+}
+
+/// Whether the optic itself hides a point of it from the camera. `size`: the optic's, for parallel rays.
+bool is_hidden(const Looking& looking, const Vec3& screen, const Vec3& point, double size) {
+    Ray ray = looking.camera.ray(screen, point);
+    if (looking.camera.parallel) ray = {point - size * ray.direction, size * ray.direction};
+    const std::optional<SurfaceHit> hit = looking.world->optics[looking.optic].tracer->first_hit(ray);
+    return hit && hit->t < 1 - kFreeShare;
+}
+
+/// Whether the camera may see a facet of a grid: it sees a corner or the middle.
+bool may_be_seen(const OpticPaths& paths, const SurfaceGrid& grid, std::size_t facet, double size) {
+    if (paths.is_on_film()) return true;
+    Vec3 screen(0), middle(0);
+    for (const Id corner : grid.facets[facet]) {
+        const Vec3& point = grid.points[grid.corner_point[corner]];
+        if (!is_hidden(paths.looking(), paths.outline().screen[corner], point, size)) return true;
+        screen += paths.outline().screen[corner] / 3.0;
+        middle += point / 3.0;
+    }
+    return !is_hidden(paths.looking(), screen, middle, size);
 }
 
 }  // namespace
@@ -49,9 +73,14 @@ HistoryQuery history_query(const World& world, const Frame& frame, const std::ve
 
 SeveralOpticsImages::SeveralOpticsImages(const World& world, const Frame& frame, std::size_t optic)
     : world_(world), frame_(frame), paths_(make_optic_paths(world, frame, optic)) {
+    const SurfaceGrid& grid = frame.optics[optic].facets->grid();
+    Box box;
+    for (const Vec3& point : grid.points) box.include(point);
+    const double size = 2 * length(box.size());
     std::vector<Id> facets;
     for (std::size_t f = 0; f < paths_->outline().facets.size(); ++f)
-        if (may_be_on_film(paths_->outline(), f, world.scene.film)) facets.push_back(static_cast<Id>(f));
+        if (may_be_on_film(paths_->outline(), f, world.scene.film) && may_be_seen(*paths_, grid, f, size))
+            facets.push_back(static_cast<Id>(f));
     paths_->prepare(facets);
     std::vector<Id> facet_of_leaf;
     for (const PathLeaf& leaf : paths_->leaves()) facet_of_leaf.push_back(leaf.facet);
