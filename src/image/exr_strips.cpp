@@ -127,10 +127,14 @@ void ExrStrips::State::open(const Image& layout) {
 void ExrStrips::State::describe(const Image& layout) {
     int part = 0;
     require(exr_add_part(exr, nullptr, EXR_STORAGE_SCANLINE, &part));
-    const exr_attr_box2i_t display{{0, 0}, {layout.width - 1, layout.height - 1}};
-    const exr_attr_box2i_t data{{layout.x0, layout.y0},
-                                {layout.x0 + layout.data_width - 1, layout.y0 + layout.data_height - 1}};
-    const exr_attr_v2f_t centre{{0, 0}};
+    exr_attr_box2i_t display{}, data{};
+    display.max.x = layout.width - 1;
+    display.max.y = layout.height - 1;
+    data.min.x = layout.x0;
+    data.min.y = layout.y0;
+    data.max.x = layout.x0 + layout.data_width - 1;
+    data.max.y = layout.y0 + layout.data_height - 1;
+    const exr_attr_v2f_t centre{};
     require(exr_initialize_required_attr(exr, part, &display, &data, 1, &centre, 1,
                                          EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP));
     for (const std::size_t c : order) {
