@@ -51,9 +51,10 @@ Image random_image(unsigned seed, int data_width, int data_height) {
         image.channels.push_back(std::move(channel));
     }
     image.channels[1].ids()[0] = kNone;
-    image.channels[1].ids()[1] = (1u << 24) + 1;
+    const std::size_t second = image.pixels() > 1 ? 1 : 0;
+    image.channels[1].ids()[second] = (1u << 24) + 1;
     image.channels[0].floats()[0] = std::numeric_limits<float>::quiet_NaN();
-    image.channels[0].floats()[1] = -std::numeric_limits<float>::infinity();
+    image.channels[0].floats()[second] = -std::numeric_limits<float>::infinity();
     image.metadata["trilens:scene"] = "{\"version\":1,\n \"x\":\"\xc3\xa9\"}";
     image.metadata["trilens:command"] = std::string(5000, 'x');
     return image;
