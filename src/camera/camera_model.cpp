@@ -10,15 +10,14 @@ std::vector<FilmImage> film_images(const CameraModel& model, const FilmSize& fil
         return at.x >= 0 && at.y >= 0 && at.x <= film.width && at.y <= film.height;
     };
     std::optional<FilmImage> beyond;
-    for (std::size_t branch = 0; branch < model.branch_count(); ++branch) {
-        const std::optional<FilmImage> found = model.place(point, branch);
-        if (!found || !(found->t >= 0)) continue;
+    const auto add = [&](const FilmImage& found, std::size_t branch) {
+        if (!(found.t >= 0)) return;
         bool any = false;
         const double period = model.period();
-        double x = found->pixel.x;
+        double x = found.pixel.x;
         if (period > 0) x -= period * std::floor(x / period);
         do {
-            FilmImage image = *found;
+            FilmImage image = found;
             image.pixel.x = x;
             if (on_film(image.pixel) && model.shows(branch, image.pixel) && model.ray(image.pixel)) {
                 images.push_back(image);
@@ -26,8 +25,10 @@ std::vector<FilmImage> film_images(const CameraModel& model, const FilmSize& fil
             }
             x += period;
         } while (period > 0 && x <= film.width);
-        if (!any && model.branch_count() == 1 && model.ray(found->pixel)) beyond = found;
-    }
+        if (!any && model.branch_count() == 1 && model.ray(found.pixel)) beyond = found;
+    };
+    for (std::size_t branch = 0; branch < model.branch_count(); ++branch)
+        for (const FilmImage& found : model.places(point, branch)) add(found, branch);
     if (images.empty() && beyond) images.push_back(*beyond);
     return images;
 }

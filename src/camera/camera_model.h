@@ -38,6 +38,12 @@ class CameraModel {
     /// Where the branch shows the point, or would, were the film larger. None where its formula has no place
     /// for it (behind a pinhole).
     virtual std::optional<FilmImage> place(const Vec3& point, std::size_t branch) const = 0;
+    /// All places at which the branch, or its smooth continuation, shows the point: several where its image
+    /// folds.
+    virtual std::vector<FilmImage> places(const Vec3& point, std::size_t branch) const {
+        const std::optional<FilmImage> one = place(point, branch);
+        return one ? std::vector<FilmImage>{*one} : std::vector<FilmImage>{};
+    }
     /// Whether the branch is the one (or one of those) that the film shows there.
     virtual bool shows(std::size_t /*branch*/, const Vec2& /*at*/) const { return true; }
 

@@ -4,6 +4,7 @@
 // film ray, straight from the eye, meets the bent ground under some turn beta; turned back by beta about the
 // ground point it is a ray of the flat world. The eyes of these rays lie on a curve: rays are continuous.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,8 +14,9 @@ namespace trilens {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
-constexpr int kStrips = 16;    // of the arc, each a branch: points above the ground may be seen several times
-constexpr int kScan = 24;      // intervals of a strip and its surroundings in which an image is looked for
+constexpr int kStrips = 16;  // of the arc, each a branch: points above the ground may be seen several times
+constexpr std::size_t kScan =
+    24;                        // intervals of a strip and its surroundings in which an image is looked for
 constexpr int kHalvings = 60;  // of one of them
 constexpr double kBeyond = 2;  // a strip's formula goes on by so many of its sizes at both ends
 
@@ -38,6 +40,7 @@ class PlanarContext final : public CameraModel {
     std::optional<Ray> ray(const Vec2& at) const override;
     std::size_t branch_count() const override { return kBranches; }
     std::optional<FilmImage> place(const Vec3& point, std::size_t branch) const override;
+    std::vector<FilmImage> places(const Vec3& point, std::size_t branch) const override;
     bool shows(std::size_t branch, const Vec2& at) const override {
         const Met where = met(across(direction_at(at)));
         if (where.zone == Zone::kFlat) return branch == kFlatBranch;
@@ -82,7 +85,10 @@ class PlanarContext final : public CameraModel {
     double miss(const Vec2& point, double beta) const {
         return cross2(point - flat_ground(beta), turned_back(bent_ground(beta) - eye_, beta));
     }
-    std::optional<double> beta_of(const Vec2& point, std::size_t strip) const;
+    double root_between(const Vec2& point, double from, double to) const;
+    double nearest_miss(const Vec2& point, double from, double to) const;
+    std::vector<double> betas_of(const Vec2& point, std::size_t strip) const;
+    std::optional<FilmImage> image_at(const Vec3& point, double beta) const;
 
     FilmAxes axes_;
     FilmSize film_;
@@ -141,44 +147,86 @@ std::optional<Ray> PlanarContext::ray(const Vec2& at) const {
                to_world(turned_back(across(direction), where.beta), dot(direction, side_))};
 }
 
-/// The turn nearest to the strip's middle at which the ray through the arc meets the point.
-std::optional<double> PlanarContext::beta_of(const Vec2& point, std::size_t strip) const {
-    const double size = angle_ / kStrips, middle = (static_cast<double>(strip) + 0.5) * size;
-    const double low = middle - (0.5 + kBeyond) * size, high = middle + (0.5 + kBeyond) * size;
-    std::optional<double> best;
-    double before = low, miss_before = miss(point, low);
-    for (int k = 1; k <= kScan; ++k) {
-        const double next = low + (high - low) * k / kScan, miss_next = miss(point, next);
-        if ((miss_before < 0) != (miss_next < 0)) {
-            double from = before, to = next;
-            for (int halving = 0; halving < kHalvings; ++halving) {
-                const double half = 0.5 * (from + to);
-                ((miss(point, half) < 0) == (miss_before < 0) ? from : to) = half;
-            }
-            const double beta = 0.5 * (from + to);
-            // Ahead along the ray, not behind the eye.
-            const bool ahead = dot(point - eye_for(beta), turned_back(bent_ground(beta) - eye_, beta)) > 0;
-            if (ahead && (!best || std::fabs(beta - middle) < std::fabs(*best - middle))) best = beta;
-        }
-        before = next;
-        miss_before = miss_next;
+/// Between two turns at which the miss has different signs.
+double PlanarContext::root_between(const Vec2& point, double from, double to) const {
+    const bool negative = miss(point, from) < 0;
+    for (int halving = 0; halving < kHalvings; ++halving) {
+        const double half = 0.5 * (from + to);
+        ((miss(point, half) < 0) == negative ? from : to) = half;
     }
-    return best;
+    return 0.5 * (from + to);
 }
 
-std::optional<FilmImage> PlanarContext::place(const Vec3& point, std::size_t branch) const {
-    const Vec2 there = across(point - foot_);
-    double beta = branch == kTailBranch ? angle_ : 0;
-    if (branch >= kFirstStrip) {
-        const std::optional<double> found = beta_of(there, branch - kFirstStrip);
-        if (!found) return std::nullopt;
-        beta = *found;
+/// The turn between two at which the miss is nearest to changing its sign, by golden sections.
+double PlanarContext::nearest_miss(const Vec2& point, double from, double to) const {
+    const double sign = miss(point, from) < 0 ? -1 : 1, golden = 0.5 * (std::sqrt(5.0) - 1);
+    for (int step = 0; step < kHalvings; ++step) {
+        const double a = to - golden * (to - from), b = from + golden * (to - from);
+        if (sign * miss(point, a) < sign * miss(point, b))
+            to = b;
+        else
+            from = a;
     }
+    return 0.5 * (from + to);
+}
+
+/// All turns around the strip at which the ray through the arc meets the point, ahead along the ray and not
+/// behind the eye; two that are about to merge at a fold among them.
+std::vector<double> PlanarContext::betas_of(const Vec2& point, std::size_t strip) const {
+    const double size = angle_ / kStrips, middle = (static_cast<double>(strip) + 0.5) * size;
+    const double low = middle - (0.5 + kBeyond) * size, high = middle + (0.5 + kBeyond) * size;
+    std::array<double, kScan + 1> beta, missed;
+    for (std::size_t k = 0; k <= kScan; ++k) {
+        beta[k] = low + (high - low) * static_cast<double>(k) / kScan;
+        missed[k] = miss(point, beta[k]);
+    }
+    const auto differ = [](double a, double b) { return (a < 0) != (b < 0); };
+    std::vector<double> found;
+    const auto add = [&](double from, double to) {
+        const double at = root_between(point, from, to);
+        if (dot(point - eye_for(at), turned_back(bent_ground(at) - eye_, at)) > 0) found.push_back(at);
+    };
+    for (std::size_t k = 0; k < kScan; ++k) {
+        if (differ(missed[k], missed[k + 1])) add(beta[k], beta[k + 1]);
+        if (k == 0 || differ(missed[k - 1], missed[k]) || differ(missed[k], missed[k + 1])) continue;
+        // A dip towards 0 between three of one sign may hide two.
+        const double least = std::fabs(missed[k]);
+        if (least > std::fabs(missed[k - 1]) || least > std::fabs(missed[k + 1])) continue;
+        const double dip = nearest_miss(point, beta[k - 1], beta[k + 1]);
+        if (!differ(miss(point, dip), missed[k])) continue;
+        add(beta[k - 1], dip);
+        add(dip, beta[k + 1]);
+    }
+    return found;
+}
+
+std::optional<FilmImage> PlanarContext::image_at(const Vec3& point, double beta) const {
+    const Vec2 there = across(point - foot_);
     const Vec2 origin = eye_for(beta), way = turned_back(there - origin, -beta);
     const Vec3 direction = to_world(way, dot(point - foot_, side_));
     const std::optional<Vec2> pixel = pixel_of(direction);
     if (!pixel) return std::nullopt;
     return FilmImage{*pixel, dot(direction, axes_.forward), foot_ + to_world(origin, 0)};
+}
+
+/// Of several the one nearest to the strip's middle.
+std::optional<FilmImage> PlanarContext::place(const Vec3& point, std::size_t branch) const {
+    if (branch < kFirstStrip) return image_at(point, branch == kTailBranch ? angle_ : 0);
+    const std::size_t strip = branch - kFirstStrip;
+    const double middle = (static_cast<double>(strip) + 0.5) * angle_ / kStrips;
+    const std::vector<double> betas = betas_of(across(point - foot_), strip);
+    const auto nearest = std::min_element(betas.begin(), betas.end(), [&](double a, double b) {
+        return std::fabs(a - middle) < std::fabs(b - middle);
+    });
+    return nearest == betas.end() ? std::nullopt : image_at(point, *nearest);
+}
+
+std::vector<FilmImage> PlanarContext::places(const Vec3& point, std::size_t branch) const {
+    if (branch < kFirstStrip) return CameraModel::places(point, branch);
+    std::vector<FilmImage> images;
+    for (const double beta : betas_of(across(point - foot_), branch - kFirstStrip))
+        if (const std::optional<FilmImage> image = image_at(point, beta)) images.push_back(*image);
+    return images;
 }
 
 std::vector<double> PlanarContext::breaks_y() const {
