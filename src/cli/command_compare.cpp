@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "cli/compare_report.h"
+#include "answer/comparison.h"
 #include "terminal/format.h"
 #include "terminal/option.h"
 

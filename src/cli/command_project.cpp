@@ -3,11 +3,8 @@
 #include <trilens/stopwatch.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
-#include <cmath>
-#include <fstream>
 
+#include "answer/projections.h"
 #include "cli/commands.h"
 #include "cli/scene_options.h"
 #include "terminal/format.h"
@@ -24,62 +21,6 @@ struct ProjectOptions {
     bool no_visibility = false, derivatives = false;
 };
 
-/// Three finite numbers separated by commas and blanks, or none.
-std::optional<Vec3> parse_point(const std::string& text) {
-    Vec3 point(0);
-    const char *at = text.data(), *end = at + text.size();
-    const auto skip_blanks = [&] {
-        while (at < end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
-    };
-    for (int k = 0; k < 3; ++k) {
-        skip_blanks();
-        if (at < end && *at == '+') ++at;
-        const auto [next, error] = std::from_chars(at, end, point[k]);
-        if (error != std::errc() || !(std::abs(point[k]) <= kLargestCoordinate)) return std::nullopt;
-        at = next;
-        skip_blanks();
-        if (k < 2 && (at >= end || *at++ != ',')) return std::nullopt;
-    }
-    return at == end ? std::optional(point) : std::nullopt;
-}
-
-/// Whether a line that is no point holds only words.
-bool is_header(const std::string& line) {
-    std::string field;
-    for (const char letter : line + ",") {
-        if (letter != ',') {
-            if (!std::isspace(static_cast<unsigned char>(letter)) && letter != '"' && letter != '\'')
-                field += letter;
-            continue;
-        }
-        double value = 0;
-        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-        if (!field.empty() && end == field.data() + field.size()) return false;
-        field.clear();
-    }
-    return true;
-}
-
-std::vector<Vec3> read_points(const std::string& file) {
-    std::ifstream in(file);
-    if (!in) throw InputError(file, "", "cannot be read");
-    std::vector<Vec3> points;
-    std::string line;
-    for (std::size_t number = 1; std::getline(in, line); ++number) {
-        if (number == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);  // a byte order mark
-        if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
-        const std::optional<Vec3> point = parse_point(line);
-        if (point)
-            points.push_back(*point);
-        else if (number > 1 || !is_header(line))
-            throw InputError(file, "line " + std::to_string(number),
-                             "needs x,y,z within 1e30, not \"" + line + "\"");
-    }
-    if (in.bad()) throw InputError(file, "", "cannot be read");
-    if (points.empty()) throw InputError(file, "", "holds no points");
-    return points;
-}
-
 std::vector<Vec3> wanted_points(const ProjectOptions& options) {
     if (options.point.empty() == options.points.empty())
         throw UsageError("project needs either --point X,Y,Z or --points FILE.csv");
@@ -91,59 +32,6 @@ std::vector<Vec3> wanted_points(const ProjectOptions& options) {
         points.push_back(*point);
     }
     return points;
-}
-
-std::string optic_name(const Renderer& renderer, const WorldImage& image) {
-    return image.optic == kNone ? "" : renderer.scene().meshes[image.object].name;
-}
-
-Json id_json(Id id) {
-    return id == kNone ? Json(nullptr) : Json(id);
-}
-
-Json vector_json(const Vec3& v) {
-    return {json_number(v.x), json_number(v.y), json_number(v.z)};
-}
-
-Json image_json(const Renderer& renderer, const WorldImage& image) {
-    Json steps = Json::array();
-    for (const Step& step : image.steps)
-        steps.push_back({{"optic", renderer.optics()[step.optic].name}, {"event", event_name(step.event)}});
-    Json fields = {{"x", json_number(image.pixel.x)},
-                   {"y", json_number(image.pixel.y)},
-                   {"t", json_number(image.t)},
-                   {"optic", image.optic == kNone ? Json(nullptr) : Json(optic_name(renderer, image))},
-                   {"facet", id_json(image.facet)},
-                   {"inside", image.inside},
-                   {"path", path_name(image.path)},
-                   {"length", json_number(image.length)},
-                   {"visible", image.visible},
-                   {"refined", image.refined},
-                   {"steps", steps}};
-    if (image.has_derivative)
-        fields["derivative"] = {vector_json(image.derivative[0]), vector_json(image.derivative[1])};
-    return fields;
-}
-
-Json points_json(const Renderer& renderer, std::span<const Vec3> points,
-                 std::span<const PointProjection> images) {
-    Json list = Json::array();
-    for (std::size_t p = 0; p < points.size(); ++p) {
-        Json entry{{"point", {points[p].x, points[p].y, points[p].z}},
-                   {"complete", images[p].complete},
-                   {"images", Json::array()}};
-        for (const WorldImage& image : images[p].images)
-            entry["images"].push_back(image_json(renderer, image));
-        list.push_back(std::move(entry));
-    }
-    return list;
-}
-
-std::string text_line(const Renderer& renderer, std::size_t point, const WorldImage& image) {
-    return fmt::format("{},{:.9f},{:.9f},{:.12g},{},{},{},{:d},{:d},{:d}\n", point, image.pixel.x,
-                       image.pixel.y, image.t, path_name(image.path), optic_name(renderer, image),
-                       image.facet == kNone ? "" : std::to_string(image.facet), image.inside, image.visible,
-                       image.refined);
 }
 
 Answer run(const ProjectOptions& options, Console& console) {
@@ -172,9 +60,7 @@ Answer run(const ProjectOptions& options, Console& console) {
     answer.fields["seconds"] = seconds;
     answer.fields["incomplete"] = open;
     if (console.wants_json()) answer.fields["points"] = points_json(renderer, points, images);
-    answer.text = "point,x,y,t,path,optic,facet,inside,visible,refined\n";
-    for (std::size_t p = 0; p < points.size(); ++p)
-        for (const WorldImage& image : images[p].images) answer.text += text_line(renderer, p, image);
+    answer.text = points_text(renderer, images);
     console.note_stage(fmt::format("projected {} points", points.size()), watch);
     return answer;
 }

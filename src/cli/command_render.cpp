@@ -9,8 +9,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "answer/explanation.h"
+#include "answer/picture.h"
 #include "cli/commands.h"
-#include "cli/explain.h"
 #include "cli/image_output.h"
 #include "cli/scene_options.h"
 #include "terminal/format.h"
@@ -44,23 +45,6 @@ std::string output_format(const RenderOptions& options, const std::string& comma
     throw UsageError("the output \"" + options.output + "\" must end in .exr (all layers)" +
                      (command == "render" ? ", .png (the beauty, sRGB) or .svg (outlines)"
                                           : " or .png (the beauty, sRGB)"));
-}
-
-Json picture_fields(const Renderer& renderer, const Picture& picture) {
-    return {
-        {"width", picture.image.width},
-        {"height", picture.image.height},
-        {"triangles", renderer.triangle_count()},
-        {"facets", renderer.facet_count()},
-        {"optic_pixels", picture.statistics.optic_pixels},
-        {"pixels_without_ray", picture.statistics.pixels_without_ray},
-        {"subdivided_pixels", picture.statistics.subdivided_pixels},
-        {"traced_pixels", picture.statistics.traced_pixels},
-        {"projected_facets", picture.statistics.projected_facets},
-        {"predicted_error", picture.statistics.predicted_error},
-        {"left_out", {{"faint", picture.statistics.faint_light}, {"deep", picture.statistics.deep_light}}},
-        {"prepare_seconds", picture.prepare_seconds},
-        {"draw_seconds", picture.draw_seconds}};
 }
 
 std::optional<CornerRays> chosen_rays(const RenderOptions& options) {
@@ -106,12 +90,7 @@ Answer draw(const RenderOptions& options, const std::string& format, const Pictu
     else
         encoded = renderer.draw_exr(request, console.progress(command), console.warner());
     const Picture& picture = encoded.picture;
-    console.note(fmt::format(
-        "drew {} x {} pixels, {} of them of optics ({} subdivided, {} traced): prepared in {:.3f} s, "
-        "drawn in {:.3f} s",
-        picture.image.width, picture.image.height, picture.statistics.optic_pixels,
-        picture.statistics.subdivided_pixels, picture.statistics.traced_pixels, picture.prepare_seconds,
-        picture.draw_seconds));
+    console.note(picture_note(picture));
     Answer answer = is_encoded
                         ? write_output(options.output, encoded.exr, console)
                         : write_output(options.output, picture.image,

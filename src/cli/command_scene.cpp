@@ -3,77 +3,15 @@
 #include <trilens/scene.h>
 #include <trilens/text.h>
 
+#include "answer/scene_info.h"
 #include "cli/commands.h"
 #include "cli/scene_options.h"
 
 namespace trilens {
 namespace {
 
-Json box_json(const Box& bounds) {
-    if (bounds.empty()) return nullptr;
-    return {{"low", {bounds.low.x, bounds.low.y, bounds.low.z}},
-            {"high", {bounds.high.x, bounds.high.y, bounds.high.z}}};
-}
-
-Json mesh_json(const MeshInfo& mesh) {
-    Json json{{"name", mesh.name},     {"role", mesh.role == Role::kOptic ? "optic" : "object"},
-              {"shape", mesh.shape},   {"material", mesh.material},
-              {"points", mesh.points}, {"faces", mesh.faces}};
-    if (mesh.role == Role::kObject) {
-        json["triangles"] = mesh.triangles;
-    } else {
-        json["resolution"] = mesh.resolution;
-        json["creases"] = mesh.creases;
-        json["corners"] = mesh.corners;
-        json["holes"] = mesh.holes;
-    }
-    json["bounds"] = box_json(mesh.bounds);
-    return json;
-}
-
-std::string mesh_line(const MeshInfo& mesh) {
-    std::string line = mesh.role == Role::kOptic ? "  optic   " : "  object  ";
-    line += mesh.name + ": " + mesh.shape;
-    if (mesh.faces > 0) line += ", " + std::to_string(mesh.faces) + " faces";
-    line += mesh.role == Role::kOptic ? ", resolution " + std::to_string(mesh.resolution)
-                                      : ", " + std::to_string(mesh.triangles) + " triangles";
-    return line + ", material " + mesh.material + "\n";
-}
-
 Answer info(const SceneOptions& options, Console& console) {
-    const Scene scene = load_scene(options, console);
-    const SceneInfo found = make_scene_info(scene);
-    Answer answer;
-    Json& fields = answer.fields;
-    fields["film"] = {{"width", scene.film.width}, {"height", scene.film.height}, {"spp", scene.film.spp}};
-    fields["cameras"] = found.cameras;
-    fields["camera_types"] = found.camera_types;
-    fields["objects"] = found.objects;
-    fields["optics"] = found.optics;
-    fields["triangles"] = found.triangles;
-    fields["lights"] = found.lights;
-    fields["bounds"] = box_json(found.bounds);
-    fields["materials"] = Json::array();
-    for (const MaterialInfo& material : found.materials)
-        fields["materials"].push_back({{"name", material.name},
-                                       {"kind", material.kind},
-                                       {"texture", material.has_texture},
-                                       {"meshes", material.meshes}});
-    fields["meshes"] = Json::array();
-
-    answer.text = "film " + std::to_string(scene.film.width) + " x " + std::to_string(scene.film.height) +
-                  ", " + std::to_string(scene.film.spp) + " x " + std::to_string(scene.film.spp) +
-                  " samples\ncameras:";
-    for (std::size_t i = 0; i < found.cameras.size(); ++i)
-        answer.text += (i == 0 ? " " : ", ") + found.cameras[i] + " (" + found.camera_types[i] + ")";
-    answer.text += "\n" + std::to_string(found.optics) + " optics, " + std::to_string(found.objects) +
-                   " objects, " + std::to_string(found.triangles) + " triangles, " +
-                   std::to_string(found.lights) + " lights\n";
-    for (const MeshInfo& mesh : found.meshes) {
-        fields["meshes"].push_back(mesh_json(mesh));
-        answer.text += mesh_line(mesh);
-    }
-    return answer;
+    return info_answer(load_scene(options, console));
 }
 
 /// Loading is not all: a cage may have no limit surface.

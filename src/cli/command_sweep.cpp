@@ -2,8 +2,8 @@
 #include <trilens/stopwatch.h>
 #include <trilens/sweep.h>
 
+#include "answer/sweeps.h"
 #include "cli/commands.h"
-#include "cli/sweep_answer.h"
 #include "cli/sweep_options.h"
 
 namespace trilens {

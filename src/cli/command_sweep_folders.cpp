@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "answer/sweeps.h"
 #include "cli/commands.h"
-#include "cli/sweep_answer.h"
 
 namespace trilens {
 namespace {
@@ -28,32 +28,10 @@ std::vector<std::string> sweeps_in(const std::string& folder) {
     return found.empty() ? std::vector<std::string>{folder} : found;
 }
 
-/// What is missing, as the indices of a job array with a part per run: "3,17,20-24".
-std::string missing_text(const SweepSummary& summary) {
-    std::string text;
-    const std::vector<RunRecord>& runs = summary.runs;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-        if (runs[i].state == RunState::kDone) continue;
-        std::size_t last = i;
-        while (last + 1 < runs.size() && runs[last + 1].state != RunState::kDone) ++last;
-        text += (text.empty() ? "" : ",") + std::to_string(i) + (last > i ? "-" + std::to_string(last) : "");
-        i = last;
-    }
-    return text;
-}
-
 Answer status(const std::string& folder) {
     std::vector<SweepSummary> summaries;
     for (const std::string& one : sweeps_in(folder)) summaries.push_back(load_sweep(one));
-    Answer answer = answer_of(summaries, folder);
-    for (std::size_t i = 0; i < summaries.size(); ++i) {
-        const std::string missing = missing_text(summaries[i]);
-        answer.fields["sweeps"][i]["missing_parts"] = missing;
-        if (!missing.empty())
-            answer.text +=
-                "not done: parts " + missing + " of " + std::to_string(summaries[i].runs.size()) + "\n";
-    }
-    return answer;
+    return status_answer(summaries, folder);
 }
 
 Answer merge(const MergeOptions& options, Console& console) {

@@ -9,4 +9,5 @@
 #pragma once
 
 #include "render/project.h"
+#include "scene/points_file.h"
 #include "trilens/render.h"

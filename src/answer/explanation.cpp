@@ -1,11 +1,9 @@
-#include "cli/explain.h"
+#include "answer/explanation.h"
+
+#include "answer/values.h"
 
 namespace trilens {
 namespace {
-
-Json vector_json(const Vec3& v) {
-    return {json_number(v.x), json_number(v.y), json_number(v.z)};
-}
 
 Json ray_json(const Ray& ray) {
     return {{"origin", vector_json(ray.origin)}, {"direction", vector_json(ray.direction)}};
@@ -20,14 +18,6 @@ Json hit_json(const Renderer& renderer, const Hit& hit) {
             {"t", json_number(hit.t)},
             {"barycentric", {json_number(hit.barycentric.x), json_number(hit.barycentric.y)}},
             {"position", vector_json(seen.position)}};
-}
-
-/// The meetings with optics on the way, in their order.
-Json steps_json(const Renderer& renderer, std::span<const Step> steps) {
-    Json list = Json::array();
-    for (const Step& step : steps)
-        list.push_back({{"optic", renderer.optics()[step.optic].name}, {"event", event_name(step.event)}});
-    return list;
 }
 
 Json end_json(const Renderer& renderer, const SampleViews& views, const PathEnd* end) {

@@ -12,4 +12,8 @@ namespace trilens {
 /// `report`: the page to name, empty for none. The exit code tells of failed runs.
 Answer answer_of(const std::vector<SweepSummary>& summaries, const std::string& report);
 
+/// The same of sweeps that may not be done, with the parts that are missing: as the indices of a job array
+/// with a part per run.
+Answer status_answer(const std::vector<SweepSummary>& summaries, const std::string& folder);
+
 }  // namespace trilens

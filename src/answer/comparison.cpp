@@ -1,6 +1,7 @@
 // What a comparison prints, and its JSON.
-#include "cli/compare_report.h"
+#include "answer/comparison.h"
 
+#include "answer/values.h"
 #include "terminal/format.h"
 
 namespace trilens {
@@ -35,8 +36,8 @@ Json displacement_json(const Displacement& d) {
             {"lost", d.lost},
             {"beyond_radius", d.beyond_radius},
             {"missing", d.missing},
-            {"coverage", d.coverage ? json_number(*d.coverage) : Json(nullptr)},
-            {"mean_off_folds", d.mean_off_folds ? json_number(*d.mean_off_folds) : Json(nullptr)},
+            {"coverage", optional_json(d.coverage)},
+            {"mean_off_folds", optional_json(d.mean_off_folds)},
             {"near_folds", d.near_folds}};
 }
 

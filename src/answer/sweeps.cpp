@@ -1,15 +1,12 @@
-#include "cli/sweep_answer.h"
+#include "answer/sweeps.h"
 
 #include <cmath>
 
+#include "answer/values.h"
 #include "terminal/format.h"
 
 namespace trilens {
 namespace {
-
-Json optional_json(const std::optional<double>& value) {
-    return value ? json_number(*value) : Json(nullptr);
-}
 
 Json fit_json(const SweepFit& fit) {
     return {{"optic", fit.optic},
@@ -62,6 +59,20 @@ std::string summary_text(const SweepSummary& summary) {
     return text;
 }
 
+/// What is missing, as the indices of a job array with a part per run: "3,17,20-24".
+std::string missing_text(const SweepSummary& summary) {
+    std::string text;
+    const std::vector<RunRecord>& runs = summary.runs;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        if (runs[i].state == RunState::kDone) continue;
+        std::size_t last = i;
+        while (last + 1 < runs.size() && runs[last + 1].state != RunState::kDone) ++last;
+        text += (text.empty() ? "" : ",") + std::to_string(i) + (last > i ? "-" + std::to_string(last) : "");
+        i = last;
+    }
+    return text;
+}
+
 }  // namespace
 
 Answer answer_of(const std::vector<SweepSummary>& summaries, const std::string& report) {
@@ -81,6 +92,18 @@ Answer answer_of(const std::vector<SweepSummary>& summaries, const std::string& 
     }
     if (summaries.size() == 1) answer.fields["fits"] = answer.fields["sweeps"][0]["fits"];
     if (!report.empty()) answer.text += report + "\n";
+    return answer;
+}
+
+Answer status_answer(const std::vector<SweepSummary>& summaries, const std::string& folder) {
+    Answer answer = answer_of(summaries, folder);
+    for (std::size_t i = 0; i < summaries.size(); ++i) {
+        const std::string missing = missing_text(summaries[i]);
+        answer.fields["sweeps"][i]["missing_parts"] = missing;
+        if (!missing.empty())
+            answer.text +=
+                "not done: parts " + missing + " of " + std::to_string(summaries[i].runs.size()) + "\n";
+    }
     return answer;
 }
 

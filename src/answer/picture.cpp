@@ -1,0 +1,33 @@
+#include "answer/picture.h"
+
+#include "terminal/format.h"
+
+namespace trilens {
+
+Json picture_fields(const Renderer& renderer, const Picture& picture) {
+    return {
+        {"width", picture.image.width},
+        {"height", picture.image.height},
+        {"triangles", renderer.triangle_count()},
+        {"facets", renderer.facet_count()},
+        {"optic_pixels", picture.statistics.optic_pixels},
+        {"pixels_without_ray", picture.statistics.pixels_without_ray},
+        {"subdivided_pixels", picture.statistics.subdivided_pixels},
+        {"traced_pixels", picture.statistics.traced_pixels},
+        {"projected_facets", picture.statistics.projected_facets},
+        {"predicted_error", picture.statistics.predicted_error},
+        {"left_out", {{"faint", picture.statistics.faint_light}, {"deep", picture.statistics.deep_light}}},
+        {"prepare_seconds", picture.prepare_seconds},
+        {"draw_seconds", picture.draw_seconds}};
+}
+
+std::string picture_note(const Picture& picture) {
+    return fmt::format(
+        "drew {} x {} pixels, {} of them of optics ({} subdivided, {} traced): prepared in {:.3f} s, "
+        "drawn in {:.3f} s",
+        picture.image.width, picture.image.height, picture.statistics.optic_pixels,
+        picture.statistics.subdivided_pixels, picture.statistics.traced_pixels, picture.prepare_seconds,
+        picture.draw_seconds);
+}
+
+}  // namespace trilens

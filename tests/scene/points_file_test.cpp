@@ -1,0 +1,47 @@
+// Points written as text.
+#include "scene/points_file.h"
+
+#include <string>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+TEST_CASE("a point is three numbers within bounds", "[scene]") {
+    CHECK(parse_point("1,2,3") == Vec3(1, 2, 3));
+    CHECK(parse_point(" -1.5e-3 ,\t+2 , 0\r") == Vec3(-1.5e-3, 2, 0));
+    for (const char* text :
+         {"", "1,2", "1,2,3,4", "1;2;3", "1,,3", "a,b,c", "1,2,nan", "1,2,inf", "1e31,0,0", "1,2,3x"}) {
+        INFO(text);
+        CHECK_FALSE(parse_point(text));
+    }
+}
+
+TEST_CASE("a file of points may begin with a header and names the line that is no point", "[scene]") {
+    const std::string folder = scratch_dir("scene_points"), file = folder + "/points.csv";
+    // Whether reading throws with these words, after the file's name.
+    const auto refuses = [&](const std::string& words) {
+        try {
+            read_points(file);
+        } catch (const InputError& error) {
+            const std::string what = error.what();
+            return what.find(file) != std::string::npos && what.find(words) != std::string::npos;
+        }
+        return false;
+    };
+    replace_text_file(file, "\xef\xbb\xbf\"x\", y, z\n\n# a remark\n1,2,3\r\n-4, 5e-1, 6");
+    CHECK(read_points(file) == std::vector<Vec3>{{1, 2, 3}, {-4, 0.5, 6}});
+
+    replace_text_file(file, "x,y,z\n1,2,3\n1,2\n");
+    CHECK(refuses("line 3"));
+    // A first line with a number in it is no header.
+    replace_text_file(file, "1,2\n1,2,3\n");
+    CHECK(refuses("line 1"));
+    replace_text_file(file, "x,y,z\n");
+    CHECK(refuses("no points"));
+    CHECK_THROWS_AS(read_points(folder), InputError);
+    CHECK_THROWS_AS(read_points(folder + "/none.csv"), InputError);
+}
