@@ -1,11 +1,9 @@
 #include "trilens/suite.h"
 
-#include <map>
 #include <memory>
 #include <utility>
 
 #include "base/error.h"
-#include "base/nearest.h"
 #include "suite/suite.h"
 #include "trilens/compare_inputs.h"
 #include "trilens/render.h"
@@ -16,16 +14,11 @@ namespace trilens {
 namespace {
 
 EngineChoice engine_of(const RenderTest& test, const std::string& name) {
-    static const std::map<std::string, Engine> kEngines = {{"exact", Engine::kExact},
-                                                           {"classic", Engine::kClassic},
-                                                           {"facets", Engine::kFacetsTruth},
-                                                           {"limit", Engine::kLimitTruth}};
-    const auto found = kEngines.find(name);
-    if (found != kEngines.end()) return found->second;
-    std::vector<std::string> known;
-    for (const auto& [engine, value] : kEngines) known.push_back(engine);
-    throw InputError(test.folder + "/test.json", "/engine",
-                     "there is no engine \"" + name + "\"" + suggestion(name, known));
+    try {
+        return find_engine(name);
+    } catch (const UsageError& error) {
+        throw InputError(test.folder + "/test.json", "/engine", error.what());
+    }
 }
 
 }  // namespace

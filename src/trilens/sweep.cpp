@@ -141,7 +141,11 @@ std::string engine_key(const PictureRequest& picture) {
     const char* const grid = !picture.frame.grid                        ? "own"
                              : *picture.frame.grid == GridKind::kScreen ? "screen"
                                                                         : "surface";
-    return fmt::format("{}\n{}\n{}", key, picture.frame.resolution, grid);
+    const char* const rays = !picture.frame.rays                          ? "own"
+                             : *picture.frame.rays == CornerRays::kFitted ? "fitted"
+                                                                          : "interpolated";
+    const std::string error = picture.frame.max_error ? fmt::format("{}", *picture.frame.max_error) : "own";
+    return fmt::format("{}\n{}\n{}\n{}\n{}", key, picture.frame.resolution, grid, rays, error);
 }
 
 /// The truth of run n's own facets is that run's alone; the limit surface is that of all resolutions.

@@ -43,6 +43,14 @@ void set_clip(const AxisValue& value, PointRequest& request) {
                                                                    : Clip::kUnclipped;
 }
 
+void set_rays(const AxisValue& value, PointRequest& request) {
+    request.picture.frame.rays = value.text == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
+}
+
+void set_grid(const AxisValue& value, PointRequest& request) {
+    request.picture.frame.grid = value.text == "screen" ? GridKind::kScreen : GridKind::kSurface;
+}
+
 void set_scene(const AxisValue& value, PointRequest& request) {
     const std::filesystem::path file = value.text;
     request.scene.file =
@@ -67,6 +75,10 @@ const std::vector<AxisEntry>& axis_entries() {
         {{"slices", "slices", "K [pieces of a curved edge]", kWhole, 1, 1024, true},
          [](const auto& v, auto& r) { set_pieces(Curves::kSlices, v, r); }},
         {{"clip", "", "clipping", ValueKind::kWord, 0, 0, false, {"scene", "screen", "none"}}, set_clip},
+        {{"rays", "", "corner rays", ValueKind::kWord, 0, 0, false, {"fitted", "interpolated"}}, set_rays},
+        {{"grid", "", "facets' grid", ValueKind::kWord, 0, 0, false, {"surface", "screen"}}, set_grid},
+        {{"max-error", "px", "largest predicted error [px]", ValueKind::kNumber, 0, 1000},
+         [](const auto& v, auto& r) { r.picture.frame.max_error = *v.number; }},
         {{"size", "", "pixels", ValueKind::kSize, 1, kMostPixels, true}, set_size},
         {{"spp", "spp", "samples per pixel, across", kWhole, 1, kMaxSpp},
          [](const auto& v, auto& r) { override_with("/film/spp", v.text, r); }},

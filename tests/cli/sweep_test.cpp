@@ -62,6 +62,30 @@ TEST_CASE("the facets' truth is that of each run's own facets, and nothing is di
     CHECK(column(limit, "disp_mean_px").front() > 0.1);
 }
 
+TEST_CASE("corner rays, grids and errors asked for are axes, against one truth", "[cli][sweep]") {
+    const std::string folder = scratch_dir("cli_sweep_facet_axes");
+    const std::string scene = write_file(folder, "room.json", small_scene());
+    const auto means = [&](const std::string& name, const std::string& over) {
+        const std::string out = folder + "/" + name;
+        REQUIRE(run_trilens("sweep run " + scene + " --size 96x72 " + over + " -o " + out).exit_code == 0);
+        CHECK(truths_in(out) == 1);
+        return column(out, "disp_mean_px");
+    };
+    const std::vector<double> rays =
+        means("rays", "--over rays=interpolated,fitted --over resolution=4 --set /render/maxDepth=3");
+    REQUIRE(rays.size() == 2);
+    CHECK(rays[1] < 0.6 * rays[0]);
+
+    const std::vector<double> grids = means("grid", "--over grid=surface,screen --over resolution=4");
+    REQUIRE(grids.size() == 2);
+    CHECK((grids[0] > 0 && grids[1] > 0 && grids[0] != grids[1]));
+
+    // Numbers stand in their order, whatever the order they were given in.
+    const std::vector<double> errors = means("error", "--over max-error=4,0.25 --set /render/maxDepth=3");
+    REQUIRE(errors.size() == 2);
+    CHECK(errors[0] < errors[1]);
+}
+
 TEST_CASE("a sweep's folder takes no other scene, and the same one from anywhere", "[cli][sweep]") {
     const std::string folder = scratch_dir("cli_sweep_owner");
     write_file(folder, "room.json", small_scene());
