@@ -23,7 +23,7 @@ struct Figure {
 const Figure kFigures[] = {{"4.1", {2, 2, 2, 3}, 41, {}}, {"4.2", {3, 3, 3}, 42, {}},
                            {"4.3", {4, 2, 3}, 43, {}},    {"4.4", {4, 5}, 44, {}},
                            {"4.5", {6, 3}, 45, {}},       {"4.6", {2, 7}, 446, {}},
-                           {"4.7", {9}, 47, {0.7, 0}}};
+                           {"4.7", {9}, 47, {0.7, 0}},    {"8.1", {2, 3}, 81, {}}};
 
 std::string file_name(const std::string& folder, const Figure& figure) {
     std::string name = folder + "/fig_" + figure.number.substr(0, 1) + "_" + figure.number.substr(2);
