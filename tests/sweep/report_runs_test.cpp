@@ -1,0 +1,44 @@
+// Pictures of a report that would make its page too large.
+#include "sweep/report_runs.h"
+
+#include <filesystem>
+
+#include "fake_scene.h"
+#include "report/html.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+TEST_CASE("sweep: pictures lie beside the page where they would make it too large") {
+    FakeSweep fake(scratch_dir("sweep_large_page"), {1, 2, 4});
+    const SweepSummary summary = fake.run();
+    const std::filesystem::path beside = fake.params.folder + "/pictures";
+
+    Report within;
+    fill_runs(summary, 50'000'000, within);
+    REQUIRE(within.runs.size() == 3);
+    CHECK_FALSE(std::filesystem::exists(beside));
+
+    Report beyond;
+    fill_runs(summary, 1000, beyond);
+    std::size_t files = 0;
+    for (std::size_t i = 0; i < beyond.runs.size(); ++i) {
+        REQUIRE(beyond.runs[i].pictures.size() == within.runs[i].pictures.size());
+        REQUIRE_FALSE(beyond.runs[i].pictures.empty());
+        for (std::size_t k = 0; k < beyond.runs[i].pictures.size(); ++k) {
+            const PagePicture &embedded = within.runs[i].pictures[k], &linked = beyond.runs[i].pictures[k];
+            if (embedded.png.empty()) continue;  // nothing to show: its caption says why
+            CHECK(linked.png.empty());
+            CHECK(std::filesystem::file_size(fake.params.folder + "/" + linked.file) == embedded.png.size());
+            ++files;
+        }
+    }
+    CHECK(files >= 3);
+    CHECK(beyond.pictures_note.find("beside this page") != std::string::npos);
+
+    // A report that fits again leaves nothing of the larger one.
+    Report again;
+    fill_runs(summary, 50'000'000, again);
+    CHECK_FALSE(std::filesystem::exists(beside));
+}
