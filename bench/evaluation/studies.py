@@ -24,15 +24,21 @@ class Plan:
     def timed(self, method, scene, size, *options):
         return timed(method, scene, self.out, "--size", f"{size}x{size}", "--spp", 1, *options, repeats=self.repeats)
 
+    def all_methods(self, scene, size):
+        """Seconds of every method."""
+        return {method: self.timed(method, scene, size)["seconds"] for method in METHODS}
+
+    def race(self, scene, size):
+        """Seconds of Embree's packets and of the projector on the same rays, without what makes a picture of hits."""
+        embree, projector = packets(scene, "--size", f"{size}x{size}", "--spp", 1, repeats=self.repeats)
+        return {"packets": embree / 1e3, "projector alone": projector / 1e3}
+
 
 def configurations(plan):
     """Time against resolution, one facet and one triangle (fig 8.1, 8.4; tables D.4 to D.17)."""
     for name in plan.configurations:
         for size in plan.sizes:
-            row = {"configuration": name, "size": size}
-            for method in METHODS:
-                row[method] = plan.timed(method, configuration_file(name), size)["seconds"]
-            yield row
+            yield {"configuration": name, "size": size} | plan.all_methods(configuration_file(name), size)
 
 
 def complexity(plan):
@@ -40,12 +46,7 @@ def complexity(plan):
     for triangles in plan.triangles:
         scene = random_scene(plan.folder, triangles)
         for size in plan.sizes:
-            row = {"triangles": triangles, "size": size}
-            for method in METHODS:
-                row[method] = plan.timed(method, scene, size)["seconds"]
-            embree, projector = packets(scene, "--size", f"{size}x{size}", "--spp", 1, repeats=plan.repeats)
-            row["packets"], row["projector alone"] = embree / 1e3, projector / 1e3
-            yield row
+            yield {"triangles": triangles, "size": size} | plan.all_methods(scene, size) | plan.race(scene, size)
 
 
 def subdivision(plan):
@@ -69,12 +70,7 @@ def projections(plan):
     for across in plan.facets_across:
         scene = random_scene(plan.folder, 100, across)
         for size in plan.sizes:
-            row = {"projections": 2 * across * across, "size": size}
-            for method in METHODS:
-                row[method] = plan.timed(method, scene, size)["seconds"]
-            embree, projector = packets(scene, "--size", f"{size}x{size}", "--spp", 1, repeats=plan.repeats)
-            row["packets"], row["projector alone"] = embree / 1e3, projector / 1e3
-            yield row
+            yield {"projections": 2 * across * across, "size": size} | plan.all_methods(scene, size) | plan.race(scene, size)
 
 
 def examples(plan):
