@@ -47,6 +47,8 @@ Beam::Beam(const BlockRays& block) {
         unit_direction_[k] = normalize_or_zero(direction_[k]);
         origin_size_ = std::max(origin_size_, size_of(origin_[k]));
     }
+    // The origins may be small sums of large terms.
+    origin_size_ = std::max(origin_size_, block.origin_size / block.weight_least);
     add_axis();
 
     // The sides: through adjacent directions where the beam opens or closes, else along the axis.

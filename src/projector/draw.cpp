@@ -108,8 +108,9 @@ void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& o
         for (std::size_t i = first; i < last; ++i) {
             const Strip& strip = strips[i];
             if (!mesh.has_rays(strip.facet)) continue;
-            const FacetOnScreen facet{mesh, strip.facet, facet_weights(mesh, strip.facet)};
-            if (facet.weights.edge_on) continue;
+            const FacetOnScreen on_screen{mesh, strip.facet, facet_weights(mesh, strip.facet)};
+            if (on_screen.weights.edge_on) continue;
+            const FacetRays facet = make_facet_rays(on_screen);
             const std::span<const Id> samples(owned.sample.data() + strip.first, strip.last - strip.first);
             for_each_block(samples, grid, [&](std::span<const Id> block) {
                 const BlockRays rays = make_block_rays(facet, grid, block);
