@@ -43,7 +43,7 @@ Beam::Beam(const BlockRays& block) {
     for (std::size_t k = 0; k < 4; ++k) {
         const double u = kCorners[k].x, v = kCorners[k].y;
         origin_[k] = block.rays.origin_at(u, v) / block.rays.weight_at(u, v);
-        direction_[k] = block.rays.direction_at(u, v);
+        direction_[k] = block.rays.direction_at(u, v) / block.rays.weight_at(u, v);
         unit_direction_[k] = normalize_or_zero(direction_[k]);
         origin_size_ = std::max(origin_size_, size_of(origin_[k]));
     }

@@ -70,6 +70,7 @@ PreparedScene::PreparedScene(const TriangleScene& scene) : data_(std::make_uniqu
         data_->rank.push_back(rank[triangle]);
     }
     data_->bvh.order = {};
+    data_->leaves = build_leaf_tree(*data_);
 }
 
 PreparedScene::~PreparedScene() = default;
