@@ -13,6 +13,7 @@ Command compare_command();
 Command sweep_command();
 Command sweep_engines_command();
 Command project_command();
+Command bench_command();
 Command scene_command();
 Command info_command();
 

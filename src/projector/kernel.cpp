@@ -6,7 +6,13 @@
 #include <optional>
 
 // Sets of AVX-512 beyond its first bring this code nothing (the last two are later versions' names for bits).
+#ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | (1LL << 6) | (1LL << 4))
+#endif
+// Processors without SSE4.2 are left to the plain engine.
+#if defined(__x86_64__) && !defined(HWY_BASELINE_TARGETS) && !defined(HWY_COMPILE_ONLY_STATIC)
+#define HWY_BASELINE_TARGETS HWY_SSE4
+#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "projector/kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -95,7 +101,6 @@ std::uint32_t draw_batch(const KernelScene& scene, std::size_t batch, const Kern
 }
 
 std::vector<std::string> kernel_instruction_sets() {
-    hwy::SetSupportedTargetsForTest(0);
     std::vector<std::string> names;
     for (const NamedTarget& t : kTargets) {
         if (hwy::SupportedTargets() & HWY_TARGETS & t.target) names.push_back(t.name);

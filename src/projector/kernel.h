@@ -22,7 +22,8 @@ void draw_tiles(const KernelScene& scene, const KernelOptions& options);
 std::uint32_t draw_batch(const KernelScene& scene, std::size_t batch, const KernelOptions& options,
                          KernelState& state);
 
-/// The instruction sets that the engine is built for and this machine has, best first, as `--isa` names them.
+/// The instruction sets that the engine is built for and this machine has, best first, as `--isa` names them;
+/// only the one that use_instruction_set chose while it holds.
 std::vector<std::string> kernel_instruction_sets();
 
 /// Restricts the engine to one of them; empty: the best. For the whole process. Returns false for a name that

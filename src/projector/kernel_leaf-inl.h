@@ -7,6 +7,8 @@
 #define TRILENS_KERNEL_LEAF_INL_H
 #endif
 
+#include "projector/kernel_facets-inl.h"
+#include "projector/kernel_rays-inl.h"
 #include "projector/kernel_triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,11 +30,11 @@ HWY_INLINE std::uint32_t tiles_at_leaf(const KernelState& state, const Leaf& lea
     const Floats hx = set(leaf.half[0]), hy = set(leaf.half[1]), hz = set(leaf.half[2]);
     Mask missed = set(nearest) > load(state.farthest);
     for (int k = 0; k < 4; ++k) {
-        const Floats x = load(state.lanes.plane[k][0]), y = load(state.lanes.plane[k][1]),
-                     z = load(state.lanes.plane[k][2]);
+        const Floats x = load(state.lanes.hull.plane[k][0]), y = load(state.lanes.hull.plane[k][1]),
+                     z = load(state.lanes.hull.plane[k][2]);
         const Floats swing = multiply_add(absolute(x), hx, multiply_add(absolute(y), hy, absolute(z) * hz));
         const Floats height = multiply_add(x, cx, multiply_add(y, cy, multiply_add(z, cz, swing)));
-        missed = missed | (height < load(state.lanes.plane_offset[k]));
+        missed = missed | (height < load(state.lanes.hull.offset[k]));
     }
     return own & ~bits(missed);
 }
@@ -54,7 +56,7 @@ HWY_INLINE std::uint32_t triangles_in_beam(const GroupBeam& beam, const Leaf& le
     return first_lanes(leaf.count) & ~missed;
 }
 
-HWY_INLINE void make_edges(const Leaf& leaf, LeafEdges& edges) {
+HWY_NOINLINE void make_edges(const Leaf& leaf, LeafEdges& edges) {
     Floats l[3][3];
     const Floats x[3] = {load(leaf.x[0]), load(leaf.x[1]), load(leaf.x[2])};
     const Floats y[3] = {load(leaf.y[0]), load(leaf.y[1]), load(leaf.y[2])};
@@ -78,14 +80,42 @@ HWY_INLINE void make_edges(const Leaf& leaf, LeafEdges& edges) {
     store(multiply_add(nx, x[0], multiply_add(ny, y[0], nz * z[0])), edges.height);
 }
 
-HWY_INLINE void draw_leaf(const KernelScene& scene, const Leaf& leaf, float nearest, LeafMode mode,
-                          KernelState& state) {
-    (void)mode;
+/// How many samples see an average triangle of the leaf, if it faces them: from the area of the leaf's box
+/// and how far apart neighbouring rays are at t.
+HWY_INLINE float samples_per_triangle(const TileLanes& lanes, std::size_t tile, const Leaf& leaf, float t) {
+    const float far = std::max(t, 0.0f);
+    const float pitch_u = lanes.pitch[0][tile] + far * lanes.pitch[1][tile],
+                pitch_v = lanes.pitch[2][tile] + far * lanes.pitch[3][tile];
+    const float* h = leaf.half;
+    return 2 * (h[0] * h[1] + h[1] * h[2] + h[2] * h[0]) /
+           (pitch_u * pitch_v * static_cast<float>(leaf.count));
+}
+
+/// Measured: below this many samples per triangle, rays are faster.
+inline constexpr float kRaysBelow = 4;
+
+/// By what mode tiles and triangles that may meet are drawn fastest (measured).
+HWY_INLINE LeafMode cheapest_mode(const KernelState& state, const Leaf& leaf, float nearest, int tiles,
+                                  int triangles) {
+    const std::size_t middle_tile = state.first_lane + state.tiles / 2;
+    if (samples_per_triangle(state.lanes, middle_tile, leaf, nearest) < kRaysBelow) return LeafMode::kRays;
+    return tiles > 1 && triangles + 0.7f < 2.0f * tiles ? LeafMode::kFacets : LeafMode::kTriangles;
+}
+
+HWY_NOINLINE void draw_leaf(const KernelScene& scene, const Leaf& leaf, float nearest, LeafMode mode,
+                            KernelState& state) {
     float middle[3];
     middle_in_tree(*scene.tree, leaf, middle);
     const std::uint32_t tiles = tiles_at_leaf(state, leaf, middle, nearest);
     if (!tiles) return;
+    std::uint32_t triangles = first_lanes(leaf.count);
+    if (state.tiles > 1) triangles = triangles_in_beam(state.beam, leaf, middle);
+    if (!triangles) return;
     make_edges(leaf, state.edges);
+    if (mode == LeafMode::kCheapest)
+        mode = cheapest_mode(state, leaf, nearest, std::popcount(tiles), std::popcount(triangles));
+    if (mode == LeafMode::kRays) return draw_ray_lanes(scene, leaf, middle, nearest, state);
+    if (mode == LeafMode::kFacets) return draw_facet_lanes(scene, leaf, triangles, tiles, state);
     for (Each lane(tiles); lane; ++lane) draw_triangle_lanes(scene, leaf, *lane, state);
 }
 

@@ -56,27 +56,46 @@ HWY_NOINLINE void list_doubts(KernelState& state, std::uint32_t vector, std::uin
     for (Each lane(lanes); lane; ++lane) state.doubts.push_back({vector, *lane, triangle});
 }
 
-/// `low`: the least of the three edges' conics, turned so that inside is positive. t = above / along.
+/// What floats know of one triangle at 16 samples.
+struct Meeting {
+    Mask missed, inside;  // for sure
+    Mask placed;          // its depth is known: t within `off`
+    Floats t, off;
+};
+
+/// Keeps the hits that are sure and nearer than all before, and lists what may matter.
 HWY_INLINE void offer_lanes(KernelState& state, std::uint32_t vector, std::uint32_t triangle,
-                            const TileDoubts& doubts, const Floats& low, const Floats& above,
-                            const Floats& along, std::uint32_t valid) {
+                            const Meeting& m, std::uint32_t valid) {
     Nearest& nearest = state.nearest[vector];
-    const Floats inverse = reciprocal(along);
-    const Floats t = above * inverse;
-    const Floats off =
-        multiply_add(absolute(t), set(kTimeDoubt),
-                     inverse * multiply_add(absolute(t), set(doubts.along), set(doubts.above)));
-    const Floats t_low = t - off, t_high = t + off;
+    const Floats t_low = m.t - m.off, t_high = m.t + m.off;
     const Floats old_low = load(nearest.low), old_high = load(nearest.high);
-    const Mask missed = low < set(-doubts.edge);
-    const Mask placed = along > set(doubts.along);  // else its depth is not known
-    const Mask hit = (low > set(doubts.edge)) & placed & (t_low > set(0.0f)) & (t_high < old_low);
-    const Mask beyond = placed & ((t_high < set(0.0f)) | (t_low > old_high));
-    const std::uint32_t doubtful = valid & ~bits(missed | beyond | hit);
+    const Mask hit = m.inside & m.placed & (t_low > set(0.0f)) & (t_high < old_low);
+    const Mask beyond = m.placed & ((t_high < set(0.0f)) | (t_low > old_high));
+    const std::uint32_t doubtful = valid & ~bits(m.missed | beyond | hit);
     if (HWY_UNLIKELY(doubtful != 0)) list_doubts(state, vector, doubtful, triangle);
     store(choose(hit, t_low, old_low), nearest.low);
     store(choose(hit, t_high, old_high), nearest.high);
     store_words(choose(hit, set_word(triangle), load_words(nearest.triangle)), nearest.triangle);
+}
+
+/// The same for one sample.
+HWY_INLINE void offer_one(KernelState& state, std::uint32_t vector, std::uint32_t lane, Id triangle,
+                          float t_low, float t_high, bool inside, bool placed) {
+    Nearest& nearest = state.nearest[vector];
+    if (placed && (t_high < 0 || t_low > nearest.high[lane])) return;
+    if (inside && placed && t_low > 0 && t_high < nearest.low[lane]) {
+        nearest.low[lane] = t_low;
+        nearest.high[lane] = t_high;
+        nearest.triangle[lane] = triangle;
+        return;
+    }
+    list_doubts(state, vector, 1u << lane, triangle);
+}
+
+/// How far t = above / along may be off where along is more than its doubt, which is twice what it rounds by.
+HWY_INLINE Floats doubt_of_time(const Floats& t, const Floats& inverse, const Floats& above,
+                                const Floats& along) {
+    return multiply_add(absolute(t), set(kTimeDoubt), inverse * multiply_add(absolute(t), along, above));
 }
 
 }  // namespace HWY_NAMESPACE

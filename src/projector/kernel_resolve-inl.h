@@ -91,7 +91,7 @@ struct alignas(64) Winners {
     Id triangle[kLanes];  // index into PreparedScene::Data, or kNone
 };
 
-HWY_INLINE void write_hits(const KernelScene& scene, std::uint32_t vector, const Winners& winners) {
+HWY_NOINLINE void write_hits(const KernelScene& scene, std::uint32_t vector, const Winners& winners) {
     const VectorSamples& samples = scene.tiles->samples[vector];
     if (!scene.vector_hits.empty()) {
         VectorHits& out = scene.vector_hits[vector];
@@ -129,8 +129,8 @@ HWY_NOINLINE LineHit decide_sure(const KernelScene& scene, const FacetRays& face
 }
 
 /// Fills in t and the barycentrics of a vector's sure hits.
-HWY_INLINE void place_sure_hits(const KernelScene& scene, const SampleTile& tile, std::uint32_t vector,
-                                const Nearest& nearest, Winners& winners) {
+HWY_NOINLINE void place_sure_hits(const KernelScene& scene, const SampleTile& tile, std::uint32_t vector,
+                                  const Nearest& nearest, Winners& winners) {
     const FacetRays& facet = scene.tiles->rays[tile.rays];
     const SampleVector& samples = scene.tiles->vectors[vector];
     const SampleGrid& grid = *scene.grid;
@@ -219,7 +219,7 @@ HWY_NOINLINE void resolve_sample(const KernelScene& scene, const FacetRays& face
 }
 
 /// Writes the hits of all of the group's samples.
-HWY_INLINE void resolve_group(const KernelScene& scene, KernelState& state) {
+HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
     std::vector<Doubt>& doubts = state.doubts;
     std::sort(doubts.begin(), doubts.end(), [](const Doubt& a, const Doubt& b) {
         if (a.vector != b.vector) return a.vector < b.vector;

@@ -52,8 +52,8 @@ HWY_INLINE Vector3 unit(const Vector3& a) {
 }
 
 /// Copies what one tile brings into its lane: the facet's rays, moved to the tile's rectangle.
-HWY_INLINE void gather_tile(const KernelScene& scene, const SampleTile& tile, std::size_t j,
-                            TileLanes& lanes) {
+HWY_NOINLINE void gather_tile(const KernelScene& scene, const SampleTile& tile, std::size_t j,
+                              TileLanes& lanes) {
     const FacetRays& facet = scene.tiles->rays[tile.rays];
     const TileFrame frame = tile_frame(tile, *scene.grid);
     const Vec2 from = frame.centre - facet.screen;
@@ -64,7 +64,7 @@ HWY_INLINE void gather_tile(const KernelScene& scene, const SampleTile& tile, st
         const double o0 = facet.rays.origin[0][a], o1 = facet.rays.origin[1][a], o2 = facet.rays.origin[2][a];
         const double d0 = facet.rays.direction[0][a], d1 = facet.rays.direction[1][a],
                      d2 = facet.rays.direction[2][a];
-        lanes.centre[a][j] = facet.centre[a];
+        lanes.centre[a][j] = lanes.hull.centre[a][j] = facet.centre[a];
         lanes.origin[a][0][j] = o0 + from.x * o1 + from.y * o2;
         lanes.origin[a][1][j] = parts[1] * o1;
         lanes.origin[a][2][j] = parts[2] * o2;
@@ -84,7 +84,7 @@ HWY_INLINE void gather_tile(const KernelScene& scene, const SampleTile& tile, st
 }
 
 /// Scales a lane's rays to weight 1 in the middle and bounds them.
-HWY_INLINE void scale_lanes(TileLanes& lanes) {
+HWY_NOINLINE void scale_lanes(TileLanes& lanes) {
     for (std::size_t j = 0; j < kLanes; ++j) {
         const double s = 1 / lanes.weight[0][j];
         for (int p = 0; p < 3; ++p) {
@@ -120,7 +120,7 @@ HWY_INLINE void scale_lanes(TileLanes& lanes) {
 }
 
 /// The quadratics of the rays' Pluecker coordinates (trilinear/edge_conic.h, line_quadratic).
-HWY_INLINE void make_lines(TileLanes& lanes) {
+HWY_NOINLINE void make_lines(TileLanes& lanes) {
     constexpr int kFirst[6] = {0, 0, 0, 1, 1, 2}, kSecond[6] = {0, 1, 2, 1, 2, 2};
     for (int a = 0; a < 3; ++a)
         for (std::size_t j = 0; j < kLanes; ++j) lanes.line_sum[a][j] = 0;
@@ -152,7 +152,7 @@ HWY_INLINE void make_lines(TileLanes& lanes) {
 }
 
 /// Copies each tile's coefficients together.
-HWY_INLINE void transpose_lanes(std::uint32_t tiles, TileLanes& lanes) {
+HWY_NOINLINE void transpose_lanes(std::uint32_t tiles, TileLanes& lanes) {
     for (std::size_t j = 0; j < tiles; ++j) {
         for (int a = 0; a < 3; ++a) {
             for (int q = 0; q < 6; ++q) {
@@ -169,8 +169,8 @@ HWY_INLINE void transpose_lanes(std::uint32_t tiles, TileLanes& lanes) {
 }
 
 /// How far apart the rays of neighbouring samples are, at the middle of the tile.
-HWY_INLINE void measure_pitch(const KernelScene& scene, std::uint32_t tiles, const SampleTile* tile,
-                              TileLanes& lanes) {
+HWY_NOINLINE void measure_pitch(const KernelScene& scene, std::uint32_t tiles, const SampleTile* tile,
+                                TileLanes& lanes) {
     (void)scene;
     for (std::size_t j = 0; j < tiles; ++j) {
         for (int p = 1; p < 3; ++p) {
@@ -188,10 +188,31 @@ HWY_INLINE void measure_pitch(const KernelScene& scene, std::uint32_t tiles, con
     }
 }
 
+/// A rectangle of local coordinates.
+struct LocalRectangle {
+    double u, v, half_u, half_v;
+};
+
+/// Into lane `at` of `hull`: the rays at the rectangle's corners, of the tile of lane j.
+HWY_NOINLINE void put_rectangle(const TileLanes& lanes, std::size_t j, const LocalRectangle& r,
+                                HullLanes& hull, std::size_t at) {
+    constexpr double kU[4] = {-1, 1, 1, -1}, kV[4] = {-1, -1, 1, 1};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double u = r.u + kU[k] * r.half_u, v = r.v + kV[k] * r.half_v;
+        const double inverse = 1 / (lanes.weight[0][j] + u * lanes.weight[1][j] + v * lanes.weight[2][j]);
+        for (int a = 0; a < 3; ++a) {
+            hull.origin[k][a][at] =
+                inverse * (lanes.origin[a][0][j] + u * lanes.origin[a][1][j] + v * lanes.origin[a][2][j]);
+            hull.direction[k][a][at] = inverse * (lanes.direction[a][0][j] + u * lanes.direction[a][1][j] +
+                                                  v * lanes.direction[a][2][j]);
+        }
+    }
+}
+
 /// The hull of the rays of a tile: of its facet's corner rays, widened to the outermost sample, where the
 /// tile is the whole facet; else of the rays at its rectangle's corners. Both by convexity of the weights.
-HWY_INLINE void gather_hull(const KernelScene& scene, const SampleTile& tile, std::size_t j,
-                            TileLanes& lanes) {
+HWY_NOINLINE void gather_hull(const KernelScene& scene, const SampleTile& tile, std::size_t j,
+                              TileLanes& lanes) {
     if (tile.whole_facet && tile.least_weight > -1) {
         const IdTriple& corner = scene.mesh->facets[tile.facet];
         const double out = std::min(0.0, tile.least_weight) - 1e-9;  // the weight of the other two corners
@@ -203,38 +224,27 @@ HWY_INLINE void gather_hull(const KernelScene& scene, const SampleTile& tile, st
             }
             const double o_sum = out * (o[0] + o[1] + o[2]), d_sum = out * (d[0] + d[1] + d[2]);
             for (std::size_t k = 0; k < 4; ++k) {
-                lanes.corner_origin[k][a][j] = o_sum + (1 - 3 * out) * o[std::min<std::size_t>(k, 2)];
-                lanes.corner_direction[k][a][j] = d_sum + (1 - 3 * out) * d[std::min<std::size_t>(k, 2)];
+                lanes.hull.origin[k][a][j] = o_sum + (1 - 3 * out) * o[std::min<std::size_t>(k, 2)];
+                lanes.hull.direction[k][a][j] = d_sum + (1 - 3 * out) * d[std::min<std::size_t>(k, 2)];
             }
         }
         return;
     }
     constexpr double kReach = 1 + 1e-6;
-    constexpr double kU[4] = {-kReach, kReach, kReach, -kReach}, kV[4] = {-kReach, -kReach, kReach, kReach};
-    for (std::size_t k = 0; k < 4; ++k) {
-        const double inverse =
-            1 / (lanes.weight[0][j] + kU[k] * lanes.weight[1][j] + kV[k] * lanes.weight[2][j]);
-        for (int a = 0; a < 3; ++a) {
-            lanes.corner_origin[k][a][j] = inverse * (lanes.origin[a][0][j] + kU[k] * lanes.origin[a][1][j] +
-                                                      kV[k] * lanes.origin[a][2][j]);
-            lanes.corner_direction[k][a][j] =
-                inverse * (lanes.direction[a][0][j] + kU[k] * lanes.direction[a][1][j] +
-                           kV[k] * lanes.direction[a][2][j]);
-        }
-    }
+    put_rectangle(lanes, j, {0, 0, kReach, kReach}, lanes.hull, j);
 }
 
 /// Planes around each tile's hull. A plane holds only if, as floats, its normal points along all four corner
 /// directions; it is turned towards the axis by more than it rounds, then checked.
-HWY_INLINE void make_planes(const KernelScene& scene, TileLanes& lanes) {
+HWY_NOINLINE void make_planes(const KernelScene& scene, HullLanes& lanes) {
     const LeafTree& tree = *scene.tree;
     const double reach = tree.half.x + tree.half.y + tree.half.z;
     const Double zero = hn::Zero(kDouble);
     for (std::size_t at = 0; at < kLanes; at += kDoubles) {
         Vector3 o[4], d[4], step;
         for (int k = 0; k < 4; ++k) {
-            o[k] = load3(lanes.corner_origin[k], at);
-            d[k] = unit(load3(lanes.corner_direction[k], at));
+            o[k] = load3(lanes.origin[k], at);
+            d[k] = unit(load3(lanes.direction[k], at));
         }
         const Vector3 axis = unit(plus(plus(d[0], d[1]), plus(d[2], d[3])));
         Double cosine = inner(axis, d[0]);
@@ -289,14 +299,14 @@ HWY_INLINE void make_planes(const KernelScene& scene, TileLanes& lanes) {
             HWY_ALIGN double stored[kDoubles];
             hn::Store(offset, kDouble, stored);
             for (std::size_t i = 0; i < kDoubles; ++i)
-                lanes.plane_offset[k][at + i] = static_cast<float>(stored[i]);
+                lanes.offset[k][at + i] = static_cast<float>(stored[i]);
         }
     }
 }
 
 /// All lanes of a batch; lanes beyond its tiles repeat the last.
-HWY_INLINE void set_up_batch(const KernelScene& scene, const SampleTile* tile, std::uint32_t tiles,
-                             TileLanes& lanes) {
+HWY_NOINLINE void set_up_batch(const KernelScene& scene, const SampleTile* tile, std::uint32_t tiles,
+                               TileLanes& lanes) {
     for (std::size_t j = 0; j < kLanes; ++j)
         gather_tile(scene, tile[std::min<std::size_t>(j, tiles - 1)], j, lanes);
     scale_lanes(lanes);
@@ -305,7 +315,8 @@ HWY_INLINE void set_up_batch(const KernelScene& scene, const SampleTile* tile, s
     measure_pitch(scene, tiles, tile, lanes);
     for (std::size_t j = 0; j < kLanes; ++j)
         gather_hull(scene, tile[std::min<std::size_t>(j, tiles - 1)], j, lanes);
-    make_planes(scene, lanes);
+    std::copy_n(lanes.origin_terms, kLanes, lanes.hull.origin_terms);
+    make_planes(scene, lanes.hull);
 }
 
 }  // namespace HWY_NAMESPACE

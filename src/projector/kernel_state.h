@@ -38,6 +38,14 @@ inline constexpr double kPlaneDoubt = 16 * 0x1p-24;
 inline constexpr float kNever = std::numeric_limits<float>::infinity();
 inline constexpr std::uint32_t kAllLanes = 65535;
 
+/// Beams, one per lane: the hull of four corner rays, from a centre of each, and planes around it.
+struct alignas(64) HullLanes {
+    double centre[3][kLanes];     // world frame
+    double origin_terms[kLanes];  // the origins are sums of terms of this size
+    double origin[4][3][kLanes], direction[4][3][kLanes];
+    float plane[4][3][kLanes], offset[4][kLanes];  // into the beam; positions from the tree's centre
+};
+
 /// 16 tiles, one per lane, as functions of their local coordinates (parts 1, u, v; quadratics 1, u, v, u^2, u
 /// v, v^2), scaled to weight 1 in the middle; positions from each facet's centre.
 struct alignas(64) TileLanes {
@@ -51,9 +59,7 @@ struct alignas(64) TileLanes {
     double origin_terms[kLanes], weight_terms[kLanes];  // as BlockRays' sizes
     double decision_doubt[kLanes];  // times (weight_terms reach + origin_terms)^2: the decision's own doubt
 
-    // Beams: the hull of four corner rays, from each facet's centre.
-    double corner_origin[4][3][kLanes], corner_direction[4][3][kLanes];
-    float plane[4][3][kLanes], plane_offset[4][kLanes];  // into the beam; positions from the tree's centre
+    HullLanes hull;
     float pitch[4][kLanes];  // how far apart neighbouring samples' rays are: u at t = 0, per t; v likewise
 
     // The same by tile, so that the coefficients of one are together: line 0..2, moment 3..5, origin 6..8,
@@ -87,22 +93,24 @@ struct alignas(64) LeafEdges {
     float normal[3][kLanes], height[kLanes];         // n and n . p_0
 };
 
-/// A node or leaf that waits, and the smallest t at which a ray of the group can meet it.
+/// A node or leaf that waits, the smallest t at which a ray of the group can meet it, and a node's box from
+/// the tree's centre.
 struct Waiting {
     float nearest;
     std::int32_t child;
+    float middle[3], half[3];
 };
 
-/// The rays of a vector's samples, from their facet's centre, and bounds for a box test.
+/// The rays of a vector's samples, weight divided out, from their facet's centre; and 1 / direction.
 struct alignas(64) VectorRays {
     double origin[3][kLanes], direction[3][kLanes];
-    float origin_from_tree[3][kLanes], inverse[3][kLanes];
+    float inverse[3][kLanes];
 };
 
 /// Beams around 16 vectors.
 struct alignas(64) VectorBeams {
     float plane[4][3][kLanes], offset[4][kLanes];  // positions from the tree's centre
-    float farthest[kLanes];
+    float farthest[kLanes];                        // no farther hit can matter to the vector
 };
 
 /// Everything that one thread needs for one batch.

@@ -25,7 +25,8 @@ struct TileInLeaf {
     TileDoubts doubts;
 };
 
-HWY_INLINE void move_tile_to_leaf(const TileLanes& lanes, std::size_t j, const Leaf& leaf, TileInLeaf& tile) {
+HWY_NOINLINE void move_tile_to_leaf(const TileLanes& lanes, std::size_t j, const Leaf& leaf,
+                                    TileInLeaf& tile) {
     const double(*c)[8] = lanes.tile[j];
     const double dx = leaf.centre[0] - lanes.centre[0][j], dy = leaf.centre[1] - lanes.centre[1][j],
                  dz = leaf.centre[2] - lanes.centre[2][j];
@@ -83,8 +84,8 @@ HWY_INLINE Sides sides_of(const Floats (&conic)[3][6], const Floats& doubt) {
 }
 
 /// The conics and the depth of 16 triangles through one tile.
-HWY_INLINE void triangle_forms(const TileInLeaf& tile, const LeafEdges& edges, Floats (&conic)[3][6],
-                               Floats (&above)[3], Floats (&along)[3]) {
+HWY_NOINLINE void triangle_forms(const TileInLeaf& tile, const LeafEdges& edges, Floats (&conic)[3][6],
+                                 Floats (&above)[3], Floats (&along)[3]) {
     for (int k = 0; k < 3; ++k) {
         const Floats lx = load(edges.edge[k][0]), ly = load(edges.edge[k][1]), lz = load(edges.edge[k][2]);
         const Floats mx = load(edges.moment[k][0]), my = load(edges.moment[k][1]),
@@ -119,7 +120,7 @@ struct Extent {
 /// From the corners where two of the edges' bounds meet. Where their determinant is less than 2^-7 of its
 /// terms, or a bound is far outside the square, nothing is known. Else a corner inside 1.5 times the square
 /// is right to 2^-11: the determinant to 2^-14 of itself, the numerators to 2^-12 of it.
-HWY_INLINE Extent extent_of(const EdgeBounds& e) {
+HWY_NOINLINE Extent extent_of(const EdgeBounds& e) {
     Floats u[3], v[3];
     Mask turned_right = mask_of(kAllLanes), turned_left = turned_right;
     for (int k = 0; k < 3; ++k) {
@@ -148,31 +149,35 @@ HWY_INLINE Extent extent_of(const EdgeBounds& e) {
     return {bounded_below(u), bounded_above(u), bounded_below(v), bounded_above(v)};
 }
 
-/// One tile and the state it draws into.
+/// One tile, one leaf, and the state they are drawn into.
 struct TileDrawing {
     const KernelScene& scene;
     KernelState& state;
     const SampleTile& tile;
-    const TileInLeaf& in_leaf;
+    const TileDoubts& doubts;
     const Leaf& leaf;
     std::uint32_t first_vector;  // of the tile, in the group
 };
 
-/// The triangle of lane `j` against one vector of the tile.
-HWY_INLINE void meet_vector(const TileDrawing& drawing, const Forms& forms, std::size_t j,
+/// A triangle, whose forms are in `lane`, against one vector of the tile.
+HWY_INLINE void meet_vector(const TileDrawing& drawing, const Forms& forms, std::size_t lane, Id triangle,
                             std::uint32_t vector) {
     const SampleVector& samples = drawing.scene.tiles->vectors[drawing.tile.first_vector + vector];
     const Floats u = load(samples.u), v = load(samples.v);
     const auto conic = [&](const float(&c)[6][kLanes]) HWY_ATTR {
-        return multiply_add(u, multiply_add(u, set(c[3][j]), multiply_add(v, set(c[4][j]), set(c[1][j]))),
-                            multiply_add(v, multiply_add(v, set(c[5][j]), set(c[2][j])), set(c[0][j])));
+        return multiply_add(
+            u, multiply_add(u, set(c[3][lane]), multiply_add(v, set(c[4][lane]), set(c[1][lane]))),
+            multiply_add(v, multiply_add(v, set(c[5][lane]), set(c[2][lane])), set(c[0][lane])));
     };
+    const auto linear = [&](const float(&c)[3][kLanes]) HWY_ATTR {
+        return multiply_add(u, set(c[1][lane]), multiply_add(v, set(c[2][lane]), set(c[0][lane])));
+    };
+    const TileDoubts& doubts = drawing.doubts;
     const Floats low = least(conic(forms.edge[0]), least(conic(forms.edge[1]), conic(forms.edge[2])));
-    const auto linear = [&](float c0, float c1, float c2)
-                            HWY_ATTR { return multiply_add(u, set(c1), multiply_add(v, set(c2), set(c0))); };
-    offer_lanes(drawing.state, drawing.first_vector + vector, drawing.leaf.triangle[j],
-                drawing.in_leaf.doubts, low, linear(forms.above[0][j], forms.above[1][j], forms.above[2][j]),
-                linear(forms.along[0][j], forms.along[1][j], forms.along[2][j]),
+    const Floats along = linear(forms.along), inverse = reciprocal(along), t = linear(forms.above) * inverse;
+    offer_lanes(drawing.state, drawing.first_vector + vector, triangle,
+                {low<set(-doubts.edge), low> set(doubts.edge), along > set(doubts.along), t,
+                 doubt_of_time(t, inverse, set(doubts.above), set(doubts.along))},
                 drawing.scene.tiles->samples[drawing.tile.first_vector + vector].valid);
 }
 
@@ -193,31 +198,15 @@ HWY_INLINE Cells cells_in(const Extent& extent, const SampleTile& tile) {
               round_down(multiply_add(extent.v_high, set(half_y), set(middle_y)) + slack))};
 }
 
-/// A sample that one lane's triangle meets or may meet.
-HWY_INLINE void offer_one(const TileDrawing& drawing, std::size_t slot, Id triangle, float t_low,
-                          float t_high, bool sure, bool placed) {
-    const std::uint32_t vector = drawing.first_vector + static_cast<std::uint32_t>(slot / kLanes);
-    const std::uint32_t lane = static_cast<std::uint32_t>(slot % kLanes);
-    Nearest& nearest = drawing.state.nearest[vector];
-    if (placed && (t_high < 0 || t_low > nearest.high[lane])) return;
-    if (sure && placed && t_low > 0 && t_high < nearest.low[lane]) {
-        nearest.low[lane] = t_low;
-        nearest.high[lane] = t_high;
-        nearest.triangle[lane] = triangle;
-        return;
-    }
-    list_doubts(drawing.state, vector, 1u << lane, triangle);
-}
-
 /// Each lane walks over its own cells.
-HWY_INLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, const Cells& cells,
-                           std::uint32_t lanes) {
+HWY_NOINLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, const Cells& cells,
+                             std::uint32_t lanes) {
     const SampleTile& tile = drawing.tile;
     const float middle_x = static_cast<float>(tile.width - 1) / 2,
                 middle_y = static_cast<float>(tile.height - 1) / 2;
     const Floats scale_u = set(1 / std::max(0.5f, middle_x)), scale_v = set(1 / std::max(0.5f, middle_y));
     const std::uint16_t* slots = &drawing.scene.tiles->slot[tile.first_slot];
-    const TileDoubts& doubts = drawing.in_leaf.doubts;
+    const TileDoubts& doubts = drawing.doubts;
     Floats x = cells.x_low, y = cells.y_low;
     while (lanes) {
         const Floats u = (x - set(middle_x)) * scale_u, v = (y - set(middle_y)) * scale_v;
@@ -233,10 +222,9 @@ HWY_INLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, const
             };
             const Floats along = linear(forms.along), inverse = reciprocal(along);
             const Floats t = linear(forms.above) * inverse;
-            const Floats off =
-                multiply_add(absolute(t), set(kTimeDoubt),
-                             inverse * multiply_add(absolute(t), set(doubts.along), set(doubts.above)));
-            const std::uint32_t sure = bits(low > set(doubts.edge)), placed = bits(along > set(doubts.along));
+            const Floats off = doubt_of_time(t, inverse, set(doubts.above), set(doubts.along));
+            const std::uint32_t inside = bits(low > set(doubts.edge)),
+                                placed = bits(along > set(doubts.along));
             alignas(64) float t_low[kLanes], t_high[kLanes], at_x[kLanes], at_y[kLanes];
             store(t - off, t_low);
             store(t + off, t_high);
@@ -246,9 +234,9 @@ HWY_INLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, const
                 const std::size_t j = *lane;
                 const std::uint16_t slot =
                     slots[static_cast<int>(at_y[j]) * tile.width + static_cast<int>(at_x[j])];
-                if (slot != kNoSlot)
-                    offer_one(drawing, slot, drawing.leaf.triangle[j], t_low[j], t_high[j], sure >> j & 1,
-                              placed >> j & 1);
+                if (slot == kNoSlot) continue;
+                offer_one(drawing.state, drawing.first_vector + slot / kLanes, slot % kLanes,
+                          drawing.leaf.triangle[j], t_low[j], t_high[j], inside >> j & 1, placed >> j & 1);
             }
         }
         x = x + set(1.0f);
@@ -260,8 +248,8 @@ HWY_INLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, const
 }
 
 /// Pairs of vectors and triangles that may meet: for each vector, its rectangle against all lanes at once.
-HWY_INLINE std::size_t list_pairs(const TileDrawing& drawing, const EdgeBounds& bounds, const Extent& extent,
-                                  std::uint32_t lanes) {
+HWY_NOINLINE std::size_t list_pairs(const TileDrawing& drawing, const EdgeBounds& bounds,
+                                    const Extent& extent, std::uint32_t lanes) {
     const SampleTile& tile = drawing.tile;
     std::vector<std::uint32_t>& pairs = drawing.state.pairs;
     if (pairs.size() < (tile.vectors + 1) * kLanes) pairs.resize((tile.vectors + 1) * kLanes);
@@ -305,8 +293,8 @@ HWY_INLINE std::size_t list_pairs(const TileDrawing& drawing, const EdgeBounds& 
 }
 
 /// Draws the lanes that are turned one way.
-HWY_INLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, const EdgeBounds& bounds,
-                            std::uint32_t lanes) {
+HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, const EdgeBounds& bounds,
+                              std::uint32_t lanes) {
     constexpr float kFewCells = 4;  // measured: above, vectors are faster
     const Extent extent = extent_of(bounds);
     const Cells cells = cells_in(extent, drawing.tile);
@@ -320,13 +308,14 @@ HWY_INLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, cons
     const std::size_t pairs = list_pairs(drawing, bounds, extent, lanes & ~small);
     for (std::size_t p = 0; p < pairs; ++p) {
         const std::uint32_t pair = drawing.state.pairs[p];
-        meet_vector(drawing, forms, pair % kLanes, pair / static_cast<std::uint32_t>(kLanes));
+        meet_vector(drawing, forms, pair % kLanes, drawing.leaf.triangle[pair % kLanes],
+                    pair / static_cast<std::uint32_t>(kLanes));
     }
 }
 
 /// The leaf's triangles through the tile of lane `j`.
-HWY_INLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf, std::size_t j,
-                                    KernelState& state) {
+HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf, std::size_t j,
+                                      KernelState& state) {
     TileInLeaf in_leaf;
     move_tile_to_leaf(state.lanes, j, leaf, in_leaf);
     Floats conic[3][6], above[3], along[3];
@@ -335,7 +324,8 @@ HWY_INLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf, 
     const Sides sides = sides_of(conic, doubt);
     const std::uint32_t live = first_lanes(leaf.count);
     const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
-    const TileDrawing drawing{scene, state, tile, in_leaf, leaf, tile.first_vector - state.first_vector};
+    const TileDrawing drawing{scene,          state, tile,
+                              in_leaf.doubts, leaf,  tile.first_vector - state.first_vector};
 
     // Front where it may be seen, else back; then the back of those that may be seen from both sides.
     const std::uint32_t first_back = sides.back & ~sides.front, second_back = sides.back & sides.front;

@@ -23,7 +23,7 @@ struct HullRays {
     double size = 0;  // largest origin in the 1-norm, and the tree's
 };
 
-HWY_INLINE void gather_hulls(const KernelScene& scene, const KernelState& state, HullRays& rays) {
+HWY_NOINLINE void gather_hulls(const KernelScene& scene, const KernelState& state, HullRays& rays) {
     const Vec3& centre = scene.tree->centre;
     const Vec3& half = scene.tree->half;
     rays.count = 0;
@@ -33,9 +33,9 @@ HWY_INLINE void gather_hulls(const KernelScene& scene, const KernelState& state,
             double own = 1e-6 * state.lanes.origin_terms[j];
             for (int a = 0; a < 3; ++a) {
                 const double from_tree = state.lanes.centre[a][j] - centre[a];
-                rays.origin[a][rays.count] = state.lanes.corner_origin[k][a][j] + from_tree;
-                rays.direction[a][rays.count] = state.lanes.corner_direction[k][a][j];
-                own += std::fabs(state.lanes.corner_origin[k][a][j]) + std::fabs(from_tree);
+                rays.origin[a][rays.count] = state.lanes.hull.origin[k][a][j] + from_tree;
+                rays.direction[a][rays.count] = state.lanes.hull.direction[k][a][j];
+                own += std::fabs(state.lanes.hull.origin[k][a][j]) + std::fabs(from_tree);
             }
             size = std::max(size, own);
             ++rays.count;
@@ -49,8 +49,8 @@ HWY_INLINE double dot3(const double (*v)[4 * kLanes], std::size_t i, const doubl
 }
 
 /// Adds the plane with this normal, turned towards the axis by more than it rounds, if it then holds.
-HWY_INLINE void add_plane(const HullRays& rays, const double* normal, const double* axis, double cosine,
-                          GroupBeam& beam) {
+HWY_NOINLINE void add_plane(const HullRays& rays, const double* normal, const double* axis, double cosine,
+                            GroupBeam& beam) {
     double length = 0, n[3];
     for (int a = 0; a < 3; ++a) length += normal[a] * normal[a];
     if (!(length > 0) || !(cosine > 0)) return;
@@ -70,7 +70,7 @@ HWY_INLINE void add_plane(const HullRays& rays, const double* normal, const doub
 }
 
 /// Around all of the group's rays: two pairs of planes along the mean direction and one across it.
-HWY_INLINE void make_group_beam(const KernelScene& scene, const KernelState& state, GroupBeam& beam) {
+HWY_NOINLINE void make_group_beam(const KernelScene& scene, const KernelState& state, GroupBeam& beam) {
     HullRays rays;
     gather_hulls(scene, state, rays);
     beam.planes = 0;
@@ -106,10 +106,10 @@ HWY_INLINE void make_group_beam(const KernelScene& scene, const KernelState& sta
     add_plane(rays, axis, axis, cosine, beam);
     if (state.tiles == 1) {
         for (int k = 0; k < 4; ++k) {
-            if (!(state.lanes.plane_offset[k][state.first_lane] > -kNever)) continue;
+            if (!(state.lanes.hull.offset[k][state.first_lane] > -kNever)) continue;
             for (int a = 0; a < 3; ++a)
-                beam.plane[beam.planes][a] = state.lanes.plane[k][a][state.first_lane];
-            beam.offset[beam.planes++] = state.lanes.plane_offset[k][state.first_lane];
+                beam.plane[beam.planes][a] = state.lanes.hull.plane[k][a][state.first_lane];
+            beam.offset[beam.planes++] = state.lanes.hull.offset[k][state.first_lane];
         }
         return;
     }
@@ -158,15 +158,15 @@ HWY_INLINE std::uint32_t reached_children(const GroupBeam& beam, const WideNode&
 }
 
 /// What no sample of the group can see is farther than this.
-HWY_INLINE void refresh_farthest(const KernelScene& scene, KernelState& state) {
+HWY_NOINLINE void refresh_farthest(const KernelScene& scene, KernelState& state) {
     state.group_farthest = -kNever;
     for (std::uint32_t j = state.first_lane; j < state.first_lane + state.tiles; ++j) {
         const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
         const std::uint32_t first = tile.first_vector - state.first_vector;
         Floats high = set(-kNever);
-        // Lanes that repeat a sample see what it sees.
         for (std::uint32_t i = first; i < first + tile.vectors; ++i) {
-            const Floats own = load(state.nearest[i].high);
+            const Mask valid = mask_of(scene.tiles->samples[state.first_vector + i].valid);
+            const Floats own = choose(valid, load(state.nearest[i].high), set(-kNever));
             high = largest(high, own);
             if (state.beams_made) state.beams[i / kLanes].farthest[i % kLanes] = largest_lane(own);
         }
@@ -189,13 +189,33 @@ HWY_INLINE void prefetch_child(const LeafTree& tree, std::int32_t child) {
     for (int line = 0; line < 11; ++line) hwy::Prefetch(from + 64 * line);
 }
 
+/// One child of a node, ready to wait.
+HWY_INLINE Waiting waiting_child(const WideNode& node, std::size_t lane, float nearest) {
+    Waiting next;
+    next.nearest = nearest;
+    next.child = node.child[lane];
+    for (int a = 0; a < 3; ++a) {
+        next.middle[a] = 0.5f * (node.low[a][lane] + node.high[a][lane]);
+        next.half[a] = 0.500001f * (node.high[a][lane] - node.low[a][lane]);
+    }
+    return next;
+}
+
+/// Whether some vector's beam reaches the node before its samples all see something nearer.
+HWY_INLINE bool reaches_some_vector(const KernelState& state, const Waiting& node) {
+    for (const VectorBeams& beams : state.beams) {
+        if (vectors_at_box(beams, node.middle, node.half, node.nearest)) return true;
+    }
+    return false;
+}
+
 /// Finds the nearest sure hit of every sample of the group, and lists the doubtful triangles.
-HWY_INLINE void walk_group(const KernelScene& scene, LeafMode mode, KernelState& state) {
-    constexpr int kLeavesBetweenLooks = 8;
+HWY_NOINLINE void walk_group(const KernelScene& scene, LeafMode mode, KernelState& state) {
+    constexpr int kLeavesBetweenLooks = 8, kLooksBeforeBeams = 3;  // measured
     const LeafTree& tree = *scene.tree;
-    int since = 0;
+    int leaves = 0, looks = 0;
     state.stack.clear();
-    if (!tree.empty()) state.stack.push_back({-kNever, tree.root});
+    if (!tree.empty()) state.stack.push_back({-kNever, tree.root, {0, 0, 0}, {kNever, kNever, kNever}});
     while (!state.stack.empty()) {
         const Waiting next = state.stack.back();
         state.stack.pop_back();
@@ -203,18 +223,19 @@ HWY_INLINE void walk_group(const KernelScene& scene, LeafMode mode, KernelState&
         if (!state.stack.empty()) prefetch_child(tree, state.stack.back().child);
         if (next.child < 0) {
             draw_leaf(scene, tree.leaves[static_cast<std::size_t>(~next.child)], next.nearest, mode, state);
-            if (++since == kLeavesBetweenLooks) {
-                since = 0;
-                refresh_farthest(scene, state);
-            }
+            if (++leaves % kLeavesBetweenLooks != 0) continue;
+            refresh_farthest(scene, state);
+            if (++looks == kLooksBeforeBeams && !state.beams_made) make_vector_beams(scene, state);
             continue;
         }
+        if (state.beams_made && looks > 0 && next.child != tree.root && !reaches_some_vector(state, next))
+            continue;
         const WideNode& node = tree.nodes[static_cast<std::size_t>(next.child)];
         alignas(64) float nearest[kLanes];
         const std::size_t base = state.stack.size();
         for (Each lane(reached_children(state.beam, node, nearest)); lane; ++lane) {
             if (!(nearest[*lane] > state.group_farthest))
-                push_child(state.stack, base, {nearest[*lane], node.child[*lane]});
+                push_child(state.stack, base, waiting_child(node, *lane, nearest[*lane]));
         }
     }
 }

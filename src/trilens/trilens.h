@@ -1,6 +1,7 @@
 // All of trilens: see the headers below, each with an example.
 #pragma once
 
+#include <trilens/bench.h>
 #include <trilens/compare.h>
 #include <trilens/engine_study.h>
 #include <trilens/error.h>
