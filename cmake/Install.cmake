@@ -9,7 +9,9 @@ if(NOT TRILENS_CORE_ONLY)
   file(RELATIVE_PATH to_libraries ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
   set_target_properties(trilens_command PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries}")
   set_target_properties(trilens PROPERTIES INSTALL_RPATH "$ORIGIN")
+  install(TARGETS trilens_pictures_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(TARGETS trilens_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/TrilensRenderTests.cmake DESTINATION ${package_folder})
 endif()
 install(TARGETS ${targets} EXPORT trilens_targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_BINARY_DIR}/include/trilens DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
@@ -17,7 +19,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 install(EXPORT trilens_targets NAMESPACE trilens:: FILE trilens-targets.cmake DESTINATION ${package_folder})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/trilens-config.cmake.in
-  ${PROJECT_BINARY_DIR}/trilens-config.cmake INSTALL_DESTINATION ${package_folder})
+  ${PROJECT_BINARY_DIR}/trilens-config.cmake INSTALL_DESTINATION ${package_folder} PATH_VARS CMAKE_INSTALL_BINDIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/trilens-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/trilens-config.cmake ${PROJECT_BINARY_DIR}/trilens-config-version.cmake
   DESTINATION ${package_folder})

@@ -8,7 +8,7 @@ if(NOT TRILENS_CORE_ONLY)
 endif()
 
 # Their headers are not ours to warn about.
-foreach(library glm::glm hwy::hwy OpenImageIO::OpenImageIO embree CLI11::CLI11 TinyGLTF::TinyGLTF
+foreach(library glm::glm hwy::hwy OpenImageIO::OpenImageIO OpenEXR::OpenEXR OpenEXR::OpenEXRCore Imath::Imath embree CLI11::CLI11 TinyGLTF::TinyGLTF
     tinyobjloader::tinyobjloader_double nlohmann_json::nlohmann_json)
   if(TARGET ${library})
     get_target_property(directories ${library} INTERFACE_INCLUDE_DIRECTORIES)

@@ -3,6 +3,8 @@ find_package(OpenSubdiv REQUIRED MODULE)  # Debian's own config names a static l
 find_package(nlohmann_json REQUIRED CONFIG)
 find_package(tinyobjloader REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)
+find_package(OpenEXR 3.1 REQUIRED CONFIG)
+find_package(Libdeflate REQUIRED MODULE)
 find_package(OpenImageIO REQUIRED CONFIG)
 find_package(TinyGLTF REQUIRED CONFIG)
 

@@ -21,8 +21,10 @@ void bind_scene(py::module_& module);
 void bind_renderer(py::module_& module);
 void bind_compare(py::module_& module);
 void bind_sweep(py::module_& module);
+void bind_suite(py::module_& module);
 void bind_surface(py::module_& module);
 void bind_ray_mesh(py::module_& module);
+void bind_film_camera(py::module_& module);
 
 /// Throws UsageError with the nearest known name unless `name` is one of them; `what`: "engine".
 void require_known(const std::string& what, const std::string& name, std::span<const std::string> known);

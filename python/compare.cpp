@@ -72,6 +72,7 @@ void bind_metrics(py::module_& module) {
                 field("relmse", &Metrics::relmse, "Mean (v - r)^2 / (r^2 + 0.01)."),
                 field("psnr_db", &Metrics::psnr_db, "Decibels; inf for equal images."),
                 field("ssim", &Metrics::ssim, "Structural similarity of the luminances."),
+                field("flip", &Metrics::flip, "Mean of FLIP's errors, 0 (none to be seen) to 1."),
                 field("max", &Metrics::max, "Largest |v - r|."),
                 field("p50", &Metrics::p50, "Percentile of each pixel's largest |v - r|."),
                 field("p95", &Metrics::p95, "Likewise."), field("p99", &Metrics::p99, "Likewise."));
@@ -185,7 +186,7 @@ void bind_comparison(py::module_& module) {
              "place in\n"
              "the reference, x right and y down). Raises KeyError where it was not measured.")
         .def("difference", difference,
-             "The difference as an image: R G B test - reference, abs.R G B, mask.M; of "
+             "The difference as an image: R G B test - reference, abs.R G B, mask.M, flip.Y; of "
              "each layer\n"
              "that shows something <layer>.shift.X Y in pixels and <layer>.shift.M (1 found, -1 lost, 0 "
              "nothing "

@@ -27,9 +27,18 @@ py::object hit_dict(const Renderer& renderer, const Hit& hit) {
     return dict;
 }
 
-py::object end_dict(const Renderer& renderer, const PathEnd* end) {
+py::object end_dict(const Renderer& renderer, const SampleViews& views, const PathEnd* end) {
     if (!end) return py::none();
     py::dict dict;
+    py::list steps;
+    for (const Step& step : views.steps_of(*end)) {
+        py::dict one;
+        one["optic"] = renderer.optics()[step.optic].name;
+        one["event"] = event_name(step.event);
+        steps.append(one);
+    }
+    dict["path"] = steps;
+    dict["weight"] = tuple_of(end->weight);
     dict["ray"] = ray_dict(end->ray);
     dict["sees"] = hit_dict(renderer, end->hit);
     return dict;
@@ -54,7 +63,13 @@ py::dict explanation_dict(const Renderer& renderer, Engine engine, const PixelEx
         shown["front"] = view.incidence.front;
         dict["optic"] = shown;
         for (const Path path : {Path::kReflect, Path::kRefract})
-            dict[path_name(path)] = end_dict(renderer, pixel.views.find(view, path));
+            dict[path_name(path)] = end_dict(renderer, pixel.views, pixel.views.find(view, path));
+        py::list ends;
+        for (const PathEnd& end : pixel.views.ends_of(view))
+            ends.append(end_dict(renderer, pixel.views, &end));
+        dict["ends"] = ends;
+        dict["method"] = view.traced ? "traced" : view.level > 0 ? "subdivided" : "projected";
+        dict["level"] = view.level;
     }
     py::dict colour;
     colour["direct"] = tuple_of(pixel.colour.direct);

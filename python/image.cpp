@@ -175,6 +175,15 @@ void bind_image(py::module_& module) {
             "Writes OpenEXR, every channel to the last bit (.exr), or the beauty as 8-bit sRGB (.png).\n"
             "Raises UsageError for other endings, OutputError where the file cannot be written.");
     module.def(
+        "count_regions",
+        [](const HeldImage& held, std::size_t least) {
+            return Talk().run([&] { return count_regions(held.image, least); });
+        },
+        py::arg("image"), py::arg("least") = kSmallestRegion,
+        "How many separate shapes stand before the environment: regions of at least least pixels that touch "
+        "by\n"
+        "sides or corners and whose alpha (channel A) is above 0. Raises InputError for an image without A.");
+    module.def(
         "read_image",
         [](const std::filesystem::path& file) {
             return HeldImage{Talk().run([&] { return read_image(file.string()); }), {}};

@@ -34,8 +34,10 @@ PYBIND11_MODULE(_trilens, module) {
     bindings::bind_scene(module);
     bindings::bind_surface(module);
     bindings::bind_ray_mesh(module);
+    bindings::bind_film_camera(module);
     bindings::bind_renderer(module);
     bindings::bind_compare(module);
     bindings::bind_sweep(module);
+    bindings::bind_suite(module);
     pybind11::delattr(module, "__module__");
 }

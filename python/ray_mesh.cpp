@@ -135,11 +135,15 @@ void bind_camera(py::module_& module) {
     module.def(
         "make_perspective",
         [](const Triple& eye, const Triple& at, const Triple& up, double yfov, int width, int height) {
-            return make_perspective({{vec3(eye), vec3(at), vec3(up)}, yfov, width, height});
+            return make_perspective({{vec3(eye), vec3(at), vec3(up)},
+                                     yfov,
+                                     static_cast<double>(width),
+                                     static_cast<double>(height)});
         },
         py::arg("eye") = tuple_of(look.eye), py::arg("at") = tuple_of(look.at),
         py::arg("up") = tuple_of(look.up), py::arg("yfov") = perspective.yfov_degrees,
-        py::arg("width") = perspective.width, py::arg("height") = perspective.height,
+        py::arg("width") = static_cast<int>(perspective.width),
+        py::arg("height") = static_cast<int>(perspective.height),
         "A pinhole at eye, square pixels. yfov: the whole vertical angle, degrees. width, height: pixels.\n"
         "Raises InputError where this leaves no camera.");
     const OrthographicParams orthographic;
@@ -147,19 +151,28 @@ void bind_camera(py::module_& module) {
         "make_orthographic",
         [](const Triple& eye, const Triple& at, const Triple& up, double world_height, int width,
            int height) {
-            return make_orthographic({{vec3(eye), vec3(at), vec3(up)}, world_height, width, height});
+            return make_orthographic({{vec3(eye), vec3(at), vec3(up)},
+                                      world_height,
+                                      static_cast<double>(width),
+                                      static_cast<double>(height)});
         },
         py::arg("eye") = tuple_of(look.eye), py::arg("at") = tuple_of(look.at),
         py::arg("up") = tuple_of(look.up), py::arg("world_height") = orthographic.world_height,
-        py::arg("width") = orthographic.width, py::arg("height") = orthographic.height,
+        py::arg("width") = static_cast<int>(orthographic.width),
+        py::arg("height") = static_cast<int>(orthographic.height),
         "Parallel rays; the film's middle is at eye. world_height: what the film's height covers, scene "
         "units.");
 }
 
 void bind_makers(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> released;
-    module.def("camera_mesh", make_camera_mesh, py::arg("camera"), py::arg("width"), py::arg("height"),
-               "The film as two facets; t is the depth along the view axis.");
+    module.def(
+        "camera_mesh",
+        [](const LinearCamera& camera, double width, double height) {
+            return make_camera_mesh(camera, width, height);
+        },
+        py::arg("camera"), py::arg("width"), py::arg("height"),
+        "The film as two facets; t is the depth along the view axis.");
     module.def("mirror_mesh", make_mirror_mesh, py::arg("grid"), py::arg("camera"), released,
                "What the camera sees in a mirror of this grid; facet f is facet f of the grid.");
     module.def("lens_mesh", make_lens_mesh, py::arg("grid"), py::arg("camera"), py::arg("ior"), released,

@@ -20,7 +20,7 @@ struct ClassicArguments {
     std::optional<double> tolerance;
 };
 
-const Names kEngines{"exact", "classic", "limit", "facets"};
+const Names kEngines{"exact", "classic", "limit", "facets", "envmap", "planar"};
 const Names kCurves{"arcs", "slices", "tessellate", "straight"};
 const Names kClips{"scene", "screen", "none"};
 
@@ -44,14 +44,29 @@ ClassicParams classic_params(const ClassicArguments& given) {
     return params;
 }
 
+/// What facets are asked to be, beside their number.
+struct FacetArguments {
+    std::optional<std::string> rays;
+    std::optional<double> max_error;
+
+    FrameParams of(FrameParams frame) const {
+        if (rays) {
+            require_known("rays", *rays, Names{"fitted", "interpolated"});
+            frame.rays = *rays == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
+        }
+        frame.max_error = max_error;
+        return frame;
+    }
+};
+
 EngineChoice projecting_engine(const std::string& name, const ClassicArguments& classic) {
-    const Names projecting{"exact", "classic"};
+    const Names projecting{"exact", "classic", "envmap", "planar"};
     require_known("projecting engine", name, projecting);
     if (name == "classic") return classic_params(classic);
     if (classic.curves || classic.clip || classic.pieces || classic.tolerance)
         throw UsageError(
             "curves, clip, pieces and tolerance are the classic engine's; add engine=\"classic\"");
-    return Engine::kExact;
+    return engine_choice(name);
 }
 
 LayerRequest layer_request(const std::optional<Names>& layers, const std::optional<Window>& window) {
@@ -72,6 +87,10 @@ HeldImage draw(const Renderer& renderer, const PictureRequest& request, const st
     py::dict statistics;
     statistics["optic_pixels"] = picture.statistics.optic_pixels;
     statistics["pixels_without_ray"] = picture.statistics.pixels_without_ray;
+    statistics["subdivided_pixels"] = picture.statistics.subdivided_pixels;
+    statistics["traced_pixels"] = picture.statistics.traced_pixels;
+    statistics["projected_facets"] = picture.statistics.projected_facets;
+    statistics["predicted_error"] = picture.statistics.predicted_error;
     statistics["prepare_seconds"] = picture.prepare_seconds;
     statistics["draw_seconds"] = picture.draw_seconds;
     return {std::move(picture.image), statistics};
@@ -83,19 +102,20 @@ void bind_pictures(RendererClass& renderer) {
         [](const Renderer& self, int resolution, const std::optional<std::string>& camera,
            const std::string& engine, const std::optional<Names>& layers, const std::optional<Window>& window,
            const std::optional<std::string>& curves, const std::optional<std::string>& clip,
-           std::optional<int> pieces, std::optional<double> tolerance, const py::object& progress,
-           const py::object& warn) {
+           std::optional<int> pieces, std::optional<double> tolerance, const std::optional<std::string>& rays,
+           std::optional<double> max_error, const py::object& progress, const py::object& warn) {
             Talk talk(progress, warn);
             return draw(
                 self,
-                {frame_params(self, resolution, camera),
+                {FacetArguments{rays, max_error}.of(frame_params(self, resolution, camera)),
                  projecting_engine(engine, {curves, clip, pieces, tolerance}), layer_request(layers, window)},
                 "render", talk);
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::arg("engine") = "exact",
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("curves") = py::none(), py::arg("clip") = py::none(), py::arg("pieces") = py::none(),
-        py::arg("tolerance") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        py::arg("tolerance") = py::none(), py::arg("rays") = py::none(), py::arg("max_error") = py::none(),
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the scene by projection. The same pixels for any number of threads.\n\n"
         "resolution: 1..1024, of every optic's grid; 0: as the scene says.\n"
         "camera: by name; None: the scene's own.\n"
@@ -105,6 +125,10 @@ void bind_pictures(RendererClass& renderer) {
         "curves, clip, pieces, tolerance: of the classic engine: \"arcs\", \"slices\", \"tessellate\" or\n"
         "\"straight\"; \"scene\", \"screen\" or \"none\"; pieces 1..1024; arcs keep within tolerance "
         "pixels.\n"
+        "rays: \"fitted\" or \"interpolated\", of every optic; None: as the scene says.\n"
+        "max_error: pixels; facets whose predicted displacement is more are divided, and at last traced; 0: "
+        "none;\n"
+        "None: as the scene says.\n"
         "progress: called as progress(done, job), done in 0..1; returning False raises Interrupted.\n"
         "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
         "Raises UsageError for a camera, layer or window that there is not, InputError where the picture "
@@ -115,17 +139,21 @@ void bind_pictures(RendererClass& renderer) {
         "trace",
         [](const Renderer& self, const std::string& surface, int resolution,
            const std::optional<std::string>& camera, const std::optional<Names>& layers,
-           const std::optional<Window>& window, const py::object& progress, const py::object& warn) {
+           const std::optional<Window>& window, const std::optional<std::string>& rays,
+           std::optional<double> max_error, const py::object& progress, const py::object& warn) {
             require_known("surface", surface, Names{"limit", "facets"});
+            if (surface == "limit" && (rays || max_error))
+                throw UsageError("rays and max_error are about facets; add surface=\"facets\"");
             Talk talk(progress, warn);
             return draw(self,
-                        {frame_params(self, resolution, camera), engine_choice(surface),
-                         layer_request(layers, window)},
+                        {FacetArguments{rays, max_error}.of(frame_params(self, resolution, camera)),
+                         engine_choice(surface), layer_request(layers, window)},
                         "trace", talk);
         },
         py::arg("surface") = "limit", py::arg("resolution") = 0, py::arg("camera") = py::none(),
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
-        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        py::arg("rays") = py::none(), py::arg("max_error") = py::none(), py::arg("progress") = py::none(),
+        py::arg("warn") = py::none(),
         "Draws the same scene by ray tracing: the truth.\n\n"
         "surface: \"limit\" (the exact surfaces) or \"facets\" (the rays that render's facets interpolate).\n"
         "The other arguments, and what is raised, are those of render.");
@@ -181,7 +209,10 @@ FrameParams frame_params(const Renderer& renderer, int resolution, const std::op
 EngineChoice engine_choice(const std::string& name) {
     require_known("engine", name, kEngines);
     if (name == "classic") return ClassicParams{};
-    return name == "exact" ? Engine::kExact : name == "limit" ? Engine::kLimitTruth : Engine::kFacetsTruth;
+    for (const Engine engine :
+         {Engine::kLimitTruth, Engine::kFacetsTruth, Engine::kEnvironment, Engine::kPlanar})
+        if (name == engine_name(engine)) return engine;
+    return Engine::kExact;
 }
 
 void bind_renderer(py::module_& module) {

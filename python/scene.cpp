@@ -37,14 +37,14 @@ Scene load(const std::filesystem::path& file, const py::dict& overrides, int res
 }
 
 struct SceneText {
-    std::string json, folder;
+    std::string json, folder, label;
 };
 
 Scene parse(const SceneText& text, const py::dict& overrides, int resolution, const py::object& warn) {
     Talk talk(py::none(), warn);
     const std::vector<SceneOverride> changes = overrides_of(overrides);
     Scene scene = talk.run([&] {
-        Scene parsed = parse_scene(text.json, text.folder, changes);
+        Scene parsed = parse_scene(text.json, text.folder, changes, text.label);
         if (resolution != 0) set_resolution(parsed, resolution);
         return parsed;
     });
@@ -65,12 +65,10 @@ void bind_parts(py::module_& module) {
     py::class_<CameraDescription>(module, "Camera", "A camera as the scene gives it.")
         .def_readonly("name", &CameraDescription::name)
         .def_property_readonly(
-            "type",
-            [](const CameraDescription& camera) {
-                return camera.type == CameraDescription::Type::kRayMesh ? "rayMesh" : "perspective";
-            },
-            "\"perspective\" or \"rayMesh\".")
-        .def_readonly("yfov", &CameraDescription::yfov, "The whole vertical angle, degrees (perspective).")
+            "type", [](const CameraDescription& camera) { return camera_type_name(camera.type); },
+            "As in scene files: \"perspective\", \"fisheye\", \"rayMesh\", ...")
+        .def_readonly("yfov", &CameraDescription::yfov,
+                      "The whole vertical angle, degrees (of types that have it).")
         .def_property_readonly(
             "eye", [](const CameraDescription& camera) { return tuple_of(camera.eye); }, "World frame.")
         .def_property_readonly(
@@ -113,15 +111,16 @@ void bind_readers(py::module_& module) {
     module.def(
         "parse_scene",
         [](const py::object& scene, const std::filesystem::path& folder, const py::dict& overrides,
-           int resolution, const py::object& warn) {
+           int resolution, const std::string& label, const py::object& warn) {
             const bool is_text = py::isinstance<py::str>(scene);
-            return parse({is_text ? scene.cast<std::string>() : json_text(scene), folder.string()}, overrides,
-                         resolution, warn);
+            return parse({is_text ? scene.cast<std::string>() : json_text(scene), folder.string(), label},
+                         overrides, resolution, warn);
         },
         py::arg("scene"), py::arg("folder") = "", py::arg("overrides") = py::dict(),
-        py::arg("resolution") = 0, py::kw_only(), py::arg("warn") = py::none(),
+        py::arg("resolution") = 0, py::kw_only(), py::arg("label") = "", py::arg("warn") = py::none(),
         "The same from JSON text or from a dict of the same form.\n\n"
-        "folder: where relative paths start; \"\": the working directory.");
+        "folder: where relative paths start; \"\": the working directory.\n"
+        "label: what messages call the scene; \"\": \"scene\".");
     module.def(
         "scene_examples",
         [] {
@@ -149,6 +148,7 @@ void bind_scene(py::module_& module) {
     bind_parts(module);
     py::class_<Scene>(module, "Scene", "A scene, checked and with nothing left to load. It does not change.")
         .def_readonly("file", &Scene::file, "Where it came from; empty for scenes from memory.")
+        .def_readonly("label", &Scene::label, "What messages call it where it has no file; may be empty.")
         .def_readonly("folder", &Scene::folder, "Where its relative paths start.")
         .def_readonly("film", &Scene::film)
         .def_readonly("cameras", &Scene::cameras, "At least one.")
@@ -176,15 +176,17 @@ void bind_scene(py::module_& module) {
         .def(
             "with_overrides",
             [](const Scene& scene, const py::dict& overrides, int resolution, const py::object& warn) {
-                Scene changed = parse({scene.resolved, scene.folder}, overrides, resolution, warn);
+                Scene changed =
+                    parse({scene.resolved, scene.folder, scene_title(scene)}, overrides, resolution, warn);
                 changed.file = scene.file;
+                changed.label = scene.label;
                 return changed;
             },
             py::arg("overrides") = py::dict(), py::arg("resolution") = 0, py::kw_only(),
             py::arg("warn") = py::none(), "The scene with these changes, as a new one; see load_scene.")
         .def("__repr__", [](const Scene& scene) {
-            return "<trilens.Scene '" + scene.file + "', " + std::to_string(scene.film.width) + " x " +
-                   std::to_string(scene.film.height) + ", " + std::to_string(scene.meshes.size()) +
+            return "<trilens.Scene '" + scene_title(scene) + "', " + std::to_string(scene.film.width) +
+                   " x " + std::to_string(scene.film.height) + ", " + std::to_string(scene.meshes.size()) +
                    " meshes>";
         });
     bind_readers(module);

@@ -2,6 +2,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <functional>
+#include <variant>
+
 #include "arrays.h"
 #include "scene.h"
 #include "talk.h"
@@ -11,13 +14,35 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// "resolution=1,2,4" from that text or from whole numbers.
-std::string axis_text(const py::object& over) {
-    if (py::isinstance<py::str>(over)) return over.cast<std::string>();
-    std::string text;
-    for (const int n : over.cast<std::vector<int>>())
-        text += (text.empty() ? "resolution=" : ",") + std::to_string(n);
-    return text;
+/// A value as --over takes it: texts bare, numbers as they read back.
+std::string value_text(const py::handle& value) {
+    if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+    return py::str(value).cast<std::string>();
+}
+
+AxisRequest axis_of(const std::string& name, const py::handle& values) {
+    AxisRequest request{name, {}};
+    if (py::isinstance<py::str>(values))
+        return {name, parse_over(name + "=" + values.cast<std::string>()).values};
+    for (const py::handle value : values) request.values.push_back(value_text(value));
+    return request;
+}
+
+/// Axes from a text ("resolution=1,2,4"), a dict of values by axis, a list of such texts, or resolutions.
+std::vector<AxisRequest> axes_of(const py::object& over) {
+    if (py::isinstance<py::str>(over)) return {parse_over(over.cast<std::string>())};
+    std::vector<AxisRequest> axes;
+    if (py::isinstance<py::dict>(over)) {
+        for (const auto& [name, values] : over.cast<py::dict>())
+            axes.push_back(axis_of(name.cast<std::string>(), values));
+        return axes;
+    }
+    bool has_texts = false;
+    for (const py::handle value : over) {
+        has_texts |= py::isinstance<py::str>(value);
+        if (py::isinstance<py::str>(value)) axes.push_back(parse_over(value.cast<std::string>()));
+    }
+    return has_texts ? axes : std::vector<AxisRequest>{axis_of("resolution", over)};
 }
 
 SweepTalk talk_of(Talk& talk) {
@@ -31,9 +56,16 @@ const SweepFit* find_fit(const SweepSummary& summary, const std::string& metric,
     return nullptr;
 }
 
+py::dict dict_of(const Coordinates& point) {
+    py::dict values;
+    for (const Coordinate& one : point) values[py::str(one.axis)] = one.value.text;
+    return values;
+}
+
 void bind_fits(py::module_& module) {
     py::class_<SweepPoint> point(module, "SweepPoint", "One measurement of a fit.");
-    bind_fields(point, field("n", &SweepPoint::n, "The resolution."),
+    bind_fields(point,
+                field("n", &SweepPoint::n, "The resolution, or where the run stands along SweepFit.axis."),
                 field("value", &SweepPoint::value, "The error."),
                 field("used", &SweepPoint::used, "Whether it took part in the fit."));
     py::class_<SweepFit> fit(module, "SweepFit", "error = constant * n^-order over the runs of a sweep.");
@@ -41,7 +73,10 @@ void bind_fits(py::module_& module) {
         fit, field("metric", &SweepFit::metric, "The column's name in runs.csv."),
         field("layer", &SweepFit::layer, "\"reflect\", \"refract\"; \"\" for the whole picture."),
         field("optic", &SweepFit::optic, "Its name, or \"all\"."),
+        field("axis", &SweepFit::axis, "The axis along which it is fitted."),
         field("order", &SweepFit::order, "None: fewer than two usable points."),
+        field("order_low", &SweepFit::order_low, "95 % confidence; None: fewer than three points."),
+        field("order_high", &SweepFit::order_high, "Likewise."),
         field("constant", &SweepFit::constant, "The error that the law gives at n = 1."),
         field("r2", &SweepFit::r2, "Of the line in log-log."),
         field("n_for_1px", &SweepFit::n_for_1px, "Resolution for an error of one pixel (metrics in pixels)."),
@@ -49,10 +84,15 @@ void bind_fits(py::module_& module) {
         field("coverage", &SweepFit::coverage,
               "The least share of pixels that a run behind the law measured (metrics in pixels)."),
         field("points", &SweepFit::points, "Every finished run that has the metric."));
+    fit.def_property_readonly(
+        "group", [](const SweepFit& one) { return dict_of(one.group); },
+        "What the runs have in common along the other axes: text by axis.");
     py::class_<Fit> law(module, "Fit", "error = constant * n^-order.");
     bind_fields(law, field("order", &Fit::order, "2: doubling n quarters the error."),
                 field("constant", &Fit::constant, "The error at n = 1."),
                 field("r2", &Fit::r2, "Of the line in log-log."),
+                field("order_low", &Fit::order_low, "95 % confidence; None with two points."),
+                field("order_high", &Fit::order_high, "Likewise."),
                 field("used", &Fit::used, "Per point: whether it took part."),
                 field("n_for_1", &Fit::n_for_1, "Smallest n for an error of 1; None where it does not fall."),
                 field("n_for_half", &Fit::n_for_half, "Likewise, of 0.5."));
@@ -80,7 +120,12 @@ void bind_summary(py::module_& module) {
                 field("metrics", &OpticDisplacement::metrics, "Values by column name, in pixels."));
     py::class_<RunRecord>(module, "SweepRun", "One run of a sweep.")
         .def_property_readonly(
-            "n", [](const RunRecord& run) { return run.plan.n; }, "Its resolution.")
+            "n", [](const RunRecord& run) { return run.plan.n(); },
+            "Its resolution; 0 where that is no axis.")
+        .def_property_readonly(
+            "id", [](const RunRecord& run) { return run.plan.id; }, "Its folder's name under runs/.")
+        .def_property_readonly(
+            "point", [](const RunRecord& run) { return dict_of(run.plan.at); }, "Its values: text by axis.")
         .def_property_readonly(
             "state", [](const RunRecord& run) { return state_name(run.state); },
             "\"done\", \"failed\" or \"missing\".")
@@ -89,7 +134,7 @@ void bind_summary(py::module_& module) {
         .def_readonly("warnings", &RunRecord::warnings)
         .def_readonly("error", &RunRecord::error, "Of a failed run.")
         .def("__repr__", [](const RunRecord& run) {
-            return "<trilens.SweepRun n=" + std::to_string(run.plan.n) + ", " + state_name(run.state) + ">";
+            return "<trilens.SweepRun " + point_text(run.plan.at) + ", " + state_name(run.state) + ">";
         });
     py::class_<SweepSummary>(module, "SweepSummary", "What a sweep's folder says.")
         .def_readonly("folder", &SweepSummary::folder)
@@ -107,28 +152,46 @@ void bind_summary(py::module_& module) {
         });
 }
 
+using SceneOrFile = std::variant<Path, std::reference_wrapper<const Scene>>;
+
+void set_scene(const SceneOrFile& scene, const py::dict& overrides, SweepRequest& request) {
+    if (const Path* const file = std::get_if<Path>(&scene)) {
+        request.scene = {file->string(), overrides_of(overrides), 0};
+        return;
+    }
+    if (!overrides.empty())
+        throw UsageError("overrides are for scene files; Scene.with_overrides changes a scene in memory");
+    request.loaded = std::get<1>(scene);
+}
+
 /// Binds run_sweep or plan_sweep: the same arguments, other work.
 template <class Work>
 void def_sweep(py::module_& module, const char* name, const Work& work, const char* doc) {
     module.def(
         name,
-        [work](const Path& scene, const Path& folder, const py::object& over, const std::string& truth,
+        [work](const SceneOrFile& scene, const Path& folder, const py::object& over, const std::string& truth,
                const std::optional<std::string>& camera, const py::dict& overrides, const std::string& shard,
-               const std::string& title, const py::object& progress, const py::object& warn) {
+               const std::string& title, bool replace, bool zip, int jobs, int repeats,
+               const py::object& progress, const py::object& warn) {
             SweepRequest request;
-            request.scene = {scene.string(), overrides_of(overrides), 0};
+            set_scene(scene, overrides, request);
             request.camera = camera.value_or("");
-            request.over = axis_text(over);
+            request.over = axes_of(over);
+            request.zip = zip;
+            request.jobs = jobs;
+            request.repeats = repeats;
             request.truth = truth;
             request.shard = shard;
             request.folder = folder.string();
             request.title = title;
+            request.replace = replace;
             Talk talk(progress, warn);
             return talk.run([&] { return work(request, talk_of(talk)); });
         },
         py::arg("scene"), py::arg("folder"), py::arg("over") = "resolution=1..16:x2", py::kw_only(),
         py::arg("truth") = "limit", py::arg("camera") = py::none(), py::arg("overrides") = py::dict(),
-        py::arg("shard") = "0/1", py::arg("title") = "", py::arg("progress") = py::none(),
+        py::arg("shard") = "0/1", py::arg("title") = "", py::arg("replace") = false, py::arg("zip") = false,
+        py::arg("jobs") = 1, py::arg("repeats") = 1, py::arg("progress") = py::none(),
         py::arg("warn") = py::none(), doc);
 }
 
@@ -143,11 +206,18 @@ void bind_sweep(py::module_& module) {
         "Renders, traces once and compares over the optics' resolutions, in a folder that can be resumed: "
         "what is\n"
         "done there already is not done again. Sums up with fits, tables, plots and report.html.\n\n"
-        "scene: a scene file. folder: where the results go.\n"
-        "over: resolutions as whole numbers, or as text: \"resolution=1,2,4\", \"resolution=1..64:x2\".\n"
+        "scene: a scene file, or a Scene. folder: where the results go.\n"
+        "over: resolutions as whole numbers; or axes as text, a list of texts, or a dict: "
+        "\"resolution=1,2,4\",\n"
+        "\"resolution=1..64:x2\", {\"engine\": [\"exact\", \"classic\"], \"/materials/0/ior\": [1.3, 1.5]}.\n"
+        "zip: their values pair by pair, not in every combination. jobs: runs at once. repeats: measured\n"
+        "drawings of each picture.\n"
         "truth: \"limit\" or \"facets\". shard: part \"i/n\" of it, or \"auto\" in a job array.\n"
+        "replace: starts the folder afresh, whichever sweep it belongs to.\n"
         "progress: called as progress(done, job); returning False raises Interrupted. What is done is kept.\n"
         "camera, overrides, warn: as in load_scene and render.\n"
+        "A Scene is known by its label; without one by all that it holds, so that a changed one is another\n"
+        "sweep's and raises UsageError in the folder of the first.\n"
         "A run that fails is recorded (SweepRun.error), and the others go on.");
     def_sweep(
         module, "plan_sweep",

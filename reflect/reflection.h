@@ -2,6 +2,9 @@
 // chapter 7).
 #pragma once
 
+#include <span>
+
+#include "base/corner_view.h"
 #include "base/linear_camera.h"
 #include "base/ray_mesh.h"
 #include "base/surface.h"
@@ -14,5 +17,8 @@ namespace trilens {
 /// rays meet in the virtual eye at t = -1. The mirror is two-sided: the side that faces the camera reflects.
 /// A facet with a corner that has no normal, or that the eye lies on, gets no rays.
 RayMesh make_reflection(const SurfaceGrid& grid, const LinearCamera& camera);
+
+/// The same for any camera, which sees each corner of the grid as `views` say.
+RayMesh make_reflection(const SurfaceGrid& grid, std::span<const CornerView> views);
 
 }  // namespace trilens

@@ -14,27 +14,25 @@ namespace {
 constexpr std::size_t kCornersPerTask = 4096;  // some tens of microseconds of work
 
 /// One corner's refracted ray on one side; a zero direction says that there is none.
-Ray corner_ray(const LinearCamera& camera, const Vec3& point, const Vec3& normal_toward_eye, double eta) {
+Ray corner_ray(const Vec3& incident, const Vec3& point, const Vec3& normal_toward_eye, double eta) {
     if (normal_toward_eye == Vec3(0)) return {point, Vec3(0)};
-    const std::optional<Vec3> direction =
-        refracted(incident_direction(camera, point), normal_toward_eye, eta);
+    const std::optional<Vec3> direction = refracted(incident, normal_toward_eye, eta);
     return {point, direction.value_or(Vec3(0))};
 }
 
-bool seen_from_back(const SurfaceGrid& grid, const IdTriple& facet, const LinearCamera& camera) {
-    return !faces_front(grid, facet, incident_direction(camera, grid.points[grid.corner_point[facet[0]]]));
-}
-
 /// Appends corners for the facets seen from the back, each grid corner once, and points those facets at them.
-void append_back_corners(RayMesh& mesh, const SurfaceGrid& grid, const LinearCamera& camera, double ior) {
+/// `view_of(k)`: the camera's view of corner k.
+template <typename ViewOf>
+void append_back_corners(RayMesh& mesh, const SurfaceGrid& grid, const ViewOf& view_of, double ior) {
     std::vector<Id> back_corner(grid.corner_point.size(), kNone);
     for (IdTriple& facet : mesh.facets) {
-        if (!seen_from_back(grid, facet, camera)) continue;
+        if (faces_front(grid, facet, view_of(facet[0]).incident)) continue;
         for (Id& corner : facet) {
             if (back_corner[corner] == kNone) {
                 back_corner[corner] = static_cast<Id>(mesh.rays.size());
                 const Vec3& point = grid.points[grid.corner_point[corner]];
-                mesh.rays.push_back(corner_ray(camera, point, -grid.corner_normal[corner], ior));
+                mesh.rays.push_back(
+                    corner_ray(view_of(corner).incident, point, -grid.corner_normal[corner], ior));
                 mesh.screen.push_back(mesh.screen[corner]);
             }
             corner = back_corner[corner];
@@ -42,9 +40,8 @@ void append_back_corners(RayMesh& mesh, const SurfaceGrid& grid, const LinearCam
     }
 }
 
-}  // namespace
-
-RayMesh make_refraction(const SurfaceGrid& grid, const LinearCamera& camera, double ior) {
+template <typename ViewOf>
+RayMesh refract_corners(const SurfaceGrid& grid, const ViewOf& view_of, double ior) {
     TRILENS_CHECK(ior > 0 && std::isfinite(ior), "a refractive index is positive");
     const std::size_t corners = grid.corner_point.size();
     RayMesh mesh;
@@ -54,11 +51,12 @@ RayMesh make_refraction(const SurfaceGrid& grid, const LinearCamera& camera, dou
     parallel_for(corners, kCornersPerTask, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {
             const Vec3& point = grid.points[grid.corner_point[k]];
-            mesh.screen[k] = screen_from_world(camera, point);
-            mesh.rays[k] = corner_ray(camera, point, grid.corner_normal[k], 1 / ior);
+            const CornerView view = view_of(k);
+            mesh.screen[k] = view.screen;
+            mesh.rays[k] = corner_ray(view.incident, point, grid.corner_normal[k], 1 / ior);
         }
     });
-    append_back_corners(mesh, grid, camera, ior);
+    append_back_corners(mesh, grid, view_of, ior);
 
     for (IdTriple& facet : mesh.facets) {
         for (const Id corner : IdTriple(facet)) {
@@ -66,6 +64,22 @@ RayMesh make_refraction(const SurfaceGrid& grid, const LinearCamera& camera, dou
         }
     }
     return mesh;
+}
+
+}  // namespace
+
+RayMesh make_refraction(const SurfaceGrid& grid, const LinearCamera& camera, double ior) {
+    const auto view_of = [&](std::size_t k) {
+        const Vec3& point = grid.points[grid.corner_point[k]];
+        return CornerView{screen_from_world(camera, point), incident_direction(camera, point)};
+    };
+    return refract_corners(grid, view_of, ior);
+}
+
+RayMesh make_refraction(const SurfaceGrid& grid, std::span<const CornerView> views, double ior) {
+    TRILENS_CHECK(views.size() == grid.corner_point.size(), "one view per corner");
+    return refract_corners(
+        grid, [&](std::size_t k) { return views[k]; }, ior);
 }
 
 }  // namespace trilens

@@ -2,6 +2,9 @@
 // (thesis, chapter 7).
 #pragma once
 
+#include <span>
+
+#include "base/corner_view.h"
 #include "base/linear_camera.h"
 #include "base/ray_mesh.h"
 #include "base/surface.h"
@@ -21,5 +24,8 @@ namespace trilens {
 /// A corner whose normal is turned beyond grazing (near the silhouette) counts as grazing. A facet gets no
 /// rays where one of its corners has no normal, lies in the eye, or reflects totally.
 RayMesh make_refraction(const SurfaceGrid& grid, const LinearCamera& camera, double ior);
+
+/// The same for any camera, which sees each corner of the grid as `views` say.
+RayMesh make_refraction(const SurfaceGrid& grid, std::span<const CornerView> views, double ior);
 
 }  // namespace trilens

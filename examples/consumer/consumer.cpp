@@ -88,7 +88,7 @@ int main(int argc, char** argv) try {
     trilens::SweepRequest sweep;
     sweep.scene.file = folder + "/scene.json";
     sweep.folder = folder + "/sweep";
-    sweep.over = "resolution=2,4,8";
+    sweep.over = {{"resolution", {"2", "4", "8"}}};
     trilens::replace_text_file(sweep.scene.file, trilens::scene_examples()[0].json);
     sweep.scene.overrides = {{"/film/width", "96"}, {"/film/height", "72"}, {"/film/spp", "1"}};
     const trilens::SweepSummary summary = trilens::run_sweep(sweep);

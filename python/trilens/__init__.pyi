@@ -60,6 +60,7 @@ class Image:
     def __copy__(self) -> Image: ...
     def __deepcopy__(self, memo: dict[int, Any]) -> Image: ...
 
+def count_regions(image: Image, least: int = 12) -> int: ...
 def read_image(file: _File) -> Image: ...
 
 class Film:
@@ -110,6 +111,8 @@ class Scene:
     @property
     def file(self) -> str: ...
     @property
+    def label(self) -> str: ...
+    @property
     def folder(self) -> str: ...
     @property
     def film(self) -> Film: ...
@@ -136,10 +139,20 @@ def parse_scene(
     overrides: _Overrides = {},
     resolution: int = 0,
     *,
+    label: str = "",
     warn: _Warn = None,
 ) -> Scene: ...
 def scene_examples() -> dict[str, str]: ...
 def scene_schema() -> dict[str, Any]: ...
+
+class FilmCamera:
+    def __init__(self, scene: Scene, camera: str = "") -> None: ...
+    @property
+    def is_linear(self) -> bool: ...
+    @property
+    def mesh(self) -> RayMesh: ...
+    def rays(self, places: ArrayLike) -> dict[str, NDArray[np.float64]]: ...
+    def project(self, points: ArrayLike) -> dict[str, NDArray[Any]]: ...
 
 class Optic:
     @property
@@ -186,6 +199,8 @@ class Renderer:
         clip: Optional[str] = None,
         pieces: Optional[int] = None,
         tolerance: Optional[float] = None,
+        rays: Optional[str] = None,
+        max_error: Optional[float] = None,
         progress: _Progress = None,
         warn: _Warn = None,
     ) -> Image: ...
@@ -197,6 +212,8 @@ class Renderer:
         layers: Optional[Sequence[str]] = None,
         window: Optional[_Window] = None,
         *,
+        rays: Optional[str] = None,
+        max_error: Optional[float] = None,
         progress: _Progress = None,
         warn: _Warn = None,
     ) -> Image: ...
@@ -230,6 +247,8 @@ class Metrics:
     def psnr_db(self) -> float: ...
     @property
     def ssim(self) -> float: ...
+    @property
+    def flip(self) -> float: ...
     @property
     def max(self) -> float: ...
     @property
@@ -362,6 +381,10 @@ class Fit:
     @property
     def order(self) -> float: ...
     @property
+    def order_low(self) -> Optional[float]: ...
+    @property
+    def order_high(self) -> Optional[float]: ...
+    @property
     def constant(self) -> float: ...
     @property
     def r2(self) -> float: ...
@@ -379,7 +402,7 @@ def fit_power_law(
 
 class SweepPoint:
     @property
-    def n(self) -> int: ...
+    def n(self) -> float: ...
     @property
     def value(self) -> float: ...
     @property
@@ -393,6 +416,14 @@ class SweepFit:
     def layer(self) -> str: ...
     @property
     def optic(self) -> str: ...
+    @property
+    def axis(self) -> str: ...
+    @property
+    def group(self) -> dict[str, str]: ...
+    @property
+    def order_low(self) -> Optional[float]: ...
+    @property
+    def order_high(self) -> Optional[float]: ...
     @property
     def order(self) -> Optional[float]: ...
     @property
@@ -420,6 +451,10 @@ class OpticDisplacement:
 
 class SweepRun:
     @property
+    def id(self) -> str: ...
+    @property
+    def point(self) -> dict[str, str]: ...
+    @property
     def n(self) -> int: ...
     @property
     def state(self) -> str: ...
@@ -444,28 +479,36 @@ class SweepSummary:
     def fit(self, metric: str = "disp_mean_px", layer: str = "reflect", optic: str = "") -> Optional[SweepFit]: ...
 
 def sweep(
-    scene: _File,
+    scene: Union[_File, Scene],
     folder: _File,
-    over: Union[str, Sequence[int]] = "resolution=1..16:x2",
+    over: Union[str, Sequence[int], Sequence[str], Mapping[str, Union[str, Sequence[Any]]]] = "resolution=1..16:x2",
     *,
     truth: str = "limit",
     camera: Optional[str] = None,
     overrides: _Overrides = {},
     shard: str = "0/1",
     title: str = "",
+    replace: bool = False,
+    zip: bool = False,
+    jobs: int = 1,
+    repeats: int = 1,
     progress: _Progress = None,
     warn: _Warn = None,
 ) -> SweepSummary: ...
 def plan_sweep(
-    scene: _File,
+    scene: Union[_File, Scene],
     folder: _File,
-    over: Union[str, Sequence[int]] = "resolution=1..16:x2",
+    over: Union[str, Sequence[int], Sequence[str], Mapping[str, Union[str, Sequence[Any]]]] = "resolution=1..16:x2",
     *,
     truth: str = "limit",
     camera: Optional[str] = None,
     overrides: _Overrides = {},
     shard: str = "0/1",
     title: str = "",
+    replace: bool = False,
+    zip: bool = False,
+    jobs: int = 1,
+    repeats: int = 1,
     progress: _Progress = None,
     warn: _Warn = None,
 ) -> str: ...
@@ -516,6 +559,49 @@ def primitive_surface(
     height: float = 2.0,
     size: Sequence[float] = (2.0, 2.0),
 ) -> Surface: ...
+
+class SuiteTest:
+    @property
+    def name(self) -> str: ...
+    @property
+    def folder(self) -> str: ...
+    @property
+    def about(self) -> str: ...
+    @property
+    def tags(self) -> list[str]: ...
+    @property
+    def state(self) -> str: ...
+    @property
+    def reasons(self) -> list[str]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def update(self) -> str: ...
+    @property
+    def metrics(self) -> dict[str, dict[str, Optional[float]]]: ...
+    @property
+    def seconds(self) -> float: ...
+
+class SuiteResult:
+    @property
+    def tests(self) -> list[SuiteTest]: ...
+    @property
+    def seconds(self) -> float: ...
+    @property
+    def passed(self) -> bool: ...
+
+def run_suite(
+    folders: Union[_File, Sequence[_File]],
+    pattern: str = "",
+    *,
+    jobs: int = 0,
+    update: bool = False,
+    junit: Optional[_File] = None,
+    html: Optional[_File] = None,
+    title: str = "",
+    progress: _Progress = None,
+) -> SuiteResult: ...
+def list_suite(folders: Union[_File, Sequence[_File]], pattern: str = "") -> dict[str, list[str]]: ...
 
 class LinearCamera:
     @property

@@ -10,10 +10,12 @@ namespace trilens {
 struct LinearCamera {
     bool parallel = false;
     Vec3 eye{0};             // perspective: the centre of projection; parallel: any point of the image plane
-    Vec3 view_direction{0};  // unit, the view axis; parallel: the rays' direction too
+    Vec3 view_direction{0};  // unit, the view axis; parallel: the rays' direction, whose part along the
+                             // view axis is 1
     Vec4 screen_x{0}, screen_y{0},
-        screen_w{0};  // rows of the map: (x w, y w, w) = rows . (point, 1); w is the depth
-                      // along the view axis from `eye` for perspective, 1 for parallel
+        screen_w{0};    // rows of the map: (x w, y w, w) = rows . (point, 1); w is the depth
+                        // along the view axis from `eye` for perspective, 1 for parallel
+    Vec3 view_axis{0};  // of oblique cameras: unit; zero where it is view_direction
 };
 
 /// Homogeneous screen position (x w, y w, w) of a world point; x, y in pixels from the film's top left.
@@ -24,7 +26,7 @@ inline Vec3 screen_from_world(const LinearCamera& camera, const Vec3& point) {
 }
 
 /// The direction from the camera to `point`: for perspective point - eye, NOT unit (the eye-to-corner
-/// length); for parallel the unit view direction.
+/// length); for parallel view_direction, unit but for oblique rays.
 inline Vec3 incident_direction(const LinearCamera& camera, const Vec3& point) {
     if (!camera.parallel) return point - camera.eye;
     return camera.view_direction;

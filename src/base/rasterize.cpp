@@ -1,4 +1,5 @@
-// Gives each sample to the facet that covers it, by exact signs of homogeneous edge functions.
+// Gives each sample to the facet that covers it, by exact signs of homogeneous edge functions: asked for only
+// where rounding could matter.
 // Based on: Olano and Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, 1997.
 #include "base/rasterize.h"
 
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/row_cover.h"
 #include "base/side_of_edge.h"
 
 namespace trilens {
@@ -41,6 +43,7 @@ struct ScreenFacet {
     std::array<Vec3, 3> corner{};
     SampleWindow window;
     int orientation = 0;  // sign of the determinant of the corners; 0: any, since all are in front
+    FacetEdges edges;
 };
 
 /// Whether the facet covers the sample: the edge functions have one sign, and the surface is in front there.
@@ -59,31 +62,34 @@ std::vector<ScreenFacet> facets_on_screen(const RayMesh& mesh, const SampleGrid&
     std::vector<ScreenFacet> facets;
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         if (!mesh.has_rays(f) || facet_weights(mesh, f).edge_on) continue;
-        ScreenFacet facet;
-        facet.facet = static_cast<Id>(f);
+        std::array<Vec3, 3> corner;
         bool all_in_front = true;
         for (std::size_t k = 0; k < 3; ++k) {
-            facet.corner[k] = mesh.screen[mesh.facets[f][k]];
-            all_in_front = all_in_front && facet.corner[k].z > 0;
+            corner[k] = mesh.screen[mesh.facets[f][k]];
+            all_in_front = all_in_front && corner[k].z > 0;
         }
+        const SampleWindow window = window_of(corner, grid);
+        if (window.x0 >= window.x1 || window.y0 >= window.y1) continue;
         // Where a corner lies behind the camera, the corners' determinant tells front from behind: it is the
         // sum of the edge functions times the corners' depths.
-        if (!all_in_front) {
-            const double determinant = triple(facet.corner[0], facet.corner[1], facet.corner[2]);
-            facet.orientation = determinant > 0 ? 1 : -1;
-        }
-        facet.window = window_of(facet.corner, grid);
-        if (facet.window.x0 < facet.window.x1 && facet.window.y0 < facet.window.y1) facets.push_back(facet);
+        const int orientation = all_in_front ? 0 : triple(corner[0], corner[1], corner[2]) > 0 ? 1 : -1;
+        facets.push_back(
+            {static_cast<Id>(f), corner, window, orientation, FacetEdges(corner, orientation, grid)});
     }
     return facets;
 }
 
-std::size_t sample_at(const SampleGrid& grid, std::size_t column, std::size_t row) {
-    const std::size_t side = static_cast<std::size_t>(grid.side),
-                      width = static_cast<std::size_t>(grid.width());
-    const std::size_t pixel = row / side * width + column / side;
-    return pixel * side * side + row % side * side + column % side;
-}
+/// A row of samples: where each column's sample stands.
+struct SampleRow {
+    std::size_t side = 1, first = 0;
+
+    SampleRow(const SampleGrid& grid, std::size_t row) : side(static_cast<std::size_t>(grid.side)) {
+        first = (row / side * static_cast<std::size_t>(grid.width()) * side + row % side) * side;
+    }
+    std::size_t sample(std::size_t column) const {
+        return side == 1 ? first + column : first + column / side * side * side + column % side;
+    }
+};
 
 /// Rasterises rows of samples; facets ascend, so the first to claim a sample has the smallest index.
 void fill_rows(const std::vector<ScreenFacet>& facets, const SampleGrid& grid, std::vector<Id>& owner,
@@ -91,11 +97,21 @@ void fill_rows(const std::vector<ScreenFacet>& facets, const SampleGrid& grid, s
     for (const ScreenFacet& facet : facets) {
         const std::size_t end = std::min(last, facet.window.y1);
         for (std::size_t row = std::max(first, facet.window.y0); row < end; ++row) {
-            for (std::size_t column = facet.window.x0; column < facet.window.x1; ++column) {
-                const std::size_t sample = sample_at(grid, column, row);
-                if (owner[sample] == kNone && covers(facet, grid.position(sample)))
-                    owner[sample] = facet.facet;
+            const SampleRow samples(grid, row);
+            const RowCover cover = facet.edges.cover(row, facet.window.x0, facet.window.x1);
+            const auto ask = [&](std::size_t begin, std::size_t finish) {
+                for (std::size_t column = begin; column < finish; ++column) {
+                    const std::size_t sample = samples.sample(column);
+                    if (owner[sample] == kNone && covers(facet, grid.position(sample)))
+                        owner[sample] = facet.facet;
+                }
+            };
+            ask(cover.begin, cover.sure_begin);
+            for (std::size_t column = cover.sure_begin; column < cover.sure_end; ++column) {
+                Id& own = owner[samples.sample(column)];
+                if (own == kNone) own = facet.facet;
             }
+            ask(cover.sure_end, cover.end);
         }
     }
 }

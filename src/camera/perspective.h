@@ -5,24 +5,30 @@
 
 #include "base/linear_camera.h"
 #include "base/ray_mesh.h"
+#include "camera/film_axes.h"
 
 namespace trilens {
 
-/// Where a camera stands, world frame. `up` need not be unit nor at right angles to the view axis.
-struct Placement {
-    Vec3 eye{0, 0, 1}, at{0}, up{0, 1, 0};
-};
-
 struct PerspectiveParams {
     Placement look_at;
-    double yfov_degrees = 40;       // the whole vertical angle, inside (0, 180)
-    int width = 640, height = 480;  // the film, in pixels
+    double yfov_degrees = 40;          // the whole vertical angle, inside (0, 180)
+    double width = 640, height = 480;  // the film, in pixels
+    Vec2 shift{0};                     // the window moves by this share of the film's size, x right, y up
 };
 
 struct OrthographicParams {
     Placement look_at;
-    double world_height = 2;        // what the film's height covers, scene units
-    int width = 640, height = 480;  // the film, in pixels
+    double world_height = 2;           // what the film's height covers, scene units
+    double width = 640, height = 480;  // the film, in pixels
+};
+
+/// Parallel rays that meet the film askew: lines along the view axis show on it.
+struct ObliqueParams {
+    Placement look_at;
+    double world_height = 2;           // what the film's height covers, scene units
+    double angle_degrees = 45;         // of receding lines on the film, from the right towards the top
+    double scale = 1;                  // their length there: 1 cavalier, 0.5 cabinet, 0 orthographic
+    double width = 640, height = 480;  // the film, in pixels
 };
 
 /// A pinhole at look_at.eye with square pixels. Throws InputError (place "lookAt", "yfov" or "film") where
@@ -34,10 +40,18 @@ LinearCamera make_perspective(const PerspectiveParams& params);
 /// (place "worldHeight" for a height that is not positive).
 LinearCamera make_orthographic(const OrthographicParams& params);
 
+/// The same with receding lines: a point at depth z behind the plane through look_at.eye is moved on the
+/// film by scale * z along `angle` (Carlbom and Paciorek, Planar Geometric Projections and Viewing
+/// Transformations, 1978). Throws as make_orthographic (places "angle", "scale" likewise).
+LinearCamera make_oblique(const ObliqueParams& params);
+
+/// The ray of a film place, pixels from the top left, with a direction of unit depth.
+Ray film_ray(const LinearCamera& camera, const Vec2& at);
+
 /// The film [0, width] x [0, height] in pixels as two facets with affine screens (w = 1). Each ray's
 /// direction has unit depth along the view axis, so t is the planar depth (the Z layer): from the eye for
-/// perspective, from the plane through `eye` for parallel cameras.
-RayMesh make_camera_mesh(const LinearCamera& camera, int width, int height);
+/// perspective, from the plane through `eye` for parallel cameras. Rays begin at the depth `from` there.
+RayMesh make_camera_mesh(const LinearCamera& camera, double width, double height, double from = 0);
 
 /// A camera given corner by corner (the thesis' projections are such). One entry per corner, `triangles`
 /// index them.
@@ -50,6 +64,6 @@ struct ExplicitRays {
 
 /// The RayMesh of explicit rays on a film of width x height pixels. Throws InputError whose place is the
 /// field at fault ("directions/3") for lengths that differ, indices out of range, zero or non-finite entries.
-RayMesh make_ray_mesh(const ExplicitRays& rays, int width, int height);
+RayMesh make_ray_mesh(const ExplicitRays& rays, double width, double height);
 
 }  // namespace trilens

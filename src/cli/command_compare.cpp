@@ -29,6 +29,13 @@ bool is_png(const std::string& file) {
     return std::filesystem::path(file).extension() == ".png";
 }
 
+/// Without those of one layer.
+std::vector<std::string> common_metric_names() {
+    std::vector<std::string> names = metric_names();
+    std::erase_if(names, [](const std::string& name) { return name.find('.') != std::string::npos; });
+    return names;
+}
+
 /// Throws UsageError for what is no METRIC=VALUE, and for metrics that do not exist.
 std::vector<MetricLimit> limits_of(const CompareCommand& command) {
     const std::vector<std::string> known = metric_names();
@@ -178,7 +185,8 @@ std::vector<Option> tolerance_options(CompareCommand& command) {
          .help =
              "fail where a metric is beyond VALUE (ssim, psnr_db, coverage: below it); may be given several "
              "times: " +
-             one_of(metric_names()),
+             one_of(common_metric_names()) +
+             "; of what is seen and displaced also for one layer: refract.lost_percent",
          .value = "METRIC=VALUE"},
         {.names = "--fail", .target = &o.fail, .help = "difference beyond which a pixel fails", .range = {0}},
         {.names = "--failpercent",

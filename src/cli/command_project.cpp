@@ -21,7 +21,7 @@ struct ProjectOptions {
     std::string points;
     std::string search = "complete";
     std::string refine = "exact";
-    bool no_visibility = false;
+    bool no_visibility = false, derivatives = false;
 };
 
 /// Three finite numbers separated by commas and blanks, or none.
@@ -101,17 +101,28 @@ Json id_json(Id id) {
     return id == kNone ? Json(nullptr) : Json(id);
 }
 
+Json vector_json(const Vec3& v) {
+    return {json_number(v.x), json_number(v.y), json_number(v.z)};
+}
+
 Json image_json(const Renderer& renderer, const WorldImage& image) {
-    return {{"x", json_number(image.pixel.x)},
-            {"y", json_number(image.pixel.y)},
-            {"t", json_number(image.t)},
-            {"optic", image.optic == kNone ? Json(nullptr) : Json(optic_name(renderer, image))},
-            {"facet", id_json(image.facet)},
-            {"inside", image.inside},
-            {"path", path_name(image.path)},
-            {"length", json_number(image.length)},
-            {"visible", image.visible},
-            {"refined", image.refined}};
+    Json steps = Json::array();
+    for (const Step& step : image.steps)
+        steps.push_back({{"optic", renderer.optics()[step.optic].name}, {"event", event_name(step.event)}});
+    Json fields = {{"x", json_number(image.pixel.x)},
+                   {"y", json_number(image.pixel.y)},
+                   {"t", json_number(image.t)},
+                   {"optic", image.optic == kNone ? Json(nullptr) : Json(optic_name(renderer, image))},
+                   {"facet", id_json(image.facet)},
+                   {"inside", image.inside},
+                   {"path", path_name(image.path)},
+                   {"length", json_number(image.length)},
+                   {"visible", image.visible},
+                   {"refined", image.refined},
+                   {"steps", steps}};
+    if (image.has_derivative)
+        fields["derivative"] = {vector_json(image.derivative[0]), vector_json(image.derivative[1])};
+    return fields;
 }
 
 Json points_json(const Renderer& renderer, std::span<const Vec3> points,
@@ -145,6 +156,7 @@ Answer run(const ProjectOptions& options, Console& console) {
     request.refine = options.refine == "exact";
     if (!request.refine) request.search = ImageSearch::kFacets;
     request.visibility = !options.no_visibility;
+    request.derivatives = options.derivatives;
     const Stopwatch watch;
     const auto images = renderer.project(points, request);
     const double seconds = watch.seconds();
@@ -198,7 +210,10 @@ Command project_command() {
                   .choices = {"exact", "none"}},
                  {.names = "--no-visibility",
                   .target = &options->no_visibility,
-                  .help = "do not ask what hides the images"}}});
+                  .help = "do not ask what hides the images"},
+                 {.names = "--derivatives",
+                  .target = &options->derivatives,
+                  .help = "json: how each image moves with its point, in pixels per scene unit"}}});
     command.body = [options](Console& console) { return run(*options, console); };
     return command;
 }

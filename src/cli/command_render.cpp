@@ -1,11 +1,13 @@
 // trilens render and trilens trace: one picture.
 #include <trilens/files.h>
 #include <trilens/image.h>
+#include <trilens/regions.h>
 #include <trilens/render.h>
 #include <trilens/stopwatch.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/explain.h"
@@ -26,6 +28,9 @@ struct RenderOptions {
     std::string surface = "limit";
     std::string format;  // empty: by the output's ending
     bool wire = false;
+    std::string rays;       // empty: each optic's own
+    double max_error = -1;  // < 0: as the scene says
+    std::string grid;       // empty: as the scene says
 };
 
 /// What an output is, by --format or its name's ending: "exr", "png" or "svg". Standard output gets OpenEXR
@@ -42,14 +47,25 @@ std::string output_format(const RenderOptions& options, const std::string& comma
 }
 
 Json picture_fields(const Renderer& renderer, const Picture& picture) {
-    return {{"width", picture.image.width},
-            {"height", picture.image.height},
-            {"triangles", renderer.triangle_count()},
-            {"facets", renderer.facet_count()},
-            {"optic_pixels", picture.statistics.optic_pixels},
-            {"pixels_without_ray", picture.statistics.pixels_without_ray},
-            {"prepare_seconds", picture.prepare_seconds},
-            {"draw_seconds", picture.draw_seconds}};
+    return {
+        {"width", picture.image.width},
+        {"height", picture.image.height},
+        {"triangles", renderer.triangle_count()},
+        {"facets", renderer.facet_count()},
+        {"optic_pixels", picture.statistics.optic_pixels},
+        {"pixels_without_ray", picture.statistics.pixels_without_ray},
+        {"subdivided_pixels", picture.statistics.subdivided_pixels},
+        {"traced_pixels", picture.statistics.traced_pixels},
+        {"projected_facets", picture.statistics.projected_facets},
+        {"predicted_error", picture.statistics.predicted_error},
+        {"left_out", {{"faint", picture.statistics.faint_light}, {"deep", picture.statistics.deep_light}}},
+        {"prepare_seconds", picture.prepare_seconds},
+        {"draw_seconds", picture.draw_seconds}};
+}
+
+std::optional<CornerRays> chosen_rays(const RenderOptions& options) {
+    if (options.rays.empty()) return std::nullopt;
+    return options.rays == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
 }
 
 /// Outlines instead of pixels.
@@ -57,7 +73,10 @@ Answer run_vector(const RenderOptions& options, const Renderer& renderer, Consol
     if (!options.scene.crop.empty())
         throw UsageError("--crop is for pictures of pixels; an .svg shows the whole film");
     const std::size_t camera = find_camera(renderer.scene(), options.scene.camera);
-    const LineDrawing drawing = renderer.draw_lines({camera, 0}, options.wire, console.warner());
+    FrameParams frame;
+    frame.camera = camera;
+    frame.rays = chosen_rays(options);
+    const LineDrawing drawing = renderer.draw_lines(frame, options.wire, console.warner());
     Answer answer = write_output(options.output, drawing.svg, console);
     answer.fields.update(Json{{"engine", "exact"},
                               {"width", renderer.scene().film.width},
@@ -71,22 +90,37 @@ Answer run_vector(const RenderOptions& options, const Renderer& renderer, Consol
 void check_options(const RenderOptions& options, const std::string& format, const EngineChoice& engine) {
     if (format == "svg" && engine.engine == Engine::kClassic)
         throw UsageError("an .svg is drawn by the exact engine; leave out --engine classic");
+    if (format == "svg" && options.max_error >= 0)
+        throw UsageError("--max-error is for pictures of pixels; an .svg shows the facets undivided");
     if (options.wire && format != "svg") throw UsageError("--wire is for .svg outputs");
 }
 
 Answer draw(const RenderOptions& options, const std::string& format, const PictureRequest& request,
             const Renderer& renderer, Console& console, const std::string& command) {
-    const Picture picture = renderer.draw(request, console.progress(command), console.warner());
-    console.note(
-        fmt::format("drew {} x {} pixels, {} of them of optics: prepared in {:.3f} s, drawn in {:.3f} s",
-                    picture.image.width, picture.image.height, picture.statistics.optic_pixels,
-                    picture.prepare_seconds, picture.draw_seconds));
-    Answer answer = write_output(options.output, picture.image,
-                                 format == "png" ? ImageFormat::kPng : ImageFormat::kExr, console);
+    // An OpenEXR file is encoded while it is drawn, unless the whole picture is asked something; other
+    // formats have the beauty alone.
+    const bool is_encoded = format != "png" && !console.wants_json();
+    EncodedPicture encoded;
+    if (!is_encoded)
+        encoded.picture = renderer.draw(request, console.progress(command), console.warner());
+    else
+        encoded = renderer.draw_exr(request, console.progress(command), console.warner());
+    const Picture& picture = encoded.picture;
+    console.note(fmt::format(
+        "drew {} x {} pixels, {} of them of optics ({} subdivided, {} traced): prepared in {:.3f} s, "
+        "drawn in {:.3f} s",
+        picture.image.width, picture.image.height, picture.statistics.optic_pixels,
+        picture.statistics.subdivided_pixels, picture.statistics.traced_pixels, picture.prepare_seconds,
+        picture.draw_seconds));
+    Answer answer = is_encoded
+                        ? write_output(options.output, encoded.exr, console)
+                        : write_output(options.output, picture.image,
+                                       format == "png" ? ImageFormat::kPng : ImageFormat::kExr, console);
     answer.fields["engine"] = engine_name(request.engine.engine);
     if (request.engine.engine == Engine::kClassic)
         answer.fields["classic"] = classic_name(request.engine.classic);
     answer.fields.update(picture_fields(renderer, picture));
+    if (console.wants_json()) answer.fields["regions"] = count_regions(picture.image);
     return answer;
 }
 
@@ -117,7 +151,11 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
     request.engine = engine;
     request.layers = layer_request(options.scene);
     const Renderer renderer = load_renderer(options.scene, console);
+    request.frame.rays = chosen_rays(options);
+    if (options.max_error >= 0) request.frame.max_error = options.max_error;
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
+    if (!options.grid.empty())
+        request.frame.grid = options.grid == "screen" ? GridKind::kScreen : GridKind::kSurface;
     check_on_film(options, request.layers, renderer.scene().film);
     if (options.pixel.empty())
         return format == "svg" ? run_vector(options, renderer, console)
@@ -143,18 +181,38 @@ std::vector<Option> picture_options(RenderOptions& options, const std::string& f
                      .help = "file to write, by its ending: " + formats + "; - for standard output",
                      .value = "OUT",
                      .offer = Offer::kImage},
+                    {.names = "--grid",
+                     .target = &options.grid,
+                     .help = "where the optics' facets lie: on the surface, or on the film over the optic",
+                     .choices = {"surface", "screen"}},
                     {.names = "--pixel",
                      .target = &options.pixel,
                      .help = "explain one pixel as JSON",
                      .value = "x,y"}}});
 }
 
+std::vector<Option> facet_options(RenderOptions& options) {
+    return {
+        {.names = "--rays",
+         .target = &options.rays,
+         .help = "of every optic's facets, whatever the scene says: fitted to the exact rays in the mean, or "
+                 "exact at the corners and interpolated between them",
+         .choices = {"fitted", "interpolated"}},
+        {.names = "--max-error",
+         .target = &options.max_error,
+         .help = "divide facets until they show things this many pixels from their place at most, as "
+                 "predicted, and trace where that does not help; 0: leave them as they are",
+         .value = "PX",
+         .range = {0, 1000}}};
+}
+
 std::vector<Option> engine_options(RenderOptions& options) {
     return {
         {.names = "--engine",
          .target = &options.engine,
-         .help = "exact; classic: by the outlines of projected triangles; auto (which is exact for now)",
-         .choices = {"exact", "classic", "auto"}},
+         .help = "exact; classic: by the outlines of projected triangles; auto (which is exact for now); for "
+                 "comparison, envmap: an environment map at the optic's centre, planar: flat facets",
+         .choices = {"exact", "classic", "auto", "envmap", "planar"}},
         {.names = "--slices",
          .target = &options.slices,
          .help = "classic: curved edges by K straight pieces between levels of t, not arcs",
@@ -178,7 +236,9 @@ EngineChoice chosen_engine(const RenderOptions& options) {
         if (options.slices > 0 || options.tessellate > 0 || options.clip != "scene")
             throw UsageError(
                 "--slices, --tessellate and --clip are the classic engine's; add --engine classic");
-        return Engine::kExact;
+        return options.engine == "envmap"   ? Engine::kEnvironment
+               : options.engine == "planar" ? Engine::kPlanar
+                                            : Engine::kExact;
     }
     ClassicParams params;
     params.clip = options.clip == "scene"    ? Clip::kScene
@@ -199,6 +259,7 @@ std::vector<Command> render_commands() {
     by_projection.options =
         joined({picture_options(*render, ".exr (all layers), .png (beauty) or .svg (outlines)"),
                 engine_options(*render),
+                facet_options(*render),
                 {{.names = "--format",
                   .target = &render->format,
                   .help = "what to write, whatever the output is called",
@@ -211,6 +272,7 @@ std::vector<Command> render_commands() {
     Command by_rays{
         .name = "trace", .summary = "draw the same scene by ray tracing: the truth", .schema = "trace"};
     by_rays.options = joined({picture_options(*trace, ".exr (all layers) or .png (beauty)"),
+                              facet_options(*trace),
                               {{.names = "--format",
                                 .target = &trace->format,
                                 .help = "what to write, whatever the output is called",
@@ -220,6 +282,8 @@ std::vector<Command> render_commands() {
                                 .help = "facets: the rays of render's facets; limit: the exact surface",
                                 .choices = {"facets", "limit"}}}});
     by_rays.body = [trace](Console& console) {
+        if (trace->surface == "limit" && (!trace->rays.empty() || trace->max_error >= 0))
+            throw UsageError("--rays and --max-error are about facets; add --surface facets");
         return run(*trace, "trace", trace->surface == "facets" ? Engine::kFacetsTruth : Engine::kLimitTruth,
                    console);
     };

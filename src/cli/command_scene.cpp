@@ -47,6 +47,7 @@ Answer info(const SceneOptions& options, Console& console) {
     Json& fields = answer.fields;
     fields["film"] = {{"width", scene.film.width}, {"height", scene.film.height}, {"spp", scene.film.spp}};
     fields["cameras"] = found.cameras;
+    fields["camera_types"] = found.camera_types;
     fields["objects"] = found.objects;
     fields["optics"] = found.optics;
     fields["triangles"] = found.triangles;
@@ -63,7 +64,8 @@ Answer info(const SceneOptions& options, Console& console) {
     answer.text = "film " + std::to_string(scene.film.width) + " x " + std::to_string(scene.film.height) +
                   ", " + std::to_string(scene.film.spp) + " x " + std::to_string(scene.film.spp) +
                   " samples\ncameras:";
-    for (const std::string& camera : found.cameras) answer.text += " " + camera;
+    for (std::size_t i = 0; i < found.cameras.size(); ++i)
+        answer.text += (i == 0 ? " " : ", ") + found.cameras[i] + " (" + found.camera_types[i] + ")";
     answer.text += "\n" + std::to_string(found.optics) + " optics, " + std::to_string(found.objects) +
                    " objects, " + std::to_string(found.triangles) + " triangles, " +
                    std::to_string(found.lights) + " lights\n";
@@ -78,7 +80,9 @@ Answer info(const SceneOptions& options, Console& console) {
 Answer validate(const SceneOptions& options, Console& console) {
     const Renderer renderer = load_renderer(options, console);
     // What drawing would refuse.
-    renderer.check({find_camera(renderer.scene(), options.camera), 0});
+    for (std::size_t i = 0; i < renderer.scene().cameras.size(); ++i)
+        if (options.camera.empty() || i == find_camera(renderer.scene(), options.camera))
+            renderer.check({i, 0});
     const std::size_t optics = renderer.optics().size(), triangles = renderer.triangle_count();
     Answer answer;
     answer.is_report = true;

@@ -10,8 +10,8 @@ Json metrics_json(const Metrics& m) {
     return {
         {"mae", json_number(m.mae)},   {"rmse", json_number(m.rmse)},       {"relmse", json_number(m.relmse)},
         {"relmse_eps", 0.01},          {"psnr_db", json_number(m.psnr_db)}, {"psnr_peak", 1},
-        {"ssim", json_number(m.ssim)}, {"max", json_number(m.max)},         {"p50", json_number(m.p50)},
-        {"p95", json_number(m.p95)},   {"p99", json_number(m.p99)}};
+        {"ssim", json_number(m.ssim)}, {"flip", json_number(m.flip)},       {"max", json_number(m.max)},
+        {"p50", json_number(m.p50)},   {"p95", json_number(m.p95)},         {"p99", json_number(m.p99)}};
 }
 
 Json seen_json(const SeenMismatch& s) {
@@ -70,7 +70,8 @@ std::string summary_text(const ComparedInputs& inputs) {
                         c.fail, c.hard, c.warn);
     text += fmt::format("error         mae {:.6g}  rmse {:.6g}  relmse {:.6g}  max {:.6g}\n", m.mae, m.rmse,
                         m.relmse, m.max);
-    text += fmt::format("likeness      psnr {:.2f} dB  ssim {:.6f}\n", m.psnr_db, m.ssim);
+    text += fmt::format("likeness      psnr {:.2f} dB  ssim {:.6f}  flip {:.6f} (0: none to be seen)\n",
+                        m.psnr_db, m.ssim, m.flip);
     if (const WorstPixel& worst = comparison.worst; !worst.channel.empty())
         text += fmt::format("worst         pixel {},{} channel {}: {:.6g}, reference {:.6g}\n", worst.x,
                             worst.y, worst.channel, worst.test, worst.reference);

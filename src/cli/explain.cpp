@@ -22,9 +22,20 @@ Json hit_json(const Renderer& renderer, const Hit& hit) {
             {"position", vector_json(seen.position)}};
 }
 
-Json end_json(const Renderer& renderer, const PathEnd* end) {
+/// The meetings with optics on the way, in their order.
+Json steps_json(const Renderer& renderer, std::span<const Step> steps) {
+    Json list = Json::array();
+    for (const Step& step : steps)
+        list.push_back({{"optic", renderer.optics()[step.optic].name}, {"event", event_name(step.event)}});
+    return list;
+}
+
+Json end_json(const Renderer& renderer, const SampleViews& views, const PathEnd* end) {
     if (!end) return nullptr;
-    return {{"ray", ray_json(end->ray)}, {"sees", hit_json(renderer, end->hit)}};
+    return {{"path", steps_json(renderer, views.steps_of(*end))},
+            {"weight", vector_json(end->weight)},
+            {"ray", ray_json(end->ray)},
+            {"sees", hit_json(renderer, end->hit)}};
 }
 
 }  // namespace
@@ -46,7 +57,12 @@ Json explanation_json(const Renderer& renderer, const EngineChoice& engine, cons
                            {"cos_incident", json_number(view.incidence.cosine)},
                            {"front", view.incidence.front}};
         for (const Path path : {Path::kReflect, Path::kRefract})
-            fields[path_name(path)] = end_json(renderer, pixel.views.find(view, path));
+            fields[path_name(path)] = end_json(renderer, pixel.views, pixel.views.find(view, path));
+        fields["ends"] = Json::array();
+        for (const PathEnd& end : pixel.views.ends_of(view))
+            fields["ends"].push_back(end_json(renderer, pixel.views, &end));
+        fields["method"] = view.traced ? "traced" : view.level > 0 ? "subdivided" : "projected";
+        fields["level"] = view.level;
     }
     fields["colour"] = {{"direct", vector_json(pixel.colour.direct)},
                         {"reflect", vector_json(pixel.colour.reflect)},

@@ -42,6 +42,15 @@ Answer write_output(const std::string& output, const Image& image, ImageFormat f
     return answer_of(output, watch, console);
 }
 
+Answer write_output(const std::string& output, std::span<const unsigned char> encoded, Console& console) {
+    const Stopwatch watch;
+    if (is_standard_stream(output))
+        write_bytes(encoded.data(), encoded.size());
+    else
+        replace_file(output, encoded);
+    return answer_of(output, watch, console);
+}
+
 Answer write_output(const std::string& output, const std::string& text, Console& console) {
     const Stopwatch watch;
     if (is_standard_stream(output))

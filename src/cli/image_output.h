@@ -2,6 +2,7 @@
 #pragma once
 
 #include <trilens/image.h>
+#include <span>
 #include <string>
 
 #include "terminal/command.h"
@@ -14,6 +15,9 @@ void check_output(const std::string& output, Console& console);
 
 /// Writes the picture and answers with its name; on standard output with the bytes alone. Throws OutputError.
 Answer write_output(const std::string& output, const Image& image, ImageFormat format, Console& console);
+
+/// The same for a picture that is encoded already.
+Answer write_output(const std::string& output, std::span<const unsigned char> encoded, Console& console);
 
 /// The same for text.
 Answer write_output(const std::string& output, const std::string& text, Console& console);

@@ -45,13 +45,9 @@ Scene read_standard_input(const SceneRequest& request) {
     if (std::cin.bad()) throw InputError(kStandardInput, "", "cannot be read");
     if (text.empty()) throw InputError(kStandardInput, "", "is empty; a scene is expected there");
     if (is_exr(text)) throw InputError(kStandardInput, "", "is an image; name its file instead of -");
-    try {
-        Scene scene = parse_scene(text, "", request.overrides);
-        if (request.resolution != 0) set_resolution(scene, request.resolution);
-        return scene;
-    } catch (const InputError& error) {
-        throw InputError(kStandardInput, "", error.what());
-    }
+    Scene scene = parse_scene(text, "", request.overrides, kStandardInput);
+    if (request.resolution != 0) set_resolution(scene, request.resolution);
+    return scene;
 }
 
 std::string scene_note(const SceneOptions& options, const Scene& scene) {
@@ -119,14 +115,17 @@ std::vector<Option> scene_overrides(SceneOptions& options) {
 }
 
 std::vector<Option> window_options(SceneOptions& options) {
-    return {{.names = "--crop",
-             .target = &options.crop,
-             .help = "draw this window of pixels only",
-             .value = "x0,y0,x1,y1"},
-            {.names = "--aov",
-             .target = &options.aov,
-             .help = "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract",
-             .value = "LIST"}};
+    return {
+        {.names = "--crop",
+         .target = &options.crop,
+         .help = "draw this window of pixels only",
+         .value = "x0,y0,x1,y1"},
+        {.names = "--aov",
+         .target = &options.aov,
+         .help =
+             "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract,path,stat,magnification; "
+             "without it, all but the last three",
+         .value = "LIST"}};
 }
 
 SceneRequest scene_request(const SceneOptions& options) {
@@ -162,7 +161,11 @@ LayerRequest layer_request(const SceneOptions& options) {
             throw UsageError("--crop " + options.crop + " is no window of the film");
         request = {window[0], window[1], window[2], window[3], {}};
     }
-    if (options.aov == "all") return request;
+    if (options.aov.empty()) return request;
+    if (options.aov == "all") {
+        request.layers = layer_names();
+        return request;
+    }
     std::size_t from = 0;
     while (from <= options.aov.size()) {
         const std::size_t comma = std::min(options.aov.find(',', from), options.aov.size());

@@ -21,7 +21,7 @@ struct SceneOptions {
     int max_depth = -1;            // < 0: as the scene says
     std::vector<std::string> set;  // "/json/pointer=VALUE"
     std::string crop;              // "x0,y0,x1,y1"
-    std::string aov = "all";
+    std::string aov;               // empty: the usual ones
 };
 
 /// The scene argument and its resolution.

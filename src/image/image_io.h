@@ -1,4 +1,4 @@
-// Files of pictures: THE door to OpenImageIO.
+// Files of pictures: THE door to OpenEXR; other pictures go through a library that is loaded when one is met.
 #pragma once
 
 #include <memory>
@@ -51,10 +51,14 @@ void write_png(const std::string& file, int width, int height, std::span<const f
 /// The same PNG as bytes in memory. Throws OutputError.
 std::vector<unsigned char> encode_png(int width, int height, std::span<const float> rgb);
 
-/// Sets the thread counts of OpenImageIO and OpenEXR; 0 means all.
+/// Sets the thread count of OpenImageIO; 0 means all. OpenEXR uses as many as parallel_for.
 void set_image_threads(int threads);
 
-/// "OpenImageIO 2.4.7.1": for `trilens info`.
+/// Loads the library that reads and writes pictures other than OpenEXR, which else happens when the first one
+/// is met. False where it cannot be loaded.
+bool load_picture_library();
+
+/// "OpenImageIO 2.4.7.1, OpenEXR 3.1.5": for `trilens info`.
 std::string image_library_version();
 
 }  // namespace trilens

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "measure/comparable.h"
+#include "measure/flip.h"
 #include "measure/ssim.h"
 #include "measure/statistics.h"
 
@@ -87,6 +88,25 @@ double ssim_of(const Image& image, const std::vector<ChannelPair>& rgb, const Ma
                                  {image.data_width, image.data_height, test}, mask);
 }
 
+ColourPicture picture_of(const Image& image, const std::vector<ChannelPair>& rgb, bool is_reference) {
+    const auto values = [&](std::size_t c) -> const std::vector<float>& {
+        return is_reference ? rgb[c].reference : rgb[c].test;
+    };
+    return {image.data_width, image.data_height, values(0), values(1), values(2)};
+}
+
+double flip_of(const Image& image, const std::vector<ChannelPair>& rgb, const Mask& mask) {
+    const std::vector<float> errors = flip_map(picture_of(image, rgb, true), picture_of(image, rgb, false));
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        if (!mask[i] || std::isnan(errors[i])) continue;
+        sum += static_cast<double>(errors[i]);
+        ++count;
+    }
+    return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
 Metrics metrics_of(const Image& image, const std::vector<ChannelPair>& channels, const Mask& mask) {
     double sum = 0, squares = 0, relative = 0;
     std::vector<double> largest;
@@ -112,6 +132,7 @@ Metrics metrics_of(const Image& image, const std::vector<ChannelPair>& channels,
     metrics.psnr_db =
         squares > 0 ? -10 * std::log10(squares / count) : std::numeric_limits<double>::infinity();
     metrics.ssim = ssim_of(image, channels, mask);
+    metrics.flip = flip_of(image, channels, mask);
     const Summary summary = summarize(std::move(largest));
     metrics.max = summary.max;
     metrics.p50 = summary.p50;

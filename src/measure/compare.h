@@ -33,6 +33,7 @@ struct Metrics {
     double relmse = 0;                 // mean (v - r)^2 / (r^2 + 0.01)
     double psnr_db = 0;                // 20 log10(1 / rmse), peak 1; infinity for equal images
     double ssim = 1;                   // of the luminances 0.2126 R + 0.7152 G + 0.0722 B; see ssim.h
+    double flip = 0;                   // mean of the errors of flip.h, 0 (none) to 1
     double max = 0;                    // largest |v - r|
     double p50 = 0, p95 = 0, p99 = 0;  // of each pixel's largest |v - r|
 };

@@ -5,12 +5,18 @@
 
 #include "base/check.h"
 #include "measure/comparable.h"
+#include "measure/flip.h"
 
 namespace trilens {
 namespace {
 
 void add_channel(Image& image, const std::string& name, std::vector<float> values) {
     image.channels.push_back({name, std::move(values)});
+}
+
+ColourPicture picture_of(const Image& image, const std::string& layer) {
+    return {image.data_width, image.data_height, float_channel(image, channel_of(layer, "R")),
+            float_channel(image, channel_of(layer, "G")), float_channel(image, channel_of(layer, "B"))};
 }
 
 }  // namespace
@@ -45,6 +51,10 @@ Image make_difference(const Image& reference, const Image& test, const Differenc
         add_channel(image, std::string("abs.") + name, std::move(magnitudes));
     }
     add_channel(image, "mask.M", std::vector<float>(mask.begin(), mask.end()));
+    std::vector<float> flip = flip_map(picture_of(reference, options.layer), picture_of(test, options.layer));
+    for (std::size_t i = 0; i < flip.size(); ++i)
+        if (!mask[i]) flip[i] = 0;
+    add_channel(image, "flip.Y", std::move(flip));
     return image;
 }
 

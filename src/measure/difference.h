@@ -19,6 +19,7 @@ struct DifferenceOptions {
 ///   R G B        test - reference of the layer's R, G, B; zero outside the mask
 ///   abs.R G B    its magnitude
 ///   mask.M       1 where the pixel is compared, else 0
+///   flip.Y       the error of flip.h, 0 (none to be seen) to 1; zero outside the mask
 /// Throws InputError where compare() would.
 Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options = {});
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace trilens {
 namespace {
@@ -51,7 +52,28 @@ std::optional<double> resolution_for(const Fit& fit, double error) {
     return std::max(1.0, n);
 }
 
+/// The probability that Student's t lies within +-t, as a function of theta = atan(t / sqrt(degrees)).
+double probability_within(int degrees, double theta) {
+    const double c = std::cos(theta), s = std::sin(theta);
+    double term = degrees % 2 == 0 ? 1 : c, sum = degrees == 1 ? 0 : term;
+    for (int k = degrees % 2 == 0 ? 2 : 3; k <= degrees - 2; k += 2) {
+        term *= c * c * (k - 1) / k;
+        sum += term;
+    }
+    return degrees % 2 == 0 ? s * sum : 2 / std::numbers::pi * (theta + s * sum);
+}
+
 }  // namespace
+
+double student_t(int degrees, double confidence) {
+    double low = 0, high = std::numbers::pi / 2;
+    for (int i = 0; i < 200 && high - low > 0; ++i) {
+        const double middle = (low + high) / 2;
+        if (middle <= low || middle >= high) break;
+        (probability_within(degrees, middle) < confidence ? low : high) = middle;
+    }
+    return std::sqrt(static_cast<double>(degrees)) * std::tan(low);
+}
 
 std::optional<Fit> fit_power_law(std::span<const FitPoint> points, const FitOptions& options) {
     std::vector<std::size_t> runs = usable_by_n(points, options.floor);
@@ -77,6 +99,13 @@ std::optional<Fit> fit_power_law(std::span<const FitPoint> points, const FitOpti
     fit.order = -xy / xx;
     fit.constant = std::exp(mean_y + fit.order * mean_x);
     fit.r2 = yy > 0 ? xy * xy / (xx * yy) : 1;
+    if (runs.size() > 2) {
+        const double residual = std::max(0.0, yy - xy * xy / xx);
+        const double half =
+            student_t(static_cast<int>(runs.size()) - 2, 0.95) * std::sqrt(residual / (count - 2) / xx);
+        fit.order_low = fit.order - half;
+        fit.order_high = fit.order + half;
+    }
     fit.used.assign(points.size(), false);
     for (const std::size_t i : runs) fit.used[i] = true;
     fit.n_for_1 = resolution_for(fit, 1);

@@ -23,9 +23,12 @@ struct FitOptions {
 };
 
 struct Fit {
-    double order = 0;        // p: 2 means that doubling n quarters the error
-    double constant = 0;     // C: the error that the law gives at n = 1
-    double r2 = 0;           // of the line in log-log; 1 where all points lie on it
+    double order = 0;     // p: 2 means that doubling n quarters the error
+    double constant = 0;  // C: the error that the law gives at n = 1
+    double r2 = 0;        // of the line in log-log; 1 where all points lie on it
+    /// The ends of the 95 % confidence interval of the order, as least squares with normal errors of the
+    /// logarithms gives it (Student's t with two degrees of freedom fewer than points); none with two points.
+    std::optional<double> order_low, order_high;
     std::vector<bool> used;  // per point given: whether it took part
     /// The smallest n >= 1 for which the law promises an error of one, of half a unit (a pixel, where the
     /// errors are displacements). Extrapolates freely; nothing where the error does not fall with n, or n
@@ -36,5 +39,10 @@ struct Fit {
 /// Least squares of log error over log n. Points whose n or error is not finite and positive are left out.
 /// Nothing where the points left have fewer than two distinct n.
 std::optional<Fit> fit_power_law(std::span<const FitPoint> points, const FitOptions& options = {});
+
+/// The value that Student's t of this many degrees of freedom (at least 1) exceeds in size with probability
+/// 1 - confidence, 0 < confidence < 1: 12.706 of 1 and 0.95. By the finite sums of Abramowitz and Stegun
+/// 26.7.3 and 26.7.4.
+double student_t(int degrees, double confidence);
 
 }  // namespace trilens

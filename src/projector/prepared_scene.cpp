@@ -7,22 +7,27 @@
 #include <tuple>
 
 #include "base/check.h"
+#include "base/parallel.h"
 
 namespace trilens {
 namespace {
 
-std::vector<Box> triangle_boxes(const TriangleScene& scene) {
-    std::vector<Box> boxes(scene.size());
-    for (std::size_t i = 0; i < scene.size(); ++i) {
-        for (const Id corner : scene.triangles[i]) {
-            TRILENS_CHECK(corner < scene.points.size(), "a triangle's corner must be a point of the scene");
-            const Vec3& p = scene.points[corner];
-            TRILENS_CHECK(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z),
-                          "points must be finite");
-            boxes[i].include(p);
+constexpr std::size_t kTogether = 4096;  // triangles that are worth a thread
+
+void check_triangles(const TriangleScene& scene) {
+    TRILENS_CHECK(scene.object.size() == scene.size() && scene.primitive.size() == scene.size(),
+                  "every triangle needs an object and a primitive");
+    parallel_for(scene.size(), kTogether, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            for (const Id corner : scene.triangles[i]) {
+                TRILENS_CHECK(corner < scene.points.size(),
+                              "a triangle's corner must be a point of the scene");
+                const Vec3& p = scene.points[corner];
+                TRILENS_CHECK(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z),
+                              "points must be finite");
+            }
         }
-    }
-    return boxes;
+    });
 }
 
 /// Each triangle's place in the order of (object, primitive, index): the order that breaks ties in depth.
@@ -30,47 +35,66 @@ std::vector<Id> tie_ranks(const TriangleScene& scene) {
     std::vector<Id> sorted(scene.size());
     std::iota(sorted.begin(), sorted.end(), Id{0});
     const auto key = [&](Id i) { return std::tuple(scene.object[i], scene.primitive[i], i); };
-    std::sort(sorted.begin(), sorted.end(), [&](Id a, Id b) { return key(a) < key(b); });
+    const auto before = [&](Id a, Id b) { return key(a) < key(b); };
+    // Scenes come mesh by mesh, triangle by triangle: then the order is the ranks.
+    if (std::is_sorted(sorted.begin(), sorted.end(), before)) return sorted;
+    std::sort(sorted.begin(), sorted.end(), before);
     std::vector<Id> rank(scene.size());
     for (std::size_t place = 0; place < sorted.size(); ++place) rank[sorted[place]] = static_cast<Id>(place);
     return rank;
 }
 
-void append_triangle(PreparedScene::Data& data, const TriangleScene& scene, Id triangle) {
-    const auto point = [&](std::uint8_t k) { return scene.points[scene.triangles[triangle][k]]; };
+void put_triangle(PreparedScene::Data& data, const TriangleScene& scene, std::size_t place) {
+    const Id triangle = data.triangle[place];
+    std::array<Vec3, 3> point;
+    for (std::size_t k = 0; k < 3; ++k) point[k] = scene.points[scene.triangles[triangle][k]];
     std::array<std::uint8_t, 3> corner{0, 1, 2};
     std::sort(corner.begin(), corner.end(), [&](std::uint8_t a, std::uint8_t b) {
-        const Vec3 p = point(a), q = point(b);
-        return std::tuple(p.x, p.y, p.z, a) < std::tuple(q.x, q.y, q.z, b);
+        const Vec3 &p = point[a], &q = point[b];
+        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
     });
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 p = point(corner[k]);
-        data.x[k].push_back(p.x);
-        data.y[k].push_back(p.y);
-        data.z[k].push_back(p.z);
+        const Vec3& p = point[corner[k]];
+        data.x[k][place] = p.x;
+        data.y[k][place] = p.y;
+        data.z[k][place] = p.z;
     }
-    data.was_corner.push_back(corner);
-    data.triangle.push_back(triangle);
+    data.was_corner[place] = corner;
+}
+
+Box box_of_corners(const Vec3& a, const Vec3& b, const Vec3& c) {
+    return {glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)};
 }
 
 }  // namespace
 
 PreparedScene::PreparedScene(const TriangleScene& scene) : data_(std::make_unique<Data>()) {
-    TRILENS_CHECK(scene.object.size() == scene.size() && scene.primitive.size() == scene.size(),
-                  "every triangle needs an object and a primitive");
-    data_->bvh = build_bvh(triangle_boxes(scene));
+    check_triangles(scene);
+    Data& data = *data_;
+    const std::size_t count = scene.size();
+    data.bvh = build_bvh(count, [&](Id i) {
+        const IdTriple& corner = scene.triangles[i];
+        return box_of_corners(scene.points[corner[0]], scene.points[corner[1]], scene.points[corner[2]]);
+    });
+    data.triangle = std::move(data.bvh.order);
+    data.bvh.order = {};
     const std::vector<Id> rank = tie_ranks(scene);
-    for (std::size_t k = 0; k < 3; ++k) {
-        data_->x[k].reserve(scene.size());
-        data_->y[k].reserve(scene.size());
-        data_->z[k].reserve(scene.size());
-    }
-    for (const Id triangle : data_->bvh.order) {
-        append_triangle(*data_, scene, triangle);
-        data_->rank.push_back(rank[triangle]);
-    }
-    data_->bvh.order = {};
-    data_->leaves = build_leaf_tree(*data_);
+    data.rank.resize(count);
+    data.was_corner.resize(count);
+    for (std::size_t k = 0; k < 3; ++k)
+        for (auto* values : {&data.x[k], &data.y[k], &data.z[k]}) values->resize(count);
+    parallel_for(count, kTogether, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            put_triangle(data, scene, i);
+            data.rank[i] = rank[data.triangle[i]];
+        }
+    });
+    fit_boxes(data.bvh, [&](Id i) {
+        const Vec3 origin(0);
+        return box_of_corners(data.corner(0, i, origin), data.corner(1, i, origin),
+                              data.corner(2, i, origin));
+    });
+    data.leaves = build_leaf_tree(data);
 }
 
 PreparedScene::~PreparedScene() = default;

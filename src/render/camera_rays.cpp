@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "camera/perspective.h"
 
 namespace trilens {
 namespace {
@@ -13,7 +12,7 @@ void refuse_optics(const Scene& scene, std::size_t index) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         if (scene.meshes[m].role != Role::kOptic) continue;
         throw InputError(
-            scene.file, "/cameras/" + std::to_string(index),
+            scene_title(scene), "/cameras/" + std::to_string(index),
             "a rayMesh camera shows objects only, but mesh \"" + scene.meshes[m].name + "\" is an optic");
     }
 }
@@ -22,22 +21,9 @@ void refuse_optics(const Scene& scene, std::size_t index) {
 
 CameraRays make_camera_rays(const Scene& scene, std::size_t index) {
     const CameraDescription& from = scene.cameras[index];
-    const int width = scene.film.width, height = scene.film.height;
-    CameraRays camera;
-    if (from.type == CameraDescription::Type::kRayMesh) {
-        refuse_optics(scene, index);
-        camera.mesh =
-            make_ray_mesh({from.points, from.directions, from.screen, from.triangles}, width, height);
-        return camera;
-    }
-    PerspectiveParams params;
-    params.look_at = {from.eye, from.at, from.up};
-    params.yfov_degrees = from.yfov;
-    params.width = width;
-    params.height = height;
-    camera.linear = make_perspective(params);
-    camera.mesh = make_camera_mesh(*camera.linear, width, height);
-    return camera;
+    if (from.type == CameraType::kRayMesh) refuse_optics(scene, index);
+    const FilmSize film{static_cast<double>(scene.film.width), static_cast<double>(scene.film.height)};
+    return make_camera(from, film, {scene.file, "/cameras/" + std::to_string(index)});
 }
 
 void set_camera_rays(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
@@ -51,6 +37,25 @@ void set_camera_rays(const RayMesh& mesh, const FacetSamples& owned, const Sampl
                 views[s].ray = sample_ray(mesh, f, weights, grid.position(s));
         });
     }
+}
+
+FacetSamples set_exact_rays(const CameraModel& model, const SampleGrid& grid, std::span<SampleView> views) {
+    std::vector<Id> owner(grid.size(), kNone);
+    parallel_for(owner.size(), 256, [&](std::size_t from, std::size_t to) {
+        for (std::size_t s = from; s < to; ++s) {
+            const std::optional<Ray> ray = model.ray(grid.position(s));
+            if (!ray) continue;
+            views[s].ray = *ray;
+            owner[s] = 0;
+        }
+    });
+    return group_by_facet(owner, 1);
+}
+
+void count_from_eye(const CameraRays& camera, std::span<SampleView> views) {
+    if (camera.near_depth == 0) return;
+    for (SampleView& view : views)
+        if (view.hit.seen() || view.optic != kNone) view.depth += camera.near_depth;
 }
 
 }  // namespace trilens

@@ -1,29 +1,33 @@
-// A scene's camera as a RayMesh, with its linear map where it has one.
+// A scene's camera, and the rays of samples.
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "base/facet_samples.h"
-#include "base/linear_camera.h"
 #include "base/ray_mesh.h"
 #include "base/sample_grid.h"
+#include "camera/camera.h"
 #include "render/views.h"
 #include "scene/scene.h"
 
 namespace trilens {
 
-struct CameraRays {
-    std::optional<LinearCamera> linear;  // none for an explicit RayMesh
-    RayMesh mesh;
-};
+/// A scene's camera: its exact rays, its linear map where it has one, and its RayMesh.
+using CameraRays = Camera;
 
-/// The camera `index` of the scene. Throws InputError where it is a RayMesh and the scene has optics: their
-/// grids have no place on a nonlinear screen.
+/// The camera `index` of the scene. Throws InputError with its place where it is none, and where it is an
+/// explicit RayMesh and the scene has optics: their grids have no place on its screen.
 CameraRays make_camera_rays(const Scene& scene, std::size_t index);
 
 /// Sets the camera's ray of every sample that `owned` gives to a facet.
 void set_camera_rays(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                      std::span<SampleView> views);
+
+/// Sets the exact ray of every sample of a camera that is not linear, and returns the samples that have one
+/// (those of facet 0), ascending. For the limit truth.
+FacetSamples set_exact_rays(const CameraModel& model, const SampleGrid& grid, std::span<SampleView> views);
+
+/// Adds the depth at which the camera's rays begin to the depths of what is seen.
+void count_from_eye(const CameraRays& camera, std::span<SampleView> views);
 
 }  // namespace trilens

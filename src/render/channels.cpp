@@ -16,10 +16,26 @@ constexpr std::array kColours{"R", "G", "B", "A"};
 
 }  // namespace
 
+namespace {
+
+/// Meetings with optics on the way: of the refracted path, or the reflected where there is none.
+Id count_steps(const SampleViews& views, const SampleView& view) {
+    const PathEnd* end = views.find(view, Path::kRefract);
+    if (!end) end = views.find(view, Path::kReflect);
+    if (!end) return view.optic == kNone ? 0 : 1;
+    return static_cast<Id>(std::count_if(views.steps_of(*end).begin(), views.steps_of(*end).end(),
+                                         [](const Step& step) { return step.event != Event::kPass; }));
+}
+
+}  // namespace
+
 const std::vector<std::string>& layer_names() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all{"Z", "optic"};
         for (const Path path : kPaths) all.push_back(path_name(path));
+        all.push_back("path");
+        all.push_back("stat");
+        all.push_back("magnification");
         return all;
     }();
     return names;
@@ -37,7 +53,8 @@ std::size_t Canvas::add_ids(const std::string& name) {
 
 Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std::move(image)) {
     const auto wanted = [&](const std::string& layer) {
-        return layers.empty() || std::find(layers.begin(), layers.end(), layer) != layers.end();
+        if (layers.empty()) return layer != "path" && layer != "stat" && layer != "magnification";
+        return std::find(layers.begin(), layers.end(), layer) != layers.end();
     };
     for (std::size_t c = 0; c < 4; ++c) rgba_[c] = add_floats(kColours[c]);
     if (wanted("Z")) depth_ = add_floats("Z");
@@ -63,8 +80,29 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
         end.y = add_floats(layer + "P.Y");
         end.z = add_floats(layer + "P.Z");
         end.length = add_floats(layer + "P.length");
+        if (wanted("magnification")) end.area = add_floats(layer + "M.area");
         ends_.push_back(end);
     }
+    if (wanted("path")) path_count_ = add_ids("path.count");
+    if (wanted("stat")) {
+        method_ = add_ids("stat.method");
+        level_ = add_ids("stat.level");
+    }
+}
+
+Image Canvas::layout() const {
+    Image layout;
+    layout.width = image_.width;
+    layout.height = image_.height;
+    layout.x0 = image_.x0;
+    layout.y0 = image_.y0;
+    layout.data_width = image_.data_width;
+    layout.data_height = image_.data_height;
+    for (const Channel& channel : image_.channels) {
+        layout.channels.push_back({channel.name, {}});
+        if (channel.is_id()) layout.channels.back().values = std::vector<Id>();
+    }
+    return layout;
 }
 
 void Canvas::put_colour(const SampleColour& mean, std::size_t pixel) {
@@ -92,6 +130,8 @@ void Canvas::put_end(const World& world, const PathEnd* end, const EndChannels& 
     floats(channels.x)[pixel] = static_cast<float>(point.x);
     floats(channels.y)[pixel] = static_cast<float>(point.y);
     floats(channels.z)[pixel] = static_cast<float>(point.z);
+    if (channels.area != kNone)
+        floats(channels.area)[pixel] = end ? static_cast<float>(end->magnification) : 0;
     floats(channels.length)[pixel] = seen ? static_cast<float>(path_length(*end)) : 0.0f;
 }
 
@@ -105,6 +145,11 @@ void Canvas::put_centre(const World& world, const SampleViews& views, const Samp
         ids(optic_facet_)[pixel] = optic ? view.facet : kNone;
         floats(optic_u_)[pixel] = static_cast<float>(view.uv.x);
         floats(optic_v_)[pixel] = static_cast<float>(view.uv.y);
+    }
+    if (path_count_ != kNone) ids(path_count_)[pixel] = count_steps(views, view);
+    if (method_ != kNone) {
+        ids(method_)[pixel] = view.traced ? 2 : view.level > 0 ? 1 : 0;
+        ids(level_)[pixel] = view.level;
     }
     for (const EndChannels& channels : ends_)
         put_end(world, views.find(view, channels.path), channels, pixel);

@@ -14,7 +14,7 @@ namespace trilens {
 /// An image under work, with its channels by what they hold. Names: interface, "Images".
 class Canvas {
   public:
-    /// `image`: with its windows set, without channels. `layers`: those to keep beside RGBA; empty: all.
+    /// `image`: with its windows set, without channels. `layers`: as LayerRequest has them.
     Canvas(Image image, const std::vector<std::string>& layers);
 
     /// Throws ComputationError where the colour is not finite.
@@ -23,6 +23,8 @@ class Canvas {
     void put_centre(const World& world, const SampleViews& views, const SampleView& view, std::size_t pixel);
 
     const Image& image() const { return image_; }
+    /// The image without its values.
+    Image layout() const;
     Image take() { return std::move(image_); }
 
   private:
@@ -30,6 +32,7 @@ class Canvas {
     struct EndChannels {
         Path path = Path::kReflect;
         std::size_t object = kNone, primitive = kNone, x = kNone, y = kNone, z = kNone, length = kNone;
+        std::size_t area = kNone;
     };
 
     std::size_t add_floats(const std::string& name);
@@ -43,6 +46,7 @@ class Canvas {
     std::array<std::array<std::size_t, 3>, 3> parts_{};  // direct, reflect, refract
     std::size_t depth_ = kNone;
     std::size_t optic_object_ = kNone, optic_facet_ = kNone, optic_u_ = kNone, optic_v_ = kNone;
+    std::size_t path_count_ = kNone, method_ = kNone, level_ = kNone;
     std::vector<EndChannels> ends_;
 };
 

@@ -1,5 +1,9 @@
 #include "render/engine.h"
 
+#include <utility>
+
+#include "base/error.h"
+#include "base/nearest.h"
 #include "render/facet_engine.h"
 #include "render/limit_engine.h"
 
@@ -10,21 +14,39 @@ Viewer make_viewer(const World& world, const FrameParams& frame, const EngineCho
     prepare_shadows(world);
     if (engine.engine == Engine::kLimitTruth)
         return make_limit_viewer(world, make_camera_rays(world.scene, frame.camera));
-    return make_facet_viewer(world, make_frame(world, frame, warn), engine);
+    FrameParams params = frame;
+    if (engine.engine == Engine::kEnvironment || engine.engine == Engine::kPlanar)
+        params.rays = CornerRays::kInterpolated;
+    return make_facet_viewer(world, make_frame(world, params, warn), engine);
 }
 
+namespace {
+
+constexpr std::pair<Engine, const char*> kEngines[] = {
+    {Engine::kExact, "exact"},      {Engine::kClassic, "classic"},    {Engine::kFacetsTruth, "facets"},
+    {Engine::kLimitTruth, "limit"}, {Engine::kEnvironment, "envmap"}, {Engine::kPlanar, "planar"}};
+
+}  // namespace
+
 std::string engine_name(Engine engine) {
-    switch (engine) {
-        case Engine::kExact:
-            return "exact";
-        case Engine::kClassic:
-            return "classic";
-        case Engine::kFacetsTruth:
-            return "facets";
-        case Engine::kLimitTruth:
-            return "limit";
-    }
+    for (const auto& [known, name] : kEngines)
+        if (known == engine) return name;
     return "";
+}
+
+const std::vector<std::string>& engine_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const auto& [engine, name] : kEngines) all.emplace_back(name);
+        return all;
+    }();
+    return names;
+}
+
+Engine find_engine(const std::string& name) {
+    for (const auto& [engine, known] : kEngines)
+        if (name == known) return engine;
+    throw UsageError("there is no engine \"" + name + "\"" + suggestion(name, engine_names()));
 }
 
 std::string classic_name(const ClassicParams& params) {

@@ -6,12 +6,10 @@
 #include "base/parallel.h"
 #include "base/rasterize.h"
 #include "projector/classic.h"
+#include "render/optic_ends.h"
 
 namespace trilens {
 namespace {
-
-/// The engine's work on one RayMesh: the nearest triangles along the rays of the owned samples.
-using DrawMesh = std::function<void(const RayMesh&, const FacetSamples&, const SampleGrid&, std::span<Hit>)>;
 
 DrawMesh project_through(const PreparedScene& scene) {
     return [&scene](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
@@ -28,31 +26,35 @@ DrawMesh classic_through(const PreparedScene& scene, const ClassicParams& params
                             std::span<Hit> hits) { draw_classic(scene, mesh, owned, grid, hits, params); };
 }
 
-/// One path of one optic, drawn.
-struct DrawnPath {
-    const PathMesh* path = nullptr;
-    FacetSamples owned;
-    std::vector<Hit> hits;  // per sample
-};
+DrawMesh watched(const WatchMesh& watch, const DrawMesh& draw_mesh) {
+    return [watch, draw_mesh](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                              std::span<Hit> hits) {
+        watch(mesh, owned);
+        draw_mesh(mesh, owned, grid, hits);
+    };
+}
 
 /// All facet engines: the projectors and Embree on the same rays.
 struct FacetViewer {
     const World* world = nullptr;
     Frame frame;
-    DrawMesh draw_first;                // objects, for what lies before what
-    DrawMesh draw_objects;              // objects, as the engine shows them
-    std::vector<DrawMesh> draw_optics;  // each optic's facets
-    bool redraws_direct = false;        // draw_objects is another engine than draw_first
+    DrawMesh draw_first;                             // objects, for what lies before what
+    DrawMesh draw_objects;                           // objects, as the engine shows them
+    DrawMesh draw_paths;                             // the same, for the rays that leave optics
+    std::vector<DrawMesh> draw_optics;               // each optic's facets
+    bool redraws_direct = false;                     // draw_objects is another engine than draw_first
+    std::vector<std::unique_ptr<OpticPaths>> paths;  // per optic
 
     void operator()(const SampleGrid& grid, SampleViews& views) const;
 
   private:
+    /// Along the camera's rays as far as its far plane.
+    double reach() const { return frame.camera.far_depth - frame.camera.near_depth; }
     void view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                     SampleViews& views) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void describe_optic(std::size_t index, const Hit& hit, SampleView& view) const;
-    std::vector<DrawnPath> draw_paths(const SampleGrid& grid, const SampleViews& views) const;
 };
 
 Vec3 corner_weights(const Hit& hit) {
@@ -85,7 +87,7 @@ void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid
     std::vector<Hit> hits(grid.size());
     draw_first(frame.camera.mesh, owned, grid, hits);
     for (std::size_t s = 0; s < hits.size(); ++s) {
-        if (!hits[s].seen()) continue;
+        if (!hits[s].seen() || hits[s].t > reach()) continue;
         views.samples[s].hit = hits[s];
         views.samples[s].depth = hits[s].t;
     }
@@ -99,7 +101,7 @@ void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const
     parallel_for(hits.size(), 1024, [&](std::size_t from, std::size_t to) {
         for (std::size_t s = from; s < to; ++s) {
             SampleView& view = views.samples[s];
-            if (!hits[s].seen()) continue;
+            if (!hits[s].seen() || hits[s].t > reach()) continue;
             const bool sees_optic = view.optic != kNone, sees_object = view.hit.seen();
             if (sees_optic || sees_object) {
                 const Id other =
@@ -118,68 +120,9 @@ void FacetViewer::redraw_direct(const FacetSamples& owned, const SampleGrid& gri
     for (std::size_t s = 0; s < hits.size(); ++s) {
         SampleView& view = views.samples[s];
         if (view.optic != kNone) continue;
-        view.hit = hits[s];
-        view.depth = hits[s].seen() ? hits[s].t : SampleView().depth;
+        view.hit = hits[s].seen() && hits[s].t <= reach() ? hits[s] : Hit();
+        view.depth = view.hit.seen() ? view.hit.t : SampleView().depth;
     }
-}
-
-std::vector<DrawnPath> FacetViewer::draw_paths(const SampleGrid& grid, const SampleViews& views) const {
-    std::vector<DrawnPath> drawn;
-    std::vector<Id> owner(grid.size());
-    for (std::size_t i = 0; i < frame.optics.size(); ++i) {
-        bool any = false;
-        for (std::size_t s = 0; s < owner.size(); ++s) {
-            const SampleView& view = views.samples[s];
-            owner[s] = view.optic == i ? view.facet : kNone;
-            any = any || view.optic == i;
-        }
-        if (!any) continue;
-        for (const PathMesh& path : frame.optics[i].paths) {
-            DrawnPath one{&path, group_by_facet(owner, path.mesh.facets.size()),
-                          std::vector<Hit>(grid.size())};
-            draw_objects(path.mesh, one.owned, grid, one.hits);
-            drawn.push_back(std::move(one));
-        }
-    }
-    return drawn;
-}
-
-/// Calls body(facet, weights) for the facets through which samples have a ray, in parallel.
-template <typename Body>
-void for_each_facet_with_rays(const DrawnPath& drawn, const Body& body) {
-    const RayMesh& mesh = drawn.path->mesh;
-    parallel_for(mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
-        for (std::size_t f = from; f < to; ++f) {
-            if (!mesh.has_rays(f) || drawn.owned.of(f).empty()) continue;
-            const FacetWeights weights = facet_weights(mesh, f);
-            if (!weights.edge_on) body(f, weights);
-        }
-    });
-}
-
-/// Writes the ends of all paths: first how many each sample has, then where each sample's begin, then they.
-void collect_ends(const std::vector<DrawnPath>& drawn, const SampleGrid& grid, SampleViews& views) {
-    for (const DrawnPath& one : drawn)
-        for_each_facet_with_rays(one, [&](std::size_t f, const FacetWeights&) {
-            for (const Id s : one.owned.of(f)) ++views.samples[s].end_count;
-        });
-    std::size_t total = 0;
-    for (SampleView& view : views.samples) {
-        view.first_end = total;
-        total += view.end_count;
-        view.end_count = 0;
-    }
-    views.ends.resize(total);
-    for (const DrawnPath& one : drawn)
-        for_each_facet_with_rays(one, [&](std::size_t f, const FacetWeights& weights) {
-            for (const Id s : one.owned.of(f)) {
-                SampleView& view = views.samples[s];
-                PathEnd& end = views.ends[view.first_end + view.end_count++];
-                end.path = one.path->path;
-                end.ray = sample_ray(one.path->mesh, f, weights, grid.position(s));
-                end.hit = one.hits[s];
-            }
-        });
 }
 
 void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
@@ -189,15 +132,29 @@ void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     view_objects(owned, grid, views);
     for (std::size_t i = 0; i < frame.optics.size(); ++i) view_optic(i, owned, grid, views);
     if (redraws_direct) redraw_direct(owned, grid, views);
-    collect_ends(draw_paths(grid, views), grid, views);
+    count_from_eye(frame.camera, views.samples);
+    std::vector<OpticEnds> ends;
+    for (std::size_t i = 0; i < frame.optics.size(); ++i)
+        ends.push_back(draw_optic_paths({*world, static_cast<Id>(i), draw_paths, frame.optics[i]}, *paths[i],
+                                        grid, views));
+    collect_ends(ends, views);
 }
 
 }  // namespace
 
 Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine) {
+    return make_facet_views(world, std::move(frame), engine).viewer;
+}
+
+FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine,
+                            const WatchMesh& watch) {
     auto viewer = std::make_shared<FacetViewer>();
     viewer->world = &world;
     viewer->frame = std::move(frame);
+    for (std::size_t i = 0; i < viewer->frame.optics.size(); ++i)
+        viewer->paths.push_back(follows_paths(engine.engine)
+                                    ? make_optic_paths(world, viewer->frame, i)
+                                    : make_approximate_paths(world, viewer->frame, i, engine.engine));
     const bool traces = engine.engine == Engine::kFacetsTruth;
     viewer->draw_first =
         traces ? trace_through(object_tracer(world)) : project_through(prepared_objects(world));
@@ -209,7 +166,9 @@ Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& en
         viewer->draw_objects = classic_through(prepared_objects(world), engine.classic);
         viewer->redraws_direct = true;
     }
-    return [viewer](const SampleGrid& grid, SampleViews& views) { (*viewer)(grid, views); };
+    viewer->draw_paths = watch ? watched(watch, viewer->draw_objects) : viewer->draw_objects;
+    return {[viewer](const SampleGrid& grid, SampleViews& views) { (*viewer)(grid, views); },
+            [viewer](std::size_t optic) -> const OpticPaths& { return *viewer->paths[optic]; }};
 }
 
 }  // namespace trilens

@@ -5,9 +5,21 @@
 
 namespace trilens {
 
-/// A viewer in which every optic is its N x N grid. `engine`: kExact, kClassic or kFacetsTruth. With
+/// A viewer in which every optic is its N x N grid. `engine`: any but kLimitTruth. With
 /// kClassic, too, the exact projector finds which facet each sample sees; the classic one draws the objects
 /// there, and those that the camera sees itself.
 Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine);
+
+/// The same, with the paths over each optic that it has worked out so far: SampleView::leaf and PathEnd::node
+/// count in them.
+struct FacetViews {
+    Viewer viewer;
+    std::function<const OpticPaths&(std::size_t optic)> paths;
+};
+/// `watch`: told every RayMesh that leaves an optic and is drawn through, with the samples that it is drawn
+/// at; both only live for the call.
+using WatchMesh = std::function<void(const RayMesh&, const FacetSamples&)>;
+FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine,
+                            const WatchMesh& watch = {});
 
 }  // namespace trilens

@@ -37,13 +37,21 @@ FacetImages::FacetImages(const World& world, const Frame& frame, std::size_t opt
         facets_around(grid.facets, grid.points.size(), [&](Id corner) { return grid.corner_point[corner]; });
 }
 
+/// Whether the film shows this facet there, not another place of the same one.
+bool FacetImages::is_shown(const MeshPointImage& image) const {
+    const FramedOptic& optic = frame_.optics[optic_];
+    return optic.mesh_facet(optic.grid_facet(image.facet), image.screen) == image.facet;
+}
+
 bool FacetImages::hidden(const MeshPointImage& image) const {
     const SurfaceGrid& grid = facets_.grid();
-    const IdTriple& corner = grid.facets[image.facet];
+    const IdTriple& corner = grid.facets[frame_.optics[optic_].grid_facet(image.facet)];
     Vec3 on_facet(0);
     for (int k = 0; k < 3; ++k)
         on_facet += image.weights[k] * grid.points[grid.corner_point[corner[static_cast<std::size_t>(k)]]];
-    const Vec3 eye = frame_.camera.linear->eye;
+    const std::optional<Ray> view = exact_ray(frame_.camera, image.screen);
+    if (!view) return true;
+    const Vec3& eye = view->origin;
     return facets_.tracer().occluded({eye, on_facet - eye}, kFreeShare, 1 - kFreeShare);
 }
 
@@ -93,17 +101,17 @@ std::vector<OpticImage> FacetImages::images(const Vec3& point, bool refine,
                                             std::vector<SpecularPoint> known) const {
     std::vector<OpticImage> images;
     for (const MeshPointImage& found : images_.images(point)) {
-        if (hidden(found)) continue;
+        if (!is_shown(found) || hidden(found)) continue;
         const Ray ray = interpolated_ray(path_.mesh, found.facet, found.weights);
-        OpticImage image{found.facet, found.screen, found.t, found.t * length(ray.direction),
-                         ray.origin,  false};
+        const Id facet = frame_.optics[optic_].grid_facet(found.facet);
+        OpticImage image{facet, found.screen, found.t, found.t * length(ray.direction), ray.origin, false};
         if (const auto exact = refine ? refined(found, point) : std::nullopt) {
             known.push_back(*exact);
             if (distinct_images(known).size() < known.size()) {
                 known.pop_back();
                 continue;
             }
-            image = {found.facet, exact->pixel, exact->t, exact->distance, exact->position, true};
+            image = {facet, exact->pixel, exact->t, exact->distance, exact->position, true};
         }
         images.push_back(image);
     }

@@ -30,12 +30,14 @@ class FacetImages {
     FacetImages(const World& world, const Frame& frame, std::size_t optic, const PathMesh& path);
 
     /// All images through the facets (thesis chapter 3), those left out that the facets themselves hide from
-    /// the camera. `refine`: each is moved to the exact image near it, where there is one; two that come to
-    /// one exact image count once. `known`: exact images that are had already, not listed again.
+    /// the camera. `refine`: each is moved to the exact image near it, where there is one (linear cameras
+    /// only); two that come to one exact image count once. `known`: exact images that are had already, not
+    /// listed again.
     std::vector<OpticImage> images(const Vec3& point, bool refine,
                                    std::vector<SpecularPoint> known = {}) const;
 
   private:
+    bool is_shown(const MeshPointImage& image) const;
     bool hidden(const MeshPointImage& image) const;
     std::optional<SpecularPoint> refined(const MeshPointImage& image, const Vec3& point) const;
 

@@ -2,17 +2,37 @@
 
 #include <algorithm>
 
+#include "base/box.h"
+#include "paths/fit_first.h"
+
 namespace trilens {
 namespace {
 
-FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamera& camera, int resolution) {
+/// Where an error is asked for, facets are divided down to DivideParams::least_area, whatever their size.
+constexpr int kMostLevelsForError = 12;
+
+FramedOptic frame_optic(const World& world, std::size_t index, const CameraRays& camera,
+                        const FrameParams& params) {
     const Optic& optic = world.optics[index];
     const RenderSettings& settings = world.scene.render;
     FramedOptic framed;
-    framed.facets = optic_facets(world, index, grid_resolution(optic, resolution));
+    framed.rays = optic_rays(world, index, params);
+    framed.resolution = grid_resolution(optic, params.resolution);
+    framed.grid = params.grid.value_or(world.scene.meshes[optic.mesh].grid);
+    framed.facets = optic_facets(world, index, framed.resolution);
+    if (camera.model) {
+        framed.model = camera.model;
+        framed.film_grid =
+            std::make_shared<FilmGrid>(make_film_grid(framed.facets->grid(), *camera.model, camera.film));
+    }
     const auto add = [&](Path path) {
+        const double ior = world.scene.materials[optic.material].ior;
         framed.paths.push_back(
-            make_path_mesh(path, framed.facets->grid(), camera, world.scene.materials[optic.material].ior));
+            camera.linear ? make_path_mesh(path, framed.facets->grid(), *camera.linear, ior)
+                          : make_path_mesh(path, framed.film_grid->grid, framed.film_grid->views, ior));
+        // Where paths go on, whole paths are fitted instead; other cameras have exact corners.
+        if (camera.linear && framed.rays == CornerRays::kFitted && settings.max_depth == 0)
+            fit_first_rays({*optic.surface, framed.facets->grid(), *camera.linear, ior}, framed.paths.back());
     };
     if (settings.reflect) add(Path::kReflect);
     if (settings.refract && !optic.mirror) add(Path::kRefract);
@@ -22,22 +42,172 @@ FramedOptic frame_optic(const World& world, std::size_t index, const LinearCamer
 }  // namespace
 
 Frame make_frame(const World& world, const FrameParams& params, const Warn& warn) {
-    return make_frame(world, make_camera_rays(world.scene, params.camera), params.resolution, warn);
+    return make_frame(world, make_camera_rays(world.scene, params.camera), params, warn);
 }
 
-Frame make_frame(const World& world, CameraRays camera, int resolution, const Warn& warn) {
+CornerRays optic_rays(const World& world, std::size_t optic, const FrameParams& params) {
+    return params.rays.value_or(world.scene.meshes[world.optics[optic].mesh].rays);
+}
+
+Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn) {
     Frame frame;
     frame.camera = std::move(camera);
-    check_facet_count(world, resolution);
+    frame.max_error = params.max_error.value_or(world.scene.render.max_error);
+    check_facet_count(world, params.resolution);
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
-        frame.optics.push_back(frame_optic(world, i, *frame.camera.linear, resolution));
+        frame.optics.push_back(frame_optic(world, i, frame.camera, params));
         const std::vector<Vec3>& normals = frame.optics.back().facets->grid().corner_normal;
         const auto bad = std::count(normals.begin(), normals.end(), Vec3(0));
         if (bad > 0 && warn)
             warn(world.names[world.optics[i].mesh] + ": " + std::to_string(bad) +
                  " grid corners have no normal; the facets there show nothing");
+        const std::shared_ptr<const FilmGrid>& placed = frame.optics.back().film_grid;
+        if (placed && placed->lost > 0 && warn)
+            warn(world.names[world.optics[i].mesh] + ": " + std::to_string(placed->lost) +
+                 " facets lie across a pole of the camera or reach where it has no image; what they reflect "
+                 "or refract is not drawn");
     }
     return frame;
+}
+
+PathCamera path_camera(const LinearCamera& camera) {
+    PathCamera of_paths;
+    of_paths.parallel = camera.parallel;
+    of_paths.screen = [&camera](const Vec3& point) { return screen_from_world(camera, point); };
+    // The rows of the map, inverted; parallel cameras have w = 1, their depth is free: the image plane's.
+    const Mat3 rows(Vec3(camera.screen_x), Vec3(camera.screen_y),
+                    camera.parallel ? camera.view_direction : Vec3(camera.screen_w));
+    of_paths.point = [&camera, inverse = glm::inverse(glm::transpose(rows))](const Vec3& screen) {
+        const Vec3 offset(camera.screen_x.w, camera.screen_y.w,
+                          camera.parallel ? -dot(camera.view_direction, camera.eye) : camera.screen_w.w);
+        const Vec3 wanted = camera.parallel ? Vec3(Vec2(screen) / screen.z, 0) : screen;
+        return inverse * (wanted - offset);
+    };
+    of_paths.ray = [&camera](const Vec3&, const Vec3& chord) {
+        const Vec3 incident = incident_direction(camera, chord);
+        return Ray{chord - incident, incident};
+    };
+    return of_paths;
+}
+
+PathCamera path_camera(const CameraRays& camera, double depth) {
+    if (camera.linear) return path_camera(*camera.linear);
+    PathCamera of_paths;
+    of_paths.affine = true;
+    const auto ray_at = [&camera](const Vec3& screen) {
+        return exact_ray(camera, Vec2(screen) / screen.z).value_or(Ray{});
+    };
+    of_paths.point = [ray_at, depth](const Vec3& screen) {
+        const Ray ray = ray_at(screen);
+        return ray.origin + depth * normalize_or_zero(ray.direction);
+    };
+    // As long as the way to the chord's point.
+    of_paths.ray = [ray_at](const Vec3& screen, const Vec3& chord) {
+        const Ray ray = ray_at(screen);
+        return Ray{ray.origin, length(chord - ray.origin) * normalize_or_zero(ray.direction)};
+    };
+    return of_paths;
+}
+
+namespace {
+
+/// How many squares along the film's side do for n facets along a face's: a body shows about three faces.
+constexpr int kSquaresPerFacet = 2;
+
+/// The optic's bounds on the film.
+FilmWindow film_window(const World& world, const FramedOptic& framed, std::span<const CornerView> views) {
+    const Vec2 film(world.scene.film.width, world.scene.film.height);
+    FilmWindow window{Vec2(1e300), Vec2(-1e300), framed.resolution};
+    if (framed.model) window.n *= kSquaresPerFacet;
+    Box box;
+    double depth = 0;
+    for (const Vec3& point : framed.facets->grid().points) box.include(point);
+    for (const CornerView& view : views) {
+        const Vec3& s = view.screen;
+        depth += length(view.incident) / static_cast<double>(views.size());
+        if (s.z > 0) {
+            window.low = glm::min(window.low, Vec2(s) / s.z);
+            window.high = glm::max(window.high, Vec2(s) / s.z);
+        } else {  // it reaches behind the eye
+            window.low = Vec2(0);
+            window.high = film;
+        }
+    }
+    // A pixel more, for the exact outline stands over the facets' by less than that at useful n.
+    window.low = glm::clamp(window.low - 1.0, Vec2(0), film);
+    window.high = glm::clamp(window.high + 1.0, Vec2(0), film);
+    if (!(window.low.x < window.high.x && window.low.y < window.high.y))
+        window.low = Vec2(0), window.high = film;
+    window.depth = depth > 0 ? depth : 1;
+    window.reach = length(box.size());
+    return window;
+}
+
+Vec3 middle_of(const SurfaceGrid& grid) {
+    Box box;
+    for (const Vec3& point : grid.points) box.include(point);
+    return 0.5 * (box.low + box.high);
+}
+
+/// The grid that the optic's first paths are of, and how the camera sees its corners.
+struct SeenGrid {
+    const SurfaceGrid* grid = nullptr;
+    std::vector<CornerView> views;
+};
+
+SeenGrid seen_grid(const Frame& frame, const FramedOptic& framed) {
+    if (framed.film_grid) return {&framed.film_grid->grid, framed.film_grid->views};
+    return {&framed.facets->grid(), corner_views(framed.facets->grid(), *frame.camera.linear)};
+}
+
+}  // namespace
+
+std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic) {
+    const FramedOptic& framed = frame.optics[optic];
+    const bool whole = world.scene.render.max_depth > 0 || frame.max_error > 0;
+    const SeenGrid seen = seen_grid(frame, framed);
+    Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
+    const Vec2 film(world.scene.film.width, world.scene.film.height);
+    DivideParams params;
+    params.fit = framed.rays == CornerRays::kFitted;
+    params.max_error = frame.max_error;
+    params.objects = &object_tracer(world);
+    if (frame.max_error > 0) params.most_levels = kMostLevelsForError;
+    // A camera that is not linear has whole paths by facets on the film: there its rays are exact.
+    if (framed.grid == GridKind::kScreen || (framed.model && whole)) {
+        const FilmWindow window = film_window(world, framed, seen.views);
+        looking.camera = path_camera(frame.camera, window.depth);
+        looking.camera.film = film;
+        return std::make_unique<OpticPaths>(looking, window, params);
+    }
+    if (whole) {
+        looking.camera = path_camera(*frame.camera.linear);
+        looking.camera.film = film;
+        return std::make_unique<OpticPaths>(looking, *seen.grid, params);
+    }
+    return std::make_unique<OpticPaths>(looking,
+                                        FirstPaths{seen.grid, seen.views, find_path(framed, Path::kReflect),
+                                                   find_path(framed, Path::kRefract)});
+}
+
+std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,
+                                                   Engine engine) {
+    const FramedOptic& framed = frame.optics[optic];
+    const SeenGrid seen = seen_grid(frame, framed);
+    const double ior = world.scene.materials[world.optics[optic].material].ior;
+    std::vector<PathMesh> meshes;
+    for (const PathMesh& path : framed.paths)
+        meshes.push_back(engine == Engine::kPlanar
+                             ? make_flat_mesh(path.path, *seen.grid, seen.views, ior)
+                             : make_environment_mesh(path, middle_of(framed.facets->grid())));
+    const auto find = [&](Path path) -> const RayMesh* {
+        for (const PathMesh& one : meshes)
+            if (one.path == path) return &one.mesh;
+        return nullptr;
+    };
+    const Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
+    return std::make_unique<OpticPaths>(
+        looking, FirstPaths{seen.grid, seen.views, find(Path::kReflect), find(Path::kRefract)});
 }
 
 const RayMesh* find_path(const FramedOptic& optic, Path path) {

@@ -6,28 +6,57 @@
 #include <vector>
 
 #include "paths/corner_rays.h"
+#include "paths/facet_paths.h"
 #include "render/camera_rays.h"
+#include "render/film_grid.h"
 #include "render/geometry.h"
 #include "render/request.h"
 
 namespace trilens {
 
-/// One optic as facets that the camera sees. Facets of the RayMeshes are those of the grid.
+/// One optic as facets that the camera sees. Facets of the RayMeshes are those of the grid, or, where there
+/// is a film_grid, of that.
 struct FramedOptic {
     std::shared_ptr<const OpticFacets> facets;
-    std::vector<PathMesh> paths;  // those that the scene draws and the optic has
+    int resolution = 0;
+    GridKind grid = GridKind::kSurface;  // where its facets for whole paths lie
+    std::vector<PathMesh> paths;  // those that the scene draws and the optic has, up to the first optic
+    std::shared_ptr<const FilmGrid> film_grid;  // of a camera that is not linear
+    std::shared_ptr<const CameraModel> model;   // that camera's
+
+    /// The RayMeshes' facet by which the film shows facet f of the grid at that place; kNone: none does.
+    Id mesh_facet(Id f, const Vec2& at) const { return film_grid ? film_grid->facet_at(f, at, *model) : f; }
+    /// The grid's facet that a facet of the RayMeshes is.
+    Id grid_facet(Id f) const { return film_grid ? film_grid->original[f] : f; }
+    CornerRays rays = CornerRays::kInterpolated;
 };
 
 struct Frame {
     CameraRays camera;
     std::vector<FramedOptic> optics;  // as World::optics
+    double max_error = 0;             // as RenderSettings
 };
 
 /// Throws InputError where the optics together have too many facets to hold, or the camera cannot show them.
 Frame make_frame(const World& world, const FrameParams& params, const Warn& warn);
 
-/// The same for a camera's rays that no scene describes; `resolution` as in FrameParams.
-Frame make_frame(const World& world, CameraRays camera, int resolution, const Warn& warn);
+/// The same for a camera's rays that no scene describes; FrameParams::camera is not asked.
+Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn);
+
+/// The rays that an optic's corners are asked to have.
+CornerRays optic_rays(const World& world, std::size_t optic, const FrameParams& params);
+
+/// The camera as facets ask it. `camera` must live longer. `depth`: of a camera that is not linear, about how
+/// far what it looks at is.
+PathCamera path_camera(const LinearCamera& camera);
+PathCamera path_camera(const CameraRays& camera, double depth);
+
+/// The paths over an optic's facets, as far as the scene has them followed. The frame must live longer.
+std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic);
+
+/// The paths as one of the usual approximations has them: kEnvironment or kPlanar.
+std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,
+                                                   Engine engine);
 
 /// The mesh of this path, or null.
 const RayMesh* find_path(const FramedOptic& optic, Path path);

@@ -38,6 +38,7 @@ struct WorldGeometry {
     explicit WorldGeometry(std::size_t optics) : optic(optics) {}
     Lazy<PreparedScene> prepared;
     Lazy<Tracer> tracer;
+    Lazy<PathWorld> paths;
     std::vector<OpticGeometry> optic;
 };
 
@@ -76,6 +77,23 @@ const LimitTracer& limit_tracer(const World& world, std::size_t optic) {
         const SurfaceGrid fine =
             surface.has_closed_form() ? SurfaceGrid{} : make_grid(surface, fine_resolution(surface));
         return std::make_unique<LimitTracer>(surface, fine);
+    });
+}
+
+const PathWorld& path_world(const World& world) {
+    return world.geometry->paths.get([&] {
+        const RenderSettings& settings = world.scene.render;
+        auto paths = std::make_unique<PathWorld>();
+        paths->max_depth = settings.max_depth;
+        paths->fresnel = settings.fresnel;
+        paths->reflect = settings.reflect;
+        paths->refract = settings.refract;
+        for (std::size_t i = 0; i < world.optics.size(); ++i) {
+            const Optic& optic = world.optics[i];
+            paths->optics.push_back({&limit_tracer(world, i), &world.scene.materials[optic.material],
+                                     optic.mirror, world.scene.meshes[optic.mesh].priority});
+        }
+        return paths;
     });
 }
 

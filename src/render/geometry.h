@@ -7,6 +7,7 @@
 #include "base/surface.h"
 #include "intersect/limit_tracer.h"
 #include "intersect/tracer.h"
+#include "paths/path_world.h"
 #include "projector/projector.h"
 #include "render/world.h"
 
@@ -38,6 +39,9 @@ const Tracer& object_tracer(const World& world);
 
 /// The exact surface of an optic for rays.
 const LimitTracer& limit_tracer(const World& world, std::size_t optic);
+
+/// All optics as paths meet them, with their exact surfaces, and how far the scene has paths followed.
+const PathWorld& path_world(const World& world);
 
 /// Whether any light asks what lies between it and a point.
 bool has_shadows(const World& world);

@@ -18,7 +18,7 @@ bool lacks_ray(const World& world, const SampleViews& views, const SampleView& v
     const Optic& optic = world.optics[view.optic];
     const RenderSettings& settings = world.scene.render;
     if (optic.mirror) return settings.reflect && !views.find(view, Path::kReflect);
-    return settings.refract && !views.find(view, Path::kRefract) &&
+    return settings.refract && !views.find(view, Path::kRefract) && !view.traced &&
            !reflects_totally(world.scene.materials[optic.material], view.incidence);
 }
 
@@ -35,6 +35,13 @@ SampleColour mean_colour(const World& world, const SampleViews& views, std::size
     return {share * sum.direct, share * sum.reflect, share * sum.refract, share * sum.coverage};
 }
 
+/// How many rows of pixels are drawn together: whole blocks of sixteen, as files keep them, where they are
+/// many.
+int band_rows(std::size_t samples_per_row) {
+    const int rows = static_cast<int>(std::max<std::size_t>(1, kBandSamples / samples_per_row));
+    return rows > 16 ? rows / 16 * 16 : rows;
+}
+
 Image empty_image(const World& world, const LayerRequest& request) {
     Image image;
     image.width = world.scene.film.width;
@@ -49,12 +56,19 @@ Image empty_image(const World& world, const LayerRequest& request) {
 }  // namespace
 
 Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& request,
-                  const Progress& progress, LayerStatistics* statistics) {
-    Canvas canvas(empty_image(world, request), request.layers);
+                  const Progress& progress, LayerStatistics* statistics, const StripSink* sink) {
     const int side = world.scene.film.spp, height = request.y1 - request.y0;
     const std::size_t per_pixel = static_cast<std::size_t>(side * side);
     const std::size_t samples_per_row = static_cast<std::size_t>(request.x1 - request.x0) * per_pixel;
-    const int rows = static_cast<int>(std::max<std::size_t>(1, kBandSamples / samples_per_row));
+    const int rows = band_rows(samples_per_row);
+    Image image = empty_image(world, request);
+    if (sink) image.data_height = std::min(height, rows);
+    Canvas canvas(std::move(image), request.layers);
+    if (sink) {
+        Image layout = canvas.layout();
+        layout.data_height = height;
+        sink->begin(layout);
+    }
     LayerStatistics counts;
     SampleViews views, centres;
     for (int y = request.y0; y < request.y1; y += rows) {
@@ -66,7 +80,7 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
         if (side > 1) viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, centres);
         const SampleViews& middle = side > 1 ? centres : views;
         const std::size_t first =
-            static_cast<std::size_t>(y - request.y0) * static_cast<std::size_t>(grid.width());
+            sink ? 0 : static_cast<std::size_t>(y - request.y0) * static_cast<std::size_t>(grid.width());
         parallel_for(grid.pixels(), 256, [&](std::size_t from, std::size_t to) {
             for (std::size_t p = from; p < to; ++p) {
                 canvas.put_colour(mean_colour(world, views, p * per_pixel, per_pixel), first + p);
@@ -76,11 +90,18 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
         for (const SampleView& view : middle.samples) {
             counts.optic_pixels += view.optic != kNone;
             counts.pixels_without_ray += lacks_ray(world, middle, view);
+            counts.traced_pixels += view.traced;
+            counts.subdivided_pixels += !view.traced && view.level > 0;
+            counts.faint_light = std::max(counts.faint_light, view.cut.faint);
+            counts.predicted_error = std::max(counts.predicted_error, view.predicted);
+            counts.deep_light = std::max(counts.deep_light, view.cut.too_deep);
         }
+        if (sink) sink->add(canvas.image().channels, grid.height());
+        counts.projected_facets = std::max(counts.projected_facets, middle.projected_facets);
         progress(static_cast<double>(grid.y1 - request.y0) / height);
     }
     if (statistics) *statistics = counts;
-    return canvas.take();
+    return sink ? empty_image(world, request) : canvas.take();
 }
 
 }  // namespace trilens

@@ -9,6 +9,7 @@
 #include "base/nearest.h"
 #include "base/stopwatch.h"
 #include "base/version.h"
+#include "paths/follow.h"
 #include "render/engine.h"
 #include "render/layers.h"
 #include "scene/named_files.h"
@@ -20,6 +21,13 @@ std::string resolution_text(const World& world, int asked) {
     std::string text;
     for (const Optic& optic : world.optics)
         text += (text.empty() ? "" : ",") + std::to_string(grid_resolution(optic, asked));
+    return text;
+}
+
+std::string rays_text(const World& world, const FrameParams& frame) {
+    std::string text;
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        text += (text.empty() ? "" : ",") + std::string(corner_rays_name(optic_rays(world, i, frame)));
     return text;
 }
 
@@ -40,16 +48,28 @@ void tell(const World& world, const LayerRequest& window, const LayerStatistics&
                         statistics.pixels_without_ray));
 }
 
-/// What a picture leaves out of the scene, whatever it shows.
-void tell_omissions(const World& world, const Warn& warn) {
+/// What a picture leaves out of the scene.
+void tell_omissions(const World& world, Engine engine, const LayerStatistics& statistics, const Warn& warn) {
     const RenderSettings& settings = world.scene.render;
+    const std::string why =
+        follows_paths(engine) ? "maxDepth is 0" : "engine " + engine_name(engine) + " knows no others";
+    if (settings.max_depth > 0 && follows_paths(engine)) {
+        // Less than half a step of 8 bits is nobody's concern.
+        if (statistics.deep_light > kLeastWeight)
+            warn(fmt::format(
+                "paths end after {} optics (maxDepth {}): up to {:.1f} % of a pixel's light would go "
+                "on to another",
+                settings.max_depth + 1, settings.max_depth, 100 * statistics.deep_light));
+        return;
+    }
     if (world.optics.size() > 1 && (settings.reflect || settings.refract))
-        warn("optics do not see each other: a path ends after its first optic");
+        warn("optics do not see each other: a path ends after its first optic (" + why + ")");
     for (const Optic& optic : world.optics)
         if (!optic.mirror && settings.refract)
             warn(world.names[optic.mesh] +
-                 ": glass bends light once, at the surface that is seen; where light leaves a body is not "
-                 "followed");
+                 ": glass bends light once, at the surface that is seen: maxDepth is 0, so where light "
+                 "leaves a "
+                 "body is not followed");
 }
 
 /// The window as it is drawn: the whole film where none is asked for.
@@ -69,14 +89,15 @@ LayerRequest checked_layers(const World& world, LayerRequest asked) {
 
 /// Refuses a film whose layers alone would fill the machine's memory: the system would end the program
 /// without a word.
-void check_film_fits(const World& world, const LayerRequest& window) {
-    constexpr double kBytesPerPixel = 2 * 34 * 4;  // up to 34 channels, once more while they are encoded
-    const double needed = kBytesPerPixel * (window.x1 - window.x0) * (window.y1 - window.y0);
+void check_film_fits(const World& world, const LayerRequest& window, bool in_strips) {
+    // Up to 34 channels, once more while they are encoded; in strips only the encoded ones are held.
+    const double bytes_per_pixel = (in_strips ? 1 : 2) * 34 * 4;
+    const double needed = bytes_per_pixel * (window.x1 - window.x0) * (window.y1 - window.y0);
     const double memory =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (needed < memory) return;
     throw InputError(
-        world.scene.file, "/film",
+        scene_title(world.scene), "/film",
         fmt::format("an image of {} x {} pixels needs about {:.0f} GiB; this machine has {:.0f}",
                     window.x1 - window.x0, window.y1 - window.y0, needed / (1 << 30), memory / (1 << 30)));
 }
@@ -85,11 +106,16 @@ void describe(const World& world, const PictureRequest& request, Image& image) {
     const Engine engine = request.engine.engine;
     auto& header = image.metadata;
     header["trilens:version"] = kVersion;
-    header["trilens:command"] = engine == Engine::kExact || engine == Engine::kClassic ? "render" : "trace";
+    header["trilens:command"] = projects(engine) ? "render" : "trace";
     header["trilens:engine"] = engine_name(engine);
     if (engine == Engine::kClassic) header["trilens:classic"] = classic_name(request.engine.classic);
     header["trilens:camera"] = world.scene.cameras[request.frame.camera].name;
     header["trilens:resolution"] = resolution_text(world, request.frame.resolution);
+    if (engine != Engine::kLimitTruth) {
+        header["trilens:rays"] = rays_text(world, request.frame);
+        const double max_error = request.frame.max_error.value_or(world.scene.render.max_error);
+        if (max_error > 0) header["trilens:max_error"] = fmt::format("{}", max_error);
+    }
     header["trilens:facets"] = std::to_string(facet_count(world, request.frame.resolution));
     header["trilens:scene"] = world.scene.resolved;
     header["trilens:folder"] = world.scene.folder;
@@ -99,21 +125,30 @@ void describe(const World& world, const PictureRequest& request, Image& image) {
 }  // namespace
 
 Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
-                     const Warn& warn) {
+                     const Warn& warn, const StripSink* sink) {
     const LayerRequest layers = checked_layers(world, request.layers);
-    check_film_fits(world, layers);
+    check_film_fits(world, layers, sink != nullptr);
     Picture picture;
     const Stopwatch preparing;
     const Viewer viewer = make_viewer(world, request.frame, request.engine, warn);
     picture.prepare_seconds = preparing.seconds();
 
+    StripSink described;
+    if (sink) {
+        described.begin = [&](Image layout) {
+            describe(world, request, layout);
+            sink->begin(layout);
+        };
+        described.add = sink->add;
+    }
     const Stopwatch drawing;
-    picture.image = draw_layers(world, viewer, layers, progress, &picture.statistics);
+    picture.image =
+        draw_layers(world, viewer, layers, progress, &picture.statistics, sink ? &described : nullptr);
     picture.draw_seconds = drawing.seconds();
     describe(world, request, picture.image);
     if (warn) {
         tell(world, layers, picture.statistics, warn);
-        tell_omissions(world, warn);
+        tell_omissions(world, request.engine.engine, picture.statistics, warn);
     }
     return picture;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/progress.h"
+#include "base/strip_sink.h"
 #include "render/request.h"
 
 namespace trilens {
@@ -10,8 +11,8 @@ struct World;
 
 /// Draws the picture. Warns of what the user would want to know: optics off screen, pixels without a ray.
 /// Throws UsageError for a window or layers that the film does not have, InputError where the film does not
-/// fit the machine's memory, and as make_viewer and draw_layers do.
+/// fit the machine's memory, and as make_viewer and draw_layers do. `sink`: as draw_layers has it.
 Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
-                     const Warn& warn);
+                     const Warn& warn, const StripSink* sink = nullptr);
 
 }  // namespace trilens

@@ -1,10 +1,12 @@
 #include "render/project.h"
 
+#include <algorithm>
 #include <memory>
 
 #include "base/parallel.h"
 #include "camera/specular_search.h"
 #include "render/facet_images.h"
+#include "render/path_images.h"
 
 namespace trilens {
 namespace {
@@ -33,6 +35,19 @@ Id facet_at(const SurfaceGrid& grid, std::span<const Id> facets_of_face, const V
     return kNone;
 }
 
+/// An image through the facets this near to an exact one, in pixels, is taken for the same.
+constexpr double kSameImage = 3;
+
+/// A camera for the law of reflection alone: all rays leave the eye, and every point is in front of it.
+LinearCamera law_of_eye(const Vec3& eye) {
+    LinearCamera camera;
+    camera.eye = eye;
+    camera.screen_x = {1, 0, 0, 0};
+    camera.screen_y = {0, 1, 0, 0};
+    camera.screen_w = {0, 0, 0, 1};
+    return camera;
+}
+
 /// One path over one optic, ready to image points.
 struct OpticPath {
     Path path = Path::kReflect;
@@ -50,8 +65,20 @@ class PointProjector {
     void add_direct(const Vec3& point, PointProjection& result) const;
     void add_camera_mesh(const Vec3& point, PointProjection& result) const;
     void add_optic_path(const OpticPath& path, const Vec3& point, PointProjection& result) const;
+    void add_several(const SeveralOpticsImages& several, const Vec3& point, PointProjection& result) const;
+    void differentiate(WorldImage& image, const Vec3& point) const;
+    bool goes_straight(const Vec3& from, const Vec3& to) const;
     SpecularSearch search(const OpticPath& path, const Vec3& point) const;
+    std::vector<OpticImage> optic_images(const OpticPath& path, const Vec3& point,
+                                         PointProjection& result) const;
+    std::vector<OpticImage> images_on_film(const OpticPath& path, const SpecularSearch& searched) const;
+    bool is_between_planes(double t) const { return t >= camera_.near_depth && t <= camera_.far_depth; }
     bool on_film(const Vec2& pixel) const;
+    /// Whether images are looked for on the exact surfaces: where the camera's law is that of one eye, or of
+    /// parallel rays.
+    bool searches_surfaces() const {
+        return request_.search == ImageSearch::kComplete && (camera_.linear || camera_.model->eye());
+    }
     bool is_free_of_objects(const Vec3& from, const Vec3& to) const;
     bool is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const;
     bool sees(const Vec3& from, const Vec3& to) const;
@@ -64,12 +91,13 @@ class PointProjector {
     std::vector<std::unique_ptr<SpecularSearcher>> searcher_;  // per optic; kComplete
     std::vector<FacetsAround> facets_of_face_;  // per optic: facets at each face of its surface
     std::vector<OpticPath> paths_;
+    std::vector<std::unique_ptr<SeveralOpticsImages>> several_;  // per optic, where paths go on
 };
 
 PointProjector::PointProjector(const World& world, const ProjectRequest& request)
     : world_(world), request_(request), frame_(make_frame(world, request.frame, {})) {
     object_tracer(world);
-    if (!camera_.linear) {
+    if (!camera_.linear && !camera_.model) {
         camera_mesh_ = std::make_unique<MeshPointImages>(camera_.mesh);
         return;
     }
@@ -80,7 +108,7 @@ void PointProjector::add_optic(std::size_t index) {
     const OpticFacets& facets = *frame_.optics[index].facets;
     const SurfaceGrid& grid = facets.grid();
     facets.tracer();
-    if (request_.search == ImageSearch::kComplete) {
+    if (searches_surfaces()) {
         limit_tracer(world_, index);
         searcher_.push_back(std::make_unique<SpecularSearcher>(*world_.optics[index].surface));
         std::vector<IdTriple> face(grid.facets.size());
@@ -91,6 +119,9 @@ void PointProjector::add_optic(std::size_t index) {
         if (!path.mesh.facets.empty())
             paths_.push_back({path.path, static_cast<Id>(index),
                               std::make_unique<FacetImages>(world_, frame_, index, path)});
+    path_world(world_);
+    if (world_.scene.render.max_depth > 0)
+        several_.push_back(std::make_unique<SeveralOpticsImages>(world_, frame_, index));
 }
 
 bool PointProjector::on_film(const Vec2& pixel) const {
@@ -104,7 +135,7 @@ bool PointProjector::is_free_of_objects(const Vec3& from, const Vec3& to) const 
 
 bool PointProjector::is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const {
     const Ray segment{from, to - from};
-    if (request_.search == ImageSearch::kFacets)
+    if (!searches_surfaces())
         return !frame_.optics[optic].facets->tracer().occluded(segment, kFreeShare, 1 - kFreeShare);
     const std::optional<SurfaceHit> hit = limit_tracer(world_, optic).first_hit(segment, kFreeShare);
     return !hit || hit->t >= 1 - kFreeShare;
@@ -118,19 +149,76 @@ bool PointProjector::sees(const Vec3& from, const Vec3& to) const {
     return true;
 }
 
+/// Whether light that leaves an optic at `from` comes to `to` without meeting another, or the same once more.
+bool PointProjector::goes_straight(const Vec3& from, const Vec3& to) const {
+    const Ray segment{from, to - from};
+    for (std::size_t i = 0; i < world_.optics.size(); ++i) {
+        const std::optional<SurfaceHit> hit = limit_tracer(world_, i).first_hit(segment, kFreeShare);
+        if (hit && hit->t < 1 - kFreeShare) return false;
+    }
+    return true;
+}
+
+/// By the exact paths around the image.
+void PointProjector::differentiate(WorldImage& image, const Vec3& point) const {
+    const auto exact = refine_history_image(history_query(world_, frame_, image.steps, point), image.pixel);
+    if (!exact || length(exact->pixel - image.pixel) > kSamePixels) return;
+    image.has_derivative = true;
+    image.derivative = exact->derivative;
+}
+
+void PointProjector::add_several(const SeveralOpticsImages& several, const Vec3& point,
+                                 PointProjection& result) const {
+    if (several.may_miss()) result.complete = false;
+    for (const SeveralOpticsImage& found : several.images(point)) {
+        const std::vector<Vec3>& corner = found.exact.corners;
+        const std::optional<Ray> view = exact_ray(camera_, found.exact.pixel);
+        if (!view || !goes_straight(corner.back(), point)) continue;
+        WorldImage image;
+        image.path = found.path;
+        image.optic = found.optic;
+        image.object = world_.optics[found.optic].mesh;
+        image.facet = found.facet;
+        image.pixel = found.exact.pixel;
+        image.length = found.exact.distance;
+        image.t = found.exact.distance / found.exact.first_way;
+        image.refined = true;
+        image.steps = found.steps;
+        image.has_derivative = true;
+        image.derivative = found.exact.derivative;
+        image.inside = on_film(image.pixel);
+        image.visible = request_.visibility && image.inside && is_free_of_objects(corner.back(), point) &&
+                        sees(view->origin, corner.front());
+        for (std::size_t i = 0; i + 1 < corner.size() && image.visible; ++i)
+            image.visible = is_free_of_objects(corner[i], corner[i + 1]);
+        result.images.push_back(std::move(image));
+    }
+}
+
 void PointProjector::add_direct(const Vec3& point, PointProjection& result) const {
-    const Vec3 screen = screen_from_world(*camera_.linear, point);
-    // Nor has the eye itself an image, which rounding may put in front of it.
-    const double depth = kLeastDepth * (length(camera_.linear->eye) + length(point));
-    if (!(screen.z > (camera_.linear->parallel ? 0 : depth))) return;
-    WorldImage image;
-    image.pixel = Vec2(screen.x, screen.y) / screen.z;
-    image.t = screen.z;
-    image.length = length(point - camera_.linear->eye);
-    image.inside = on_film(image.pixel);
-    image.refined = true;
-    image.visible = request_.visibility && image.inside && sees(camera_.linear->eye, point);
-    result.images.push_back(image);
+    for (const FilmImage& found : film_positions(camera_, point)) {
+        // The eye itself has no image, which rounding may put in front of it.
+        const double least = kLeastDepth * (length(found.origin) + length(point));
+        if (!(found.t > (camera_.linear && camera_.linear->parallel ? 0 : least))) continue;
+        WorldImage image;
+        image.pixel = found.pixel;
+        image.t = found.t;
+        image.length = length(point - found.origin);
+        image.inside = on_film(image.pixel);
+        image.refined = true;
+        image.visible = request_.visibility && image.inside && sees(found.origin, point);
+        if (camera_.linear) {
+            // d (s / w) = (ds - (s / w) dw) / w.
+            const double depth = screen_from_world(*camera_.linear, point).z;
+            image.has_derivative = true;
+            for (int axis = 0; axis < 2; ++axis) {
+                const Vec4& row = axis == 0 ? camera_.linear->screen_x : camera_.linear->screen_y;
+                image.derivative[static_cast<std::size_t>(axis)] =
+                    (Vec3(row) - image.pixel[axis] * Vec3(camera_.linear->screen_w)) / depth;
+            }
+        }
+        result.images.push_back(image);
+    }
 }
 
 void PointProjector::add_camera_mesh(const Vec3& point, PointProjection& result) const {
@@ -147,38 +235,68 @@ void PointProjector::add_camera_mesh(const Vec3& point, PointProjection& result)
     }
 }
 
+/// Of a camera with an eye whose film is not linear, the images as points of the surface; their pixels mean
+/// nothing but tell them apart.
 SpecularSearch PointProjector::search(const OpticPath& path, const Vec3& point) const {
-    SpecularQuery query = specular_query(world_, path.optic, path.path, *camera_.linear);
+    SpecularQuery query = specular_query(
+        world_, path.optic, path.path, camera_.linear ? *camera_.linear : law_of_eye(*camera_.model->eye()));
     query.point = point;
     const SpecularSearcher& searcher = *searcher_[path.optic];
     return path.path == Path::kRefract ? searcher.find_in_body(query) : searcher.find(query);
 }
 
-void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, PointProjection& result) const {
-    std::vector<OpticImage> found;
-    if (request_.search == ImageSearch::kComplete) {
-        const SpecularSearch searched = search(path, point);
-        const SurfaceGrid& grid = frame_.optics[path.optic].facets->grid();
-        for (const SpecularPoint& exact : searched.images)
-            found.push_back({facet_at(grid, facets_of_face_[path.optic].of(exact.at.face), exact.at.uv),
-                             exact.pixel, exact.t, exact.distance, exact.position, true});
-        if (!searched.complete) {
-            result.complete = false;
-            const std::vector<OpticImage> more = path.facets->images(point, true, searched.images);
-            found.insert(found.end(), more.begin(), more.end());
-        }
-    } else {
-        result.complete = false;
-        found = path.facets->images(point, request_.refine);
+/// Where the film shows what a search found on the surface.
+std::vector<OpticImage> PointProjector::images_on_film(const OpticPath& path,
+                                                       const SpecularSearch& searched) const {
+    const SurfaceGrid& grid = frame_.optics[path.optic].facets->grid();
+    std::vector<OpticImage> images;
+    for (const SpecularPoint& exact : searched.images) {
+        const Id facet = facet_at(grid, facets_of_face_[path.optic].of(exact.at.face), exact.at.uv);
+        const auto add = [&](const Vec2& pixel) {
+            images.push_back({facet, pixel, exact.t, exact.distance, exact.position, true});
+        };
+        if (camera_.linear) add(exact.pixel);
+        if (camera_.model)
+            for (const FilmImage& image : film_positions(camera_, exact.position)) add(image.pixel);
     }
+    return images;
+}
 
-    const Vec3& eye = camera_.linear->eye;
-    for (const OpticImage& one : found) {
-        if (request_.search == ImageSearch::kComplete && one.refined &&
-            !is_free_of_optic(eye, one.from, path.optic))
-            continue;
+std::vector<OpticImage> PointProjector::optic_images(const OpticPath& path, const Vec3& point,
+                                                     PointProjection& result) const {
+    if (!searches_surfaces()) {
+        result.complete = false;
+        return path.facets->images(point, request_.refine && camera_.linear.has_value());
+    }
+    const SpecularSearch searched = search(path, point);
+    std::vector<OpticImage> found = images_on_film(path, searched);
+    if (searched.complete) return found;
+    result.complete = false;
+    const bool refine = camera_.linear.has_value();
+    const std::size_t exact = found.size();
+    for (const OpticImage& more :
+         path.facets->images(point, refine, refine ? searched.images : std::vector<SpecularPoint>())) {
+        const auto is_known = [&](const OpticImage& known) {
+            return !refine && length(known.pixel - more.pixel) < kSameImage;
+        };
+        const auto end = found.begin() + static_cast<std::ptrdiff_t>(exact);
+        if (std::none_of(found.begin(), end, is_known)) found.push_back(more);
+    }
+    return found;
+}
+
+void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, PointProjection& result) const {
+    for (const OpticImage& one : optic_images(path, point, result)) {
+        const std::optional<Ray> view = exact_ray(camera_, one.pixel);
+        if (!view) continue;
+        const Vec3& eye = view->origin;
+        if (searches_surfaces() && one.refined && !is_free_of_optic(eye, one.from, path.optic)) continue;
+        if (world_.scene.render.max_depth > 0 && !goes_straight(one.from, point)) continue;
+        const double t =
+            camera_.near_depth + dot(one.from - eye, view->direction) / dot(view->direction, view->direction);
         WorldImage image;
         image.path = path.path;
+        image.steps = {{path.optic, path.path == Path::kReflect ? Event::kReflect : Event::kTransmit}};
         image.optic = path.optic;
         image.object = world_.optics[path.optic].mesh;
         image.facet = one.facet;
@@ -187,9 +305,10 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, Po
         image.length = one.length;
         image.refined = one.refined;
         image.inside = on_film(image.pixel);
-        image.visible =
-            request_.visibility && image.inside && is_free_of_objects(one.from, point) && sees(eye, one.from);
-        result.images.push_back(image);
+        image.visible = request_.visibility && image.inside && is_between_planes(t) &&
+                        is_free_of_objects(one.from, point) && sees(eye, one.from);
+        if (request_.derivatives && image.refined) differentiate(image, point);
+        result.images.push_back(std::move(image));
     }
 }
 
@@ -197,8 +316,9 @@ PointProjection PointProjector::images(const Vec3& point) const {
     PointProjection result;
     result.complete = true;
     if (camera_mesh_) add_camera_mesh(point, result);
-    if (camera_.linear && world_.scene.render.direct) add_direct(point, result);
+    if (!camera_mesh_ && world_.scene.render.direct) add_direct(point, result);
     for (const OpticPath& path : paths_) add_optic_path(path, point, result);
+    for (const auto& several : several_) add_several(*several, point, result);
     return result;
 }
 

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/corner_rays.h"
+#include "base/grid_kind.h"
 #include "base/image.h"
 #include "projector/classic_params.h"
 
@@ -12,13 +15,28 @@ namespace trilens {
 
 /// What a picture's rays depend on.
 struct FrameParams {
-    std::size_t camera = 0;  // index into Scene::cameras
-    int resolution = 0;      // of every optic's grid, 1..1024; 0: each optic's own
+    std::size_t camera = 0;                          // index into Scene::cameras
+    int resolution = 0;                              // of every optic's grid, 1..1024; 0: each optic's own
+    std::optional<GridKind> grid = std::nullopt;     // of every optic; none: each optic's own
+    std::optional<CornerRays> rays = std::nullopt;   // of every optic; none: each optic's own
+    std::optional<double> max_error = std::nullopt;  // RenderSettings::max_error; none: the scene's
 };
 
 /// kExact: the projector. kClassic: the thesis' engine. kFacetsTruth: Embree on the rays of the same facets.
-/// kLimitTruth: Embree on the exact surfaces.
-enum class Engine { kExact, kClassic, kFacetsTruth, kLimitTruth };
+/// kLimitTruth: Embree on the exact surfaces. The usual approximations, for comparison: kEnvironment: the
+/// projector on the facets' rays moved to the optic's centre, as an environment map made there has them;
+/// kPlanar: the projector on flat facets. Both end paths after the first optic.
+enum class Engine { kExact, kClassic, kFacetsTruth, kLimitTruth, kEnvironment, kPlanar };
+
+/// Whether an engine makes its picture by projection; else it traces rays.
+inline bool projects(Engine engine) {
+    return engine != Engine::kFacetsTruth && engine != Engine::kLimitTruth;
+}
+
+/// Whether an engine follows paths from optic to optic.
+inline bool follows_paths(Engine engine) {
+    return engine != Engine::kEnvironment && engine != Engine::kPlanar;
+}
 
 /// An engine with its settings.
 struct EngineChoice {
@@ -30,8 +48,14 @@ struct EngineChoice {
     EngineChoice(const ClassicParams& params) : engine(Engine::kClassic), classic(params) {}
 };
 
-/// "exact", "classic", "facets", "limit".
+/// "exact", "classic", "facets", "limit", "envmap", "planar".
 std::string engine_name(Engine engine);
+
+/// The names of all engines.
+const std::vector<std::string>& engine_names();
+
+/// The engine of that name. Throws UsageError, with the nearest name, where there is none.
+Engine find_engine(const std::string& name);
 
 /// How the classic engine draws: "arcs", "slices 4, clip screen".
 std::string classic_name(const ClassicParams& params);
@@ -39,7 +63,9 @@ std::string classic_name(const ClassicParams& params);
 /// The window of the film that is drawn, in pixels [x0, x1) x [y0, y1), and its layers.
 struct LayerRequest {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
-    std::vector<std::string> layers;     // names to keep beside RGBA, of layer_names(); empty: all
+    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat" and
+    // "magnification".
+    std::vector<std::string> layers;
 };
 
 struct PictureRequest {
@@ -52,6 +78,13 @@ struct PictureRequest {
 struct LayerStatistics {
     std::size_t optic_pixels = 0;
     std::size_t pixels_without_ray = 0;  // pixels on an optic that lack a ray a path asked for
+    std::size_t subdivided_pixels = 0;   // of the optics' pixels, those of a part of a facet
+    std::size_t traced_pixels = 0;       // and those whose own rays were followed
+    std::size_t projected_facets = 0;    // facets and parts of facets that were drawn through
+    double predicted_error = 0;  // pixels: the most that was left of those seen; 0 where none was asked for
+    // The most that was left out of any pixel, as a share of its light: paths that carry too little, and
+    // paths that would go on to another optic after the last that is followed.
+    double faint_light = 0, deep_light = 0;
 };
 
 struct Picture {
@@ -64,7 +97,8 @@ struct Picture {
     double prepare_seconds = 0, draw_seconds = 0;
 };
 
-/// The layers that may be asked for beside R G B A: "Z", "optic", "direct", and the paths' names.
+/// The layers that may be asked for beside R G B A: "Z", "optic", "direct", the paths' names, "path",
+/// "stat" and "magnification" (which goes with a path's own layer).
 const std::vector<std::string>& layer_names();
 
 }  // namespace trilens

@@ -9,6 +9,7 @@ double path_length(const PathEnd& end) {
 SampleColour sample_colour(const World& world, const SampleViews& views, const SampleView& view) {
     const RenderSettings& settings = world.scene.render;
     SampleColour colour;
+    if (view.ray.direction == Vec3(0)) return colour;  // the camera has no ray there
     colour.coverage = view.hit.seen() || view.optic != kNone ? 1 : 0;
     if (view.optic == kNone) {
         if (settings.direct) colour.direct = shade_ray(world.shading, view.hit, view.ray);
@@ -18,16 +19,13 @@ SampleColour sample_colour(const World& world, const SampleViews& views, const S
     const OpticWeights weights = optic_weights(material, view.incidence, settings.fresnel);
     for (const PathEnd& end : views.ends_of(view)) {
         const bool reflected = end.path == Path::kReflect;
-        const Vec3 weight = reflected ? weights.reflect : weights.refract;
+        const Vec3 weight = (reflected ? weights.reflect : weights.refract) * end.weight;
         if (weight == Vec3(0)) continue;
-        const Vec3 light = shade_ray(world.shading, end.hit, end.ray);
-        if (reflected) {
-            colour.reflect += weight * light;
-        } else {
-            const auto distance = end.hit.seen() ? std::optional(path_length(end)) : std::nullopt;
-            colour.refract +=
-                weight * (light * refracted_transmittance(material, view.incidence.front, distance));
-        }
+        Vec3 light = shade_ray(world.shading, end.hit, end.ray);
+        if (end.medium != kNone && end.hit.seen())
+            light *= volume_transmittance(world.scene.materials[world.optics[end.medium].material],
+                                          path_length(end));
+        (reflected ? colour.reflect : colour.refract) += weight * light;
     }
     return colour;
 }

@@ -3,16 +3,16 @@
 namespace trilens {
 
 const PathEnd* SampleViews::find(const SampleView& sample, Path path) const {
-    // Children stand after their parents, so the last one is nobody's parent.
-    const std::span<const PathEnd> own = ends_of(sample);
-    for (std::size_t i = own.size(); i-- > 0;)
-        if (own[i].path == path) return &own[i];
+    for (const PathEnd& end : ends_of(sample))
+        if (end.path == path && end.principal) return &end;
     return nullptr;
 }
 
 void SampleViews::reset(std::size_t count) {
     samples.assign(count, {});
     ends.clear();
+    steps.clear();
+    projected_facets = 0;
 }
 
 }  // namespace trilens

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "paths/path.h"
+#include "paths/follow.h"
 #include "shade/optic_weights.h"
 
 namespace trilens {
@@ -20,6 +20,13 @@ struct SampleView {
     Vec2 uv{0};           // in the facet's face
     Incidence incidence;  // of `ray` at the optic
 
+    Id leaf = kNone;         // of its optic's OpticPaths; limit truth: none
+    bool traced = false;     // its own paths were followed, those of no facet
+    std::uint8_t level = 0;  // how often its facet was divided
+    double predicted = 0;    // displacement that its facet may have, pixels, where an error was asked for
+
+    CutPaths cut;  // what was not followed
+
     std::size_t first_end = 0;  // of SampleViews::ends
     std::size_t end_count = 0;  // 0: no optic, or no path from there has a ray
 };
@@ -32,13 +39,18 @@ struct SampleColour {
 
 /// What the samples of a grid show.
 struct SampleViews {
-    std::vector<SampleView> samples;  // one per sample
-    std::vector<PathEnd> ends;        // of all samples, those of one side by side; parents before children
+    std::vector<SampleView> samples;   // one per sample
+    std::vector<PathEnd> ends;         // of all samples, those of one side by side
+    std::vector<Step> steps;           // of all ends; ends with one history may share theirs
+    std::size_t projected_facets = 0;  // facets and parts of facets that the optics have by now
 
     std::span<const PathEnd> ends_of(const SampleView& sample) const {
         return {ends.data() + sample.first_end, sample.end_count};
     }
-    /// The sample's end on this path that no other goes on from; null where it has none.
+    std::span<const Step> steps_of(const PathEnd& end) const {
+        return {steps.data() + end.first_step, end.step_count};
+    }
+    /// The sample's principal end on this path; null where it has none.
     const PathEnd* find(const SampleView& sample, Path path) const;
 
     /// What that end sees; an unset hit where there is no such end.

@@ -18,6 +18,16 @@ constexpr std::size_t kMaxFacets = 100'000'000;
 /// What drawing holds per facet of a mirror at its most: measured, rounded up.
 constexpr double kBytesPerFacet = 350;
 
+/// What a mesh has per triangle; those of earlier meshes that have none get zeros, those after the last mesh
+/// that has some get nothing.
+template <typename Corners>
+void append_where_given(const std::vector<Corners>& given, std::size_t first_triangle,
+                        std::vector<Corners>& all) {
+    if (given.empty()) return;
+    all.resize(first_triangle);
+    all.insert(all.end(), given.begin(), given.end());
+}
+
 void append_object(World& world, Id id, const Mesh& mesh) {
     const Id first_point = static_cast<Id>(world.objects.points.size());
     world.objects.points.insert(world.objects.points.end(), mesh.object.points.begin(),
@@ -30,10 +40,23 @@ void append_object(World& world, Id id, const Mesh& mesh) {
         world.objects.object.push_back(id);
         world.objects.primitive.push_back(static_cast<Id>(t));
         world.shading.material.push_back(mesh.object.material[t]);
-        world.shading.uvs.push_back(mesh.object.uvs.empty() ? std::array<Vec2, 3>{} : mesh.object.uvs[t]);
-        world.shading.normals.push_back(mesh.object.normals.empty() ? std::array<Vec3, 3>{}
-                                                                    : mesh.object.normals[t]);
     }
+    append_where_given(mesh.object.uvs, world.objects.size() - count, world.shading.uvs);
+    append_where_given(mesh.object.normals, world.objects.size() - count, world.shading.normals);
+}
+
+/// Room for the triangles of all objects, so that nothing is held twice while it grows.
+void reserve_objects(World& world) {
+    std::size_t points = 0, triangles = 0;
+    for (const Mesh& mesh : world.scene.meshes) {
+        if (mesh.role != Role::kObject) continue;
+        points += mesh.object.points.size();
+        triangles += mesh.object.triangles.size();
+    }
+    world.objects.points.reserve(points);
+    world.objects.triangles.reserve(triangles);
+    for (auto* ids : {&world.objects.object, &world.objects.primitive, &world.shading.material})
+        ids->reserve(triangles);
 }
 
 NormalField normal_field(const NormalOverride& from) {
@@ -82,17 +105,18 @@ std::size_t facet_count(const World& world, int resolution) {
 void check_facet_count(const World& world, int resolution) {
     const std::size_t total = facet_count(world, resolution);
     if (total > kMaxFacets)
-        throw InputError(world.scene.file, "/meshes",
+        throw InputError(scene_title(world.scene), "/meshes",
                          "the optics have " + std::to_string(total) + " facets, more than " +
                              std::to_string(kMaxFacets) + "; lower their resolution");
     check_memory({kBytesPerFacet * static_cast<double>(total),
                   "drawing the optics' " + std::to_string(total) + " facets", "lower their resolution"},
-                 {machine_memory(), world.scene.file});
+                 {machine_memory(), scene_title(world.scene)});
 }
 
 std::unique_ptr<World> make_world(Scene scene, const Warn& warn) {
     auto world = std::make_unique<World>();
     world->scene = std::move(scene);
+    reserve_objects(*world);
     for (Id id = 0; id < world->scene.meshes.size(); ++id) {
         const Mesh& mesh = world->scene.meshes[id];
         world->names.push_back(mesh.name);

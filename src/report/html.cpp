@@ -20,12 +20,15 @@ std::string plot_figure(const std::string& svg) {
 }
 
 std::string run_section(const ReportRun& run) {
-    std::string html = "<section class=\"run\">\n" + html_text("h3", run.title) + "\n";
+    const std::string row = run.row < 0 ? "" : " data-row=\"" + std::to_string(run.row) + "\"";
+    std::string html =
+        run.is_folded ? "<details class=\"run quiet\"" + row + ">" + html_text("summary", run.title) + "\n"
+                      : "<section class=\"run\"" + row + ">\n" + html_text("h3", run.title) + "\n";
     html += paragraph("error", run.error);
     for (const std::string& warning : run.warnings) html += paragraph("warning", warning);
     if (!run.pictures.empty()) html += html_pictures(run.pictures);
     if (!run.facts.empty()) html += html_facts(run.facts);
-    return html + "</section>\n";
+    return html + (run.is_folded ? "</details>\n" : "</section>\n");
 }
 
 std::string how_to_repeat(const std::vector<std::string>& commands, const Facts& versions) {

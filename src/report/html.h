@@ -18,7 +18,9 @@ struct ReportRun {
     std::vector<PagePicture> pictures;  // projected with truth, displacement, difference
     Facts facts;
     std::vector<std::string> warnings;
-    std::string error;  // not empty: the run failed with this
+    std::string error;       // not empty: the run failed with this
+    bool is_folded = false;  // only its title shows until it is opened
+    int row = -1;            // of the table, whose filter it follows; < 0: none
 };
 
 /// Everything a report shows, as text; plots are SVG documents, all else is escaped.

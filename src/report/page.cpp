@@ -40,6 +40,10 @@ tbody tr:hover{background:var(--panel)}
 .zoom{border:0;padding:0;max-width:100vw;max-height:100vh;width:100vw;height:100vh;background:var(--paper);color:var(--ink);overflow:auto}
 .zoom figure{width:max(var(--width),min(96vw,110vh));padding:12px}.zoom .view{cursor:default}.zoom img{image-rendering:pixelated}
 .zoom button{position:sticky;left:12px;top:8px;z-index:1;margin:8px 12px 0;font:inherit;padding:8px 16px;border:1px solid var(--line);border-radius:8px;background:var(--panel);color:var(--ink)}
+.flip button{display:none}.flip .under{display:none}.js .flip button{display:block;font:inherit;font-size:13px;margin-top:4px;padding:6px 12px;border:1px solid var(--line);border-radius:8px;background:var(--panel);color:var(--ink)}
+.js .flip .view{grid-template-columns:1fr}.js .flip img{grid-area:1/1}.js .flip .under{display:block;visibility:hidden}
+.js .flip .view:hover .under,.flipped .flip .under,.flip.turned .under{visibility:visible}.flipped .flip .view:hover .under,.flipped .flip.turned .under{visibility:hidden}
+.small .view img{image-rendering:pixelated}
 @media screen{.js .wipe .view{grid-template-columns:1fr;position:relative}.js .wipe img{grid-area:1/1}
 .js .wipe img+img{clip-path:inset(0 0 0 var(--cut))}
 .js .wipe .view::after{content:"";position:absolute;top:0;bottom:0;left:var(--cut);border-left:2px solid #fff;box-shadow:-1px 0 0 #0008,1px 0 0 #0008}
@@ -48,6 +52,12 @@ figcaption{color:var(--soft);font-size:13px;margin-top:4px}
 .facts{display:grid;grid-template-columns:repeat(auto-fill,minmax(290px,1fr));gap:2px 24px;margin:8px 0;font-size:14px}
 .facts div{display:flex;justify-content:space-between;gap:12px;border-bottom:1px dotted var(--line)}
 .facts dt{color:var(--soft)}.facts dd{margin:0;font-variant-numeric:tabular-nums;text-align:right;overflow-wrap:anywhere}
+details.run>summary{cursor:pointer;font-weight:600;overflow-wrap:anywhere}details.run[open]>summary{margin-bottom:8px}
+details.run.quiet{padding:6px 16px;margin:4px 0}
+.tools{display:flex;flex-wrap:wrap;gap:8px 16px;align-items:center;margin:8px 0;color:var(--soft);font-size:14px}
+.tools input{font:inherit;padding:7px 10px;border:1px solid var(--line);border-radius:8px;background:var(--paper);color:var(--ink);width:min(100%,320px)}
+.tall{max-height:70vh;overflow:auto}.tall th{position:sticky;top:0;background:var(--paper);z-index:1}.tall th:first-child{z-index:2}
+th button{all:unset;cursor:pointer}th button:focus-visible{outline:2px solid var(--accent)}th[aria-sort=ascending] button::after{content:" ▲"}th[aria-sort=descending] button::after{content:" ▼"}
 .warning{border-left:4px solid #b07d00;padding:4px 12px;background:var(--panel);margin:6px 0}
 .error{border-left:4px solid var(--bad);padding:4px 12px;background:var(--panel);margin:6px 0}
 .gallery{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,640px),1fr));gap:18px}
@@ -64,6 +74,8 @@ constexpr const char* kDarkVariables =
 constexpr const char* kScript = R"(
 document.documentElement.classList.add('js');
 document.addEventListener('input',e=>{const pair=e.target.closest('.wipe');if(pair)pair.style.setProperty('--cut',e.target.value+'%')});
+document.addEventListener('keydown',e=>{if((e.key==='f'||e.key==='F')&&!e.ctrlKey&&!e.metaKey&&!e.altKey&&!e.target.closest('input,textarea,select'))document.documentElement.classList.toggle('flipped')});
+document.addEventListener('click',e=>{const turn=e.target.closest('.flip button');if(turn){const on=turn.closest('.flip').classList.toggle('turned');turn.setAttribute('aria-pressed',on)}});
 const zoom=document.createElement('dialog'),close=document.createElement('button');zoom.className='zoom';close.textContent='Close';
 close.addEventListener('click',()=>zoom.close());document.body.append(zoom);
 const open=view=>{const figure=view.closest('figure').cloneNode(true),own=figure.querySelector('.view');
@@ -74,12 +86,37 @@ zoom.replaceChildren(close,figure);zoom.showModal();zoom.scrollTo(0,0)};
 document.querySelectorAll('.pictures .view').forEach(view=>{view.tabIndex=0;view.setAttribute('role','button');
 view.setAttribute('aria-label','Full size: '+view.querySelector('img').alt);view.addEventListener('click',()=>open(view));
 view.addEventListener('keydown',e=>{if(e.key==='Enter'||e.key===' '){e.preventDefault();open(view)}})});
+)"
+                                R"(
+document.querySelectorAll('table').forEach(table=>{const body=table.tBodies[0],rows=[...body.rows],heads=[...table.tHead.rows[0].cells];
+if(rows.length<2)return;const value=(row,i)=>row.cells[i].textContent.trim(),
+number=text=>text===''?NaN:Number(text.replace(/[ %<>]/g,'').replace('−','-'));
+heads.forEach((head,i)=>{const button=document.createElement('button');button.textContent=head.textContent;head.replaceChildren(button);
+button.addEventListener('click',()=>{const up=head.getAttribute('aria-sort')!=='ascending';heads.forEach(other=>other.removeAttribute('aria-sort'));
+head.setAttribute('aria-sort',up?'ascending':'descending');
+const keyed=rows.map((row,k)=>({row,k,text:value(row,i),number:number(value(row,i))}));
+keyed.sort((a,b)=>{const na=Number.isNaN(a.number),nb=Number.isNaN(b.number);if(a.text===''||b.text==='')return (a.text==='')-(b.text==='')||a.k-b.k;
+const order=!na&&!nb?a.number-b.number:a.text.localeCompare(b.text);return (up?order:-order)||a.k-b.k});
+body.append(...keyed.map(one=>one.row))})});
+if(rows.length<8)return;const tools=document.createElement('div'),find=document.createElement('input'),count=document.createElement('span');
+tools.className='tools';find.type='search';find.placeholder='filter: words that a row holds';find.setAttribute('aria-label','Filter the rows of the table');
+count.setAttribute('aria-live','polite');tools.append(find,count);table.parentElement.before(tools);if(rows.length>24)table.parentElement.classList.add('tall');
+const texts=rows.map(row=>[...row.cells].map(cell=>cell.textContent).join(' ').toLowerCase());
+const folds=[...document.querySelectorAll('.run[data-row]')];
+const apply=()=>{const words=find.value.toLowerCase().split(/\s+/).filter(Boolean);let shown=0;
+rows.forEach((row,i)=>{const is=words.every(word=>texts[i].includes(word));row.hidden=!is;shown+=is;
+folds.filter(fold=>fold.dataset.row===String(i)).forEach(fold=>fold.hidden=!is)});count.textContent=shown+' of '+rows.length+' rows'};
+find.addEventListener('input',apply);apply()});
 )";
 
+/// A browser decodes it when it comes into view.
 std::string image_element(const PagePicture& picture) {
-    return "<img alt=\"" + escape_markup(picture.caption) + "\" width=\"" + std::to_string(picture.width) +
-           "\" height=\"" + std::to_string(picture.height) + "\" src=\"data:image/png;base64," +
-           base64_text(picture.png) + "\">";
+    return "<img loading=\"lazy\" decoding=\"async\" alt=\"" + escape_markup(picture.caption) +
+           "\" width=\"" + std::to_string(picture.width) + "\" height=\"" + std::to_string(picture.height) +
+           "\" src=\"" +
+           (picture.file.empty() ? "data:image/png;base64," + base64_text(picture.png)
+                                 : escape_markup(picture.file)) +
+           "\">";
 }
 
 std::string colour_bar(const ColourLegend& legend) {
@@ -96,7 +133,7 @@ std::string colour_bar(const ColourLegend& legend) {
 
 std::string single_figure(const PagePicture& picture) {
     std::string html = "<figure>";
-    if (!picture.png.empty()) html += "<div class=\"view\">" + image_element(picture) + "</div>";
+    if (picture.is_there()) html += "<div class=\"view\">" + image_element(picture) + "</div>";
     if (picture.legend) html += colour_bar(*picture.legend);
     return html + html_text("figcaption", picture.caption) + "</figure>\n";
 }
@@ -127,10 +164,27 @@ std::string html_pictures(const std::vector<PagePicture>& pictures) {
     std::string html = "<div class=\"pictures\">\n";
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         const bool is_pair = i + 1 < pictures.size() && pictures[i + 1].is_over_previous &&
-                             !pictures[i].png.empty() && !pictures[i + 1].png.empty();
+                             pictures[i].is_there() && pictures[i + 1].is_there();
         html += is_pair ? pair_figure(pictures[i], pictures[i + 1]) : single_figure(pictures[i]);
         i += is_pair;
     }
+    return html + "</div>\n";
+}
+
+std::string html_flip(const PagePicture& first, const PagePicture& second,
+                      const std::vector<PagePicture>& others) {
+    std::string html = "<div class=\"pictures small\">\n" + single_figure(first);
+    if (first.png.empty() || second.png.empty()) {
+        html += single_figure(second);
+    } else {
+        std::string under = image_element(first);
+        under.insert(4, " class=\"under\"");
+        html += "<figure class=\"flip\"><div class=\"view\">" + image_element(second) + under + "</div>" +
+                html_text("figcaption", second.caption) +
+                "<button type=\"button\" aria-pressed=\"false\">Show " + escape_markup(first.caption) +
+                "</button></figure>\n";
+    }
+    for (const PagePicture& picture : others) html += single_figure(picture);
     return html + "</div>\n";
 }
 

@@ -17,10 +17,17 @@ std::string html_page(const std::string& title, const std::string& body);
 /// Without scripts all lie side by side.
 std::string html_pictures(const std::vector<PagePicture>& pictures);
 
+/// A row of pictures whose first two show the same: the second is exchanged for the first under the pointer,
+/// with the key F all over the page, and by a button, for fingers. Without scripts all stand still side by
+/// side. Pictures without PNG bytes are captions.
+std::string html_flip(const PagePicture& first, const PagePicture& second,
+                      const std::vector<PagePicture>& others);
+
 /// A two-column list.
 std::string html_facts(const Facts& facts);
 
-/// A table; every row has as many cells as there are columns. All is text.
+/// A table; every row has as many cells as there are columns. All is text. With scripts a click on a column's
+/// head sorts by it, and of eight rows and more a field shows those that hold the words typed there.
 std::string html_table(const std::vector<std::string>& columns,
                        const std::vector<std::vector<std::string>>& rows);
 

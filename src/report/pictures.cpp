@@ -125,6 +125,30 @@ LinearRgb displacement_colour(float pixels, const ColourRange& range) {
     return std::isinf(pixels) ? kLost : viridis(range.share(static_cast<double>(pixels)));
 }
 
+/// The colour of each value; of those under a pixel that was scaled down the largest's.
+template <class Colour>
+PagePicture mapped_picture(std::span<const float> values, int width, const std::string& caption,
+                           const Colour& colour_of) {
+    TRILENS_CHECK(width > 0 && values.size() % static_cast<std::size_t>(width) == 0, "whole rows");
+    const int height = static_cast<int>(values.size() / static_cast<std::size_t>(width));
+    Film small = make_film(shrunk_width(width), shrunk_height(width, height));
+    for (int y = 0; y < small.height; ++y)
+        for (int x = 0; x < small.width; ++x) {
+            const Footprint rows = footprint(y, small.height, height),
+                            columns = footprint(x, small.width, width);
+            float largest = NAN;
+            for (int row = rows.first; row <= rows.last; ++row)
+                for (int column = columns.first; column <= columns.last; ++column)
+                    largest = std::fmax(
+                        largest, values[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                                        static_cast<std::size_t>(column)]);
+            const LinearRgb colour = colour_of(largest);
+            std::copy(colour.begin(), colour.end(),
+                      small.rgb.begin() + static_cast<std::ptrdiff_t>(small.index(x, y)));
+        }
+    return {caption, small.width, small.height, encode_png(small.width, small.height, small.rgb), {}, false};
+}
+
 }  // namespace
 
 PagePicture beauty_picture(const Image& image, const std::string& caption) {
@@ -140,29 +164,16 @@ PagePicture difference_picture(const Image& test, const Image& truth, double sca
 
 PagePicture displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
                                  const std::string& caption) {
-    TRILENS_CHECK(width > 0 && pixels.size() % static_cast<std::size_t>(width) == 0, "whole rows");
-    const int height = static_cast<int>(pixels.size() / static_cast<std::size_t>(width));
-    Film small = make_film(shrunk_width(width), shrunk_height(width, height));
-    for (int y = 0; y < small.height; ++y)
-        for (int x = 0; x < small.width; ++x) {
-            const Footprint rows = footprint(y, small.height, height),
-                            columns = footprint(x, small.width, width);
-            float largest = NAN;
-            for (int row = rows.first; row <= rows.last; ++row)
-                for (int column = columns.first; column <= columns.last; ++column)
-                    largest = std::fmax(
-                        largest, pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                                        static_cast<std::size_t>(column)]);
-            const LinearRgb colour = displacement_colour(largest, range);
-            std::copy(colour.begin(), colour.end(),
-                      small.rgb.begin() + static_cast<std::ptrdiff_t>(small.index(x, y)));
-        }
-    return {caption,
-            small.width,
-            small.height,
-            encode_png(small.width, small.height, small.rgb),
-            ColourLegend{range, "px"},
-            false};
+    PagePicture picture = mapped_picture(pixels, width, caption,
+                                         [&](float value) { return displacement_colour(value, range); });
+    picture.legend = ColourLegend{range, "px"};
+    return picture;
+}
+
+PagePicture share_picture(std::span<const float> shares, int width, const std::string& caption) {
+    return mapped_picture(shares, width, caption, [](float value) {
+        return std::isnan(value) ? kNothing : viridis(static_cast<double>(value));
+    });
 }
 
 double difference_scale(double difference) {

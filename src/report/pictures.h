@@ -27,6 +27,9 @@ struct PagePicture {
     std::vector<unsigned char> png = {};      // empty: there is none, and the caption says why
     std::optional<ColourLegend> legend = {};  // of a colour-mapped one
     bool is_over_previous = false;  // shows the same as the picture before it: a slider between them
+    std::string file = {};  // where the page finds it, a path from its folder; empty: it carries the bytes
+
+    bool is_there() const { return !png.empty() || !file.empty(); }
 };
 
 /// R G B of the whole film (black outside the data window), scaled down to kLargestPicture where wider;
@@ -41,6 +44,10 @@ PagePicture difference_picture(const Image& test, const Image& truth, double sca
 /// is grey, infinite (lost) is orange. Where it is scaled down, a pixel shows the largest value under it.
 PagePicture displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
                                  const std::string& caption);
+
+/// Viridis from 0 (dark) to 1 (yellow) over a film of width x height values, rows from the top: NaN is grey.
+/// Where it is scaled down, a pixel shows the largest value under it.
+PagePicture share_picture(std::span<const float> shares, int width, const std::string& caption);
 
 /// The largest power of two, between 1 and 2^20, that keeps scale * difference below 1.
 double difference_scale(double difference);

@@ -27,7 +27,7 @@ struct Plot {
     const PlotParams& params;
     std::span<const PlotSeries> series;
     PlotScale x, y;
-    std::string svg;
+    std::vector<PlotShape> shapes;
     PlotRoom room, lines;  // words and measurements; where lines are drawn
     double height = 0;     // of all that was drawn
 
@@ -36,35 +36,17 @@ struct Plot {
     Vec2 pixel(const Vec2& point) const { return {x.pixel(point.x), y.pixel(point.y)}; }
 };
 
-std::string number(double pixel) {
-    return fixed_text(pixel, 2);
-}
-std::string attribute(const char* name, double pixel) {
-    return std::string(" ") + name + "=\"" + number(pixel) + "\"";
-}
-std::string line(const std::string& kind, const Vec2& a, const Vec2& b) {
-    return "<line class=\"" + kind + "\"" + attribute("x1", a.x) + attribute("y1", a.y) +
-           attribute("x2", b.x) + attribute("y2", b.y) + "/>\n";
+PlotShape line(const std::string& kind, const Vec2& a, const Vec2& b) {
+    return {PlotShape::Kind::kLine, kind, {a, b}};
 }
 
 /// `anchor`: "start", "middle" or "end" of the text stands at `at`.
-std::string text(const std::string& kind, const Vec2& at, const char* anchor, const std::string& words) {
-    return "<text class=\"" + kind + "\"" + attribute("x", at.x) + attribute("y", at.y) + " text-anchor=\"" +
-           anchor + "\">" + escape_markup(words) + "</text>\n";
+PlotShape text(const std::string& kind, const Vec2& at, const char* anchor, const std::string& words) {
+    return {PlotShape::Kind::kText, kind, {at}, words, anchor};
 }
 
-/// One of eight shapes of about 8 pixels around `at`.
-std::string marker(std::size_t i, const Vec2& at, const std::string& inside) {
-    constexpr std::array<const char*, 7> kPaths = {
-        "m-3.6,-3.6h7.2v7.2h-7.2z", "m0,-5l4.6,8h-9.2z", "m0,-5l5,5l-5,5l-5,-5z", "m0,5l4.6,-8h-9.2z",
-        "m-4,-4l8,8m0,-8l-8,8",     "m0,-5v10m-5,-5h10", "m-5,-2h10v4h-10z"};
-    const std::string shape =
-        i % 8 == 0 ? "<circle" + attribute("cx", at.x) + attribute("cy", at.y) + " r=\"4\""
-                   : "<path d=\"M" + number(at.x) + "," + number(at.y) + kPaths[i % 8 - 1] + "\"";
-    const std::string start = shape + " class=\"tp-marker " + plot_series_class(i) + "\"";
-    return inside.empty() ? start + "/>\n"
-                          : start + "><title>" + escape_markup(inside) + "</title>" +
-                                (i % 8 == 0 ? "</circle>\n" : "</path>\n");
+PlotShape marker(std::size_t i, const Vec2& at, const std::string& inside) {
+    return {PlotShape::Kind::kMarker, "tp-marker " + plot_series_class(i), {at}, inside, "", false, i};
 }
 
 /// The part of the segment a-b (pixels) inside the frame; none where all of it is outside (Liang and Barsky,
@@ -101,7 +83,8 @@ void draw_tick_labels(Plot& plot, std::vector<PlotTick> ticks, bool is_x) {
         PlotBox box = text_box(at, is_x ? "middle" : "end", tick.label, kLabelSize);
         if (is_x) box.lo.x -= kGap, box.hi.x += kGap;
         if (!row.take_if_free(box)) continue;
-        plot.svg += text(is_x ? "tp-tick tp-x" : "tp-tick tp-y", at, is_x ? "middle" : "end", tick.label);
+        plot.shapes.push_back(
+            text(is_x ? "tp-tick tp-x" : "tp-tick tp-y", at, is_x ? "middle" : "end", tick.label));
     }
 }
 
@@ -124,28 +107,29 @@ void draw_frame(Plot& plot) {
     const std::vector<PlotTick> across = measured.empty() ? make_ticks(x) : measured, up = make_ticks(y);
     for (const PlotTick& tick : across) {
         const double at = x.pixel(tick.value);
-        plot.svg += line(tick.strong ? "tp-grid" : "tp-minor", {at, y.first}, {at, y.last});
+        plot.shapes.push_back(line(tick.strong ? "tp-grid" : "tp-minor", {at, y.first}, {at, y.last}));
     }
     for (const PlotTick& tick : up) {
         const double at = y.pixel(tick.value);
-        plot.svg += line(tick.strong ? "tp-grid" : "tp-minor", {x.first, at}, {x.last, at});
+        plot.shapes.push_back(line(tick.strong ? "tp-grid" : "tp-minor", {x.first, at}, {x.last, at}));
     }
     draw_tick_labels(plot, across, true);
     draw_tick_labels(plot, up, false);
-    plot.svg += "<rect class=\"tp-frame\"" + attribute("x", x.first) + attribute("y", y.last) +
-                attribute("width", x.last - x.first) + attribute("height", y.first - y.last) + "/>\n";
+    plot.shapes.push_back({PlotShape::Kind::kRectangle, "tp-frame", {{x.first, y.last}, {x.last, y.first}}});
 
     const double middle_x = (x.first + x.last) / 2, middle_y = (y.first + y.last) / 2;
     const double width = plot.params.width - 20, tall = y.first - y.last + 20;
-    plot.svg += text("tp-title", {10, 21}, "start", shortened_text(plot.params.title, kTitleSize, width));
+    plot.shapes.push_back(
+        text("tp-title", {10, 21}, "start", shortened_text(plot.params.title, kTitleSize, width)));
     if (!plot.params.subtitle.empty())
-        plot.svg +=
-            text("tp-note", {10, 37}, "start", shortened_text(plot.params.subtitle, kNoteSize, width));
-    plot.svg += text("tp-label", {middle_x, y.first + 37}, "middle",
-                     shortened_text(plot.params.x_label, kLabelSize, width - x.first));
-    plot.svg += "<g transform=\"translate(15," + number(middle_y) + ") rotate(-90)\">" +
-                text("tp-label", {0, 0}, "middle", shortened_text(plot.params.y_label, kLabelSize, tall)) +
-                "</g>\n";
+        plot.shapes.push_back(
+            text("tp-note", {10, 37}, "start", shortened_text(plot.params.subtitle, kNoteSize, width)));
+    plot.shapes.push_back(text("tp-label", {middle_x, y.first + 37}, "middle",
+                               shortened_text(plot.params.x_label, kLabelSize, width - x.first)));
+    PlotShape upright =
+        text("tp-label", {15, middle_y}, "middle", shortened_text(plot.params.y_label, kLabelSize, tall));
+    upright.is_upright = true;
+    plot.shapes.push_back(upright);
 }
 
 /// Draws the note at the first of the places where it lies in the frame and covers nothing, or else, where it
@@ -159,7 +143,7 @@ void draw_note(Plot& plot, const std::string& words,
                                    box.lo.y > plot.y.last && box.hi.y < plot.y.first;
             if (!is_inside || (!may_cover_lines && !plot.lines.is_free(box)) || !plot.room.take_if_free(box))
                 continue;
-            plot.svg += text("tp-note tp-inside", at, anchor, words);
+            plot.shapes.push_back(text("tp-note tp-inside", at, anchor, words));
             return;
         }
 }
@@ -187,7 +171,7 @@ void draw_levels(Plot& plot) {
     for (const PlotLevel& level : plot.params.levels) {
         if (!plot.y.can_show(level.y) || level.y < plot.y.lo || level.y > plot.y.hi) continue;
         const double at = plot.y.pixel(level.y);
-        plot.svg += line("tp-level", {plot.x.first, at}, {plot.x.last, at});
+        plot.shapes.push_back(line("tp-level", {plot.x.first, at}, {plot.x.last, at}));
         const double left = plot.x.first + 6, right = plot.x.last - 6;
         draw_note(plot, level.label,
                   {{{right, at - 4}, "end"},
@@ -212,7 +196,7 @@ void draw_reference_orders(Plot& plot) {
         const auto inside = clip_to_frame(plot, plot.pixel(corner), plot.pixel(far));
         if (!inside) continue;
         const auto& [start, end] = *inside;
-        plot.svg += line("tp-reference", start, end);
+        plot.shapes.push_back(line("tp-reference", start, end));
         take_line(plot, start, end);
         // The label stands above the line, as near to its end as there is room.
         std::vector<std::pair<Vec2, const char*>> places;
@@ -226,30 +210,31 @@ void draw_reference_orders(Plot& plot) {
 
 void draw_series(Plot& plot, std::size_t i) {
     const PlotSeries& series = plot.series[i];
-    std::string path, markers;
+    std::vector<Vec2> path;
+    std::vector<PlotShape> markers;
     for (const Vec2& point : series.points) {
         if (!plot.can_show(point)) continue;
-        const Vec2 at = plot.pixel(point);
-        path += (path.empty() ? "M" : "L") + number(at.x) + "," + number(at.y);
-        markers +=
-            marker(i, at, series.name + ": " + rounded_text(point.x, 6) + " → " + rounded_text(point.y, 4));
+        path.push_back(plot.pixel(point));
+        markers.push_back(
+            marker(i, path.back(),
+                   series.name + ": " + rounded_text(point.x, 6) + " → " + rounded_text(point.y, 4)));
     }
     // With a fit the fit is the line; without one the measurements are joined.
-    if (plot.is_log() && series.fit && series.fit->constant > 0) {
+    const bool has_fit = plot.is_log() && series.fit && series.fit->constant > 0;
+    if (has_fit) {
         const auto on_fit = [&](double x) {
             return plot.pixel({x, series.fit->constant * std::pow(x, -series.fit->order)});
         };
         const auto inside = clip_to_frame(plot, on_fit(plot.x.lo), on_fit(plot.x.hi));
         if (inside) {
-            plot.svg += line("tp-fit " + plot_series_class(i), (*inside)[0], (*inside)[1]);
+            plot.shapes.push_back(line("tp-fit " + plot_series_class(i), (*inside)[0], (*inside)[1]));
             take_line(plot, (*inside)[0], (*inside)[1]);
         }
-        if (!path.empty())
-            plot.svg += "<path class=\"tp-join " + plot_series_class(i) + "\" d=\"" + path + "\"/>\n";
-    } else if (!path.empty()) {
-        plot.svg += "<path class=\"tp-line " + plot_series_class(i) + "\" d=\"" + path + "\"/>\n";
     }
-    plot.svg += markers;
+    if (!path.empty() && plot.params.joins_points)
+        plot.shapes.push_back(
+            {PlotShape::Kind::kPath, (has_fit ? "tp-join " : "tp-line ") + plot_series_class(i), path});
+    plot.shapes.insert(plot.shapes.end(), markers.begin(), markers.end());
 }
 
 /// The series in rows below the frame, as many to a row as fit.
@@ -264,8 +249,8 @@ void draw_legend(Plot& plot) {
         const std::string entry = shortened_text(series.name, kLabelSize, most) + order;
         const double width = kMarkerRoom + text_width(entry, kLabelSize);
         if (at.x > left && at.x + width > right) at = {left, at.y + kLegendRow};
-        plot.svg += marker(i, {at.x + 7, at.y - 4}, "");
-        plot.svg += text("tp-entry", {at.x + 17, at.y}, "start", entry);
+        plot.shapes.push_back(marker(i, {at.x + 7, at.y - 4}, ""));
+        plot.shapes.push_back(text("tp-entry", {at.x + 17, at.y}, "start", entry));
         at.x += width;
         plot.height = at.y + 8;
     }
@@ -276,17 +261,18 @@ void draw_left_out(Plot& plot) {
     for (const PlotSeries& series : plot.series)
         for (const Vec2& point : series.points) ++(plot.can_show(point) ? shown : left_out);
     if (shown == 0)
-        plot.svg += text("tp-label", {(plot.x.first + plot.x.last) / 2, (plot.y.first + plot.y.last) / 2},
-                         "middle", "nothing to draw");
+        plot.shapes.push_back(text("tp-label",
+                                   {(plot.x.first + plot.x.last) / 2, (plot.y.first + plot.y.last) / 2},
+                                   "middle", "nothing to draw"));
     if (left_out == 0) return;
     const std::string words =
         std::to_string(left_out) + (left_out == 1 ? " point" : " points") +
         " left out: " + (plot.is_log() ? "zero, negative or not a number" : "not a number");
-    plot.svg += text("tp-note", {10, plot.height + 8}, "start", words);
+    plot.shapes.push_back(text("tp-note", {10, plot.height + 8}, "start", words));
     plot.height += 16;
 }
 
-std::string draw(const PlotParams& params, std::span<const PlotSeries> series, ScaleKind kind) {
+PlotDrawing draw(const PlotParams& params, std::span<const PlotSeries> series, ScaleKind kind) {
     std::vector<double> xs, ys;
     const PlotScale any{kind, 0, 1, 0, 1};
     for (const PlotSeries& one : series)
@@ -297,7 +283,7 @@ std::string draw(const PlotParams& params, std::span<const PlotSeries> series, S
         }
     if (kind == ScaleKind::kLog && params.reference_orders && !ys.empty())
         ys.push_back(kReferenceLift * *std::max_element(ys.begin(), ys.end()));
-    Plot plot{params, series, fit_scale(kind, xs), fit_scale(kind, ys), "", {}, {}, 0};
+    Plot plot{params, series, fit_scale(kind, xs), fit_scale(kind, ys), {}, {}, {}, 0};
     plot.x.first = kLeft, plot.x.last = params.width - kRight;
     plot.y.first = params.height - kBottom, plot.y.last = params.subtitle.empty() ? 34 : 48;
     plot.height = params.height;
@@ -310,22 +296,21 @@ std::string draw(const PlotParams& params, std::span<const PlotSeries> series, S
     draw_legend(plot);
     draw_left_out(plot);
 
-    const std::string width = std::to_string(params.width), height = number(plot.height);
-    return "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tp\" width=\"" + width + "\" height=\"" +
-           height + "\" viewBox=\"0 0 " + width + " " + height + "\" role=\"img\" aria-label=\"" +
-           escape_markup(params.title) + "\">\n" + "<style>" + plot_style() + "</style>\n" +
-           "<rect class=\"tp-paper\" width=\"" + width + "\" height=\"" + height + "\"/>\n" + plot.svg +
-           "</svg>\n";
+    return {static_cast<double>(params.width), plot.height, params.title, std::move(plot.shapes)};
 }
 
 }  // namespace
 
+PlotDrawing draw_plot(const PlotParams& params, std::span<const PlotSeries> series) {
+    return draw(params, series, params.is_linear ? ScaleKind::kLinear : ScaleKind::kLog);
+}
+
 std::string log_log_plot(const PlotParams& params, std::span<const PlotSeries> series) {
-    return draw(params, series, ScaleKind::kLog);
+    return plot_svg(draw(params, series, ScaleKind::kLog));
 }
 
 std::string linear_plot(const PlotParams& params, std::span<const PlotSeries> series) {
-    return draw(params, series, ScaleKind::kLinear);
+    return plot_svg(draw(params, series, ScaleKind::kLinear));
 }
 
 }  // namespace trilens

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "report/plot_drawing.h"
 
 namespace trilens {
 
@@ -34,7 +35,16 @@ struct PlotParams {
     int width = 400, height = 340;  // the legend comes below and adds to the height
     bool ticks_at_points = false;   // x ticks where measurements are, if they are few; else at round values
     std::string subtitle = {};      // small, below the title
+    bool is_linear = false;         // of draw_plot: both axes linear, else both logarithmic
+    bool joins_points = true;       // a line through the measurements of a series
 };
+
+/// The plot as shapes: log_log_plot or linear_plot, by `is_linear`.
+PlotDrawing draw_plot(const PlotParams& params, std::span<const PlotSeries> series);
+
+/// The plot's data and encoding as a Vega-Lite specification (version 5): the measurements with their series,
+/// and the fitted lines.
+std::string vega_lite_plot(const PlotParams& params, std::span<const PlotSeries> series);
 
 /// An SVG document with both axes logarithmic. Points that are not finite or not positive are left out, and a
 /// note in the picture says how many. No word covers another word or a measurement: those without room are

@@ -8,16 +8,21 @@
 namespace trilens {
 namespace {
 
-constexpr std::array<const char*, 8> kLight = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                               "#b07d00", "#56b4e9", "#7a4fb5", "#444444"};
-constexpr std::array<const char*, 8> kDark = {"#4aa8e0", "#f0803c", "#2fc79c", "#e3a1c6",
-                                              "#e6b93c", "#8fd0f5", "#b394e0", "#c8c8c8"};
+constexpr std::array<const char*, kPlotColours> kLight = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                          "#b07d00", "#56b4e9", "#7a4fb5", "#444444"};
+constexpr std::array<const char*, kPlotColours> kDark = {"#4aa8e0", "#f0803c", "#2fc79c", "#e3a1c6",
+                                                         "#e6b93c", "#8fd0f5", "#b394e0", "#c8c8c8"};
 
 }  // namespace
 
 std::string plot_series_class(std::size_t i) {
     return "tp-c" + std::to_string(i % kLight.size());
 }
+
+std::string plot_series_colour(std::size_t i) {
+    return kLight[i % kLight.size()];
+}
+
 std::string plot_style() {
     std::string rules =
         "text{font-family:system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue','DejaVu "
@@ -31,6 +36,7 @@ std::string plot_style() {
         "4}.tp-note{font-size:11px;fill:#616a73}"
         ".tp-inside{paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}"
         ".tp-line{fill:none;stroke-width:1.8}.tp-fit{stroke-width:1.8}"
+        ".tp-cell{stroke:none}.tp-on-dark{fill:#fff}.tp-on-light{fill:#111}"
         ".tp-join{fill:none;stroke-width:1;stroke-opacity:.35}.tp-marker{stroke-width:1.6;fill-opacity:."
         "9}";
     for (std::size_t i = 0; i < kLight.size(); ++i)
@@ -52,6 +58,7 @@ std::string dark_plot_style(const std::string& scope) {
                                                                         {".tp-inside", "stroke:#161b22"}}};
     std::string style;
     for (const auto& [selector, properties] : rules) style += scope + " " + selector + "{" + properties + "}";
+    style += scope + " .tp-on-dark{fill:#fff}" + scope + " .tp-on-light{fill:#111}";
     for (std::size_t i = 0; i < kDark.size(); ++i)
         style += scope + " ." + plot_series_class(i) + "{stroke:" + kDark[i] + "}" + scope + " .tp-marker." +
                  plot_series_class(i) + "{fill:" + kDark[i] + "}";

@@ -22,6 +22,12 @@ std::string rounded_text(double value, int digits);
 /// entities; bytes that are no UTF-8, and control characters that XML forbids, become U+FFFD.
 std::string escape_markup(std::string_view text);
 
+/// `text` as a JSON string, quotes around it; bytes that are no UTF-8 become U+FFFD.
+std::string json_text(std::string_view text);
+
+/// `text` for LaTeX, in text mode: its ten special characters escaped.
+std::string latex_text(std::string_view text);
+
 /// RFC 4648 base64, padded, on one line.
 std::string base64_text(std::span<const unsigned char> bytes);
 

@@ -33,7 +33,7 @@ class SceneCheck {
 
   private:
     void require(bool holds, const std::string& place, const std::string& message) const {
-        if (!holds) throw InputError(scene_.file, place, message);
+        if (!holds) throw InputError(scene_title(scene_), place, message);
     }
     template <typename T>
     void finite(const std::vector<T>& values, const std::string& place) const {

@@ -100,7 +100,10 @@ MaterialInfo make_material_info(Id index, const Scene& scene) {
 
 SceneInfo make_scene_info(const Scene& scene) {
     SceneInfo info;
-    for (const CameraDescription& camera : scene.cameras) info.cameras.push_back(camera.name);
+    for (const CameraDescription& camera : scene.cameras) {
+        info.cameras.push_back(camera.name);
+        info.camera_types.push_back(camera_type_name(camera.type));
+    }
     for (const Mesh& mesh : scene.meshes) {
         info.meshes.push_back(make_mesh_info(mesh, scene));
         ++(mesh.role == Role::kObject ? info.objects : info.optics);

@@ -33,7 +33,8 @@ struct MaterialInfo {
 };
 
 struct SceneInfo {
-    std::vector<std::string> cameras;  // names
+    std::vector<std::string> cameras;       // names
+    std::vector<std::string> camera_types;  // "perspective", "fisheye", ...
     std::vector<MeshInfo> meshes;
     std::vector<MaterialInfo> materials;
     std::size_t lights = 0;

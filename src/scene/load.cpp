@@ -83,7 +83,7 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
     if (root.has("lights"))
         for (std::size_t i = 0; i < root["lights"].size(); ++i)
             reading.scene.lights.push_back(read_light(root["lights"][i]));
-    reading.scene.render = read_render(root, reading);
+    reading.scene.render = read_render(root);
     return std::move(reading.scene);
 }
 

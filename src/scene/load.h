@@ -24,6 +24,7 @@ struct TextureReader {
 struct SceneOverride {
     std::string pointer;
     std::string value;
+    bool removes = false;  // takes what the pointer names away, whatever the value; later entries move up
 };
 
 /// Reads, checks and resolves a scene file. `overrides` are applied to the JSON before it is checked; a

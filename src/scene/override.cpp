@@ -65,9 +65,21 @@ Json& step(Json& value, const std::string& key, const Json* schema, const Target
     return value[key];
 }
 
+/// Takes away what the pointer names, which must be there.
+void remove(Json& scene, const Target& target) {
+    const Json::json_pointer place(target.change.pointer);
+    if (!scene.contains(place) || place.empty()) target.fail("names nothing that could be removed");
+    Json& parent = scene[place.parent_pointer()];
+    if (parent.is_array())
+        parent.erase(static_cast<std::size_t>(std::stoul(place.back())));
+    else
+        parent.erase(place.back());
+}
+
 void apply(Json& scene, const Target& target) {
     const Json& root = scene_schema_json();
     const std::vector<std::string> keys = split_pointer(target);
+    if (target.change.removes) return remove(scene, target);
     Json* value = &scene;
     const Json* schema = &root;
     for (const std::string& key : keys) {

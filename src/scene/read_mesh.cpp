@@ -154,6 +154,9 @@ Mesh read_mesh(const Node& node, std::size_t index, Reading& reading) {
     inherits(node);
     mesh.material = find_material(node, reading);
     mesh.resolution = int_or(node, "resolution", mesh.resolution);
+    if (string_or(node, "rays", "interpolated") == "fitted") mesh.rays = CornerRays::kFitted;
+    mesh.grid = string_or(node, "grid", "surface") == "screen" ? GridKind::kScreen : GridKind::kSurface;
+    mesh.priority = int_or(node, "priority", mesh.priority);
     mesh.normals = read_normals(node);
     mesh.role == Role::kOptic ? read_optic(node, mesh, reading) : read_object(node, mesh, reading);
     return mesh;

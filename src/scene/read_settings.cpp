@@ -1,4 +1,4 @@
-// Film, cameras, background, lights, materials and render settings out of checked JSON.
+// Film, background, lights, materials and render settings out of checked JSON.
 #include <algorithm>
 #include <cmath>
 #include <system_error>
@@ -10,58 +10,6 @@ namespace trilens {
 namespace {
 
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
-constexpr double kSamePoint =
-    1e-12;  // eye and at closer than this share of their distance from the origin: no direction
-constexpr double kParallel = 1e-9;  // sine of an angle that counts as none
-
-void read_look_at(const Node& look_at, CameraDescription& camera) {
-    camera.eye = to_vec3(look_at["eye"].json);
-    camera.at = to_vec3(look_at["at"].json);
-    camera.up = vec3_or(look_at, "up", {0, 1, 0});
-    const Vec3 view = camera.at - camera.eye;
-    if (!(length(view) > kSamePoint * std::max(length(camera.at), length(camera.eye))))
-        look_at.fail("eye and at are the same point: the camera looks nowhere");
-    const Vec3 up = normalize_or_zero(camera.up);
-    if (up == Vec3(0)) look_at["up"].fail("must not be zero");
-    if (!(length(cross(normalize_or_zero(view), up)) > kParallel)) {
-        const std::string message = "up is parallel to the view from eye to at";
-        look_at.has("up") ? look_at["up"].fail(message) : look_at.fail(message + " (up is 0 1 0 by default)");
-    }
-}
-
-void read_ray_mesh(const Node& node, CameraDescription& camera, Reading& reading) {
-    const std::size_t corners = node["points"].size();
-    for (const char* key : {"directions", "screen"})
-        if (node[key].size() != corners)
-            node[key].fail("has " + std::to_string(node[key].size()) + " entries, but points has " +
-                           std::to_string(corners));
-    for (std::size_t i = 0; i < corners; ++i) {
-        camera.points.push_back(to_vec3(node["points"].json[i]));
-        camera.directions.push_back(to_vec3(node["directions"].json[i]));
-        if (camera.directions.back() == Vec3(0)) node["directions"][i].fail("a direction must not be zero");
-        camera.screen.push_back(to_vec2(node["screen"].json[i]));
-    }
-    std::size_t without_area = 0;
-    for (std::size_t i = 0; i < node["triangles"].size(); ++i) {
-        IdTriple triangle{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            triangle[k] = node["triangles"].json[i][k].get<Id>();
-            if (triangle[k] >= corners)
-                node["triangles"][i][k].fail("index " + std::to_string(triangle[k]) +
-                                             " is out of range: there are " + std::to_string(corners) +
-                                             " points");
-        }
-        camera.triangles.push_back(triangle);
-        const Vec2 a = camera.screen[triangle[0]], ab = camera.screen[triangle[1]] - a,
-                   ac = camera.screen[triangle[2]] - a;
-        if (ab.x * ac.y == ab.y * ac.x) ++without_area;
-    }
-    if (without_area > 0)
-        reading.warn(
-            node["triangles"].place,
-            std::to_string(without_area) + " triangles have no area on the screen: no pixel sees them");
-}
-
 }  // namespace
 
 std::shared_ptr<const Texture> read_picture(Reading& reading, const std::string& path) {
@@ -102,19 +50,6 @@ Film read_film(const Node& scene) {
     return film;
 }
 
-CameraDescription read_camera(const Node& node, std::size_t index, Reading& reading) {
-    CameraDescription camera;
-    camera.name = string_or(node, "name", "camera" + std::to_string(index));
-    if (string_or(node, "type", "perspective") == "rayMesh") {
-        camera.type = CameraDescription::Type::kRayMesh;
-        read_ray_mesh(node, camera, reading);
-    } else {
-        camera.yfov = number_or(node, "yfov", camera.yfov);
-        read_look_at(node["lookAt"], camera);
-    }
-    return camera;
-}
-
 Background read_background(const Node& scene, Reading& reading) {
     Background background;
     if (!scene.has("background")) return background;
@@ -143,11 +78,12 @@ Light read_light(const Node& node) {
     return light;
 }
 
-RenderSettings read_render(const Node& scene, Reading& reading) {
+RenderSettings read_render(const Node& scene) {
     RenderSettings render;
     if (!scene.has("render")) return render;
     const Node node = scene["render"];
     render.max_depth = int_or(node, "maxDepth", render.max_depth);
+    render.max_error = number_or(node, "maxError", render.max_error);
     render.fresnel = bool_or(node, "fresnel", render.fresnel);
     if (node.has("paths")) {
         const auto named = [&](const char* path) {
@@ -158,7 +94,6 @@ RenderSettings read_render(const Node& scene, Reading& reading) {
         render.reflect = named("reflect");
         render.refract = named("refract");
     }
-    if (render.max_depth > 0) reading.warn(node["maxDepth"].place, "first hits only are drawn so far");
     return render;
 }
 
@@ -182,7 +117,6 @@ Material read_material(const Node& node, Reading& reading) {
         material.attenuation_distance =
             number_or(volume, "attenuationDistance", material.attenuation_distance);
     }
-    if (material.dispersion != 0) reading.warn(node["dispersion"].place, "dispersion is ignored so far");
     return material;
 }
 

@@ -59,7 +59,7 @@ CameraDescription read_camera(const Node& camera, std::size_t index, Reading& re
 Film read_film(const Node& scene);
 Background read_background(const Node& scene, Reading& reading);
 Light read_light(const Node& light);
-RenderSettings read_render(const Node& scene, Reading& reading);
+RenderSettings read_render(const Node& scene);
 Material read_material(const Node& material, Reading& reading);
 Mesh read_mesh(const Node& mesh, std::size_t index, Reading& reading);
 Primitive read_primitive(const Node& primitive, const Transform& transform, const Node& mesh);

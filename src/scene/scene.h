@@ -9,6 +9,9 @@
 
 #include "base/appearance.h"
 #include "base/cage.h"
+#include "base/camera_description.h"
+#include "base/corner_rays.h"
+#include "base/grid_kind.h"
 #include "base/triangle_scene.h"
 #include "base/vec.h"
 
@@ -20,24 +23,11 @@ inline constexpr long long kMostPixels = 1LL << 28;  // of a film
 inline constexpr double kLargestCoordinate = 1e30;
 inline constexpr int kMaxSpp = 64;
 inline constexpr int kMaxResolution = 1024;
+inline constexpr double kMostMaxError = 1000;  // pixels
 
 struct Film {
     int width = 640, height = 480;
     int spp = 1;  // S: S x S samples per pixel
-};
-
-/// A camera as the file gives it; the camera room makes rays of it.
-struct CameraDescription {
-    enum class Type { kPerspective, kRayMesh };
-    std::string name;
-    Type type = Type::kPerspective;
-    double yfov = 40;  // degrees, the whole vertical angle
-    Vec3 eye{0, 0, 1}, at{0}, up{0, 1, 0};
-
-    // kRayMesh: one entry per corner; screen in 0..1 from the film's top left.
-    std::vector<Vec3> points, directions;
-    std::vector<Vec2> screen;
-    std::vector<IdTriple> triangles;
 };
 
 enum class Role { kObject, kOptic };
@@ -67,10 +57,13 @@ struct ObjectMesh {
 struct Mesh {
     std::string name;
     Role role = Role::kObject;
-    Id material = kNone;         // index into Scene::materials; kNone where the triangles carry their own
-    int resolution = 8;          // optic: N x N facets per quad face
-    std::size_t face_count = 0;  // polygons of the file, holes among them; 0 for a primitive
-    NormalOverride normals;      // optic
+    Id material = kNone;  // index into Scene::materials; kNone where the triangles carry their own
+    int resolution = 8;   // optic: N x N facets per quad face
+    GridKind grid = GridKind::kSurface;           // optic
+    CornerRays rays = CornerRays::kInterpolated;  // optic
+    std::size_t face_count = 0;                   // polygons of the file, holes among them; 0 for a primitive
+    NormalOverride normals;                       // optic
+    int priority = 0;  // optic of glass: where bodies overlap the one of higher priority is inside
 
     // An object has `object`; an optic has either `primitive` or `cage` (world frame, transform applied).
     ObjectMesh object;
@@ -79,9 +72,10 @@ struct Mesh {
 };
 
 struct RenderSettings {
-    int max_depth = 0;
+    int max_depth = 8;  // optic hits after the first
     bool direct = true, reflect = true, refract = true;
     bool fresnel = true;
+    double max_error = 0;  // pixels of displacement that facets are divided for; 0: they are not
 };
 
 /// A file as it was when it was read.
@@ -91,8 +85,9 @@ struct FileRead {
 };
 
 struct Scene {
-    std::string file;      // where it came from, for messages
+    std::string file;      // where it came from; empty: from memory
     std::string folder;    // absolute: where its relative paths start
+    std::string label;     // what messages call it where it has no file; may be empty
     std::string resolved;  // the scene as JSON after --set, one line: goes into image headers
     Film film;
     std::vector<CameraDescription> cameras;  // at least one
@@ -105,5 +100,13 @@ struct Scene {
     std::vector<FileRead> files;  // every file that the scene was made of, each once, in order of reading
     std::vector<std::string> warnings;
 };
+
+/// What messages call a scene that has neither file nor label.
+inline constexpr const char* kSceneLabel = "scene";
+
+/// What messages call the scene: its file, else its label.
+inline std::string scene_title(const Scene& scene) {
+    return !scene.file.empty() ? scene.file : !scene.label.empty() ? scene.label : kSceneLabel;
+}
 
 }  // namespace trilens

@@ -1,11 +1,14 @@
 // The scene format as a JSON Schema (draft 7): the one table that the checks, --set and the documentation
 // read.
+#include <string>
+
 #include "scene/load.h"
+#include "scene/schema_parts.h"
 
 namespace trilens {
 
 const char* scene_schema() {
-    return R"json({
+    static const std::string text = R"json({
 "$schema": "http://json-schema.org/draft-07/schema#",
 "$id": "trilens-scene-1.schema.json",
 "title": "a scene",
@@ -43,37 +46,8 @@ const char* scene_schema() {
       "spp": { "type": "integer", "minimum": 1, "maximum": 64, "default": 1, "description": "S: S x S samples per pixel." }
     }
   },
-
-  "camera": {
-    "title": "a camera",
-    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
-    "properties": {
-      "name": { "$ref": "#/definitions/name" },
-      "type": { "enum": ["perspective", "rayMesh"], "default": "perspective" },
-      "yfov": { "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 180, "default": 40, "description": "The whole vertical angle, degrees." },
-      "lookAt": {
-        "title": "a lookAt",
-        "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
-        "required": ["eye", "at"],
-        "properties": {
-          "eye": { "$ref": "#/definitions/vec3" }, "at": { "$ref": "#/definitions/vec3" },
-          "up": { "$ref": "#/definitions/vec3", "default": [0, 1, 0] }
-        }
-      },
-      "points": { "type": "array", "minItems": 3, "items": { "$ref": "#/definitions/vec3" }, "description": "rayMesh: origin of each corner's ray." },
-      "directions": { "type": "array", "minItems": 3, "items": { "$ref": "#/definitions/vec3" }, "description": "rayMesh: one per corner, any length but 0." },
-      "screen": { "type": "array", "minItems": 3, "description": "rayMesh: one per corner, 0..1 from the film's top left; a facet may reach beyond the film.",
-        "items": { "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number", "minimum": -1000, "maximum": 1000 } } },
-      "triangles": { "type": "array", "minItems": 1, "description": "rayMesh: three corners each.",
-        "items": { "type": "array", "minItems": 3, "maxItems": 3, "items": { "$ref": "#/definitions/index" } } }
-    },
-    "if": { "required": ["type"], "properties": { "type": { "const": "rayMesh" } } },
-    "then": { "title": "a rayMesh camera", "required": ["points", "directions", "screen", "triangles"],
-      "properties": { "yfov": false, "lookAt": false } },
-    "else": { "title": "a perspective camera", "required": ["lookAt"],
-      "properties": { "points": false, "directions": false, "screen": false, "triangles": false } }
-  },
-
+)json" + std::string(camera_schema()) +
+                                    R"json(
   "background": {
     "title": "a background", "description": "A colour, or a latitude-longitude picture turned about +Y by 'rotate' degrees.",
     "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
@@ -100,7 +74,7 @@ const char* scene_schema() {
       "roughnessFactor": { "$ref": "#/definitions/share", "default": 0 },
       "transmissionFactor": { "$ref": "#/definitions/share", "default": 0 },
       "ior": { "type": "number", "exclusiveMinimum": 0, "maximum": 10, "default": 1.5 },
-      "dispersion": { "$ref": "#/definitions/notNegative", "default": 0 },
+      "dispersion": { "$ref": "#/definitions/notNegative", "default": 0, "description": "glTF's: 20 / Abbe number; light then parts into three colours." },
       "volume": {
         "title": "a volume",
         "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
@@ -125,7 +99,7 @@ const char* scene_schema() {
     "then": { "title": "a transform with a matrix", "properties": { "translate": false, "rotate": false, "scale": false } }
   },
 )json"
-           R"json(
+                                    R"json(
   "primitive": {
     "title": "a primitive", "description": "An optic given by a formula. axis: paraboloid from apex to focus, cylinder along it; tangent: where u begins.",
     "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
@@ -189,6 +163,9 @@ const char* scene_schema() {
       "role": { "enum": ["object", "optic"] },
       "material": { "type": "string", "minLength": 1, "description": "A name of 'materials'; 'inherit' (the default of an object from a file): the file's own." },
       "resolution": { "type": "integer", "minimum": 1, "maximum": 1024, "default": 8, "description": "optic: N x N facets per quad face." },
+      "rays": { "enum": ["fitted", "interpolated"], "default": "interpolated", "description": "optic: at the corners of its facets the exact rays, with straight interpolation between them, or rays fitted so that what lies between is nearest to exact in the mean." },
+      "grid": { "enum": ["surface", "screen"], "default": "surface", "description": "optic: its facets lie on the surface, N x N per face, or on the film, N x N over its bounds there." },
+      "priority": { "type": "integer", "minimum": -1000, "maximum": 1000, "default": 0, "description": "optic of glass: where bodies overlap the one of higher priority is inside, as a glass around its liquid." },
       "transform": { "$ref": "#/definitions/transform" },
       "file": { "type": "string", "minLength": 1, "description": "OBJ; for objects glTF and GLB too." },
       "primitive": { "$ref": "#/definitions/primitive" },
@@ -247,13 +224,15 @@ const char* scene_schema() {
     "title": "render settings",
     "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
     "properties": {
-      "maxDepth": { "type": "integer", "minimum": 0, "maximum": 64, "default": 0, "description": "Optic hits after the first." },
+      "maxDepth": { "type": "integer", "minimum": 0, "maximum": 64, "default": 8, "description": "Optic hits after the first; 0: paths end after their first optic, as if there were no other." },
       "paths": { "type": "array", "minItems": 1, "uniqueItems": true, "items": { "enum": ["direct", "reflect", "refract"] }, "default": ["direct", "reflect", "refract"] },
-      "fresnel": { "type": "boolean", "default": true }
+      "fresnel": { "type": "boolean", "default": true },
+      "maxError": { "type": "number", "minimum": 0, "maximum": 1000, "default": 0, "description": "Pixels: facets whose predicted displacement against the exact paths is more are divided, and at last traced; 0: they are as 'resolution' says." }
     }
   }
 }
 })json";
+    return text.c_str();
 }
 
 }  // namespace trilens

@@ -7,7 +7,7 @@ namespace trilens {
 
 void set_resolution(Scene& scene, int resolution) {
     if (resolution < 1 || resolution > kMaxResolution)
-        throw InputError(scene.file, "/meshes",
+        throw InputError(scene_title(scene), "/meshes",
                          "a resolution of " + std::to_string(resolution) + " is not in 1.." +
                              std::to_string(kMaxResolution));
     for (Mesh& mesh : scene.meshes)

@@ -2,8 +2,6 @@
 // engines.
 #pragma once
 
-#include <optional>
-
 #include "base/appearance.h"
 
 namespace trilens {
@@ -12,6 +10,11 @@ namespace trilens {
 inline bool is_mirror(const Material& material) {
     return material.transmission_factor < 1;
 }
+
+/// The material's refractive index for one of the three colours of light (0, 1, 2: red, green, blue), or, for
+/// any other `colour`, its `ior`. Where it disperses red and blue lie on either side of green by
+/// (ior - 1) * 0.025 * dispersion; `dispersion` is 20 / Abbe number. Source: KHR_materials_dispersion.
+double ior_of(const Material& material, int colour);
 
 /// How a ray comes to an optic.
 struct Incidence {
@@ -25,16 +28,13 @@ struct OpticWeights {
 };
 
 /// The weights at the optic itself. A mirror reflects its tint, with Schlick's increase towards grazing;
-/// glass reflects by the Fresnel equations and passes on the rest times its tint. Without `fresnel` a mirror
-/// reflects its tint at every angle and glass passes on all of its tint.
+/// glass reflects by the Fresnel equations, in each colour by its own index where it disperses, and passes on
+/// the rest times its tint. Without `fresnel` a mirror
+/// reflects its tint at every angle, and glass passes on all of its tint or, beyond the critical angle,
+/// reflects all.
 OpticWeights optic_weights(const Material& material, const Incidence& incidence, bool fresnel);
 
 /// Whether glass reflects all light that comes so.
 bool reflects_totally(const Material& material, const Incidence& incidence);
-
-/// Share of the refracted path's light left after `distance` (scene units) behind the interface; `distance`:
-/// none where the ray meets nothing. The medium absorbs what has come through it to the eye, so only rays
-/// that entered from the front, and only over a stretch that ends.
-Vec3 refracted_transmittance(const Material& material, bool front, const std::optional<double>& distance);
 
 }  // namespace trilens

@@ -12,7 +12,8 @@
 
 namespace trilens {
 
-/// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle.
+/// Appearance of the triangles of a TriangleScene; the arrays have one entry per triangle, but uvs and
+/// normals may end early: triangles beyond have zeros.
 struct ShadeScene {
     const TriangleScene* triangles = nullptr;
     std::vector<Id> material;              // index into materials

@@ -1,9 +1,11 @@
 // runs.csv and displacement.csv: one row per run, and one row per run, optic and layer.
 #include "sweep/csv.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <map>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,10 +20,13 @@ constexpr std::array kColumns = {
     "id", "scene", "camera", "mesh", "method", "truth", "n", "facets", "width", "height", "spp", "seed",
     "rgb_mae", "rgb_rmse", "rgb_relmse", "rgb_psnr_db", "rgb_ssim", "rgb_flip", "rgb_max", "rgb_p95", "rgb_p99",
     "disp_mean_px", "disp_p95_px", "disp_max_px", "disp_coverage", "disp_lost", "disp_missing", "false_hit", "false_miss", "nonfinite", "failed_px",
-    "t_tess_s", "t_project_s", "t_trace_s", "t_total_s", "peak_rss_mb", "threads", "isa",
+    "t_surface_s", "t_rays_s", "t_prepare_s", "t_draw_s", "t_shade_s", "t_write_s", "t_first_s", "t_spread_s",
+    "t_trace_s", "t_total_s", "repeats", "peak_rss_mb", "threads", "jobs", "machine_used_by_others",
     "status", "exit_code", "image", "diff", "image_fnv1a",
     "coverage_mismatch", "object_mismatch", "primitive_mismatch"};
 // clang-format on
+constexpr std::array<std::string_view, 5> kAxesWithColumns = {"resolution", "scene", "camera", "engine",
+                                                              "spp"};
 constexpr std::array kDisplacementColumns = {
     "disp_mean_px",    "disp_p50_px",  "disp_p95_px",   "disp_p99_px",
     "disp_max_px",     "disp_pixels",  "disp_lost",     "disp_mean_off_folds_px",
@@ -66,16 +71,18 @@ std::map<std::string, std::string> run_words(const SweepSummary& summary, const 
     const SweepSubject& subject = summary.manifest.subject;
     const bool is_done = run.state == RunState::kDone;
     const std::string files = "runs/" + run.plan.id;
+    const auto along = [&](const char* axis, const std::string& otherwise) {
+        const AxisValue* const value = find_coordinate(run.plan.at, axis);
+        return value ? value->text : otherwise;
+    };
     return {{"id", run.plan.id},
-            {"scene", subject.scene},
-            {"camera", subject.camera},
-            {"mesh", subject.mesh},
-            {"method", subject.method},
+            {"scene", along("scene", subject.scene)},
+            {"camera", along("camera", subject.camera)},
+            {"mesh", along("optic", subject.mesh)},
+            {"method", along("engine", subject.method)},
             {"truth", subject.truth},
-            {"n", std::to_string(run.plan.n)},
-            {"spp", std::to_string(subject.spp)},
-            {"threads", std::to_string(subject.threads)},
-            {"isa", subject.isa},
+            {"n", run.plan.n() > 0 ? std::to_string(run.plan.n()) : ""},
+            {"spp", along("spp", std::to_string(subject.spp))},
             {"status", state_name(run.state)},
             {"exit_code", run.state == RunState::kMissing ? "" : std::to_string(run.exit_code)},
             {"image", is_done ? files + "/image.exr" : ""},
@@ -83,16 +90,31 @@ std::map<std::string, std::string> run_words(const SweepSummary& summary, const 
             {"image_fnv1a", run.image_hash}};
 }
 
+/// The axes that have no column of their own.
+std::vector<std::string> further_axes(const SweepAxes& axes) {
+    std::vector<std::string> names;
+    for (const Axis& axis : axes.axes)
+        if (std::ranges::find(kAxesWithColumns, axis.kind.name) == kAxesWithColumns.end())
+            names.push_back(axis.kind.name);
+    return names;
+}
+
 }  // namespace
 
 std::string runs_csv(const SweepSummary& summary) {
-    std::vector<std::vector<std::string>> rows = {{kColumns.begin(), kColumns.end()}};
+    const std::vector<std::string> axes = further_axes(summary.manifest.axes);
+    std::vector<std::string> header = {kColumns.begin(), kColumns.end()};
+    header.insert(header.begin() + 1, axes.begin(), axes.end());
+    std::vector<std::vector<std::string>> rows = {header};
     for (const RunRecord& run : summary.runs) {
         const std::map<std::string, std::string> words = run_words(summary, run);
         std::vector<std::string>& cells = rows.emplace_back();
-        for (const char* column : kColumns) {
+        for (const std::string& column : header) {
             const auto word = words.find(column);
-            cells.push_back(word != words.end() ? word->second : metric_text(run.metrics, column));
+            const AxisValue* const value = find_coordinate(run.plan.at, column);
+            cells.push_back(word != words.end() ? word->second
+                            : value             ? value->text
+                                                : metric_text(run.metrics, column));
         }
     }
     return text_of_rows(rows);
@@ -100,11 +122,19 @@ std::string runs_csv(const SweepSummary& summary) {
 
 std::string displacement_csv(const SweepSummary& summary) {
     std::vector<std::string> header = {"id", "n", "layer", "optic"};
+    for (const Axis& axis : summary.manifest.axes.axes)
+        if (axis.kind.name != "resolution") header.insert(header.end() - 2, axis.kind.name);
     header.insert(header.end(), kDisplacementColumns.begin(), kDisplacementColumns.end());
     std::vector<std::vector<std::string>> rows = {header};
     for (const RunRecord& run : summary.runs)
         for (const OpticDisplacement& one : run.displacement) {
-            std::vector<std::string> cells = {run.plan.id, std::to_string(run.plan.n), one.layer, one.optic};
+            std::vector<std::string> cells = {run.plan.id,
+                                              run.plan.n() > 0 ? std::to_string(run.plan.n()) : ""};
+            for (const Axis& axis : summary.manifest.axes.axes) {
+                const AxisValue* const value = find_coordinate(run.plan.at, axis.kind.name);
+                if (axis.kind.name != "resolution") cells.push_back(value ? value->text : "");
+            }
+            cells.insert(cells.end(), {one.layer, one.optic});
             for (const char* column : kDisplacementColumns) cells.push_back(metric_text(one.metrics, column));
             rows.push_back(cells);
         }

@@ -7,7 +7,8 @@
 
 namespace trilens {
 
-/// One row per run under the columns of the interface that any run has something for. Numbers are the
+/// One row per run under the columns of the interface that any run has something for, and behind the id one
+/// for each axis that has none there. Numbers are the
 /// shortest that read back; an empty cell was not computed, "nan" was. Cells with commas, quotes or line ends
 /// are quoted as in RFC 4180.
 std::string runs_csv(const SweepSummary& summary);

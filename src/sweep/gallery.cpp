@@ -16,7 +16,7 @@ namespace {
 const RunRecord* finest_run(const SweepSummary& summary) {
     const RunRecord* finest = nullptr;
     for (const RunRecord& run : summary.runs)
-        if (run.state == RunState::kDone && (!finest || run.plan.n > finest->plan.n)) finest = &run;
+        if (run.state == RunState::kDone && (!finest || run.plan.n() > finest->plan.n())) finest = &run;
     return finest;
 }
 
@@ -44,13 +44,13 @@ GalleryEntry entry_of(const SweepSummary& summary) {
     entry.title = title;
     entry.link = title + "/report.html";
     for (const NamedPlot& plot : make_plots(summary))
-        if (entry.plot.empty()) entry.plot = plot.svg;
+        if (entry.plot.empty()) entry.plot = plot_svg(plot.drawing);
     const RunRecord* run = finest_run(summary);
     if (!run) {
         entry.text = "No run was finished.";
         return entry;
     }
-    entry.text = "n = " + std::to_string(run->plan.n) + ", optics: " + summary.manifest.subject.mesh;
+    entry.text = point_text(run->plan.at) + ", optics: " + summary.manifest.subject.mesh;
     entry.metrics = facts_of(summary, *run);
     entry.pictures = run_pictures(summary.folder, *run);
     return entry;

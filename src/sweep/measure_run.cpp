@@ -27,6 +27,7 @@ MetricValues colour_values(const Comparison& comparison) {
             {"rgb_relmse", rgb.relmse},
             {"rgb_psnr_db", rgb.psnr_db},
             {"rgb_ssim", rgb.ssim},
+            {"rgb_flip", rgb.flip},
             {"rgb_max", rgb.max},
             {"rgb_p95", rgb.p95},
             {"rgb_p99", rgb.p99},

@@ -28,6 +28,7 @@ inline std::optional<double> find_value(const MetricValues& metrics, const std::
 struct SweptOptic {
     Id object = kNone;  // as in optic.object
     std::string name;
+    bool operator==(const SweptOptic&) const = default;
 };
 
 /// What is swept, in words and names: goes into every result and changes no number.
@@ -37,9 +38,7 @@ struct SweepSubject {
     std::string scene_name;    // what tells scenes of one folder apart: file and overrides; empty: scene
     std::string scene_digest;  // of all that the scene holds; empty: not known
     std::string camera, mesh, method, truth;  // CSV columns: "main", "pawn", "exact", "limit"
-    int spp = 1, threads = 0;
-    std::string isa;
-    std::vector<SweptOptic> optics;
+    int spp = 1;
     std::vector<std::string> commands;  // lines that make the results again
     Facts versions;
 };
@@ -47,15 +46,22 @@ struct SweepSubject {
 /// Whose folder it is, and what is varied.
 struct SweepManifest {
     SweepSubject subject;
-    Axis axis;
+    SweepAxes axes;
 };
 
 /// One line of plan.jsonl.
 struct PlannedRun {
-    std::string id;  // "n0008": the folder's name under runs/
-    int n = 0;
-    std::string hash;   // of everything that the run's result depends on
-    std::string truth;  // of everything that its truth depends on: truth_file
+    std::string id;  // "n0008", "classic_n0008": the folder's name under runs/
+    Coordinates at;
+    std::string hash;                     // of everything that the run's result depends on
+    std::string truth;                    // of everything that its truth depends on: truth_file
+    std::vector<SweptOptic> optics = {};  // whose displacement is measured; not part of the file
+
+    /// The resolution, 0 where it is no axis.
+    int n() const {
+        const AxisValue* value = find_coordinate(at, "resolution");
+        return value && value->number ? static_cast<int>(*value->number) : 0;
+    }
 };
 
 /// How far what one layer of one optic shows lies from where the truth shows it.
@@ -74,6 +80,12 @@ inline const char* state_name(RunState state) {
     return state == RunState::kDone ? "done" : state == RunState::kFailed ? "failed" : "missing";
 }
 
+/// The coordinates of a point but for one axis.
+inline Coordinates without_axis(Coordinates point, const std::string& axis) {
+    std::erase_if(point, [&](const Coordinate& one) { return one.axis == axis; });
+    return point;
+}
+
 /// A run as its folder tells it.
 struct RunRecord {
     PlannedRun plan;
@@ -88,17 +100,20 @@ struct RunRecord {
 
 /// One measurement of a fit.
 struct SweepPoint {
-    int n = 0;
+    double n = 0;  // along SweepFit::axis
     double value = 0;
     bool used = false;  // took part in the fit
 };
 
-/// error = constant * n^-order over the runs of one sweep.
+/// error = constant * n^-order over the runs of one group: those that differ along `axis` alone.
 struct SweepFit {
+    std::string axis = "resolution";                 // whose numbers are n
+    Coordinates group;                               // what the runs have in common along the other axes
     std::string layer, optic;                        // layer is empty for metrics of the whole picture
     std::string metric;                              // column name
     std::vector<SweepPoint> points;                  // every finished run that has the metric
     std::optional<double> order, constant, r2;       // none: fewer than two usable points
+    std::optional<double> order_low, order_high;     // 95 % confidence; none: fewer than three points
     std::optional<double> n_for_1px, n_for_half_px;  // metrics in pixels only
     // The least share of an optic's pixels that a run behind the law measured, 0..1; metrics in pixels only.
     std::optional<double> coverage;

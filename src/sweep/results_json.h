@@ -19,7 +19,7 @@ std::string summary_text(const SweepSummary& summary);
 
 /// Throw InputError(file, ...) where the text is damaged or of another kind.
 SweepManifest read_manifest(const std::string& file);
-std::vector<PlannedRun> read_plan(const std::string& file);
+std::vector<PlannedRun> read_plan(const std::string& file, const SweepAxes& axes);
 
 /// Fills everything but plan and image_hash from run_text; none where the text is damaged or tells of another
 /// run.

@@ -1,15 +1,16 @@
 // The files of one run: what makes it finished, and what it then says.
 #include "sweep/run_files.h"
 
+#include <sys/stat.h>
+
 #include <array>
 #include <cstddef>
-#include <filesystem>
 #include <optional>
-#include <system_error>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "base/hash.h"
+#include "base/stopwatch.h"
 #include "image/image_io.h"
 #include "sweep/results_json.h"
 
@@ -49,16 +50,20 @@ std::string run_lock(const std::string& folder, const PlannedRun& plan) {
 }
 
 std::string failure_stamp(const std::string& folder, const PlannedRun& plan) {
-    namespace fs = std::filesystem;
-    std::error_code none;
-    const fs::file_time_type time = fs::last_write_time(run_folder(folder, plan.id) + "/error.json", none);
-    return none ? "" : std::to_string(time.time_since_epoch().count());
+    // The clock may jump, so that time alone does not tell two files apart.
+    struct stat status {};
+    if (stat((run_folder(folder, plan.id) + "/error.json").c_str(), &status) != 0) return "";
+    return std::to_string(status.st_mtim.tv_sec) + "." + std::to_string(status.st_mtim.tv_nsec) + " " +
+           std::to_string(status.st_ino);
 }
 
 RunRecord load_run(const std::string& folder, const PlannedRun& plan) {
     const std::string home = run_folder(folder, plan.id);
     RunRecord missing;
     missing.plan = plan;
+    // The failure first: who finishes the run meanwhile writes DONE, and only then removes the failure.
+    const std::optional<RunRecord> failed =
+        parse_run(read_whole_file(home + "/error.json").value_or(""), plan);
     const std::optional<std::string> done = read_whole_file(home + "/DONE");
     if (done && done == done_text(folder, plan)) {
         std::optional<RunRecord> run = parse_run(read_whole_file(home + "/metrics.json").value_or(""), plan);
@@ -66,8 +71,6 @@ RunRecord load_run(const std::string& folder, const PlannedRun& plan) {
         run->image_hash = image_hash_in(*done);
         return *run;
     }
-    const std::optional<RunRecord> failed =
-        parse_run(read_whole_file(home + "/error.json").value_or(""), plan);
     return failed && failed->state == RunState::kFailed ? *failed : missing;
 }
 
@@ -75,18 +78,20 @@ void clear_run(const std::string& folder, const PlannedRun& plan) {
     const std::string home = run_folder(folder, plan.id);
     make_folder(home);
     remove_file(home + "/DONE");
-    remove_file(home + "/error.json");
 }
 
 RunRecord store_run(const std::string& folder, RunRecord run, const Image& image, const Image& diff) {
     const std::string home = run_folder(folder, run.plan.id);
+    const Stopwatch watch;
     write_exr(home + "/image.exr", image);
+    run.metrics["t_write_s"] = watch.seconds();
     write_exr(home + "/diff.exr", diff);
     run.state = RunState::kDone;
     replace_text_file(home + "/metrics.json", run_text(run));
     const std::optional<std::string> done = done_text(folder, run.plan);
     if (!done) throw OutputError(home, "what was written cannot be read back");
     replace_text_file(home + "/DONE", *done);
+    remove_file(home + "/error.json");
     run.image_hash = image_hash_in(*done);
     return run;
 }

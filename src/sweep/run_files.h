@@ -19,10 +19,12 @@ std::string failure_stamp(const std::string& folder, const PlannedRun& plan);
 /// are as they were written; any damage makes it missing.
 RunRecord load_run(const std::string& folder, const PlannedRun& plan);
 
-/// Forgets what an earlier attempt left: DONE first.
+/// Makes the run unfinished, before it is done again. A failure stays told until the new attempt has ended,
+/// so that who sums up meanwhile does not miss the run. Throws OutputError.
 void clear_run(const std::string& folder, const PlannedRun& plan);
 
-/// Writes the images, metrics.json and last DONE; returns the record with its image_hash. Throws OutputError.
+/// Writes the images, metrics.json and last DONE, then forgets an earlier failure; returns the record with
+/// its image_hash. Throws OutputError.
 RunRecord store_run(const std::string& folder, RunRecord run, const Image& image, const Image& diff);
 
 /// Writes error.json. Throws OutputError.

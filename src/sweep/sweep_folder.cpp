@@ -18,8 +18,9 @@ namespace {
 constexpr const char* kWhatToDo = "choose another folder, or discard what is there with --replace";
 
 // The manifest goes last: until then the folder is known as a sweep's.
-constexpr std::array kWritten = {"report.html", "runs.csv", "displacement.csv", "summary.json", "plots",
-                                 "runs",        "truth",    "plan.jsonl",       "manifest.json"};
+constexpr std::array kWritten = {"report.html", "runs.csv",   "displacement.csv", "summary.json",
+                                 "summary.tex", "plots",      "pictures",         "runs",
+                                 "truth",       "plan.jsonl", "manifest.json"};
 
 std::string manifest_file(const std::string& folder) {
     return folder + "/manifest.json";
@@ -42,10 +43,17 @@ const std::string& scene_name(const SweepSubject& subject) {
     return subject.scene_name.empty() ? subject.scene : subject.scene_name;
 }
 
+std::string axis_names(const SweepAxes& axes) {
+    std::string names;
+    for (const Axis& axis : axes.axes)
+        names += (names.empty() ? "" : axes.zip ? " with " : " x ") + axis.kind.name;
+    return names.empty() ? "nothing" : names;
+}
+
 std::string owner_text(const SweepManifest& manifest) {
     const SweepSubject& subject = manifest.subject;
     return fmt::format("the sweep of {} over {} (camera {}, truth {})", scene_name(subject),
-                       manifest.axis.name, subject.camera, subject.truth);
+                       axis_names(manifest.axes), subject.camera, subject.truth);
 }
 
 /// One of the sweeps in folders below; none where there are none.
@@ -82,7 +90,7 @@ bool is_same_sweep(const SweepManifest& a, const SweepManifest& b) {
     const bool is_same_scene = scene_name(one) == scene_name(other) ||
                                (!one.scene_digest.empty() && one.scene_digest == other.scene_digest);
     return is_same_scene && one.camera == other.camera && one.truth == other.truth &&
-           a.axis.name == b.axis.name;
+           axis_names(a.axes) == axis_names(b.axes);
 }
 
 FileLock claim_folder(const std::string& folder, const SweepManifest& manifest,

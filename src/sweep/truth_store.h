@@ -1,8 +1,13 @@
-// The truths of a sweep: each traced once, by whichever process comes first, and kept in the folder.
+// The truths of a sweep: each traced once, by whichever process or thread comes first, and kept in the
+// folder.
 #pragma once
 
+#include <deque>
+#include <exception>
 #include <functional>
-#include <optional>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -17,22 +22,32 @@ struct Truth {
     double seconds = 0;  // that tracing it took
 };
 
-/// Holds the truth that was asked for last.
+/// Thread-safe. Keeps the truths that were asked for last in memory.
 class TruthStore {
   public:
-    TruthStore(std::string folder, std::function<Image(int n)> trace, Progress progress)
+    TruthStore(std::string folder, std::function<Image(const PlannedRun& run)> trace, Progress progress)
         : folder_(std::move(folder)), trace_(std::move(trace)), progress_(std::move(progress)) {}
 
-    /// The truth of this run: read where it is, else traced and kept; while another process traces it, waits.
-    /// Valid until the next call. Throws what the tracing throws; OutputError; Interrupted.
-    const Truth& get(const PlannedRun& run);
+    /// The truth of this run: read where it is, else traced and kept. While another process or thread traces
+    /// it: waits, or gives null where `may_wait` is false. Throws what the tracing throws, again for each run
+    /// of a truth that failed; OutputError; Interrupted.
+    std::shared_ptr<const Truth> get(const PlannedRun& run, bool may_wait = true);
+
+    /// How many truths stay in memory, at least 1.
+    void set_kept(std::size_t count) { kept_count_ = count > 0 ? count : 1; }
 
   private:
+    std::shared_ptr<const Truth> find(const std::string& hash);
+    std::shared_ptr<const Truth> keep(const std::string& hash, Truth truth);
+    std::shared_ptr<const Truth> trace(const PlannedRun& run, const std::string& file);
+
     std::string folder_;
-    std::function<Image(int n)> trace_;
+    std::function<Image(const PlannedRun& run)> trace_;
     Progress progress_;
-    std::string hash_;
-    std::optional<Truth> truth_;  // of hash_
+    std::mutex mutex_;  // of what follows
+    std::deque<std::pair<std::string, std::shared_ptr<const Truth>>> kept_;
+    std::map<std::string, std::exception_ptr> failures_;  // by hash
+    std::size_t kept_count_ = 1;
 };
 
 }  // namespace trilens

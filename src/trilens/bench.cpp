@@ -1,11 +1,12 @@
 #include "trilens/bench.h"
 
+#include <deque>
 #include <utility>
 
 #include "base/error.h"
 #include "base/rasterize.h"
 #include "base/stopwatch.h"
-#include "render/engine.h"
+#include "render/facet_engine.h"
 #include "render/frame.h"
 #include "render/world.h"
 #include "scene/check_scene.h"
@@ -13,28 +14,24 @@
 namespace trilens {
 namespace {
 
-/// Who owns the film's samples, for each path of each optic that is seen.
-struct OpticRays {
-    std::vector<FacetSamples> owned;
-    std::vector<const RayMesh*> mesh;
+/// Rays that look at the scene, kept.
+struct BenchRays {
+    std::deque<RayMesh> mesh;
+    std::deque<FacetSamples> owned;
+    std::vector<RaceView> views;
+
+    void add(const RayMesh& rays, const FacetSamples& samples) {
+        if (samples.sample.empty()) return;
+        views.push_back({&mesh.emplace_back(rays), &owned.emplace_back(samples)});
+    }
 };
 
-OpticRays optic_rays(const Frame& frame, const SampleViews& views) {
-    OpticRays rays;
-    std::vector<Id> owner(views.samples.size());
-    for (std::size_t i = 0; i < frame.optics.size(); ++i) {
-        bool any = false;
-        for (std::size_t s = 0; s < owner.size(); ++s) {
-            const SampleView& view = views.samples[s];
-            owner[s] = view.optic == i ? view.facet : kNone;
-            any = any || view.optic == i;
-        }
-        for (const PathMesh& path : frame.optics[i].paths) {
-            if (!any || path.mesh.facets.empty()) continue;
-            rays.mesh.push_back(&path.mesh);
-            rays.owned.push_back(group_by_facet(owner, path.mesh.facets.size()));
-        }
-    }
+/// All that leave the optics, found by drawing the picture once.
+BenchRays optic_rays(const World& world, const Frame& frame, const SampleGrid& grid) {
+    BenchRays rays;
+    const auto keep = [&](const RayMesh& mesh, const FacetSamples& owned) { rays.add(mesh, owned); };
+    SampleViews views;
+    make_facet_views(world, frame, Engine::kExact, keep).viewer(grid, views);
     return rays;
 }
 
@@ -52,20 +49,12 @@ BenchResult run_bench(Scene scene, const BenchRequest& request, const Warn& warn
     const Frame frame = make_frame(*world, request.frame, warn);
     const Film& film = world->scene.film;
     const SampleGrid grid{0, 0, film.width, film.height, film.spp};
-    OpticRays rays;
-    if (!frame.optics.empty()) {
-        SampleViews views;
-        make_viewer(*world, request.frame, Engine::kExact, {})(grid, views);
-        rays = optic_rays(frame, views);
-    }
-    if (rays.mesh.empty()) {
-        result.direct = true;
-        rays.mesh.push_back(&frame.camera.mesh);
-        rays.owned.push_back(rasterize_facets(frame.camera.mesh, grid));
-    }
+    BenchRays rays;
+    if (!frame.optics.empty()) rays = optic_rays(*world, frame, grid);
+    result.direct = rays.views.empty();
+    if (result.direct) rays.add(frame.camera.mesh, rasterize_facets(frame.camera.mesh, grid));
     result.rays_ms = 1000 * rays_watch.seconds();
-    RaceCourse course{world->objects, {}, grid};
-    for (std::size_t i = 0; i < rays.mesh.size(); ++i) course.views.push_back({rays.mesh[i], &rays.owned[i]});
+    RaceCourse course{world->objects, rays.views, grid};
     result.race = race(course, request.race);
     return result;
 }

@@ -1,5 +1,6 @@
 // How far two pictures are apart: pixel by pixel, and in what their optics show.
 //
+//     #include <trilens/image.h>
 //     const trilens::Image truth = trilens::read_image("truth.exr"), image = trilens::read_image("mine.exr");
 //     const trilens::Comparison comparison = trilens::compare(truth, image);
 //     std::printf("rmse %g\n", comparison.metrics.rmse);
@@ -8,9 +9,10 @@
 //             std::printf("%s moved by %g px\n", layer.layer.c_str(), layer.displacement->summary->mean);
 #pragma once
 
+#include "measure/common_channels.h"
 #include "measure/compare.h"
 #include "measure/compare_layers.h"
 #include "measure/difference.h"
 #include "measure/fit.h"
+#include "measure/limits.h"
 #include "trilens/compare_inputs.h"
-#include "trilens/compare_limits.h"

@@ -1,5 +1,8 @@
-// Images of different makers made comparable: which layer stands for a file, and which channels two images
-// share.
+// Images of different makers made comparable: which layer stands for a file.
+//
+//     const trilens::Image truth = trilens::read_compared_image("truth.exr");
+//     const trilens::Image mine = trilens::read_compared_image("mine.exr");
+//     std::printf("%d and %d pixels wide\n", truth.width, mine.width);
 #pragma once
 
 #include <string>
@@ -16,15 +19,5 @@ namespace trilens {
 /// B. Other channels of that part keep their names. Throws InputError, with the layers that there are, where
 /// that is none or more than one.
 Image read_compared_image(const std::string& file, const std::string& layer = "");
-
-/// Two images with the same channels.
-struct CommonChannels {
-    Image reference, test;
-    std::vector<std::string> only_reference, only_test;  // what was left out of each, by name
-};
-
-/// Leaves out the channels that the other image does not have, or has in another type (float, id). Older
-/// names of what is seen are the newer ones ("reflect.object", "reflectID.object").
-CommonChannels keep_common_channels(Image reference, Image test);
 
 }  // namespace trilens

@@ -3,6 +3,7 @@
 // Every function of the public headers throws trilens::Error, or std::bad_alloc, and nothing else; none ends
 // the program over a caller's data. "No answer" is no error: it is an empty optional or an empty list.
 //
+//     #include <trilens/scene.h>
 //     try {
 //         const trilens::Scene scene = trilens::load_scene({"scene.json"});
 //     } catch (const trilens::InputError& error) {

@@ -5,4 +5,5 @@
 #pragma once
 
 #include "base/check_output.h"
+#include "base/file_bytes.h"
 #include "base/files.h"

@@ -1,13 +1,15 @@
 #include "trilens/render.h"
 
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "base/format.h"
+#include "image/exr_strips.h"
 #include "render/frame.h"
 #include "render/picture.h"
-#include "render/world_digest.h"
 #include "scene/check_scene.h"
+#include "scene/scene_digest.h"
 #include "vector/drawing.h"
 
 namespace trilens {
@@ -24,6 +26,8 @@ void check_frame(const World& world, const FrameParams& frame) {
                                      world.scene.cameras.size()));
     if (frame.resolution < 0 || frame.resolution > kMaxResolution)
         throw UsageError(fmt::format("a resolution of {} is not in 1..{}", frame.resolution, kMaxResolution));
+    if (frame.max_error && !(*frame.max_error >= 0 && *frame.max_error <= kMostMaxError))
+        throw UsageError(fmt::format("an error of {} pixels is not in 0..{}", *frame.max_error, kMostMaxError));
 }
 
 void check_engine(const EngineChoice& engine) {
@@ -71,6 +75,20 @@ Picture Renderer::draw(const PictureRequest& request, const Progress& progress, 
     return draw_picture(*world_, request, progress, warn);
 }
 
+EncodedPicture Renderer::draw_exr(const PictureRequest& request, const Progress& progress,
+                                  const Warn& warn) const {
+    check_frame(*world_, request.frame);
+    check_engine(request.engine);
+    std::optional<ExrStrips> strips;
+    const StripSink sink{
+        [&](const Image& layout) { strips.emplace("image", layout); },
+        [&](const std::vector<Channel>& channels, int rows) { strips->add(channels, 0, rows); }};
+    EncodedPicture encoded;
+    encoded.picture = draw_picture(*world_, request, progress, warn, &sink);
+    encoded.exr = strips->finish();
+    return encoded;
+}
+
 PixelExplanation Renderer::explain(const PictureRequest& request, int x, int y) const {
     check_frame(*world_, request.frame);
     check_engine(request.engine);
@@ -105,7 +123,7 @@ LineDrawing Renderer::draw_lines(const FrameParams& frame, bool wire, const Warn
 }
 
 std::string Renderer::digest() const {
-    return world_digest(*world_);
+    return scene_digest(world_->scene);
 }
 
 }  // namespace trilens

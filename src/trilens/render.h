@@ -1,5 +1,7 @@
 // Pictures of scenes: projected, or ray traced as the truth.
 //
+//     #include <trilens/image.h>
+//     #include <trilens/scene.h>
 //     const trilens::Renderer renderer(trilens::load_scene({"scene.json"}));
 //     trilens::PictureRequest request;
 //     request.frame.resolution = 16;
@@ -38,6 +40,12 @@ struct SeenTriangle {
     Vec3 position{0};  // the world point that is seen
 };
 
+/// A picture as the bytes of an OpenEXR file.
+struct EncodedPicture {
+    Picture picture;  // its image has windows and header, but no channels
+    std::vector<unsigned char> exr;
+};
+
 /// The outlines of what a camera and its optics show.
 struct LineDrawing {
     std::string svg;                   // one document; see the command's help for its attributes
@@ -68,6 +76,11 @@ class Renderer {
     /// pixels that are not finite, Interrupted once `progress` says so.
     Picture draw(const PictureRequest& request, const Progress& progress = {}, const Warn& warn = {}) const;
 
+    /// The same picture as write_image would write it, encoded while it is drawn: it is never held whole.
+    /// Throws as draw does, and OutputError where it cannot be encoded.
+    EncodedPicture draw_exr(const PictureRequest& request, const Progress& progress = {},
+                            const Warn& warn = {}) const;
+
     /// How one pixel comes about.
     PixelExplanation explain(const PictureRequest& request, int x, int y) const;
 
@@ -82,8 +95,7 @@ class Renderer {
     /// The picture as lines. `wire`: hidden edges too.
     LineDrawing draw_lines(const FrameParams& frame, bool wire = false, const Warn& warn = {}) const;
 
-    /// A digest (16 hexadecimal digits) of what the scene loaded from all its files: equal digests, equal
-    /// pictures of equal scene texts.
+    /// A digest (16 hexadecimal digits) of all that the scene holds: equal digests, equal pictures.
     std::string digest() const;
 
     /// What the renderer is made of; its type is no part of the public headers.

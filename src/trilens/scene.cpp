@@ -49,8 +49,12 @@ Scene load_scene(const SceneRequest& request) {
 }
 
 Scene parse_scene(const std::string& json, const std::string& folder,
-                  std::span<const SceneOverride> overrides) {
-    return load_scene_text(json, SceneSource("", folder), overrides, texture_reader());
+                  std::span<const SceneOverride> overrides, const std::string& label) {
+    Scene scene = load_scene_text(json, SceneSource(label.empty() ? kSceneLabel : label, folder), overrides,
+                                  texture_reader());
+    scene.file.clear();
+    scene.label = label;
+    return scene;
 }
 
 std::size_t find_camera(const Scene& scene, const std::string& name) {

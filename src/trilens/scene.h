@@ -33,9 +33,11 @@ struct SceneRequest {
 /// problem.
 Scene load_scene(const SceneRequest& request);
 
-/// The same from JSON text; `folder`: where relative paths start, empty for where the program runs.
+/// The same from JSON text; `folder`: where relative paths start, empty for where the program runs. `label`:
+/// what messages call the scene,
+/// empty for "scene".
 Scene parse_scene(const std::string& json, const std::string& folder = "",
-                  std::span<const SceneOverride> overrides = {});
+                  std::span<const SceneOverride> overrides = {}, const std::string& label = "");
 
 /// The camera of that name; the scene's own where the name is empty. Throws UsageError with the nearest name.
 std::size_t find_camera(const Scene& scene, const std::string& name);

@@ -1,26 +1,43 @@
 #include "trilens/sweep.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <system_error>
 
 #include "base/error.h"
 #include "base/format.h"
-#include "base/hash.h"
 #include "sweep/code_digest.h"
 #include "sweep/sweep.h"
-#include "trilens/render.h"
+#include "sweep/sweep_file.h"
+#include "trilens/sweep_subjects.h"
 #include "trilens/version.h"
 
 namespace trilens {
 namespace {
 
+// Estimates of what a run holds: pixels of its image, its truth and their difference with what encodes them;
+// facets with their rays.
+constexpr double kBytesPerPixel = 5 * 34 * 4, kBytesPerSample = 200, kBytesPerFacet = 600;
+
 /// Everything one sweep needs, alive while it runs.
 struct SweepJob {
-    std::unique_ptr<Renderer> renderer;
     SweepParams params;
     SweepCallbacks callbacks;
+    PointRequest base;
+    Engine truth = Engine::kLimitTruth;
+    std::unique_ptr<Subjects> subjects;
+    SweepTalk talk;
+    std::map<std::string, bool> warned;
+    std::mutex mutex;  // of `warned` and of what it tells
+
+    void warn(const std::string& message) {
+        const std::lock_guard guard(mutex);
+        if (talk.warn && warned.emplace(message, true).second) talk.warn(message);
+    }
 };
 
 Engine truth_engine(const std::string& truth) {
@@ -33,36 +50,81 @@ Shard shard_of(const std::string& text) {
     return parse_shard(text, [](const char* name) { return std::getenv(name); });
 }
 
-/// The scene file as seen from the sweep's folder, so that it is the same from wherever the sweep is called
-/// and after both have moved; and what is changed in it.
-std::string scene_name(const SweepRequest& request) {
+/// A file as seen from the sweep's folder, so that it is the same from wherever the sweep is called and after
+/// both have moved.
+std::string name_from(const std::string& folder, const std::string& file) {
     namespace fs = std::filesystem;
     std::error_code unreadable;
-    const fs::path file = fs::weakly_canonical(request.scene.file, unreadable);
-    const fs::path folder = fs::weakly_canonical(request.folder, unreadable);
-    std::string name = file.lexically_proximate(folder).generic_string();
+    return fs::weakly_canonical(file, unreadable)
+        .lexically_proximate(fs::weakly_canonical(folder, unreadable))
+        .generic_string();
+}
+
+/// What tells the scene from others of the folder: its file and what is changed in it. One in memory by its
+/// label, else by what it holds.
+std::string scene_name(const SweepRequest& request, const SubjectFacts& facts) {
+    if (request.loaded)
+        return !request.loaded->label.empty() ? request.loaded->label
+                                              : scene_title(*request.loaded) + " " + facts.digest;
+    std::string name =
+        request.scene.file.empty() ? "several scenes" : name_from(request.folder, request.scene.file);
     if (request.scene.resolution > 0) name += fmt::format(" resolution={}", request.scene.resolution);
     for (const SceneOverride& change : request.scene.overrides)
         name += fmt::format(" {}={}", change.pointer, change.value);
     return name;
 }
 
-SweepSubject subject_of(const SweepRequest& request, const Renderer& renderer, std::size_t camera) {
-    const std::vector<std::string> libraries = library_versions();
-    SweepSubject subject;
-    subject.title =
-        request.title.empty() ? std::filesystem::path(request.scene.file).stem().string() : request.title;
-    subject.scene = request.scene.file;
-    subject.scene_name = scene_name(request);
-    subject.scene_digest = hash_text(renderer.scene().resolved + "\n" + renderer.digest());
-    subject.camera = renderer.scene().cameras[camera].name;
-    subject.method = engine_name(Engine::kExact);
-    subject.truth = request.truth;
-    subject.spp = renderer.scene().film.spp;
-    for (const OpticInfo& optic : renderer.optics()) {
-        subject.optics.push_back({optic.object, optic.name});
-        subject.mesh += (subject.mesh.empty() ? "" : " ") + optic.name;
+SweepAxes axes_of(const SweepRequest& request) {
+    SweepAxes axes{{}, request.zip};
+    if (request.over.empty()) throw UsageError("a sweep needs an axis: --over AXIS=VALUES");
+    for (const AxisRequest& asked : request.over) {
+        std::string values;
+        for (const std::string& value : asked.values) values += (values.empty() ? "" : ",") + value;
+        const std::string where = "--over " + asked.axis + "=" + values;
+        axes.axes.push_back(make_axis(find_axis_kind(asked.axis, where), asked, where, request.zip));
     }
+    return axes;
+}
+
+const Axis* find_axis(const SweepAxes& axes, const std::string& name) {
+    for (const Axis& axis : axes.axes)
+        if (axis.kind.name == name) return &axis;
+    return nullptr;
+}
+
+std::string texts_of(const Axis& axis) {
+    std::string text;
+    for (const AxisValue& value : axis.values) text += (text.empty() ? "" : ", ") + value.text;
+    return text;
+}
+
+std::string title_of(const SweepRequest& request, const SweepAxes& axes) {
+    if (!request.title.empty()) return request.title;
+    const std::string file = request.loaded ? request.loaded->file : request.scene.file;
+    if (!file.empty()) return std::filesystem::path(file).stem().string();
+    if (request.loaded) return scene_title(*request.loaded);
+    const Axis* const scenes = find_axis(axes, "scene");
+    return scenes ? texts_of(*scenes) : "sweep";
+}
+
+SweepSubject subject_of(const SweepRequest& request, const SweepAxes& axes, const SubjectFacts& facts) {
+    const std::vector<std::string> libraries = library_versions();
+    const auto swept_or = [&](const char* name, const std::string& otherwise) {
+        const Axis* const axis = find_axis(axes, name);
+        return axis ? texts_of(*axis) : otherwise;
+    };
+    SweepSubject subject;
+    subject.title = title_of(request, axes);
+    subject.scene = swept_or("scene", request.loaded ? scene_title(*request.loaded) : request.scene.file);
+    subject.scene_name = scene_name(request, facts);
+    subject.scene_digest = facts.digest;
+    subject.camera = find_axis(axes, "camera") ? "" : facts.camera;
+    subject.method = swept_or("engine", engine_name(Engine::kExact));
+    subject.truth = request.truth;
+    subject.spp = facts.film.spp;
+    for (const SweptOptic& optic : facts.optics)
+        subject.mesh += (subject.mesh.empty() ? "" : " ") + optic.name;
+    if (const Axis* const optics = find_axis(axes, "optic")) subject.mesh = texts_of(*optics);
     if (!request.command.empty()) subject.commands = {request.command};
     subject.versions = {{"trilens", version()},
                         {"ray tracing", libraries[0]},
@@ -71,42 +133,96 @@ SweepSubject subject_of(const SweepRequest& request, const Renderer& renderer, s
     return subject;
 }
 
+std::string engine_key(const PictureRequest& picture) {
+    const EngineChoice& engine = picture.engine;
+    std::string key = engine_name(engine.engine);
+    if (engine.engine == Engine::kClassic)
+        key += fmt::format(" {} within {}", classic_name(engine.classic), engine.classic.tolerance);
+    const char* const grid = !picture.frame.grid                        ? "own"
+                             : *picture.frame.grid == GridKind::kScreen ? "screen"
+                                                                        : "surface";
+    return fmt::format("{}\n{}\n{}", key, picture.frame.resolution, grid);
+}
+
+/// The truth of run n's own facets is that run's alone; the limit surface is that of all resolutions.
+RunKeys keys_of(SweepJob& job, const Coordinates& point) {
+    const PointRequest request = request_at(job.base, point);
+    const SubjectFacts& facts = job.subjects->facts(request);
+    const std::string seen = code_digest() + "\n" + facts.camera + "\n" + facts.digest;
+    const bool is_facets = job.truth == Engine::kFacetsTruth;
+    return {
+        seen + "\n" + engine_key(request.picture),
+        fmt::format("{}\n{}\n{}", seen, engine_name(job.truth), is_facets ? engine_key(request.picture) : ""),
+        facts.optics};
+}
+
+Picture draw(SweepJob& job, const PointRequest& request, const std::string& what, double* surface_seconds) {
+    const auto subject = job.subjects->load(request);
+    PictureRequest picture = request.picture;
+    picture.frame.camera = subject->camera;
+    // Where several are drawn at once, only the whole sweep says how far it is.
+    Progress progress;
+    if (job.talk.progress && job.params.jobs <= 1) progress = job.talk.progress(what);
+    progress.cancel = job.params.progress.cancel;
+    if (surface_seconds) *surface_seconds = subject->seconds;
+    return subject->renderer.draw(picture, progress, [&](const std::string& text) { job.warn(text); });
+}
+
+DrawnPicture render(SweepJob& job, const PlannedRun& run) {
+    const PointRequest request = request_at(job.base, run.at);
+    double surface = 0;
+    Picture picture = draw(job, request, "render", &surface);
+    return {std::move(picture.image),
+            {{"surface", surface}, {"prepare", picture.prepare_seconds}, {"draw", picture.draw_seconds}}};
+}
+
+Image trace(SweepJob& job, const PlannedRun& run) {
+    PointRequest request = request_at(job.base, run.at);
+    request.picture.engine = job.truth;
+    if (job.truth == Engine::kLimitTruth) request.picture.frame.resolution = 0;
+    return draw(job, request, "trace", nullptr).image;
+}
+
+double memory_of(SweepJob& job, const PlannedRun& run) {
+    const PointRequest request = request_at(job.base, run.at);
+    const SubjectFacts& facts = job.subjects->facts(request);
+    const double pixels = static_cast<double>(facts.film.width) * facts.film.height,
+                 n = std::max(8, request.picture.frame.resolution);
+    return pixels * (kBytesPerPixel + kBytesPerSample * facts.film.spp * facts.film.spp) +
+           kBytesPerFacet * 2 * n * n * static_cast<double>(facts.faces);
+}
+
 std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk& talk) {
-    const Engine truth = truth_engine(request.truth);
+    if (request.jobs < 1 || request.repeats < 1)
+        throw UsageError("a sweep needs at least one job and one repeat");
     auto job = std::make_unique<SweepJob>();
+    SweepJob* const at = job.get();
+    job->truth = truth_engine(request.truth);
+    job->talk = talk;
     job->params.folder = request.folder;
-    job->params.axis = parse_axis(request.over);
+    job->params.axes = axes_of(request);
     job->params.shard = shard_of(request.shard);
     job->params.replace = request.replace;
-
-    Scene scene = load_scene(request.scene);
-    if (talk.warn)
-        for (const std::string& warning : scene.warnings) talk.warn(warning);
-    const std::size_t camera = find_camera(scene, request.camera);
-    job->renderer = std::make_unique<Renderer>(std::move(scene), talk.warn);
-    if (job->renderer->optics().empty())
-        throw InputError(request.scene.file, "/meshes",
-                         "a sweep needs an optic whose resolution it can vary");
-
-    job->params.subject = subject_of(request, *job->renderer, camera);
+    job->params.jobs = request.jobs;
+    job->params.repeats = request.repeats;
+    job->params.memory_limit = request.memory_limit;
+    job->base.scene = request.scene;
+    job->base.camera = request.camera;
+    job->base.paths_start_here = request.scenes_folder;
+    if (request.loaded) {
+        job->base.scene = {};
+        job->base.loaded = std::make_shared<const Scene>(*request.loaded);
+    }
+    job->subjects = std::make_unique<Subjects>([at](const std::string& text) { at->warn(text); },
+                                               static_cast<std::size_t>(request.jobs) + 1);
+    const std::vector<Coordinates> points = make_points(job->params.axes);
+    job->params.subject =
+        subject_of(request, job->params.axes, job->subjects->facts(request_at(job->base, points.at(0))));
     if (talk.progress) job->params.progress = talk.progress("sweep of " + job->params.subject.title);
-    const auto draw = [renderer = job->renderer.get(), camera, talk](Engine engine, int n) {
-        PictureRequest picture;
-        picture.frame = {camera, n};
-        picture.engine = engine;
-        Progress progress;
-        if (talk.progress) progress = talk.progress(engine == Engine::kExact ? "render" : "trace");
-        return renderer->draw(picture, progress, talk.warn).image;
-    };
-    job->callbacks.render = [draw](int n) { return draw(Engine::kExact, n); };
-    // The facets of run n are the truth of run n alone; the limit surface is that of all.
-    job->callbacks.truth_per_run = truth == Engine::kFacetsTruth;
-    job->callbacks.trace = [draw, truth](int n) {
-        return draw(truth, truth == Engine::kFacetsTruth ? n : 0);
-    };
-    job->callbacks.job_key = code_digest() + "\n" + job->params.subject.camera + "\n" +
-                             job->renderer->scene().resolved + "\n" + job->renderer->digest();
-    job->callbacks.truth_key = job->callbacks.job_key + "\n" + request.truth;
+    job->callbacks.keys = [at](const Coordinates& point) { return keys_of(*at, point); };
+    job->callbacks.render = [at](const PlannedRun& run) { return render(*at, run); };
+    job->callbacks.trace = [at](const PlannedRun& run) { return trace(*at, run); };
+    job->callbacks.memory = [at](const PlannedRun& run) { return memory_of(*at, run); };
     return job;
 }
 
@@ -115,6 +231,37 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk&
 SweepSummary run_sweep(const SweepRequest& request, const SweepTalk& talk) {
     const std::unique_ptr<SweepJob> job = make_job(request, talk);
     return run_sweep(job->params, job->callbacks);
+}
+
+SweepRequest read_sweep_file(const std::string& file, SweepRequest request) {
+    const SweepFile sweep = read_sweep_file(file);
+    const std::string folder = std::filesystem::path(file).parent_path().string();
+    request.scenes_folder = folder;
+    request.over = sweep.over;
+    const auto is_scenes = [](const AxisRequest& axis) { return axis.axis == "scene"; };
+    const bool has_scenes_axis = std::ranges::any_of(sweep.over, is_scenes);
+    if (has_scenes_axis == !sweep.scenes.empty())
+        throw InputError(file, has_scenes_axis ? "/scenes" : "",
+                         has_scenes_axis ? "scenes are named here and by an axis" : "names no scenes");
+    if (sweep.scenes.size() == 1)
+        request.scene.file = (std::filesystem::path(folder) / sweep.scenes[0]).string();
+    else if (!sweep.scenes.empty())
+        request.over.insert(request.over.begin(), {"scene", sweep.scenes});
+    request.zip = sweep.zip;
+    if (!sweep.truth.empty()) request.truth = sweep.truth;
+    if (!sweep.camera.empty()) request.camera = sweep.camera;
+    if (!sweep.title.empty()) request.title = sweep.title;
+    if (sweep.repeats > 0) request.repeats = sweep.repeats;
+    for (const auto& [pointer, value] : sweep.set) request.scene.overrides.push_back({pointer, value});
+    if (request.title.empty()) request.title = std::filesystem::path(file).stem().string();
+    // What is wrong with the axes is wrong with the file.
+    try {
+        truth_engine(request.truth);
+        make_points(axes_of(request));
+    } catch (const UsageError& error) {
+        throw InputError(file, "/over", error.what());
+    }
+    return request;
 }
 
 bool is_whole_sweep(const std::string& shard) {

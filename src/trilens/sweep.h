@@ -1,36 +1,55 @@
-// Sweeps: the error of the projection over the resolution of the optics, in a folder that can be resumed.
+// Sweeps: the error of the projection over any settings, in a folder that can be resumed.
 //
 //     trilens::SweepRequest request;
 //     request.scene.file = "scene.json";
-//     request.over = "resolution=1..16:x2";
+//     request.over = {{"engine", {"exact", "classic"}}, {"resolution", {"1..16:x2"}}};
 //     request.folder = "results/scene";
 //     const trilens::SweepSummary summary = trilens::run_sweep(request);
 //     for (const trilens::SweepFit& fit : summary.fits)
 //         if (fit.order) std::printf("%s %s: order %g\n", fit.layer.c_str(), fit.metric.c_str(), *fit.order);
+//
+//     request.loaded = trilens::parse_scene(trilens::scene_examples()[0].json);  // one in memory
+//     request.folder = "results/memory";
+//     trilens::plan_sweep(request);
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/progress.h"
+#include "sweep/axis.h"
+#include "sweep/farm_scripts.h"
 #include "sweep/gallery.h"
+#include "sweep/merge.h"
 #include "sweep/results.h"
+#include "sweep/summary_schema.h"
 #include "trilens/scene.h"
+#include "trilens/sweep_axes.h"
 
 namespace trilens {
 
 /// What is swept, against which truth, and where the results go.
 struct SweepRequest {
-    SceneRequest scene;
-    std::string camera;                        // empty: the scene's own
-    std::string over = "resolution=1..16:x2";  // "resolution=1,2,4" or "resolution=1..64:x2"
-    std::string truth = "limit";               // or "facets"
-    std::string shard = "0/1";                 // part i of n, or "auto" in a job array
+    SceneRequest scene;           // read from a file, which may be empty where an axis names scenes; unless:
+    std::optional<Scene> loaded;  // one in memory, read or built before; `scene` is not looked at, and axes
+                                  // cannot change it
+    std::string camera;           // empty: the scene's own
+    // What is varied: axis_kinds() or any JSON pointer into the scene.
+    std::vector<AxisRequest> over = {{"resolution", {"1..16:x2"}}};
+    bool zip = false;             // the axes' values pair by pair, not every combination
+    std::string truth = "limit";  // or "facets"
+    std::string shard = "0/1";    // part i of n, or "auto" in a job array
+    int jobs = 1;                 // runs at once; their times say little
+    int repeats = 1;              // measured drawings of each picture
+    double memory_limit = 0;      // bytes that the runs at work may need together; 0: most of what is free
     std::string folder;
-    bool replace = false;  // starts the folder afresh, whichever sweep it belongs to
-    std::string title;     // of the report; empty: the scene file's name
-    std::string command;   // what makes the sweep again, for the report; may be empty
+    std::string scenes_folder;  // where scene files that an axis names start; empty: where the program runs
+    bool replace = false;       // starts the folder afresh, whichever sweep it belongs to
+    std::string title;          // of the report; empty: the scene's own name
+    std::string command;        // what makes the sweep again, for the report; may be empty
 };
 
 /// How a sweep says what it does; both may be empty. `progress`: made for a job of that name.
@@ -41,11 +60,20 @@ struct SweepTalk {
 
 /// Does what is not done yet, then sums up and reports (a part of several sums up nothing). A run that fails
 /// is recorded, and the others go on. Results of another scene content, truth or build of this library are
-/// not trusted. Several processes may do one sweep in one folder at once. Throws UsageError for a text that
-/// says no axis, truth or shard, and for a folder that belongs to another sweep (of another scene or other
-/// overrides, camera, truth or axis; the list of values may differ), InputError where the scene has no optic
-/// or cannot be read, OutputError, Interrupted.
+/// not trusted. A scene in memory is known by its label; without one by all that it holds, so that a changed
+/// one is another sweep's. Several processes may do one sweep in one folder at once. Throws UsageError for a
+/// text that says no axis, truth or shard, for two points of one name, for an axis that a scene in memory
+/// cannot have, and for a folder that belongs to another sweep (of another scene or other overrides, camera,
+/// truth or axes; the lists of values may differ), InputError where a scene has no optic or cannot be read,
+/// OutputError, Interrupted.
 SweepSummary run_sweep(const SweepRequest& request, const SweepTalk& talk = {});
+
+/// The request that a sweep file makes of `base`: what the file leaves out stays. Paths in the file start at
+/// its folder. Throws InputError with the place of the first problem.
+SweepRequest read_sweep_file(const std::string& file, SweepRequest base);
+
+/// Whether the file is meant as a sweep: a JSON object with "over" in it. False for what cannot be read.
+bool is_sweep_file(const std::string& file);
 
 /// Whether one process does all of it. Throws UsageError as run_sweep does.
 bool is_whole_sweep(const std::string& shard);

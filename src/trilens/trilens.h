@@ -1,7 +1,11 @@
 // All of trilens: see the headers below, each with an example.
+//
+//     const trilens::Renderer renderer(trilens::load_scene(trilens::SceneRequest{"scene.json"}));
+//     trilens::write_image("mine.exr", renderer.draw({}).image);
 #pragma once
 
 #include <trilens/bench.h>
+#include <trilens/camera.h>
 #include <trilens/compare.h>
 #include <trilens/engine_study.h>
 #include <trilens/error.h>
@@ -9,9 +13,11 @@
 #include <trilens/image.h>
 #include <trilens/project.h>
 #include <trilens/ray_mesh.h>
+#include <trilens/regions.h>
 #include <trilens/render.h>
 #include <trilens/scene.h>
 #include <trilens/stopwatch.h>
+#include <trilens/suite.h>
 #include <trilens/surface.h>
 #include <trilens/sweep.h>
 #include <trilens/text.h>

@@ -1,8 +1,10 @@
 #include "vector/drawing.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/facet_scene.h"
+#include "base/format.h"
 #include "base/rasterize.h"
 #include "projector/projector.h"
 #include "render/facet_engine.h"
@@ -15,10 +17,14 @@ constexpr int kBandRows = 32;  // of pixels that are viewed at once
 
 /// What each sample shows, by index.
 struct SampleIds {
-    std::vector<Id> camera_facet, visible;  // the camera's facet; the triangle of objects and optics
-    std::vector<Id> optic, optic_facet;     // index into World::optics
-    std::vector<Id> reflected, refracted;   // triangles of the objects
+    std::vector<Id> camera_facet, visible;      // the camera's facet; the triangle of objects and optics
+    std::vector<Id> optic, leaf;                // index into World::optics; of its OpticPaths
+    std::array<std::vector<Id>, 2> node, seen;  // of the reflected and the refracted path: where it ends, and
+                                                // the triangle of the objects there
+    std::size_t traced = 0;                     // samples that no facet speaks for
 };
+
+constexpr std::array kOpticPaths{Path::kReflect, Path::kRefract};
 
 std::vector<Id> camera_facets(const RayMesh& mesh, const SampleGrid& grid) {
     std::vector<Id> facet(grid.size(), kNone);
@@ -31,7 +37,8 @@ std::vector<Id> camera_facets(const RayMesh& mesh, const SampleGrid& grid) {
 /// `first_facet`: where each optic's facets begin among the visible triangles.
 SampleIds look(const Viewer& viewer, const SampleGrid& grid, const std::vector<Id>& first_facet) {
     SampleIds ids;
-    for (std::vector<Id>* list : {&ids.visible, &ids.optic, &ids.optic_facet, &ids.reflected, &ids.refracted})
+    for (std::vector<Id>* list :
+         {&ids.visible, &ids.optic, &ids.leaf, &ids.node[0], &ids.node[1], &ids.seen[0], &ids.seen[1]})
         list->assign(grid.size(), kNone);
     SampleViews views;
     for (int y = grid.y0; y < grid.y1; y += kBandRows) {
@@ -43,20 +50,35 @@ SampleIds look(const Viewer& viewer, const SampleGrid& grid, const std::vector<I
             const bool optic = view.optic != kNone;
             ids.visible[first + s] = optic ? first_facet[view.optic] + view.facet : view.hit.triangle;
             ids.optic[first + s] = view.optic;
-            ids.optic_facet[first + s] = view.facet;
-            ids.reflected[first + s] = views.hit(view, Path::kReflect).triangle;
-            ids.refracted[first + s] = views.hit(view, Path::kRefract).triangle;
+            ids.leaf[first + s] = view.leaf;
+            ids.traced += view.traced;
+            for (std::size_t p = 0; p < kOpticPaths.size(); ++p) {
+                const PathEnd* end = views.find(view, kOpticPaths[p]);
+                if (!end || end->node == kNone) continue;
+                ids.node[p][first + s] = end->node;
+                ids.seen[p][first + s] = end->hit.triangle;
+            }
         }
     }
     return ids;
 }
 
-/// The facets that show an optic.
-std::vector<Id> facets_of(const SampleIds& ids, Id optic) {
-    std::vector<Id> facet(ids.optic.size(), kNone);
-    for (std::size_t s = 0; s < facet.size(); ++s)
-        if (ids.optic[s] == optic) facet[s] = ids.optic_facet[s];
-    return facet;
+/// The leaves of the samples whose path over this optic ends at that node.
+std::vector<Id> leaves_at(const SampleIds& ids, Id optic, std::size_t path, Id node) {
+    std::vector<Id> leaf(ids.optic.size(), kNone);
+    for (std::size_t s = 0; s < leaf.size(); ++s)
+        if (ids.optic[s] == optic && ids.node[path][s] == node) leaf[s] = ids.leaf[s];
+    return leaf;
+}
+
+/// The nodes at which the samples' paths over this optic end, ascending.
+std::vector<Id> nodes_seen(const SampleIds& ids, Id optic, std::size_t path) {
+    std::vector<Id> nodes;
+    for (std::size_t s = 0; s < ids.optic.size(); ++s)
+        if (ids.optic[s] == optic && ids.node[path][s] != kNone) nodes.push_back(ids.node[path][s]);
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
 }
 
 }  // namespace
@@ -77,7 +99,11 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
         append_facets(frame.optics[i].facets->grid(), optic.mesh, drawing->visible);
         material.resize(drawing->visible.size(), optic.material);
     }
-    SampleIds ids = look(make_facet_viewer(world, frame, Engine::kExact), grid, first_facet);
+    const FacetViews views = make_facet_views(world, frame, Engine::kExact);
+    SampleIds ids = look(views.viewer, grid, first_facet);
+    if (ids.traced > 0 && warn)
+        warn(fmt::format("no lines where paths are traced, not projected: {:.2f} % of the film",
+                         100.0 * static_cast<double>(ids.traced) / static_cast<double>(grid.size())));
     ids.camera_facet = camera_facets(frame.camera.mesh, grid);
 
     const auto add = [&](Path path, Id optic, const VectorView& view) {
@@ -92,14 +118,16 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
             {drawing->visible, edges, frame.camera.mesh, grid, ids.camera_facet, ids.visible, wire});
     }
     const DrawnEdges edges = drawn_edges(world.objects, {material, world.objects.size()});
-    for (Id i = 0; i < world.optics.size(); ++i) {
-        const std::vector<Id> facet = facets_of(ids, i);
-        for (const PathMesh& path : frame.optics[i].paths) {
-            if (path.mesh.facets.empty()) continue;
-            const std::vector<Id>& seen = path.path == Path::kReflect ? ids.reflected : ids.refracted;
-            add(path.path, world.optics[i].mesh, {world.objects, edges, path.mesh, grid, facet, seen, wire});
-        }
-    }
+    for (Id i = 0; i < world.optics.size(); ++i)
+        for (std::size_t p = 0; p < kOpticPaths.size(); ++p)
+            for (const Id node : nodes_seen(ids, i, p)) {
+                const OpticPaths& paths = views.paths(i);
+                add(kOpticPaths[p], world.optics[i].mesh,
+                    {world.objects, edges, paths.nodes()[node].mesh, grid, leaves_at(ids, i, p, node),
+                     ids.seen[p], wire});
+                for (EdgeCurve& curve : drawing->layers.back()->curves)
+                    curve.facet = frame.optics[i].grid_facet(paths.leaves()[curve.facet].facet);
+            }
     return drawing;
 }
 

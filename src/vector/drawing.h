@@ -25,7 +25,8 @@ struct Drawing {
     std::vector<std::unique_ptr<DrawingLayer>> layers;
 };
 
-/// Draws first hits as the exact engine does. The world must outlive the drawing. Throws as make_frame does.
+/// Draws what the exact engine shows over each pixel's principal paths; one layer for each history. `warn` is
+/// told of what is traced and so has no lines. The world must outlive the drawing. Throws as make_frame does.
 std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& frame, bool wire,
                                       const Warn& warn);
 

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "base/rasterize.h"
+#include "base/row_cover.h"
 #include "base/side_of_edge.h"
 #include "projector/random_cases.h"
 #include "support/test.h"
@@ -72,7 +73,99 @@ RayMesh random_tiling(Random& random, const SampleGrid& grid, int cells, bool sn
     return screen_mesh(screen, facets);
 }
 
+/// The oracle: every sample asks every facet, each by the exact sides of its three edges.
+std::vector<Id> owners_one_by_one(const RayMesh& mesh, const SampleGrid& grid) {
+    std::vector<Id> owner(grid.size(), kNone);
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        if (!mesh.has_rays(f) || facet_weights(mesh, f).edge_on) continue;
+        std::array<Vec3, 3> corner;
+        bool in_front = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            corner[k] = mesh.screen[mesh.facets[f][k]];
+            in_front = in_front && corner[k].z > 0;
+        }
+        const int wanted = in_front ? 0 : triple(corner[0], corner[1], corner[2]) > 0 ? 1 : -1;
+        for (std::size_t s = 0; s < grid.size(); ++s) {
+            const Vec2 at = grid.position(s);
+            std::array<Vec3, 3> local;
+            for (std::size_t k = 0; k < 3; ++k)
+                local[k] = {corner[k].x - at.x * corner[k].z, corner[k].y - at.y * corner[k].z, corner[k].z};
+            const int side = side_of_edge(local[0], local[1]);
+            const bool same = side_of_edge(local[1], local[2]) == side &&
+                              side_of_edge(local[2], local[0]) == side && side != 0;
+            if (owner[s] == kNone && same && (wanted == 0 || side == wanted)) owner[s] = static_cast<Id>(f);
+        }
+    }
+    return owner;
+}
+
+std::vector<Id> owners(const FacetSamples& owned, std::size_t samples) {
+    std::vector<Id> owner(samples, kNone);
+    for (std::size_t f = 0; f + 1 < owned.first.size(); ++f)
+        for (const Id s : owned.of(f)) owner[s] = static_cast<Id>(f);
+    return owner;
+}
+
+/// Facets of any shape: slivers, corners on samples or far off, some behind the camera.
+RayMesh random_facets(Random& random, const SampleGrid& grid, int count) {
+    std::vector<Vec3> screen;
+    std::vector<IdTriple> facets;
+    const double reach = random.below(3) == 0 ? 100 : 1;
+    for (int f = 0; f < count; ++f) {
+        const Id first = static_cast<Id>(screen.size());
+        Vec3 before(0);
+        for (int k = 0; k < 3; ++k) {
+            double x = grid.x0 + grid.width() * (0.5 + reach * random.uniform(-1, 1));
+            double y = grid.y0 + grid.height() * (0.5 + reach * random.uniform(-1, 1));
+            if (random.below(2) == 0)
+                x = std::floor(x * grid.side) / grid.side + 0.5 / grid.side,
+                y = std::floor(y * grid.side) / grid.side + 0.5 / grid.side;
+            if (k > 0 && random.below(4) == 0) x = before.x + random.log_uniform(1e-14, 1);
+            if (k > 0 && random.below(6) == 0) y = before.y;
+            before = {x, y, 1};
+            double depth = random.below(2) == 0 ? 1 : random.log_uniform(1e-4, 1e4);
+            if (random.below(8) == 0) depth = -depth;
+            screen.push_back(before * depth);
+        }
+        facets.push_back({first, first + 1, first + 2});
+    }
+    return screen_mesh(screen, facets);
+}
+
 }  // namespace
+
+TEST_CASE("owners found row by row are those that every sample finds for itself") {
+    Random random(15);
+    std::size_t wrong = 0, owned_samples = 0;
+    for (int i = 0; i < 1500; ++i) {
+        const int far = i % 3 == 0 ? 1000000 : 3000;
+        const int x0 = random.below(2 * far) - far, y0 = random.below(2 * far) - far;
+        const SampleGrid grid{x0, y0, x0 + 1 + random.below(40), y0 + 1 + random.below(30), 1 + i % 3};
+        const RayMesh mesh = i % 5 == 0 ? random_tiling(random, grid, 1 + random.below(6), i % 2 == 0)
+                                        : random_facets(random, grid, 1 + random.below(8));
+        const std::vector<Id> expected = owners_one_by_one(mesh, grid);
+        const std::vector<Id> found = owners(rasterize_facets(mesh, grid), grid.size());
+        for (std::size_t s = 0; s < grid.size(); ++s) {
+            wrong += found[s] != expected[s];
+            owned_samples += expected[s] != kNone;
+        }
+    }
+    CHECK(wrong == 0);
+    CHECK(owned_samples > 100000);
+}
+
+TEST_CASE("most of a large facet's row is decided at its ends") {
+    const SampleGrid grid{0, 0, 1920, 1080, 1};
+    const FacetEdges edges({Vec3(-5, -7, 1), Vec3(2500, 3, 1), Vec3(100, 2300, 1)}, 0, grid);
+    std::size_t asked = 0, covered = 0;
+    for (std::size_t row = 0; row < 1080; ++row) {
+        const RowCover cover = edges.cover(row, 0, 1920);
+        asked += cover.sure_begin - cover.begin + cover.end - cover.sure_end;
+        covered += cover.sure_end - cover.sure_begin;
+    }
+    CHECK(asked < 6 * 1080);
+    CHECK(covered > 1000000);
+}
 
 TEST_CASE("facets that tile the film own every sample exactly once") {
     Random random(12);

@@ -199,8 +199,12 @@ TEST_CASE("every metric's limit holds at its own value and breaks beyond it", "[
     layer.displacement->coverage = 0.24;
     const std::vector<NamedMetric> metrics = named_metrics(comparison, {layer});
     std::set<double> values;
+    std::size_t whole = 0;
     for (const NamedMetric& metric : metrics) {
         INFO(metric.name);
+        // A layer's own are the picture's here, where there is one layer, or nothing.
+        if (metric.name.find('.') != std::string::npos) continue;
+        ++whole;
         REQUIRE(metric.value);
         const double value = *metric.value, beyond = metric.is_likeness ? 1e-9 : -1e-9;
         values.insert(value);
@@ -209,7 +213,7 @@ TEST_CASE("every metric's limit holds at its own value and breaks beyond it", "[
         CHECK(broken_limits({{metric.name, value - beyond}}, metrics).empty());
     }
     // The percentages are the only numbers that occur twice.
-    CHECK(metrics.size() - values.size() == 4);
+    CHECK(whole - values.size() == 4);
     CHECK(metric_names().size() == metrics.size());
     CHECK_THROWS_AS(broken_limits({{"rmsee", 1}}, metrics), UsageError);
 

@@ -43,7 +43,7 @@ std::string offered_by_bash(const std::string& script, const std::string& words)
 
 TEST_CASE("there is a page for every command, and one command prints it", "[cli][manual]") {
     const std::string folder = scratch_dir("cli_manual_pages");
-    CHECK(written_pages(folder).size() == 20);
+    CHECK(written_pages(folder).size() == 25);
     CHECK(bytes_of(folder + "/trilens-sweep-run.1") == run_trilens("man sweep run").out);
     const std::string page = bytes_of(folder + "/trilens-render.1");
     for (const char* words : {".TH TRILENS\\-RENDER 1", "\\fB\\-n\\fR, \\fB\\-\\-resolution\\fR \\fIN\\fR",
@@ -79,11 +79,11 @@ TEST_CASE("bash completes commands, options, choices, examples and files", "[cli
     const std::string script = write_file(folder, "trilens.bash", run_trilens("completion bash").out);
     for (const char* file : {"room.json", "room.exr", "notes.txt"}) write_file(folder, file, "");
     const auto offered = [&](const std::string& words) { return offered_by_bash(script, words); };
-    CHECK(offered("trilens re") == "render\n");
+    CHECK(offered("trilens re") == "render report\n");
     CHECK(offered("trilens render --eng") == "--engine\n");
-    CHECK(offered("trilens render --engine \"\"") == "exact classic auto\n");
+    CHECK(offered("trilens render --engine \"\"") == "exact classic auto envmap planar\n");
     CHECK(offered("trilens render --engine = c") == "classic\n");
-    CHECK(offered("trilens -q sweep \"\"") == "run plan engines status report\n");
+    CHECK(offered("trilens -q sweep \"\"") == "run plan engines status report merge schema submit\n");
     CHECK(offered("trilens scene example mirror-s") == "mirror-sphere\n");
     CHECK(offered("trilens render room") == "room.json room.exr\n");
     CHECK(offered("trilens render --resolution \"\"") == "\n");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "render/facet_engine.h"
 
@@ -14,13 +15,20 @@ namespace {
 /// What a pixel shows, in ids.
 struct Seen {
     Id direct, optic, facet, reflect, refract;
+    std::vector<Id> ends;  // of all its paths
     bool operator==(const Seen&) const = default;
 };
 
 Seen seen(const SampleViews& views, std::size_t sample) {
     const SampleView& view = views.samples[sample];
-    return {view.hit.triangle, view.optic, view.facet, views.hit(view, Path::kReflect).triangle,
-            views.hit(view, Path::kRefract).triangle};
+    std::vector<Id> ends;
+    for (const PathEnd& end : views.ends_of(view)) ends.push_back(end.hit.triangle);
+    return {view.hit.triangle,
+            view.optic,
+            view.facet,
+            views.hit(view, Path::kReflect).triangle,
+            views.hit(view, Path::kRefract).triangle,
+            std::move(ends)};
 }
 
 bool covers_same(const Seen& a, const Seen& b) {
@@ -57,7 +65,7 @@ void close_edge_ties(const World& world, std::vector<Differing>& open) {
                            Vec2(c, -c), Vec2(-c, -c)}) {
         if (open.empty()) return;
         const CameraRays camera = shifted(make_camera_rays(world.scene, 0), by);
-        const Frame frame = make_frame(world, camera, 0, ignore);
+        const Frame frame = make_frame(world, camera, FrameParams{}, ignore);
         const Viewer project = make_facet_viewer(world, frame, Engine::kExact);
         const Viewer trace = make_facet_viewer(world, frame, Engine::kFacetsTruth);
         std::erase_if(open, [&](const Differing& pixel) {

@@ -58,6 +58,19 @@ TEST_CASE("projector and Embree agree on the shipped scenes", "[laws]") {
     check_shipped(160, 120, false);
 }
 
+TEST_CASE("projector and Embree agree over whole paths: every end of every sample", "[laws][paths]") {
+    for (const std::string name : {"crystal-ball", "mirror-balls", "glass-before-mirror", "bowl"})
+        for (const int n : {1, 2, 8})
+            check_agreement(name, n, *shipped_world("paths/" + name, n, 120, 90), true);
+}
+
+TEST_CASE("the same through prism, lenses, rings and a glass of wine", "[.long][laws][paths]") {
+    for (const std::string name :
+         {"prism", "plano-convex", "meniscus", "glass-torus", "mirror-torus", "wine-glass"})
+        for (const int n : {1, 2, 8})
+            check_agreement(name, n, *shipped_world("paths/" + name, n, 160, 120), true);
+}
+
 TEST_CASE("projector and Embree agree on cages of every kind as mirrors", "[laws]") {
     for (const auto& [name, cage] : made_cages())
         for (const int n : {1, 4}) check_agreement(name, n, *cage_world(cage, n, 120, 90), false);

@@ -86,3 +86,26 @@ TEST_CASE("a plateau is left out where that is asked for", "[measure][fit]") {
     const auto whole = law(2, 2, {4, 8, 16, 32});
     CHECK(fit_power_law(whole, options)->used == std::vector<bool>(4, true));
 }
+
+TEST_CASE("fit: Student's t is that of the tables, and the interval of an order covers it as often as it says") {
+    // Abramowitz and Stegun, table 26.10: 95 % and 99 %, both sides.
+    const std::vector<std::pair<int, double>> table = {{1, 12.706}, {2, 4.303}, {3, 3.182}, {4, 2.776},
+                                                       {5, 2.571},  {10, 2.228}, {30, 2.042}, {120, 1.980}};
+    for (const auto& [degrees, t] : table) CHECK(student_t(degrees, 0.95) == Approx(t).margin(0.0006));
+    CHECK(student_t(7, 0.99) == Approx(3.499).margin(0.0006));
+    CHECK(student_t(2, 0.9) == Approx(2.920).margin(0.0006));
+
+    std::mt19937 random(7);
+    std::normal_distribution<double> noise(0, 0.1);
+    int covered = 0;
+    constexpr int kTrials = 2000;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        std::vector<FitPoint> points;
+        for (const double n : {1.0, 2.0, 4.0, 8.0, 16.0})
+            points.push_back({n, 3 * std::pow(n, -2) * std::exp(noise(random))});
+        const Fit fit = fit_power_law(points).value();
+        covered += fit.order_low.value() <= 2 && 2 <= fit.order_high.value();
+    }
+    CHECK(covered / double(kTrials) == Approx(0.95).margin(0.02));
+    CHECK(!fit_power_law(std::vector<FitPoint>{{1, 1}, {2, 0.25}})->order_low);
+}

@@ -61,7 +61,7 @@ TEST_CASE("the difference image holds test minus reference, the mask and the shi
     add_shift("reflect", displacement, moved);
     write_exr(file, moved);
     const Image read = read_exr(file);
-    CHECK(read.channels.size() == 10);
+    CHECK(read.channels.size() == 11);
     CHECK(read.find("reflect.shift.X")->floats() == displacement.shift_x);
     CHECK(read.find("reflect.shift.M")->floats()[0] == -1);
     CHECK(read.find("reflect.shift.M")->floats()[1] == 0);

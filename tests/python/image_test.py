@@ -156,3 +156,15 @@ def test_a_png_holds_the_beauty(image, tmp_path):
     assert (tmp_path / "image.png").read_bytes()[:4] == b"\x89PNG"
     with pytest.raises(trilens.UsageError):
         image.save(tmp_path / "image.jpeg")
+
+
+def test_regions_are_the_shapes_before_the_environment():
+    alpha = np.zeros((20, 30), np.float32)
+    alpha[2:6, 2:6] = 1
+    alpha[6:10, 6:10] = 0.25     # touches by a corner
+    alpha[15:18, 20:28] = 1
+    alpha[0, 29] = 1             # a speck
+    image = trilens.Image.from_arrays({"A": alpha})
+    assert (trilens.count_regions(image), trilens.count_regions(image, 1), trilens.count_regions(image, least=25)) == (2, 3, 1)
+    with pytest.raises(trilens.InputError):
+        trilens.count_regions(trilens.Image.from_arrays({"R": alpha}))

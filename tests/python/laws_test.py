@@ -139,7 +139,9 @@ def test_a_sweep_is_the_commands_and_its_fit_is_least_squares(command, tmp_path)
     theirs = answer["fits"]
     assert len(summary.fits) == len(theirs) > 0
     for ours, fit in zip(summary.fits, theirs):
-        assert all(equal(getattr(ours, name), value) for name, value in fit.items())
+        # A group is a text there and a dict here; both are empty where one axis is swept.
+        assert not ours.group and not fit["group"]
+        assert all(equal(getattr(ours, name), value) for name, value in fit.items() if name != "group")
 
     fit = summary.fit("disp_mean_px")
     used = [(point.n, point.value) for point in fit.points if point.used]
@@ -168,6 +170,34 @@ def test_a_sweep_can_be_interrupted_and_goes_on(tmp_path):
     states = [run.state for run in trilens.load_sweep(tmp_path).runs]
     assert states == ["done", "missing"]
     assert {run.state for run in trilens.sweep(SPHERE, tmp_path, [1, 2], overrides=SMALL).runs} == {"done"}
+
+
+def test_a_scene_in_memory_is_swept_as_its_file_is(tmp_path):
+    scene, told = trilens.load_scene(SPHERE, SMALL), []
+    ours = trilens.sweep(scene, tmp_path / "ours", [2, 4, 8])
+    theirs = trilens.sweep(SPHERE, tmp_path / "theirs", [2, 4, 8], overrides=SMALL)
+    assert [fit.order for fit in ours.fits] == [fit.order for fit in theirs.fits] and len(ours.fits) > 0
+    assert ours.title == "sphere"
+    trilens.sweep(scene, tmp_path / "theirs", [2, 4, 8], progress=lambda done, job: told.append(job))
+    assert set(told) == {"sweep of sphere"}
+
+    # One without a label is another's as soon as it changes; a label makes it one that is edited.
+    text = scene.with_overrides({"/film/width": 64}).to_json()
+    moved = trilens.parse_scene(text, scene.folder)
+    assert moved.label == "" and "'scene'" in repr(moved)
+    with pytest.raises(trilens.UsageError, match="scene"):
+        trilens.sweep(moved, tmp_path / "ours", [2, 4])
+    with pytest.raises(trilens.UsageError, match="with_overrides"):
+        trilens.sweep(moved, tmp_path / "ours", [2, 4], overrides=SMALL)
+    with pytest.raises(TypeError):
+        trilens.sweep(None, tmp_path / "ours", [2, 4])
+    assert trilens.sweep(moved, tmp_path / "ours", [2, 4], replace=True).title == "scene"
+    for width in (64, 80):
+        edited = trilens.parse_scene(text, scene.folder, {"/film/width": width}, label="my ball")
+        assert edited.label == "my ball"
+        summary = trilens.sweep(edited, tmp_path / "edited", [2, 4])
+        assert summary.title == "my ball"
+        assert {run.metrics["width"] for run in summary.runs} == {width}
 
 
 def test_a_plan_runs_nothing(tmp_path):

@@ -116,7 +116,10 @@ TEST_CASE("wrong types and ranges and lengths") {
          "/cameras/0/lookAt/eye/2: expected a number, found the string \"nan\""},
         {"/cameras/0/lookAt/eye/1", "1e999",
          "/cameras/0/lookAt/eye/1: expected a number, found the string \"1e999\""},
-        {"/cameras/0/type", "ortho", "/cameras/0/type: unknown value 'ortho'; known: perspective, rayMesh"},
+        {"/cameras/0/type", "ortho",
+         "/cameras/0/type: unknown value 'ortho'; known: perspective, orthographic, oblique, viewVolume, "
+         "cylindrical, spherical, fisheye, opencv, pushbroom, crossedSlits, generalLinear, distortion, "
+         "multiPerspective, inwardSphere, planarContext, rayMesh"},
         {"/cameras/0/type", "raymesh", "/cameras/0/type: unknown value 'raymesh'; did you mean 'rayMesh'?"},
         {"/cameras/0/type", "rayMesh", "/cameras/0: a rayMesh camera needs 'points'"},
         {"/cameras/1/type", "perspective", "/cameras/1: a perspective camera needs 'lookAt'"},

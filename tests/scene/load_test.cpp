@@ -76,9 +76,6 @@ TEST_CASE("what is doubtful is a warning with its place") {
         for (const std::string& found : scene.warnings) UNSCOPED_INFO(found);
         return false;
     };
-    CHECK(warned({{"/render/maxDepth", "2"}}, "/render/maxDepth: first hits only are drawn so far"));
-    CHECK(warned({{"/materials/1/dispersion", "0.3"}},
-                 "/materials/1/dispersion: dispersion is ignored so far"));
     CHECK(warned({{"/meshes/0/material", "chrome"}}, "/materials/1: the material 'glass' is not used"));
     CHECK(warned({},
                  "/meshes/0: 6 edges have one face only: this glass is one interface, or a body with holes"));

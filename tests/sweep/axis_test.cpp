@@ -1,35 +1,84 @@
-// --over and --shard: what is meant is read, all else is refused with its reason.
+// Axes: what --over means is read, all else is refused with its reason; the points that axes span.
 #include "sweep/axis.h"
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "support/test.h"
+#include "sweep/plan.h"
 
 using namespace trilens;
 
-TEST_CASE("sweep: axes") {
-    using Values = std::vector<int>;
-    CHECK(parse_axis("resolution=1,2,4,8").name == "resolution");
-    CHECK(parse_axis("resolution=1,2,4,8").values == Values{1, 2, 4, 8});
-    CHECK(parse_axis("resolution=8,1,4").values == Values{1, 4, 8});
-    CHECK(parse_axis("resolution=7").values == Values{7});
-    CHECK(parse_axis("resolution=1..64:x2").values == Values{1, 2, 4, 8, 16, 32, 64});
-    CHECK(parse_axis("resolution=3..50:x3").values == Values{3, 9, 27});
-    CHECK(parse_axis("resolution=8..32:+8").values == Values{8, 16, 24, 32});
-    CHECK(parse_axis("resolution=8..31:+8").values == Values{8, 16, 24});
-    CHECK(parse_axis("resolution=5..5:x2").values == Values{5});
-    CHECK(parse_axis("resolution=1,2,4..16:+4,100").values == Values{1, 2, 4, 8, 12, 16, 100});
-    CHECK(parse_axis("resolution=1..1024:x1024").values == Values{1, 1024});
-    CHECK(parse_axis("resolution=1..1000:+1").values.size() == 1000);
+namespace {
+
+const AxisKind kResolution{"resolution", "n", "n", ValueKind::kWhole, 1, 1024, true};
+const AxisKind kEngine{"engine", "", "engine", ValueKind::kWord, 0, 0, false, {"exact", "classic"}};
+const AxisKind kSize{"size", "", "pixels", ValueKind::kSize, 1, 1e9, true};
+const AxisKind kScene{"scene", "", "scene", ValueKind::kText};
+
+Axis parse_axis(const std::string& text, bool keeps_order = false) {
+    const AxisRequest request = parse_over(text);
+    for (const AxisKind& kind : {kResolution, kEngine, kSize, kScene})
+        if (kind.name == request.axis) return make_axis(kind, request, "--over " + text, keeps_order);
+    return make_axis(pointer_kind(request.axis), request, "--over " + text, keeps_order);
+}
+
+std::vector<double> numbers(const std::string& text) {
+    std::vector<double> values;
+    for (const AxisValue& value : parse_axis(text).values) values.push_back(value.number.value());
+    return values;
+}
+
+std::vector<std::string> texts(const std::string& text) {
+    std::vector<std::string> values;
+    for (const AxisValue& value : parse_axis(text).values) values.push_back(value.text);
+    return values;
+}
+
+std::vector<std::string> ids(const SweepAxes& axes) {
+    std::vector<std::string> all;
+    for (const PlannedRun& run : make_plan(axes, [](const Coordinates& point) {
+             return RunKeys{point_text(point), "t"};
+         }))
+        all.push_back(run.id);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("sweep: axes of whole numbers") {
+    using Values = std::vector<double>;
+    CHECK(parse_axis("resolution=1,2,4,8").kind.name == "resolution");
+    CHECK(numbers("resolution=1,2,4,8") == Values{1, 2, 4, 8});
+    CHECK(numbers("resolution=8,1,4") == Values{1, 4, 8});
+    CHECK(numbers("resolution=7") == Values{7});
+    CHECK(numbers("resolution=1..64:x2") == Values{1, 2, 4, 8, 16, 32, 64});
+    CHECK(numbers("resolution=3..50:x3") == Values{3, 9, 27});
+    CHECK(numbers("resolution=8..32:+8") == Values{8, 16, 24, 32});
+    CHECK(numbers("resolution=8..31:+8") == Values{8, 16, 24});
+    CHECK(numbers("resolution=5..5:x2") == Values{5});
+    CHECK(numbers("resolution=1,2,4..16:+4,100") == Values{1, 2, 4, 8, 12, 16, 100});
+    CHECK(numbers("resolution=1..1024:x1024") == Values{1, 1024});
+    CHECK(numbers("resolution=1..1000:+1").size() == 1000);
+    CHECK(texts("resolution=1,16") == std::vector<std::string>{"1", "16"});
+}
+
+TEST_CASE("sweep: axes of other kinds") {
+    CHECK(texts("engine=classic,exact") == std::vector<std::string>{"classic", "exact"});
+    CHECK(numbers("size=64x48,32x24") == std::vector<double>{32 * 24, 64 * 48});
+    CHECK(texts("size=64x48,32x24") == std::vector<std::string>{"32x24", "64x48"});
+    CHECK(texts("/materials/0/ior=1.3..1.6:+0.1") == std::vector<std::string>{"1.3", "1.4", "1.5", "1.6"});
+    CHECK(texts("/materials/0/ior=0.5..4:x2") == std::vector<std::string>{"0.5", "1", "2", "4"});
+    CHECK(numbers("/a=-1,-2.5") == std::vector<double>{-2.5, -1});
+    CHECK(texts("/cameras/0/lookAt/eye=[1,0,4],[2,0,4]") == std::vector<std::string>{"[1,0,4]", "[2,0,4]"});
+    CHECK(texts("/meshes/0/file=\"a,b.obj\",c.obj") == std::vector<std::string>{"\"a,b.obj\"", "c.obj"});
+    CHECK(texts("/meshes/0/file=../a.obj,b.obj") == std::vector<std::string>{"../a.obj", "b.obj"});
+    CHECK(texts("scene=../a.json,b.json") == std::vector<std::string>{"../a.json", "b.json"});
 }
 
 TEST_CASE("sweep: axes that make no sense are refused, and the text is quoted") {
-    const std::vector<std::string> bad = {"",
-                                          "resolution",
-                                          "resolution=",
+    const std::vector<std::string> bad = {"resolution=",
                                           "resolution=,",
                                           "resolution=1,",
                                           "resolution=1,,2",
@@ -56,9 +105,8 @@ TEST_CASE("sweep: axes that make no sense are refused, and the text is quoted") 
                                           "resolution=1...8:x2",
                                           "resolution=1..8:x2:x2",
                                           "resolution=1..1025:+1",
-                                          "resolution=1..65536:+1",
-                                          "spp=1,2",
-                                          "=1"};
+                                          "engine=exat",
+                                          "size=12"};
     for (const std::string& text : bad) {
         INFO(text);
         REQUIRE_THROWS_AS(parse_axis(text), UsageError);
@@ -69,54 +117,48 @@ TEST_CASE("sweep: axes that make no sense are refused, and the text is quoted") 
             CHECK(error.code() == ExitCode::kUsage);
         }
     }
+    for (const char* text : {"", "resolution", "=1"}) CHECK_THROWS_AS(parse_over(text), UsageError);
+    CHECK_THROWS_AS(make_axis(kResolution, {"resolution", {}}, "here"), UsageError);
 }
 
-namespace {
-
-Environment environment_of(const std::map<std::string, std::string>& variables) {
-    return [variables](const char* name) {
-        const auto found = variables.find(name);
-        return found == variables.end() ? nullptr : found->second.c_str();
-    };
+TEST_CASE("sweep: the product of axes runs through every combination, zipped ones go side by side") {
+    SweepAxes axes{{parse_axis("engine=exact,classic"), parse_axis("resolution=1,2,4")}, false};
+    CHECK(ids(axes) == std::vector<std::string>{"exact_n0001", "exact_n0002", "exact_n0004", "classic_n0001",
+                                                "classic_n0002", "classic_n0004"});
+    axes = {{parse_axis("resolution=4,1", true), parse_axis("/materials/0/ior=1.5,1.3", true)}, true};
+    CHECK(ids(axes) == std::vector<std::string>{"n0004_ior1.5", "n0001_ior1.3"});
+    axes.axes[0] = parse_axis("resolution=1,2,4");
+    CHECK_THROWS_AS(make_points(axes), UsageError);
+    axes = {{parse_axis("resolution=1"), parse_axis("resolution=2")}, false};
+    CHECK_THROWS_AS(make_points(axes), UsageError);
+    axes = {{parse_axis("/a=1..1000:+1"), parse_axis("/b=1..1000:+1")}, false};
+    CHECK_THROWS_AS(make_points(axes), UsageError);
 }
 
-}  // namespace
-
-TEST_CASE("sweep: shards cover every job exactly once") {
-    const Environment none = environment_of({});
-    for (const int count : {1, 2, 3, 7}) {
-        std::vector<int> owners(20, 0);
-        for (int i = 0; i < count; ++i) {
-            const Shard shard = parse_shard(std::to_string(i) + "/" + std::to_string(count), none);
-            for (std::size_t job = 0; job < owners.size(); ++job) owners[job] += shard.has(job);
-        }
-        CHECK(owners == std::vector<int>(20, 1));
+TEST_CASE("sweep: two points of one name are refused with both of them") {
+    const SweepAxes scenes{{parse_axis("scene=a/room.json,b/room.json")}, false};
+    try {
+        ids(scenes);
+        FAIL("two scenes of one name are a plan");
+    } catch (const UsageError& error) {
+        const std::string message = error.what();
+        CHECK(message.find("room") != std::string::npos);
+        CHECK(message.find("a/room.json") != std::string::npos);
+        CHECK(message.find("b/room.json") != std::string::npos);
     }
-    for (const char* bad : {"", "1", "/", "1/", "/2", "2/2", "-1/2", "0/0", "a/b", "0/2x"})
-        CHECK_THROWS_AS(parse_shard(bad, none), UsageError);
+    const SweepAxes twice{{parse_axis("resolution=4,4", true), parse_axis("/b=1,1", true)}, true};
+    CHECK_THROWS_AS(ids(twice), UsageError);
 }
 
-TEST_CASE("sweep: shards from a job array's variables") {
-    const auto read = [](const std::map<std::string, std::string>& variables) {
-        const Shard shard = parse_shard("auto", environment_of(variables));
-        return std::vector<int>{shard.index, shard.count};
-    };
-    using Pair = std::vector<int>;
-    CHECK(read({{"SLURM_ARRAY_TASK_ID", "3"},
-                {"SLURM_ARRAY_TASK_MIN", "1"},
-                {"SLURM_ARRAY_TASK_COUNT", "8"}}) == Pair{2, 8});
-    CHECK(read({{"SLURM_ARRAY_TASK_ID", "6"},
-                {"SLURM_ARRAY_TASK_MIN", "0"},
-                {"SLURM_ARRAY_TASK_STEP", "2"},
-                {"SLURM_ARRAY_TASK_COUNT", "4"}}) == Pair{3, 4});
-    CHECK(read({{"SGE_TASK_ID", "4"},
-                {"SGE_TASK_FIRST", "1"},
-                {"SGE_TASK_LAST", "4"},
-                {"SGE_TASK_STEPSIZE", "1"}}) == Pair{3, 4});
-    CHECK(read({{"SGE_TASK_ID", "undefined"}, {"LSB_JOBINDEX", "1"}, {"LSB_JOBINDEX_END", "5"}}) ==
-          Pair{0, 5});
-    CHECK(read({{"GTEST_SHARD_INDEX", "1"}, {"GTEST_TOTAL_SHARDS", "2"}}) == Pair{1, 2});
-    CHECK_THROWS_AS(read({}), UsageError);
-    CHECK_THROWS_AS(read({{"SLURM_ARRAY_TASK_ID", "9"}, {"SLURM_ARRAY_TASK_COUNT", "8"}}), UsageError);
-    CHECK_THROWS_AS(read({{"LSB_JOBINDEX", "0"}, {"LSB_JOBINDEX_END", "0"}}), UsageError);
+TEST_CASE("sweep: names of runs are names of files, whatever the values hold") {
+    const SweepAxes axes{{parse_axis("/meshes/0/file=../a b.obj,/etc/passwd,..")}, false};
+    for (const std::string& id : ids(axes)) {
+        INFO(id);
+        CHECK(id.find_first_of("/ \n\"") == std::string::npos);
+        CHECK(id[0] != '.');
+    }
+    const SweepAxes dots{{parse_axis("scene=..,.")}, false};
+    for (const Coordinates& point : make_points(dots)) CHECK(point_id(dots, point)[0] != '.');
+    const SweepAxes long_one{{parse_axis("/a=" + std::string(500, 'x'))}, false};
+    CHECK(ids(long_one)[0].size() <= 100);
 }

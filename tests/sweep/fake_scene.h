@@ -43,26 +43,35 @@ inline trilens::Image fake_image(double left, double right) {
     return image;
 }
 
+inline trilens::SweepAxes resolution_axes(const std::vector<int>& values) {
+    trilens::AxisKind kind{"resolution", "n", "n", trilens::ValueKind::kWhole, 1, 1024, true};
+    std::vector<std::string> texts;
+    for (const int n : values) texts.push_back(std::to_string(n));
+    return {{trilens::make_axis(kind, {"resolution", texts}, "axis")}, false};
+}
+
 /// A sweep of that scene that counts how often it is asked for pictures.
 struct FakeSweep {
     trilens::SweepParams params;
     trilens::SweepCallbacks callbacks;
     int renders = 0, traces = 0;
     std::function<void(int n)> before_render = [](int) {};
+    std::function<trilens::Image(int n)> render, trace;
+    std::string job_key = "scene 1", truth_key = {};  // truth_key empty: job_key
+    bool truth_per_run = false;
+    std::vector<trilens::SweptOptic> optics = {{0, "left"}, {1, "right"}};
 
     FakeSweep(const std::string& folder, const std::vector<int>& values, double order = 2) {
         params.folder = folder;
-        params.axis = {"resolution", values};
+        params.axes = resolution_axes(values);
         params.subject.title = "Two mirrors & a <test>";
         params.subject.scene = "two, \"mirrors\".json";
         params.subject.camera = "main";
         params.subject.method = "exact";
         params.subject.truth = "limit";
-        params.subject.optics = {{0, "left"}, {1, "right"}};
         params.subject.commands = {"trilens sweep run mirrors.json --over resolution=1..8:x2 -o out"};
         params.subject.versions = {{"trilens", "0.1.0"}};
-        callbacks.job_key = "scene 1";
-        callbacks.render = [this, order](int n) {
+        render = [this, order](int n) {
             ++renders;
             before_render(n);
             const double fall = std::pow(n, -order);
@@ -70,10 +79,19 @@ struct FakeSweep {
             image.metadata["trilens:facets"] = std::to_string(12 * n * n);
             return image;
         };
-        callbacks.trace = [this](int) {
+        trace = [this](int) {
             ++traces;
             return fake_image(0, 0);
         };
+        callbacks.keys = [this](const trilens::Coordinates& point) {
+            const std::string at = trilens::point_text(point);
+            return trilens::RunKeys{
+                job_key + at, (truth_key.empty() ? job_key : truth_key) + (truth_per_run ? at : ""), optics};
+        };
+        callbacks.render = [this](const trilens::PlannedRun& run) {
+            return trilens::DrawnPicture{render(run.n()), {{"draw", 0.001}}};
+        };
+        callbacks.trace = [this](const trilens::PlannedRun& run) { return trace(run.n()); };
     }
 
     FakeSweep(const FakeSweep&) = delete;

@@ -1,4 +1,5 @@
 // A folder belongs to one sweep, and to as many processes of it as there are.
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -68,6 +69,7 @@ pid_t start_worker(const WorkerOrders& orders) {
     const pid_t child = fork();
     REQUIRE(child >= 0);
     if (child > 0) return child;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that ends early leaves no process behind
     setenv("TRILENS_TEST_WORKER_FOLDER", orders.folder.c_str(), 1);
     setenv("TRILENS_TEST_WORKER_TRUTH", orders.truth_per_run ? "per run" : "shared", 1);
     setenv("TRILENS_TEST_WORKER_HANG", std::to_string(orders.hang_at).c_str(), 1);
@@ -75,8 +77,12 @@ pid_t start_worker(const WorkerOrders& orders) {
     _exit(127);
 }
 
-void wait_for_file(const std::string& file) {
-    while (!fs::exists(file)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+/// Until the child has made it; fails where the child ends before.
+void wait_for_file(const std::string& file, pid_t child) {
+    while (!fs::exists(file)) {
+        REQUIRE(waitpid(child, nullptr, WNOHANG) == 0);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
 }
 
 int exit_code_of(pid_t child) {
@@ -108,7 +114,7 @@ TEST_CASE("sweep: a folder of one sweep refuses another, names both, and stays a
         named = other.params.subject.truth = "facets";
     }
     SECTION("another axis") {
-        named = other.params.axis.name = "/materials/0/ior";
+        named = other.params.axes.axes[0].kind.name = "/materials/0/ior";
     }
     CHECK_THROWS_AS(other.run(), UsageError);
     CHECK_THROWS_AS(plan_sweep(other.params, other.callbacks), UsageError);
@@ -133,7 +139,7 @@ TEST_CASE("sweep: the same sweep goes on in its folder: more values, an edited s
     fake.params.subject.scene_digest = "digest 1";
     fake.run();
     SECTION("more values") {
-        fake.params.axis.values = {1, 2, 4};
+        fake.params.axes = trilens_test::resolution_axes({1, 2, 4});
     }
     SECTION("edited") {
         fake.params.subject.scene_digest = "digest 2";
@@ -216,15 +222,15 @@ TEST_CASE("sweep: one process of several (started by the tests of shared folders
         replace_text_file(log, read_whole_file(log).value_or("") + line + "\n");
     };
     FakeSweep fake(folder + "/sweep", {1, 2, 4, 8, 16});
-    fake.callbacks.truth_per_run = std::getenv("TRILENS_TEST_WORKER_TRUTH") == std::string("per run");
+    fake.truth_per_run = std::getenv("TRILENS_TEST_WORKER_TRUTH") == std::string("per run");
     fake.before_render = [&](int n) {
         note("render " + std::to_string(n));
         if (n == hang_at) replace_text_file(folder + "/hanging", "");
         while (n == hang_at) pause();
         if (n == 4) throw ComputationError("a run that fails");
     };
-    fake.callbacks.trace = [&](int n) {
-        note(fake.callbacks.truth_per_run ? "trace " + std::to_string(n) : "trace");
+    fake.trace = [&](int n) {
+        note(fake.truth_per_run ? "trace " + std::to_string(n) : "trace");
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         return trilens_test::fake_image(0, 0);
     };
@@ -253,10 +259,32 @@ TEST_CASE("sweep: processes at one folder at once do every run and the truth onc
     }
 }
 
+TEST_CASE(
+    "sweep: who sums up while a failed run is tried again sees the failure, and after it what came of it") {
+    FakeSweep fake(trilens_test::scratch_dir("folder_retry"), {1, 2});
+    fake.before_render = [](int n) {
+        if (n == 2) throw ComputationError("hard");
+    };
+    fake.run();
+    const bool is_mended = GENERATE(false, true);
+    FakeSweep again(fake.params.folder, {1, 2});
+    RunRecord meanwhile;
+    again.before_render = [&](int n) {
+        meanwhile = load_sweep(fake.params.folder).runs[1];
+        if (n == 2 && !is_mended) throw ComputationError("still hard");
+    };
+    const RunRecord after = again.run().runs[1];
+    CHECK(again.renders == 1);
+    CHECK(meanwhile.state == RunState::kFailed);
+    CHECK(meanwhile.error == "hard");
+    CHECK(after.state == (is_mended ? RunState::kDone : RunState::kFailed));
+    CHECK(after.error == (is_mended ? "" : "still hard"));
+}
+
 TEST_CASE("sweep: what a killed process was at is done by the next, which waits for nobody") {
     const std::string folder = trilens_test::scratch_dir("folder_killed");
     const pid_t child = start_worker({folder, false, 2});
-    wait_for_file(folder + "/hanging");
+    wait_for_file(folder + "/hanging", child);
     const std::string lock = run_folder(folder + "/sweep", "n0002") + "/lock";
     CHECK(!FileLock::try_lock(lock, LockKind::kOne));
     CHECK_THROWS_AS(clear_folder(folder + "/sweep"), UsageError);
@@ -270,10 +298,10 @@ TEST_CASE("sweep: what a killed process was at is done by the next, which waits 
 
 TEST_CASE("sweep: a truth of each run: traced at its n, kept by itself, and a failure of its run alone") {
     FakeSweep fake(trilens_test::scratch_dir("folder_truths"), {2, 4, 8});
-    fake.callbacks.truth_per_run = true;
+    fake.truth_per_run = true;
     std::vector<int> traced;
     bool is_hard = true;
-    fake.callbacks.trace = [&](int n) {
+    fake.trace = [&](int n) {
         traced.push_back(n);
         if (n == 4 && is_hard) throw ComputationError("no truth");
         const double fall = std::pow(n, -2);
@@ -294,7 +322,7 @@ TEST_CASE("sweep: a truth of each run: traced at its n, kept by itself, and a fa
     CHECK(summary.runs[0].plan.truth != summary.runs[1].plan.truth);
 
     // Shared truths are one.
-    fake.callbacks.truth_per_run = false;
+    fake.truth_per_run = false;
     fake.params.replace = true;
     summary = fake.run();
     CHECK(summary.runs[0].plan.truth == summary.runs[2].plan.truth);

@@ -50,24 +50,24 @@ TEST_CASE("sweep: a second run renders nothing and writes the same tables") {
 
 TEST_CASE("sweep: what changed is done again, and only that") {
     FakeSweep fake(trilens_test::scratch_dir("resume_changed"), {1, 2, 4});
-    fake.callbacks.truth_key = "truth 1";
+    fake.truth_key = "truth 1";
     const std::string runs = fake.params.folder + "/runs/";
     fake.run();
 
     SECTION("the key: every run, but not the truth that has its own") {
-        fake.callbacks.job_key = "scene 2";
+        fake.job_key = "scene 2";
         CHECK(calls_of_run(fake) == Calls{3, 0});
     }
     SECTION("the truth's key: everything") {
-        fake.callbacks.truth_key = "truth 2";
+        fake.truth_key = "truth 2";
         CHECK(calls_of_run(fake) == Calls{3, 1});
     }
     SECTION("one key for both: everything") {
-        fake.callbacks.truth_key = "";
+        fake.truth_key = "";
         CHECK(calls_of_run(fake) == Calls{3, 1});
     }
     SECTION("the optics") {
-        fake.params.subject.optics.pop_back();
+        fake.optics.pop_back();
         CHECK(calls_of_run(fake) == Calls{3, 0});
     }
     SECTION("words that change no number: nothing") {
@@ -75,7 +75,7 @@ TEST_CASE("sweep: what changed is done again, and only that") {
         CHECK(calls_of_run(fake) == Calls{0, 0});
     }
     SECTION("a finer axis: what is new") {
-        fake.params.axis.values = {2, 4, 8, 16};
+        fake.params.axes = trilens_test::resolution_axes({2, 4, 8, 16});
         CHECK(calls_of_run(fake) == Calls{2, 0});
         CHECK(load_sweep(fake.params.folder).runs.size() == 4);
     }
@@ -133,8 +133,8 @@ TEST_CASE(
 
 TEST_CASE("sweep: an image that cannot be compared is a failed run") {
     FakeSweep fake(trilens_test::scratch_dir("resume_incomparable"), {1, 2});
-    const auto render = fake.callbacks.render;
-    fake.callbacks.render = [render](int n) {
+    const auto render = fake.render;
+    fake.render = [render](int n) {
         Image image = render(n);
         if (n == 1) image.channels.pop_back();
         return image;
@@ -147,11 +147,11 @@ TEST_CASE("sweep: an image that cannot be compared is a failed run") {
 
 TEST_CASE("sweep: without a truth there is no sweep; a bug in a callback is not a failed run") {
     FakeSweep fake(trilens_test::scratch_dir("resume_no_truth"), {1, 2});
-    const auto trace = fake.callbacks.trace;
-    fake.callbacks.trace = [](int) -> Image { throw ComputationError("no truth"); };
+    const auto trace = fake.trace;
+    fake.trace = [](int) -> Image { throw ComputationError("no truth"); };
     CHECK_THROWS_AS(fake.run(), ComputationError);
     CHECK(fake.renders == 0);
-    fake.callbacks.trace = trace;
+    fake.trace = trace;
     fake.before_render = [](int) { throw std::logic_error("bug"); };
     CHECK_THROWS_AS(fake.run(), std::logic_error);
     CHECK(load_sweep(fake.params.folder).count(RunState::kMissing) == 2);

@@ -268,6 +268,7 @@ TEST_CASE("what a picture leaves out is said, and where it shows the environment
     two.meshes.push_back(two.meshes[0]);
     two.meshes.back().name = "other";
     two.meshes.back().primitive->center = {2, 0, 0};
+    two.render.max_depth = 0;
     Renderer(std::move(two)).draw({}, {}, warn);
     CHECK(mentions("optics do not see each other"));
     CHECK(mentions("ball: glass bends light once"));

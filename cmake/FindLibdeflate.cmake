@@ -1,0 +1,11 @@
+# Target trilens_libdeflate: Debian 12's package has no CMake config of its own.
+find_path(Libdeflate_INCLUDE_DIR libdeflate.h)
+find_library(Libdeflate_LIBRARY deflate)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(Libdeflate DEFAULT_MSG Libdeflate_LIBRARY Libdeflate_INCLUDE_DIR)
+if(Libdeflate_FOUND AND NOT TARGET trilens_libdeflate)
+  add_library(trilens_libdeflate INTERFACE)
+  target_link_libraries(trilens_libdeflate INTERFACE ${Libdeflate_LIBRARY})
+  target_include_directories(trilens_libdeflate SYSTEM INTERFACE ${Libdeflate_INCLUDE_DIR})
+endif()
+mark_as_advanced(Libdeflate_INCLUDE_DIR Libdeflate_LIBRARY)

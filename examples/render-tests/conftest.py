@@ -1,0 +1,2 @@
+"""pytest runs every folder with a test.json."""
+pytest_plugins = ["trilens.pytest_plugin"]

@@ -1,0 +1,69 @@
+// The cameras of scenes: exact rays of film places, film places of world points.
+#include <cmath>
+#include <limits>
+
+#include "arrays.h"
+
+namespace trilens::python {
+namespace {
+
+Camera camera_of(const Scene& scene, const std::string& name) {
+    const std::size_t index = find_camera(scene, name);
+    const FilmSize film{static_cast<double>(scene.film.width), static_cast<double>(scene.film.height)};
+    return make_camera(scene.cameras[index], film, {scene.file, "/cameras/" + std::to_string(index)});
+}
+
+py::dict rays_at(const Camera& camera, const Doubles& places) {
+    if (places.ndim() != 2 || places.shape(1) != 2) throw UsageError("places must be an N x 2 array");
+    std::vector<double> origins, directions;
+    for (py::ssize_t i = 0; i < places.shape(0); ++i) {
+        Ray ray{Vec3(std::numeric_limits<double>::quiet_NaN()),
+                Vec3(std::numeric_limits<double>::quiet_NaN())};
+        if (const auto found = exact_ray(camera, {places.at(i, 0), places.at(i, 1)})) ray = *found;
+        for (int k = 0; k < 3; ++k) origins.push_back(ray.origin[k]), directions.push_back(ray.direction[k]);
+    }
+    py::dict arrays;
+    arrays["origin"] = array_of(std::move(origins), {places.shape(0), 3});
+    arrays["direction"] = array_of(std::move(directions), {places.shape(0), 3});
+    return arrays;
+}
+
+py::dict images_of(const Camera& camera, const Doubles& points) {
+    const std::vector<Vec3> given = points_of(points, "points");
+    std::vector<std::int64_t> point;
+    std::vector<double> x, y, t;
+    for (std::size_t i = 0; i < given.size(); ++i)
+        for (const FilmImage& image : film_positions(camera, given[i])) {
+            point.push_back(static_cast<std::int64_t>(i));
+            x.push_back(image.pixel.x), y.push_back(image.pixel.y), t.push_back(image.t);
+        }
+    py::dict arrays;
+    arrays["point"] = array_of(std::move(point));
+    arrays["x"] = array_of(std::move(x));
+    arrays["y"] = array_of(std::move(y));
+    arrays["t"] = array_of(std::move(t));
+    return arrays;
+}
+
+}  // namespace
+
+void bind_film_camera(py::module_& module) {
+    py::class_<Camera>(module, "FilmCamera",
+                       "A scene's camera, of any kind, before its film: exact rays and exact places.")
+        .def(py::init(&camera_of), py::arg("scene"), py::arg("camera") = "",
+             "camera: its name; \"\": the scene's own. Raises InputError where there is none.")
+        .def_property_readonly(
+            "is_linear", [](const Camera& camera) { return camera.linear.has_value(); },
+            "Whether straight lines stay straight: perspective and parallel cameras.")
+        .def_property_readonly(
+            "mesh", [](const Camera& camera) { return camera.mesh; },
+            "The RayMesh through which the camera draws; of a linear camera it is exact.")
+        .def("rays", &rays_at, py::arg("places"),
+             "Exact rays of film places (N, 2), in pixels from the top left: a dict of origin and direction "
+             "(N, 3);\nNaN where the camera has no ray.")
+        .def("project", &images_of, py::arg("points"),
+             "Where the film shows world points (N, 3), whatever hides them: a dict of point (which one), x, "
+             "y (pixels)\nand t. A point may have several images, or none.");
+}
+
+}  // namespace trilens::python

@@ -1,0 +1,124 @@
+#include "camera/camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/format.h"
+#include "base/rasterize.h"
+#include "camera/film_mesh.h"
+#include "camera/linear_view.h"
+#include "camera/models.h"
+#include "camera/perspective.h"
+
+namespace trilens {
+namespace {
+
+RayMesh fine_mesh(const ModelSource& source, const CameraModel& model) {
+    const double tolerance = source.from.tolerance;
+    if (!(tolerance > 0))
+        return make_film_mesh(model, source.film,
+                              source.from.facets > 0 ? source.from.facets : kDefaultCameraFacets);
+    TolerantMesh found = make_film_mesh_within(model, source.film, tolerance, kMostCameraFacets);
+    if (!found.mesh)
+        source.site.reject(
+            "tolerance",
+            fmt::format("{} pixels cannot be reached: {:.3g} are left at pixel {:.1f}, {:.1f} "
+                        "with {} x {} facets, the most there may be",
+                        tolerance, found.error.pixels, found.error.at.x, found.error.at.y, found.n, found.n));
+    return std::move(*found.mesh);
+}
+
+}  // namespace
+
+ModelPointer make_model(const ModelSource& source) {
+    switch (source.from.type) {
+        case CameraType::kPerspective:
+        case CameraType::kOrthographic:
+        case CameraType::kOblique:
+        case CameraType::kViewVolume:
+            return make_linear_model(source);
+        case CameraType::kCylindrical:
+            return make_cylindrical(source);
+        case CameraType::kSpherical:
+            return make_spherical(source);
+        case CameraType::kFisheye:
+            return make_fisheye(source);
+        case CameraType::kOpencv:
+            return make_opencv(source);
+        case CameraType::kPushbroom:
+            return make_pushbroom(source);
+        case CameraType::kCrossedSlits:
+            return make_crossed_slits(source);
+        case CameraType::kGeneralLinear:
+            return make_general_linear(source);
+        case CameraType::kDistortion:
+            return make_distortion(source);
+        case CameraType::kMultiPerspective:
+            return make_multi_perspective(source);
+        case CameraType::kInwardSphere:
+            return make_inward_sphere(source);
+        case CameraType::kPlanarContext:
+            return make_planar_context(source);
+        case CameraType::kRayMesh:
+            return nullptr;
+    }
+    return nullptr;
+}
+
+Camera make_camera(const CameraDescription& from, const FilmSize& film, const CameraSite& site) {
+    require_film(film.width, film.height, site);
+    Camera camera;
+    camera.film = film;
+    if (from.type == CameraType::kRayMesh) {
+        camera.mesh = make_ray_mesh({from.points, from.directions, from.screen, from.triangles}, film.width,
+                                    film.height);
+        return camera;
+    }
+    if (is_linear(from.type)) {
+        const LinearView view = make_linear_view(from, film, site);
+        camera.linear = view.camera;
+        camera.near_depth = view.near_depth;
+        camera.far_depth = view.far_depth;
+        camera.mesh = make_camera_mesh(view.camera, film.width, film.height, view.near_depth);
+        return camera;
+    }
+    if (from.facets < 0 || from.facets > kMostCameraFacets)
+        site.reject("facets", fmt::format("is not in 1..{}", kMostCameraFacets));
+    const ModelSource source{from, film, site};
+    camera.model = make_model(source);
+    camera.mesh = fine_mesh(source, *camera.model);
+    return camera;
+}
+
+std::optional<Ray> exact_ray(const Camera& camera, const Vec2& at) {
+    if (camera.model) return camera.model->ray(at);
+    if (camera.linear) {
+        Ray ray = film_ray(*camera.linear, at);
+        ray.origin += camera.near_depth * ray.direction;
+        return ray;
+    }
+    for (std::size_t f = 0; f < camera.mesh.facets.size(); ++f) {
+        const FacetWeights weights = facet_weights(camera.mesh, f);
+        if (weights.edge_on) continue;
+        const Vec3 e = weights.unnormalised(at.x, at.y);
+        if (std::min({e.x, e.y, e.z}) >= 0) return sample_ray(camera.mesh, f, weights, at);
+    }
+    return std::nullopt;
+}
+
+std::vector<FilmImage> film_positions(const Camera& camera, const Vec3& point) {
+    if (camera.model) return film_images(*camera.model, camera.film, point);
+    if (!camera.linear) return {};
+    const Vec3 screen = screen_from_world(*camera.linear, point);
+    if (!(screen.z > 0)) return {};
+    const Vec2 pixel = Vec2(screen.x, screen.y) / screen.z;
+    const Ray ray = film_ray(*camera.linear, pixel);
+    const double t = camera.linear->parallel
+                         ? dot(point - ray.origin, ray.direction) / dot(ray.direction, ray.direction)
+                         : screen.z;
+    if (!(t >= camera.near_depth && t <= camera.far_depth)) return {};
+    return {{pixel, t, ray.origin}};
+}
+
+}  // namespace trilens

@@ -1,0 +1,87 @@
+#include "cli/sweep_answer.h"
+
+#include <cmath>
+
+#include "terminal/format.h"
+
+namespace trilens {
+namespace {
+
+Json optional_json(const std::optional<double>& value) {
+    return value ? json_number(*value) : Json(nullptr);
+}
+
+Json fit_json(const SweepFit& fit) {
+    return {{"optic", fit.optic},
+            {"layer", fit.layer},
+            {"axis", fit.axis},
+            {"group", point_text(fit.group)},
+            {"metric", fit.metric},
+            {"order", optional_json(fit.order)},
+            {"order_low", optional_json(fit.order_low)},
+            {"order_high", optional_json(fit.order_high)},
+            {"constant", optional_json(fit.constant)},
+            {"r2", optional_json(fit.r2)},
+            {"n_for_1px", optional_json(fit.n_for_1px)},
+            {"n_for_half_px", optional_json(fit.n_for_half_px)},
+            {"coverage", optional_json(fit.coverage)}};
+}
+
+Json summary_json(const SweepSummary& summary) {
+    Json json{{"folder", summary.folder},
+              {"runs", summary.runs.size()},
+              {"done", summary.count(RunState::kDone)},
+              {"failed", summary.count(RunState::kFailed)},
+              {"missing", summary.count(RunState::kMissing)},
+              {"fits", Json::array()}};
+    for (const SweepFit& fit : summary.fits) json["fits"].push_back(fit_json(fit));
+    return json;
+}
+
+std::string fit_line(const SweepFit& fit) {
+    std::string line =
+        fmt::format("  {:<8} {:<14} {:<16} order {:5.2f}  constant {:8.4g}  r2 {:.4f}", fit.layer, fit.optic,
+                    fit.metric, *fit.order, fit.constant.value_or(0), fit.r2.value_or(0));
+    if (!fit.group.empty()) line += "  " + point_text(fit.group);
+    if (fit.coverage) line += fmt::format("  measured >= {:.1f} %", 100 * *fit.coverage);
+    if (fit.n_for_1px)
+        line += "  1 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_1px)));
+    if (fit.n_for_half_px)
+        line += "  0.5 px at n = " + std::to_string(static_cast<long long>(std::ceil(*fit.n_for_half_px)));
+    return line + "\n";
+}
+
+std::string summary_text(const SweepSummary& summary) {
+    std::string text = summary.manifest.subject.title + ": " +
+                       std::to_string(summary.count(RunState::kDone)) + " of " +
+                       std::to_string(summary.runs.size()) + " runs done\n";
+    for (const SweepFit& fit : summary.fits)
+        if (fit.order && (fit.metric == "disp_mean_px" || fit.metric == "disp_mean_off_folds_px" ||
+                          fit.metric == "disp_p50_px"))
+            text += fit_line(fit);
+    return text;
+}
+
+}  // namespace
+
+Answer answer_of(const std::vector<SweepSummary>& summaries, const std::string& report) {
+    Answer answer;
+    answer.fields["report"] = report.empty() ? Json(nullptr) : Json(report);
+    answer.fields["sweeps"] = Json::array();
+    for (const SweepSummary& summary : summaries) {
+        answer.text += summary_text(summary);
+        answer.fields["sweeps"].push_back(summary_json(summary));
+        for (const RunRecord& run : summary.runs) {
+            if (run.state != RunState::kFailed) continue;
+            answer.code = ExitCode::kSomeJobsFailed;
+            const std::string point = point_text(run.plan.at);
+            answer.text += "  " + point + " failed: " + run.error + "\n";
+            answer.errors.push_back(summary.manifest.subject.title + ", " + point + ": " + run.error);
+        }
+    }
+    if (summaries.size() == 1) answer.fields["fits"] = answer.fields["sweeps"][0]["fits"];
+    if (!report.empty()) answer.text += report + "\n";
+    return answer;
+}
+
+}  // namespace trilens

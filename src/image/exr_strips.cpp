@@ -1,0 +1,246 @@
+#include "image/exr_strips.h"
+
+#include <OpenEXR/openexr.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <numeric>
+#include <set>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "image/exr_chunk.h"
+#include "image/library_reason.h"
+
+namespace trilens {
+namespace {
+
+constexpr const char* kPrefix = "trilens:";
+
+/// Blocks that are deflated before they are written: enough for many threads, small beside a picture.
+constexpr std::size_t kBlocksTogether = 32;
+
+/// SOURCE_DATE_EPOCH (reproducible-builds.org), or 1970, as EXIF writes dates.
+std::string fixed_date_time(const std::string& name) {
+    const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
+    if (!epoch) return "1970:01:01 00:00:00";
+    char* end = nullptr;
+    const std::time_t seconds = static_cast<std::time_t>(std::strtoll(epoch, &end, 10));
+    std::tm utc{};
+    char text[32] = "";
+    if (end == epoch || *end != '\0' || !gmtime_r(&seconds, &utc) ||
+        std::strftime(text, sizeof text, "%Y:%m:%d %H:%M:%S", &utc) == 0) {
+        throw OutputError(name, std::string("SOURCE_DATE_EPOCH is not a time in seconds: ") + epoch);
+    }
+    return text;
+}
+
+void check_layout(const Image& image) {
+    TRILENS_CHECK(image.width > 0 && image.height > 0 && image.data_width > 0 && image.data_height > 0,
+                  "an image has pixels");
+    TRILENS_CHECK(!image.channels.empty(), "an image has channels");
+    std::set<std::string> names;
+    for (const Channel& channel : image.channels)
+        TRILENS_CHECK(!channel.name.empty() && names.insert(channel.name).second, "channel names are unique");
+    for (const auto& [name, text] : image.metadata)
+        TRILENS_CHECK(name.rfind(kPrefix, 0) == 0, "metadata names start with trilens:");
+}
+
+/// Where the library writes, and why it failed last.
+struct Sink {
+    std::vector<unsigned char> file;
+    std::string reason;
+};
+
+const unsigned char* bytes_of(const Channel& channel, std::size_t pixel) {
+    const void* values = channel.is_id() ? static_cast<const void*>(channel.ids().data())
+                                         : static_cast<const void*>(channel.floats().data());
+    return static_cast<const unsigned char*>(values) + 4 * pixel;
+}
+
+std::size_t size_of(const Channel& channel) {
+    return channel.is_id() ? channel.ids().size() : channel.floats().size();
+}
+
+}  // namespace
+
+struct ExrStrips::State {
+    std::string name;
+    Sink sink;
+    exr_context_t exr = nullptr;
+    int y = 0, next_row = 0, height = 0, width = 0;  // of the data window
+    std::vector<std::size_t> order;                  // the layout's channels by name
+    std::vector<Channel> waiting;                    // rows that do not fill a block, in the layout's order
+    int waiting_rows = 0;
+
+    ~State();
+    void require(exr_result_t result);
+    void open(const Image& layout);
+    void describe(const Image& layout);
+    void write_blocks(const std::vector<Channel>& channels, int first, int rows);
+    void keep(const std::vector<Channel>& channels, int first, int rows);
+    void write_waiting();
+};
+
+namespace {
+
+int64_t write_to_memory(exr_const_context_t, void* user, const void* bytes, std::uint64_t size,
+                        std::uint64_t offset, exr_stream_error_func_ptr_t) {
+    std::vector<unsigned char>& file = static_cast<Sink*>(user)->file;
+    if (file.size() < offset + size) file.resize(offset + size);
+    std::memcpy(file.data() + offset, bytes, size);
+    return static_cast<int64_t>(size);
+}
+
+void keep_reason(exr_const_context_t exr, exr_result_t, const char* message) {
+    void* user = nullptr;
+    if (exr && message && exr_get_user_data(exr, &user) == EXR_ERR_SUCCESS && user)
+        static_cast<Sink*>(user)->reason = message;
+}
+
+}  // namespace
+
+ExrStrips::State::~State() {
+    if (exr) exr_finish(&exr);
+}
+
+void ExrStrips::State::require(exr_result_t result) {
+    if (result == EXR_ERR_SUCCESS) return;
+    const std::string why = sink.reason.empty() ? exr_get_default_error_message(result) : sink.reason;
+    throw OutputError(name, "cannot be encoded: " + library_reason(why));
+}
+
+void ExrStrips::State::open(const Image& layout) {
+    exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    how.error_handler_fn = keep_reason;
+    how.user_data = &sink;
+    how.write_fn = write_to_memory;
+    require(exr_start_write(&exr, name.c_str(), EXR_WRITE_FILE_DIRECTLY, &how));
+    describe(layout);
+    require(exr_write_header(exr));
+}
+
+void ExrStrips::State::describe(const Image& layout) {
+    int part = 0;
+    require(exr_add_part(exr, nullptr, EXR_STORAGE_SCANLINE, &part));
+    exr_attr_box2i_t display{}, data{};
+    display.max.x = layout.width - 1;
+    display.max.y = layout.height - 1;
+    data.min.x = layout.x0;
+    data.min.y = layout.y0;
+    data.max.x = layout.x0 + layout.data_width - 1;
+    data.max.y = layout.y0 + layout.data_height - 1;
+    const exr_attr_v2f_t centre{};
+    require(exr_initialize_required_attr(exr, part, &display, &data, 1, &centre, 1,
+                                         EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP));
+    for (const std::size_t c : order) {
+        const Channel& channel = layout.channels[c];
+        require(exr_add_channel(exr, part, channel.name.c_str(),
+                                channel.is_id() ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
+                                EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+    }
+    require(exr_attr_set_string(exr, part, "capDate", fixed_date_time(name).c_str()));
+    for (const auto& [key, text] : layout.metadata)
+        if (!text.empty()) require(exr_attr_set_string(exr, part, key.c_str(), text.c_str()));
+}
+
+/// Rows of whole blocks, the last of the data window perhaps a smaller one.
+void ExrStrips::State::write_blocks(const std::vector<Channel>& channels, int first, int rows) {
+    const std::size_t count = static_cast<std::size_t>((rows + kZipRows - 1) / kZipRows);
+    std::vector<std::vector<unsigned char>> packed(kBlocksTogether);
+    for (std::size_t from = 0; from < count; from += kBlocksTogether) {
+        const std::size_t together = std::min(kBlocksTogether, count - from);
+        const auto rows_of = [&](std::size_t block) {
+            return std::min(kZipRows, rows - static_cast<int>(block) * kZipRows);
+        };
+        parallel_for(together, 1, [&](std::size_t begin, std::size_t end) {
+            std::vector<BlockValues> values(order.size());
+            for (std::size_t b = begin; b < end; ++b) {
+                const std::size_t row = static_cast<std::size_t>(first) + (from + b) * kZipRows;
+                for (std::size_t c = 0; c < order.size(); ++c)
+                    values[c] = bytes_of(channels[order[c]], row * static_cast<std::size_t>(width));
+                packed[b] = zip_block(values, rows_of(from + b), width);
+            }
+        });
+        for (std::size_t b = 0; b < together; ++b) {
+            require(exr_write_scanline_chunk(exr, 0, y + next_row, packed[b].data(), packed[b].size()));
+            next_row += rows_of(from + b);
+        }
+    }
+}
+
+void ExrStrips::State::keep(const std::vector<Channel>& channels, int first, int rows) {
+    const auto append = [&](auto& to, const auto& from) {
+        const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first) * width;
+        to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(rows) * width);
+    };
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        if (channels[c].is_id())
+            append(waiting[c].ids(), channels[c].ids());
+        else
+            append(waiting[c].floats(), channels[c].floats());
+    }
+    waiting_rows += rows;
+}
+
+void ExrStrips::State::write_waiting() {
+    if (waiting_rows > 0) write_blocks(waiting, 0, waiting_rows);
+    waiting_rows = 0;
+    for (Channel& channel : waiting) std::visit([](auto& values) { values.clear(); }, channel.values);
+}
+
+ExrStrips::ExrStrips(const std::string& name, const Image& layout) : state_(std::make_unique<State>()) {
+    check_layout(layout);
+    state_->name = name;
+    state_->y = layout.y0;
+    state_->width = layout.data_width;
+    state_->height = layout.data_height;
+    for (const Channel& channel : layout.channels) {
+        state_->waiting.push_back({channel.name, {}});
+        if (channel.is_id()) state_->waiting.back().values = std::vector<Id>();
+    }
+    state_->order.resize(layout.channels.size());
+    std::iota(state_->order.begin(), state_->order.end(), std::size_t{0});
+    std::sort(state_->order.begin(), state_->order.end(), [&](std::size_t a, std::size_t b) {
+        return layout.channels[a].name < layout.channels[b].name;
+    });
+    state_->open(layout);
+}
+
+ExrStrips::~ExrStrips() = default;
+
+void ExrStrips::add(const std::vector<Channel>& channels, int first, int rows) {
+    State& state = *state_;
+    TRILENS_CHECK(channels.size() == state.waiting.size(), "a strip has the layout's channels");
+    TRILENS_CHECK(rows >= 0 && state.next_row + state.waiting_rows + rows <= state.height,
+                  "strips end where the data window ends");
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        TRILENS_CHECK(channels[c].is_id() == state.waiting[c].is_id(), "a channel keeps its type");
+        TRILENS_CHECK(size_of(channels[c]) >=
+                          static_cast<std::size_t>(first + rows) * static_cast<std::size_t>(state.width),
+                      "a channel has one value per pixel");
+    }
+    if (state.waiting_rows > 0) {
+        const int filling = std::min(rows, kZipRows - state.waiting_rows);
+        state.keep(channels, first, filling);
+        first += filling, rows -= filling;
+        if (state.waiting_rows == kZipRows) state.write_waiting();
+    }
+    const bool last = state.next_row + state.waiting_rows + rows == state.height;
+    const int whole = last && state.waiting_rows == 0 ? rows : rows / kZipRows * kZipRows;
+    if (whole > 0) state.write_blocks(channels, first, whole);
+    if (rows > whole) state.keep(channels, first + whole, rows - whole);
+    if (last) state.write_waiting();
+}
+
+std::vector<unsigned char> ExrStrips::finish() {
+    TRILENS_CHECK(state_->next_row == state_->height, "every row of the data window has come");
+    state_->require(exr_finish(&state_->exr));
+    return std::move(state_->sink.file);
+}
+
+}  // namespace trilens

@@ -1,0 +1,27 @@
+// FLIP: how strongly one sees two pictures alternate on a screen (Andersson, Nilsson, Akenine-Moeller,
+// Oskarsson, Astroem, Fairchild, FLIP: A Difference Evaluator for Alternating Images, High Performance
+// Graphics 2020).
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace trilens {
+
+/// A screen 0.7 m wide with 3840 pixels, seen from 0.7 m: 3840 pi / 180.
+inline constexpr double kFlipPixelsPerDegree = 67.02064327658226;
+
+/// Linear Rec.709, one value of each per pixel, rows from the top.
+struct ColourPicture {
+    int width = 0, height = 0;
+    std::span<const float> r, g, b;
+};
+
+/// The error of each pixel, from 0 (no difference to be seen) to 1, of the low dynamic range metric: colours
+/// are shown at exposure 1, that is clamped to 0..1 as a screen does (what is brighter than white differs in
+/// nothing; HDR-FLIP's exposures are not searched). Not a number where a picture is not finite; there both
+/// count as black for their neighbours. `pixels_per_degree` (> 0) of visual angle.
+std::vector<float> flip_map(const ColourPicture& reference, const ColourPicture& test,
+                            double pixels_per_degree = kFlipPixelsPerDegree);
+
+}  // namespace trilens

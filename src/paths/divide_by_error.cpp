@@ -1,0 +1,104 @@
+// Leaves divided until what they show is predicted to lie where the exact paths show it.
+#include <algorithm>
+#include <deque>
+
+#include "base/parallel.h"
+#include "paths/facet_paths.h"
+#include "paths/fit_nodes.h"
+#include "paths/predict.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::size_t kLeavesPerTask = 16;
+
+double largest(const Vec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+/// One point of a leaf, seen along one of its histories.
+struct LeafPoint {
+    const Looking& looking;
+    const Tracer& objects;
+    const PathNode& node;
+    Id leaf = kNone;
+    const Look& look;
+    std::size_t segment = 0;
+
+    double predicted(const Vec3& weights) const {
+        const PathSegment& exact = look.segments[segment];
+        const IdTriple& corner = node.mesh.facets[leaf];
+        const Ray ray = interpolated_ray(node.mesh, leaf, weights);
+        const Hit hit = objects.first_hit(ray);
+        if (!node.ends[leaf]) {
+            double next = 0;
+            for (int k = 0; k < 3; ++k) next += weights[k] * node.next[corner[static_cast<std::size_t>(k)]];
+            if (!(hit.seen() && hit.t < next)) return 0;
+        }
+        // What little light a side path carries counts for little.
+        const double light = exact.principal ? 1 : std::min(1.0, largest(exact.weight));
+        return light * predicted_displacement({looking, look, segment, ray, hit});
+    }
+};
+
+}  // namespace
+
+double OpticPaths::predicted(const FittedLeaf& open) const {
+    const FacetPart& part = *open.part;
+    double most = 0;
+    for (std::size_t h = 0; h < part.histories.size(); ++h) {
+        const PathNode& node = nodes_[part.node[h]];
+        const IdTriple& corners = node.mesh.facets[open.leaf];
+        const auto look_at_point = [&](const Look& look, const std::vector<std::size_t>& segment,
+                                       Vec3 weights) {
+            if (segment.empty()) return;
+            for (std::size_t k = 0; k < 3; ++k)
+                weights[static_cast<int>(k)] *=
+                    part.corners[k].look->screen.z / node.mesh.screen[corners[k]].z;
+            const LeafPoint point{looking_, *params_.objects, node, open.leaf, look, segment[h]};
+            most = std::max(most, point.predicted(weights / (weights.x + weights.y + weights.z)));
+        };
+        for (std::size_t i = 0; i < part.inside.size(); ++i)
+            look_at_point(*part.inside[i].at.look, part.inside[i].segment, kInsideWeights[i]);
+        if (!params_.fit || part.level > 0) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+            Vec3 weights(0);
+            weights[static_cast<int>(k)] = 1;
+            look_at_point(*part.corners[k].look, part.segment[k], weights);
+        }
+    }
+    return most;
+}
+
+void OpticPaths::divide_by_error(std::vector<FittedLeaf> open) {
+    std::deque<std::vector<DividedFacet>> levels;  // what later parts point into
+    while (!open.empty()) {
+        std::vector<double> error(open.size());
+        std::vector<DividedFacet>& divided = levels.emplace_back(open.size());
+        parallel_for(open.size(), kLeavesPerTask, [&](std::size_t from, std::size_t to) {
+            for (std::size_t i = from; i < to; ++i) {
+                error[i] = predicted(open[i]);
+                if (error[i] > params_.max_error) divided[i] = divide_part(looking_, *open[i].part, params_);
+            }
+        });
+        std::vector<FittedLeaf> next;
+        for (std::size_t i = 0; i < open.size(); ++i) {
+            const FittedLeaf& leaf = open[i];
+            if (!(error[i] > params_.max_error)) {
+                leaves_[leaf.leaf].predicted = error[i];
+                continue;
+            }
+            for (const Id node : leaf.part->node) nodes_[node].mesh.facets[leaf.leaf] = {kNone, kNone, kNone};
+            --projected_count_;
+            const Id first_leaf = static_cast<Id>(leaves_.size());
+            append(leaves_[leaf.leaf].facet, leaf_cell_[leaf.leaf], divided[i]);
+            for (std::size_t p = 0; p < divided[i].parts.size(); ++p)
+                if (divided[i].parts[p].method == LeafMethod::kProjected)
+                    next.push_back({static_cast<Id>(first_leaf + p), &divided[i].parts[p]});
+        }
+        complete_nodes();
+        open = std::move(next);
+    }
+}
+
+}  // namespace trilens

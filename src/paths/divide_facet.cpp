@@ -1,0 +1,250 @@
+// Histories at the corners, the middles of the edges and the centre, compared.
+#include "paths/divide_facet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace trilens {
+namespace {
+
+/// Paths fainter than followed at the centre are followed elsewhere, so that one that is just above the limit
+/// at the centre is found there too; one far above it that the centre lacks is another history.
+constexpr double kFainter = 1.0 / 8, kMuchLight = 8;
+
+struct Point {
+    Look* look = nullptr;
+    Vec3 screen{0}, chord{0};
+    Id shared = kNone;
+};
+
+using Segments = std::vector<PathSegment>;
+
+/// For each of `histories` its place in `segments`; empty where one is missing.
+std::vector<std::size_t> matched(const Segments& histories, const Segments& segments) {
+    std::vector<std::size_t> found;
+    for (const PathSegment& wanted : histories) {
+        const Id parent = wanted.parent == kNone ? kNone : static_cast<Id>(found[wanted.parent]);
+        const auto same = std::find_if(segments.begin(), segments.end(), [&](const PathSegment& one) {
+            return one.parent == parent && one.step == wanted.step && one.colours == wanted.colours &&
+                   one.medium == wanted.medium && one.ends == wanted.ends &&
+                   one.principal == wanted.principal;
+        });
+        if (same == segments.end()) return {};
+        found.push_back(static_cast<std::size_t>(same - segments.begin()));
+    }
+    return found;
+}
+
+double largest(const Vec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+/// Whether nothing but the matched ones carries much light.
+bool covers(const std::vector<std::size_t>& match, const Segments& segments) {
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        if (std::find(match.begin(), match.end(), i) != match.end()) continue;
+        if (segments[i].principal || largest(segments[i].weight) > kMuchLight * kLeastWeight) return false;
+    }
+    return true;
+}
+
+class Divider {
+  public:
+    Divider(const Looking& looking, LookSide side, double reach, const DivideParams& params)
+        : looking_(looking), side_(side), params_(params), reach_(reach) {
+        mirror_ = looking.world->optics[looking.optic].mirror;
+    }
+    DividedFacet divide(const std::array<PartCorner, 3>& from);
+    DividedFacet divide_on(const FacetPart& part);
+
+  private:
+    using Triangle = std::array<Point, 3>;
+
+    using Inside = std::array<Point, 4>;  // the edges' middles, opposite to the corners, and the centre
+
+    static Point point_of(const PartCorner& corner) {
+        return {corner.look, corner.look->screen, corner.chord, corner.shared};
+    }
+    Point between(std::initializer_list<const Point*> points, double least_weight);
+    void divide(Id cell, const Triangle& corners, int level);
+    void split(Id cell, const Triangle& corners, const Inside& inside, int level);
+    bool is_least(const Triangle& corners, int level) const;
+    bool project(const Triangle& corners, const Inside& inside, int level);
+    bool mirror_alone(const Triangle& corners, const Inside& inside) const;
+    void note(const CutPaths& cut);
+    void end(Id cell, FacetPart part);
+    FacetPart part_of(const Triangle& corners, int level) const;
+
+    const Looking& looking_;
+    LookSide side_ = LookSide::kFront;
+    const DivideParams& params_;
+    double reach_ = 0;
+    bool mirror_ = true;
+    DividedFacet divided_;
+    FacetPart projected_;  // what `project` found
+};
+
+void Divider::note(const CutPaths& cut) {
+    divided_.cut.faint = std::max(divided_.cut.faint, cut.faint);
+    divided_.cut.too_deep = std::max(divided_.cut.too_deep, cut.too_deep);
+    divided_.cut.lost = std::max(divided_.cut.lost, cut.lost);
+}
+
+Point Divider::between(std::initializer_list<const Point*> points, double least_weight) {
+    Point middle;
+    const double share = 1.0 / static_cast<double>(points.size());
+    for (const Point* one : points) {
+        middle.screen += share * one->screen;
+        middle.chord += share * one->chord;
+    }
+    divided_.looks.push_back(look_through(looking_, {middle.screen, middle.chord, reach_},
+                                          {.side = side_, .least_weight = least_weight}));
+    middle.look = &divided_.looks.back();
+    if (params_.max_error > 0) set_beside(looking_, *middle.look);
+    note(middle.look->cut);
+    return middle;
+}
+
+FacetPart Divider::part_of(const Triangle& corners, int level) const {
+    FacetPart part;
+    part.level = static_cast<std::uint8_t>(level);
+    part.reach = reach_;
+    part.side = side_;
+    for (std::size_t k = 0; k < 3; ++k)
+        part.corners[k] = {corners[k].shared, corners[k].look, corners[k].chord};
+    return part;
+}
+
+/// A mirror that shows no other optic there has rays beyond its silhouette too: the mirror law goes on.
+bool Divider::mirror_alone(const Triangle& corners, const Inside& inside) const {
+    if (!mirror_) return false;
+    const auto alone = [](const Look& look) {
+        return look.state != LookState::kSeen || (look.segments.size() == 1 && look.segments[0].ends);
+    };
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](const Point& corner) {
+                           return corner.look->state != LookState::kMissed && alone(*corner.look);
+                       }) &&
+           std::all_of(inside.begin(), inside.end(), [&](const Point& point) { return alone(*point.look); });
+}
+
+bool Divider::project(const Triangle& corners, const Inside& inside, int level) {
+    projected_ = part_of(corners, level);
+    for (const Point& point : inside) projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
+    if (!looking_.world->reflect && mirror_) return true;
+    if (mirror_alone(corners, inside)) {
+        PathSegment segment;
+        segment.step = {looking_.optic, Event::kReflect};
+        projected_.histories = {segment};
+        for (std::size_t k = 0; k < 3; ++k)
+            if (corners[k].look->state == LookState::kSeen) projected_.segment[k] = {0};
+        for (PartInside& point : projected_.inside)
+            if (point.at.look->state == LookState::kSeen) point.segment = {0};
+        return true;
+    }
+    const Look& centre = *inside.back().look;
+    if (centre.state != LookState::kSeen) return false;
+    const auto agrees = [&](const Look& look, std::vector<std::size_t>& match) {
+        if (look.state != LookState::kSeen || look.front != centre.front) return false;
+        match = matched(centre.segments, look.segments);
+        return match.size() == centre.segments.size() && covers(match, look.segments);
+    };
+    for (PartInside& point : projected_.inside)
+        if (!agrees(*point.at.look, point.segment)) return false;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!agrees(*corners[k].look, projected_.segment[k])) return false;
+    projected_.histories = centre.segments;
+    return true;
+}
+
+void Divider::end(Id cell, FacetPart part) {
+    if (part.method == LeafMethod::kProjected && !part.histories.empty())
+        for (const PartCorner& corner : part.corners)
+            if (corner.shared == kNone) set_kappa(looking_, *corner.look);
+    divided_.cells[cell].part = static_cast<Id>(divided_.parts.size());
+    divided_.parts.push_back(std::move(part));
+}
+
+double screen_area(const std::array<Point, 3>& corners) {
+    std::array<Vec2, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& s = corners[k].screen;
+        if (!(s.z > 0)) return std::numeric_limits<double>::infinity();
+        at[k] = {s.x / s.z, s.y / s.z};
+    }
+    const Vec2 b = at[1] - at[0], c = at[2] - at[0];
+    return 0.5 * std::fabs(b.x * c.y - b.y * c.x);
+}
+
+bool Divider::is_least(const Triangle& corners, int level) const {
+    return level >= params_.most_levels || screen_area(corners) < params_.least_area;
+}
+
+void Divider::divide(Id cell, const Triangle& corners, int level) {
+    const double fainter = kFainter * kLeastWeight;
+    const Inside inside{between({&corners[1], &corners[2]}, fainter),
+                        between({&corners[2], &corners[0]}, fainter),
+                        between({&corners[0], &corners[1]}, fainter),
+                        between({&corners[0], &corners[1], &corners[2]}, kLeastWeight)};
+    if (project(corners, inside, level)) return end(cell, std::move(projected_));
+    split(cell, corners, inside, level);
+}
+
+void Divider::split(Id cell, const Triangle& corners, const Inside& inside, int level) {
+    if (is_least(corners, level)) {
+        FacetPart part = part_of(corners, level);
+        part.method = LeafMethod::kTraced;
+        part.centre = inside[3].screen;
+        return end(cell, std::move(part));
+    }
+    const Id first = static_cast<Id>(divided_.cells.size());
+    divided_.cells[cell].children = first;
+    divided_.cells.resize(divided_.cells.size() + 4);
+    divide(first, {corners[0], inside[2], inside[1]}, level + 1);
+    divide(first + 1, {inside[2], corners[1], inside[0]}, level + 1);
+    divide(first + 2, {inside[1], inside[0], corners[2]}, level + 1);
+    divide(first + 3, {inside[0], inside[1], inside[2]}, level + 1);
+}
+
+DividedFacet Divider::divide(const std::array<PartCorner, 3>& from) {
+    Triangle corners;
+    bool has_normals = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = point_of(from[k]);
+        const bool missed = from[k].look->state == LookState::kMissed;
+        has_normals = has_normals && (missed || from[k].look->place.normal != Vec3(0));
+        note(from[k].look->cut);
+    }
+    divided_.cells.resize(1);
+    if (has_normals)
+        divide(0, corners, 0);
+    else
+        end(0, part_of(corners, 0));
+    return std::move(divided_);
+}
+
+DividedFacet Divider::divide_on(const FacetPart& part) {
+    Triangle corners;
+    Inside inside;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = point_of(part.corners[k]);
+    for (std::size_t k = 0; k < 4; ++k) inside[k] = point_of(part.inside[k].at);
+    divided_.cells.resize(1);
+    split(0, corners, inside, part.level);
+    return std::move(divided_);
+}
+
+}  // namespace
+
+DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, const DivideParams& params) {
+    double reach = facet.reach;
+    for (std::size_t k = 0; k < 3 && facet.reach == 0; ++k)
+        reach = std::max(reach, length(facet.corners[k].chord - facet.corners[(k + 1) % 3].chord));
+    return Divider(looking, facet.side, reach, params).divide(facet.corners);
+}
+
+DividedFacet divide_part(const Looking& looking, const FacetPart& part, const DivideParams& params) {
+    return Divider(looking, part.side, part.reach, params).divide_on(part);
+}
+
+}  // namespace trilens

@@ -1,0 +1,118 @@
+#include "paths/fit_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "paths/fit_linear.h"
+#include "paths/node_corner.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kAtCorner = 1.0 / 20, kAtMiddle = 2.0 / 15, kAtCentre = 9.0 / 20;
+
+FitValue value_of(const Ray& ray, double next) {
+    const Vec3 &o = ray.origin, &d = ray.direction;
+    return {o.x, o.y, o.z, d.x, d.y, d.z, std::isfinite(next) ? next : 0};
+}
+
+/// One facet of one node.
+struct NodeFacet {
+    const PathNode& node;
+    const FacetPart& part;
+    std::size_t history = 0;
+    IdTriple corners;
+
+    const PathSegment& at_corner(std::size_t k) const {
+        return part.corners[k].look->segments[part.segment[k][history]];
+    }
+    bool is_first_reflection() const { return node.parent == kNone && node.step.event == Event::kReflect; }
+
+    /// Screen area that belongs to a unit of the facet's weights there.
+    double density(const Vec3& weights) const {
+        std::array<Vec3, 3> screen;
+        double w = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            screen[k] = part.corners[k].look->screen;
+            w += weights[static_cast<int>(k)] * screen[k].z;
+        }
+        return std::fabs(triple(screen[0], screen[1], screen[2])) / (w * w * w);
+    }
+
+    /// The weights of the node's facet on the screen where the facet itself has these.
+    Vec3 of_node(const Vec3& weights) const {
+        Vec3 own;
+        for (std::size_t k = 0; k < 3; ++k)
+            own[static_cast<int>(k)] = weights[static_cast<int>(k)] * part.corners[k].look->screen.z /
+                                       node.mesh.screen[corners[k]].z;
+        return own / (own.x + own.y + own.z);
+    }
+
+    double kappa(const Vec3& own) const {
+        double sum = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Look& look = *part.corners[k].look;
+            const double plain = length(look.incident) * farther(look, at_corner(k), node.unfolds);
+            sum += own[static_cast<int>(k)] * length(node.mesh.rays[corners[k]].direction) / plain;
+        }
+        return sum;
+    }
+
+    void append(std::vector<FitSample>& samples) const {
+        for (std::size_t k = 0; k < 3; ++k) {
+            Vec3 weights(0);
+            weights[static_cast<int>(k)] = 1;
+            samples.push_back({corners, weights, kAtCorner * density(weights),
+                               value_of(node.mesh.rays[corners[k]], node.next[corners[k]])});
+        }
+        for (std::size_t i = 0; i < part.inside.size(); ++i) {
+            const PartInside& inside = part.inside[i];
+            if (inside.segment.empty()) continue;
+            const Look& look = *inside.at.look;
+            const PathSegment& segment = look.segments[inside.segment[history]];
+            const Vec3 own = of_node(kInsideWeights[i]);
+            const NodeCorner exact = is_first_reflection()
+                                         ? first_reflection(look, &segment)
+                                         : later_corner(look, segment, kappa(own), node.unfolds);
+            samples.push_back({corners, own, (i < 3 ? kAtMiddle : kAtCentre) * density(kInsideWeights[i]),
+                               value_of(exact.ray, exact.next)});
+        }
+    }
+};
+
+bool takes_part(const FacetPart& part) {
+    return std::all_of(part.corners.begin(), part.corners.end(), [](const PartCorner& corner) {
+        return corner.look->state == LookState::kSeen && corner.look->screen.z > 0;
+    });
+}
+
+void fit_node(const std::vector<FitSample>& samples, PathNode& node) {
+    std::vector<FitValue> values;
+    values.reserve(node.mesh.rays.size());
+    for (std::size_t c = 0; c < node.mesh.rays.size(); ++c)
+        values.push_back(value_of(node.mesh.rays[c], node.next[c]));
+    fit_linear(samples, values);
+    for (std::size_t c = 0; c < values.size(); ++c) {
+        const FitValue& v = values[c];
+        node.mesh.rays[c] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+        if (std::isfinite(node.next[c])) node.next[c] = v[6];
+    }
+}
+
+}  // namespace
+
+void fit_nodes(std::span<const FittedLeaf> leaves, std::vector<PathNode>& nodes) {
+    std::vector<std::vector<FitSample>> samples(nodes.size());
+    for (const FittedLeaf& one : leaves) {
+        if (!takes_part(*one.part)) continue;
+        for (std::size_t h = 0; h < one.part->histories.size(); ++h) {
+            const Id n = one.part->node[h];
+            NodeFacet{nodes[n], *one.part, h, nodes[n].mesh.facets[one.leaf]}.append(samples[n]);
+        }
+    }
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (!samples[n].empty()) fit_node(samples[n], nodes[n]);
+}
+
+}  // namespace trilens

@@ -1,0 +1,207 @@
+#include "paths/follow.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shade/shade.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Steps on one path at the most, whatever the depth: passing through surfaces without an interface counts
+/// for nothing else.
+constexpr std::size_t kMostSteps = 256;
+
+double largest(const Vec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+/// A branch that waits to be followed.
+struct Pending {
+    Branch branch;
+    Id parent = kNone;
+    Path path = Path::kReflect;
+    bool principal = true;
+    std::uint16_t depth = 0;
+    std::size_t steps = 1;
+    Vec3 point{0};
+    double way = 0;
+    double turned = 1;
+    Vec3 first_weight{1}, weight{1};
+};
+
+class Follower {
+  public:
+    Follower(const PathWorld& world, const FollowParams& params) : world_(world), params_(params) {}
+    FollowedPaths follow(const Meeting& first, double way);
+
+  private:
+    void start(const Meeting& first, double way);
+    void run(const Pending& from);
+    void go_on(const Pending& from, Id segment, const NextOptic& next);
+
+    const PathWorld& world_;
+    const FollowParams& params_;
+    FollowedPaths followed_;
+    std::vector<Pending> waiting_;
+};
+
+void Follower::start(const Meeting& first, double way) {
+    std::vector<Branch> ways = branches(world_, first, {}, kAllColours);
+    for (auto way_on = ways.rbegin(); way_on != ways.rend(); ++way_on) {
+        const bool reflects = way_on->step.event == Event::kReflect;
+        if (!(reflects ? world_.reflect : world_.refract)) continue;
+        Pending pending;
+        pending.branch = *way_on;
+        pending.path = reflects ? Path::kReflect : Path::kRefract;
+        pending.principal = reflects || way_on->principal;
+        pending.point = first.point;
+        pending.way = way;
+        pending.turned = std::fabs(dot(first.incoming, first.normal));
+        pending.first_weight = way_on->weight;
+        if (way_on->colours != kAllColours) {
+            pending.weight = Vec3(0);
+            pending.weight[way_on->colours] = 1;
+        }
+        waiting_.push_back(pending);
+    }
+}
+
+void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
+    const std::vector<Branch> ways = branches(world_, next.meeting, from.branch.media, from.branch.colours);
+    if (ways.empty()) followed_.cut.lost += largest(from.first_weight * from.weight);
+    const PathSegment& parent = followed_.segments[segment];
+    Vec3 arrived = from.weight;
+    if (parent.medium != kNone)
+        arrived *= volume_transmittance(*world_.optics[parent.medium].material, next.distance);
+    for (auto way_on = ways.rbegin(); way_on != ways.rend(); ++way_on) {
+        Pending pending = from;
+        pending.branch = *way_on;
+        pending.parent = segment;
+        pending.principal = from.principal && way_on->principal;
+        pending.depth = static_cast<std::uint16_t>(from.depth + (way_on->step.event != Event::kPass));
+        pending.steps = from.steps + 1;
+        pending.point = next.meeting.point;
+        pending.way = from.way + next.distance;
+        pending.turned = std::fabs(dot(next.meeting.incoming, next.meeting.normal));
+        pending.weight = arrived * way_on->weight;
+        waiting_.push_back(pending);
+    }
+}
+
+void Follower::run(const Pending& from) {
+    const Vec3 light = from.first_weight * from.weight;
+    if (!from.principal && largest(light) < params_.least_weight) {
+        followed_.cut.faint += largest(light);
+        return;
+    }
+    PathSegment segment;
+    segment.parent = from.parent;
+    segment.step = from.branch.step;
+    segment.path = from.path;
+    segment.principal = from.principal;
+    segment.colours = from.branch.colours;
+    segment.depth = from.depth;
+    segment.medium = from.branch.media.felt([&](Id optic) { return world_.optics[optic].priority; });
+    segment.ray = {from.point, from.branch.direction};
+    segment.way = from.way;
+    segment.weight = from.weight;
+    segment.turned = from.turned;
+
+    std::optional<NextOptic> next;
+    if (world_.max_depth > 0) next = next_optic(world_, segment.ray, from.branch.step.optic);
+    if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
+    if (next && segment.hit.seen()) {
+        if (segment.hit.t < next->distance)
+            next.reset();
+        else
+            segment.hit = {};
+    }
+    if (next && (from.depth >= world_.max_depth || from.steps >= kMostSteps)) {
+        followed_.cut.too_deep += largest(light);
+        if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
+        next.reset();
+    }
+    if (next) segment.next = next->distance;
+    segment.ends = !next;
+    followed_.segments.push_back(segment);
+    if (next) go_on(from, static_cast<Id>(followed_.segments.size() - 1), *next);
+}
+
+FollowedPaths Follower::follow(const Meeting& first, double way) {
+    start(first, way);
+    while (!waiting_.empty()) {
+        const Pending from = waiting_.back();
+        waiting_.pop_back();
+        run(from);
+    }
+    return std::move(followed_);
+}
+
+/// The branch that a segment took; null where there is none.
+const Branch* same_branch(const std::vector<Branch>& ways, const PathSegment& like) {
+    for (const Branch& one : ways)
+        if (one.step == like.step && one.colours == like.colours) return &one;
+    return nullptr;
+}
+
+}  // namespace
+
+std::optional<NextOptic> next_optic(const PathWorld& world, const Ray& ray, Id from) {
+    std::optional<NextOptic> next;
+    for (std::size_t i = 0; i < world.optics.size(); ++i) {
+        const LimitTracer& tracer = *world.optics[i].tracer;
+        const double t_min = i == from ? tracer.self_hit_t_min(ray) : 0;
+        const std::optional<SurfaceHit> hit = tracer.first_hit(ray, t_min);
+        if (!hit || (next && hit->t >= next->distance)) continue;
+        next.emplace();
+        next->distance = hit->t;
+        next->hit = *hit;
+        next->meeting.optic = static_cast<Id>(i);
+    }
+    if (!next) return std::nullopt;
+    Meeting& at = next->meeting;
+    at.incoming = ray.direction;
+    at.point = next->hit.point.position;
+    at.normal = next->hit.point.normal;
+    at.front = dot(ray.direction, at.normal) <= 0;
+    return next;
+}
+
+FollowedPaths follow_paths(const PathWorld& world, const Meeting& first, double way,
+                           const FollowParams& params) {
+    return Follower(world, params).follow(first, way);
+}
+
+std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const Meeting& first, double way,
+                                                     const std::vector<PathSegment>& like) {
+    struct Arrived {
+        std::vector<Branch> ways;  // from the optic at the segment's far end
+        Meeting meeting;
+        double way = 0;
+    };
+    const Arrived start{branches(world, first, {}, kAllColours), first, way};
+    std::vector<Arrived> after(like.size());
+    std::vector<std::optional<PathSegment>> again(like.size());
+    for (std::size_t i = 0; i < like.size(); ++i) {
+        PathSegment segment = like[i];
+        const Arrived& from = segment.parent == kNone ? start : after[segment.parent];
+        const Branch* branch = same_branch(from.ways, segment);
+        if (!branch) continue;
+        segment.ray = {from.meeting.point, branch->direction};
+        segment.way = from.way;
+        segment.turned = std::fabs(dot(from.meeting.incoming, from.meeting.normal));
+        if (!segment.ends) {
+            const std::optional<NextOptic> next = next_optic(world, segment.ray, segment.step.optic);
+            if (!next) continue;
+            segment.next = next->distance;
+            after[i] = {branches(world, next->meeting, branch->media, branch->colours), next->meeting,
+                        from.way + next->distance};
+        }
+        again[i] = segment;
+    }
+    return again;
+}
+
+}  // namespace trilens

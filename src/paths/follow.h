@@ -1,0 +1,71 @@
+// All paths of one ray over the exact optics: a tree of segments.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "paths/path_world.h"
+
+namespace trilens {
+
+/// One straight stretch of a path: from an optic to what comes next.
+struct PathSegment {
+    Id parent = kNone;           // the segment before it; kNone: it leaves the first optic
+    Step step;                   // what happened where it starts
+    Path path = Path::kReflect;  // what happened at the first optic
+    bool principal = true;       // see PathEnd
+    Colours colours = kAllColours;
+    std::uint16_t depth = 0;  // optic hits after the first, its own start among them; passing through a
+                              // surface without an interface is none
+    Id medium = kNone;        // the optic in whose glass it runs; kNone: in air
+    Ray ray;                  // unit direction, from where it starts
+    double way = 0;           // length of the path from the eye to where it starts
+    Vec3 weight{1};           // of the light for all that happened behind the first optic up to its start
+    double next = std::numeric_limits<double>::infinity();  // distance to the next optic, or infinity
+    double turned = 1;  // cosine of the angle between the ray that arrived at its start and the surface
+    Hit hit;            // where objects are asked for: the first before the next optic, t a distance
+    bool ends = true;   // it meets an object, or no other optic: nothing goes on from it
+};
+
+/// What follow_paths leaves out, as shares of the light (the largest of the three colours), summed.
+struct CutPaths {
+    double faint = 0;     // paths that carry less than FollowParams::least_weight
+    double too_deep = 0;  // paths that would meet an optic after the last that is followed: they see past it
+    double lost = 0;      // paths inside of more bodies at once than can be told
+};
+
+/// Less of a sample's light than this is not followed: half a step of 8 bits.
+inline constexpr double kLeastWeight = 1.0 / 512;
+
+struct FollowParams {
+    const Tracer* objects = nullptr;     // what blocks the way; null: nothing does
+    double least_weight = kLeastWeight;  // the principal paths are followed whatever they carry
+};
+
+struct FollowedPaths {
+    std::vector<PathSegment> segments;  // parents before children
+    CutPaths cut;
+};
+
+/// Follows a ray from its first meeting with an optic. `way`: its length from the eye to there. Segments of
+/// depth world.max_depth meet no further optic.
+FollowedPaths follow_paths(const PathWorld& world, const Meeting& first, double way,
+                           const FollowParams& params = {});
+
+/// The segments of `like` once more from another meeting nearby: ray, way, next and turned of each are set
+/// again; none where the path from there has another history. Nothing is cut and nothing blocks.
+std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const Meeting& first, double way,
+                                                     const std::vector<PathSegment>& like);
+
+/// What a ray meets first among the optics, from a place that may lie on one of them.
+struct NextOptic {
+    Meeting meeting;
+    double distance = 0;
+    SurfaceHit hit;
+};
+
+/// `ray`: unit direction. `from`: the optic that it leaves, whose own start is left out; kNone: none.
+std::optional<NextOptic> next_optic(const PathWorld& world, const Ray& ray, Id from);
+
+}  // namespace trilens

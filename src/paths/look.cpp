@@ -1,0 +1,136 @@
+#include "paths/look.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trilens {
+namespace {
+
+constexpr double kStep = 1e-4;      // of a face's parameters, for differences
+constexpr double kSoftened = 0.15;  // 0.05 to 0.3 differ by 5 %
+/// A bundle that opens less than this, as a share of its patch seen head-on, is parallel but for rounding.
+constexpr double kNoSpread = 1e-9;
+/// A fold of the directions, or a focus of the bundle, would make corner rays endless or nothing.
+constexpr double kMostKappa = 50;
+
+Meeting meeting_at(const Looking& looking, const Place& place, const Vec3& incident, bool front) {
+    return {looking.optic, normalize_or_zero(incident), place.point, place.normal, front};
+}
+
+/// The paths from `place`, where this ray of the camera arrives.
+Look arrive(const Looking& looking, const Place& place, const Vec3& incident, const LookParams& params) {
+    Look look;
+    look.incident = incident;
+    look.place = place;
+    const double cosine = dot(incident, place.normal);
+    look.front = params.side == LookSide::kNearest ? cosine <= 0 : params.side == LookSide::kFront;
+    if (look.front ? cosine >= 0 : cosine <= 0) {
+        look.state = LookState::kTurned;
+        return look;
+    }
+    look.state = LookState::kSeen;
+    FollowedPaths followed =
+        follow_paths(*looking.world, meeting_at(looking, place, incident, look.front), length(incident),
+                     {.objects = nullptr, .least_weight = params.least_weight});
+    look.segments = std::move(followed.segments);
+    look.cut = followed.cut;
+    return look;
+}
+
+/// Six times the volume between a unit direction and two others near it: twice the solid angle they enclose.
+double spread(const Vec3& u, const Vec3& a, const Vec3& b) {
+    return std::fabs(triple(u, a - u, b - u));
+}
+
+/// A place beside this one on the same face; `axis` 0: u, 1: v.
+Place beside(const Surface& surface, const Place& place, int axis) {
+    Vec2 uv = place.uv;
+    const double room = surface.domain(place.face) == FaceDomain::kTriangle ? 1 - uv.x - uv.y : 1 - uv[axis];
+    uv[axis] += room > kStep ? kStep : -kStep;
+    const SurfacePoint at = surface.eval(place.face, uv);
+    return {place.face, uv, at.position, at.normal};
+}
+
+}  // namespace
+
+Look look_at(const Looking& looking, const Place& place, const LookParams& params) {
+    const Vec3 screen = looking.camera.screen(place.point);
+    Look look = arrive(looking, place, looking.camera.ray(screen, place.point).direction, params);
+    look.screen = screen;
+    return look;
+}
+
+Look look_through(const Looking& looking, const Chord& chord, const LookParams& params) {
+    const Ray to_chord = looking.camera.ray(chord.screen, chord.point);
+    const Vec3 along = normalize_or_zero(to_chord.direction);
+    const double back =
+        looking.camera.parallel ? chord.reach : std::min(chord.reach, length(to_chord.direction));
+    const Ray near{chord.point - back * along, along};
+    Look look;
+    look.screen = chord.screen;
+    look.incident = to_chord.direction;
+    const LimitTracer& tracer = *looking.world->optics[looking.optic].tracer;
+    const double far = back + chord.reach;
+    for (double from = 0; from < far;) {
+        const std::optional<SurfaceHit> hit = tracer.first_hit(near, from);
+        if (!hit || hit->t > far) break;
+        from = hit->t + 1e-9 * chord.reach;
+        const bool front = dot(along, hit->point.normal) < 0;
+        if (params.side != LookSide::kNearest && front != (params.side == LookSide::kFront)) continue;
+        // As long as the way to the surface itself.
+        const Vec3 incident =
+            looking.camera.parallel ? to_chord.direction : hit->point.position - to_chord.origin;
+        look =
+            arrive(looking, {hit->face, hit->uv, hit->point.position, hit->point.normal}, incident, params);
+        look.screen = chord.screen;
+        break;
+    }
+    return look;
+}
+
+void set_beside(const Looking& looking, Look& look) {
+    if (look.state != LookState::kSeen || !look.beside.empty()) return;
+    for (int axis = 0; axis < 2; ++axis) {
+        const Place place = beside(*looking.surface, look.place, axis);
+        const Vec3 incident =
+            looking.camera.affine
+                ? place.point - (look.place.point - look.incident)
+                : looking.camera.ray(looking.camera.screen(place.point), place.point).direction;
+        look.beside.push_back({place, incident,
+                               repeat_paths(*looking.world, meeting_at(looking, place, incident, look.front),
+                                            length(incident), look.segments)});
+    }
+}
+
+void set_kappa(const Looking& looking, Look& look) {
+    if (look.state != LookState::kSeen || !look.kappa.empty()) return;
+    look.kappa.assign(look.segments.size(), 0.0);
+    const bool kept = !look.beside.empty();
+    set_beside(looking, look);
+    const std::vector<Beside>& side = look.beside;
+    // Solid angles over that of the same patch seen head-on. Those before and after are differences of the
+    // same rays, so that flat mirrors and plates have 1 to rounding.
+    const double eye = length(look.incident);
+    const double head_on =
+        length(cross(side[0].place.point - look.place.point, side[1].place.point - look.place.point)) /
+        (eye * eye);
+    const Vec3 v = normalize_or_zero(look.incident);
+    const double before =
+        looking.camera.parallel
+            ? std::fabs(dot(look.place.normal, v))
+            : spread(v, normalize_or_zero(side[0].incident), normalize_or_zero(side[1].incident)) / head_on;
+    for (std::size_t i = 0; i < look.segments.size(); ++i) {
+        if (!side[0].segments[i] || !side[1].segments[i]) continue;
+        const double after = spread(look.segments[i].ray.direction, side[0].segments[i]->ray.direction,
+                                    side[1].segments[i]->ray.direction) /
+                             head_on;
+        if (!(after > kNoSpread)) continue;
+        // Grazing bundles that stay as they are need no softening.
+        const double softened = kSoftened * (after - before) / (after + before);
+        look.kappa[i] = std::clamp(std::cbrt(std::sqrt(before * before + softened * softened) / after),
+                                   1 / kMostKappa, kMostKappa);
+    }
+    if (!kept) look.beside.clear();
+}
+
+}  // namespace trilens

@@ -1,0 +1,24 @@
+// How far from its exact place a facet shows what it shows: displacement before it is drawn.
+#pragma once
+
+#include "base/ray_mesh.h"
+#include "intersect/tracer.h"
+#include "paths/look.h"
+
+namespace trilens {
+
+/// A facet's ray beside the exact one, through the same point of the film.
+struct PredictedRay {
+    const Looking& looking;
+    const Look& look;         // kSeen, with its places beside
+    std::size_t segment = 0;  // of the look
+    Ray ray;                  // what the facet has there, not unit
+    Hit hit;                  // what it meets there first, before the next optic; unset: the environment
+};
+
+/// How far from this point of the film, in pixels, the exact paths show what the facet shows there: the miss
+/// at the hit, across the exact ray, over how fast exact rays move there when the point on the surface moves
+/// (mathematics, section 6). Infinity where that cannot be told: at a fold, or a border of histories.
+double predicted_displacement(const PredictedRay& predicted);
+
+}  // namespace trilens

@@ -1,0 +1,189 @@
+// Pictures through OpenImageIO, as a library of its own: THE door to OpenImageIO.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <new>
+#include <optional>
+#include <string_view>
+
+#include "base/error.h"
+#include "base/file_bytes.h"
+#include "base/version.h"
+#include "image/library_reason.h"
+#include "image/library_talk.h"
+#include "image/picture_library.h"
+
+namespace trilens {
+namespace {
+
+/// No usual codec shrinks a picture that much; a header that claims more is damaged or hostile.
+constexpr double kLargestCompression = 4096;
+constexpr double kSmallHeader = 65536;
+
+// IEC 61966-2-1 (sRGB).
+double linear_from_srgb(double v) {
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+/// 8 and 16 bit values as fractions of one are all multiples of 1/65535, so one table serves both.
+float linear_from_stored(float fraction) {
+    static const std::vector<float> table = [] {
+        std::vector<float> values(65536);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = static_cast<float>(linear_from_srgb(static_cast<double>(i) / 65535));
+        return values;
+    }();
+    return table[static_cast<std::size_t>(std::lround(static_cast<double>(fraction) * 65535))];
+}
+
+bool is_srgb(const OIIO::ImageSpec& spec) {
+    const auto type = spec.format.basetype;
+    if (type != OIIO::TypeDesc::UINT8 && type != OIIO::TypeDesc::UINT16) return false;
+    const std::string space = spec.get_string_attribute("oiio:ColorSpace");
+    for (const char* linear : {"linear", "lin_rec709", "lin_rec709_scene", "lin_srgb", "scene_linear"})
+        if (OIIO::Strutil::iequals(space, linear)) return false;
+    return true;
+}
+
+/// Which channels are red, green and blue: by name, else the first three, else one grey.
+std::array<int, 3> colour_channels(const OIIO::ImageSpec& spec) {
+    const std::array<int, 3> named = {spec.channelindex("R"), spec.channelindex("G"), spec.channelindex("B")};
+    if (named[0] >= 0 && named[1] >= 0 && named[2] >= 0) return named;
+    if (spec.nchannels >= 3) return {0, 1, 2};
+    return {0, 0, 0};
+}
+
+std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std::vector<float>& values) {
+    auto texture = std::make_shared<Texture>();
+    texture->width = spec.full_width;
+    texture->height = spec.full_height;
+    texture->rgb.assign(
+        static_cast<std::size_t>(spec.full_width) * static_cast<std::size_t>(spec.full_height) * 3, 0);
+    const std::array<int, 3> channels = colour_channels(spec);
+    const bool srgb = is_srgb(spec);
+
+    // The part of the display window that has data.
+    const int dx = spec.x - spec.full_x, dy = spec.y - spec.full_y;
+    const int first_x = std::max(0, dx), last_x = std::min(spec.full_width, dx + spec.width);
+    const int first_y = std::max(0, dy), last_y = std::min(spec.full_height, dy + spec.height);
+    for (int y = first_y; y < last_y; ++y) {
+        for (int x = first_x; x < last_x; ++x) {
+            const std::size_t from = static_cast<std::size_t>(y - dy) * static_cast<std::size_t>(spec.width) +
+                                     static_cast<std::size_t>(x - dx);
+            const std::size_t to = static_cast<std::size_t>(y) * static_cast<std::size_t>(spec.full_width) +
+                                   static_cast<std::size_t>(x);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const float value = values[from * static_cast<std::size_t>(spec.nchannels) +
+                                           static_cast<std::size_t>(channels[c])];
+                texture->rgb[to * 3 + c] = srgb ? linear_from_stored(value) : value;
+            }
+        }
+    }
+    return texture;
+}
+
+/// Reads the first picture of an open file.
+std::shared_ptr<const Texture> read_open(OIIO::ImageInput& in, const std::string& name,
+                                         std::size_t encoded_size) {
+    const OIIO::ImageSpec spec = in.spec();
+    if (spec.deep || spec.depth > 1) throw InputError(name, "", "is no flat picture");
+    if (static_cast<double>(spec.image_bytes(true)) >
+        kSmallHeader + kLargestCompression * static_cast<double>(encoded_size))
+        throw InputError(name, "", "is damaged: its header claims more pixels than the file can hold");
+    try {
+        std::vector<float> values(static_cast<std::size_t>(spec.image_pixels()) *
+                                  static_cast<std::size_t>(spec.nchannels));
+        if (!in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, values.data()) || in.has_error())
+            throw InputError(name, "", "is truncated or damaged: " + library_reason(in.geterror()));
+        for (const float value : values)
+            if (!std::isfinite(value)) throw InputError(name, "", "holds a value that is not finite");
+        return texture_of(spec, values);
+    } catch (const std::bad_alloc&) {
+        throw InputError(name, "", "needs more memory than there is");
+    }
+}
+
+/// Colours as the file has them: not multiplied by alpha.
+OIIO::ImageSpec reading_hints() {
+    OIIO::ImageSpec hints;
+    hints.attribute("oiio:UnassociatedAlpha", 1);
+    return hints;
+}
+
+/// A file name whose extension tells OpenImageIO the format of encoded bytes; empty where it is none of
+/// these.
+std::string name_for_format(std::span<const unsigned char> encoded) {
+    const std::string_view start(reinterpret_cast<const char*>(encoded.data()),
+                                 std::min<std::size_t>(encoded.size(), 16));
+    const auto starts_with = [&](std::string_view magic) { return start.substr(0, magic.size()) == magic; };
+    if (starts_with("\x89PNG\r\n\x1a\n")) return "memory.png";
+    if (starts_with("\xff\xd8\xff")) return "memory.jpg";
+    if (starts_with("\x76\x2f\x31\x01")) return "memory.exr";
+    if (starts_with("#?RADIANCE") || starts_with("#?RGBE")) return "memory.hdr";
+    return "";
+}
+
+bool is_png_file(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    unsigned char start[8] = {};
+    in.read(reinterpret_cast<char*>(start), sizeof start);
+    return in && name_for_format(start) == "memory.png";
+}
+
+std::vector<unsigned char> encode_png(const std::string& name, int width, int height,
+                                      std::span<const unsigned char> stored) {
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput proxy(bytes);
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeUInt8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    const auto out = OIIO::ImageOutput::create("png", &proxy);
+    if (!out) throw OutputError(name, "OpenImageIO cannot write PNG: " + library_reason(OIIO::geterror()));
+    if (!(out->open("image.png", spec) && out->write_image(OIIO::TypeUInt8, stored.data()) && out->close()))
+        throw OutputError(name, "cannot be encoded: " + library_reason(out->geterror()));
+    return bytes;
+}
+
+std::shared_ptr<const Texture> read(const std::string& file) {
+    const std::size_t size = readable_size(file);
+    const OIIO::ImageSpec hints = reading_hints();
+    std::optional<LibraryTalk> talk;
+    if (is_png_file(file)) talk.emplace();
+    const auto in = OIIO::ImageInput::open(file, &hints);
+    if (!in) throw InputError(file, "", "is no picture, or is damaged: " + library_reason(OIIO::geterror()));
+    return read_open(*in, file, size);
+}
+
+std::shared_ptr<const Texture> decode(std::span<const unsigned char> encoded, const std::string& name) {
+    const std::string format = name_for_format(encoded);
+    if (format.empty()) throw InputError(name, "", "is neither PNG, JPEG, OpenEXR nor Radiance");
+    OIIO::Filesystem::IOMemReader memory(encoded.data(), encoded.size());
+    OIIO::Filesystem::IOProxy* proxy = &memory;
+    // The proxy goes in as a hint: open() of OpenImageIO 2.4 forgets a proxy argument where there are hints.
+    OIIO::ImageSpec hints = reading_hints();
+    hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    std::optional<LibraryTalk> talk;
+    if (format == "memory.png") talk.emplace();
+    const auto in = OIIO::ImageInput::open(format, &hints);
+    if (!in) throw InputError(name, "", "is damaged: " + library_reason(OIIO::geterror()));
+    return read_open(*in, name, encoded.size());
+}
+
+void set_threads(int threads) {
+    OIIO::attribute("threads", threads);
+    OIIO::attribute("exr_threads", threads);
+}
+
+}  // namespace
+}  // namespace trilens
+
+const trilens::PictureLibrary* trilens_picture_library() {
+    static const trilens::PictureLibrary library{trilens::kVersion, trilens::read, trilens::decode,
+                                                 trilens::encode_png, trilens::set_threads};
+    return &library;
+}

@@ -1,0 +1,18 @@
+// One sample's own paths, followed on the exact surfaces.
+#pragma once
+
+#include <vector>
+
+#include "paths/follow.h"
+#include "render/views.h"
+#include "render/world.h"
+
+namespace trilens {
+
+/// Appends the ends of all paths of a sample whose ray meets its optic (view.optic) at `hit`, with their
+/// steps, and sets view.incidence. `first_step` of the ends counts in `steps`. The rays that leave carry the
+/// eye-to-surface length, as corner rays do.
+void follow_sample(const World& world, const SurfaceHit& hit, SampleView& view, std::vector<PathEnd>& ends,
+                   std::vector<Step>& steps);
+
+}  // namespace trilens

@@ -1,0 +1,15 @@
+// Does the runs of a plan: several at once, beside other processes, within memory.
+#pragma once
+
+#include <vector>
+
+#include "sweep/sweep.h"
+
+namespace trilens {
+
+/// Does the shard's part of the plan: first what nobody else is at, then what those have left. Runs of one
+/// truth follow each other. Throws Interrupted between runs, and as run_sweep does.
+void run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
+              const std::vector<PlannedRun>& plan);
+
+}  // namespace trilens

@@ -1,0 +1,13 @@
+// A regression test's scene through the library's own calls.
+#pragma once
+
+#include "suite/suite.h"
+
+namespace trilens {
+
+/// Loads the scene of a test with what the test sets in it. Pictures tell `warn` what they leave out, and are
+/// given up once `progress` says so. Throws what load_scene, find_camera and Renderer throw; the drawing
+/// throws what Renderer::draw throws, and InputError for an engine that does not exist.
+SuiteScene open_suite_scene(const RenderTest& test, const Progress& progress, const Warn& warn);
+
+}  // namespace trilens

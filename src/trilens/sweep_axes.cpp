@@ -1,0 +1,154 @@
+#include "trilens/sweep_axes.h"
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/nearest.h"
+
+namespace trilens {
+namespace {
+
+using Apply = void (*)(const AxisValue& value, PointRequest& request);
+
+struct AxisEntry {
+    AxisKind kind;
+    Apply apply;
+};
+
+int whole(const AxisValue& value) {
+    return static_cast<int>(*value.number);
+}
+
+void override_with(const std::string& pointer, const std::string& value, PointRequest& request) {
+    request.scene.overrides.push_back({pointer, value});
+}
+
+/// The classic engine with K pieces; an axis of engines may still say another.
+void set_pieces(Curves curves, const AxisValue& value, PointRequest& request) {
+    request.picture.engine.engine = Engine::kClassic;
+    request.picture.engine.classic.curves = curves;
+    request.picture.engine.classic.pieces = whole(value);
+}
+
+void set_size(const AxisValue& value, PointRequest& request) {
+    const std::size_t x = value.text.find('x');
+    override_with("/film/width", value.text.substr(0, x), request);
+    override_with("/film/height", value.text.substr(x + 1), request);
+}
+
+void set_clip(const AxisValue& value, PointRequest& request) {
+    request.picture.engine.engine = Engine::kClassic;
+    request.picture.engine.classic.clip = value.text == "scene"    ? Clip::kScene
+                                          : value.text == "screen" ? Clip::kScreen
+                                                                   : Clip::kUnclipped;
+}
+
+void set_scene(const AxisValue& value, PointRequest& request) {
+    const std::filesystem::path file = value.text;
+    request.scene.file =
+        file.is_absolute() ? value.text : (std::filesystem::path(request.paths_start_here) / file).string();
+}
+
+constexpr auto kWhole = ValueKind::kWhole;
+
+/// One line per axis. A setting that scenes have for every optic is an axis by pushing its key and value to
+/// PointRequest::of_optics.
+const std::vector<AxisEntry>& axis_entries() {
+    static const std::vector<AxisEntry> entries = {
+        {{"scene", "", "scene", ValueKind::kText}, set_scene},
+        {{"optic", "", "optic", ValueKind::kText}, [](const auto& v, auto& r) { r.optic = v.text; }},
+        {{"camera", "", "camera", ValueKind::kText}, [](const auto& v, auto& r) { r.camera = v.text; }},
+        {{"engine", "", "engine", ValueKind::kWord, 0, 0, false, engine_names()},
+         [](const auto& v, auto& r) { r.picture.engine.engine = find_engine(v.text); }},
+        {{"resolution", "n", "resolution n [n × n facets per cage face]", kWhole, 1, kMaxResolution, true},
+         [](const auto& v, auto& r) { r.picture.frame.resolution = whole(v); }},
+        {{"tessellate", "tessellate", "K [K × K smaller triangles]", kWhole, 1, 1024, true},
+         [](const auto& v, auto& r) { set_pieces(Curves::kTessellate, v, r); }},
+        {{"slices", "slices", "K [pieces of a curved edge]", kWhole, 1, 1024, true},
+         [](const auto& v, auto& r) { set_pieces(Curves::kSlices, v, r); }},
+        {{"clip", "", "clipping", ValueKind::kWord, 0, 0, false, {"scene", "screen", "none"}}, set_clip},
+        {{"size", "", "pixels", ValueKind::kSize, 1, kMostPixels, true}, set_size},
+        {{"spp", "spp", "samples per pixel, across", kWhole, 1, kMaxSpp},
+         [](const auto& v, auto& r) { override_with("/film/spp", v.text, r); }},
+        {{"max-depth", "depth", "optic hits after the first", kWhole, 0, 64},
+         [](const auto& v, auto& r) { override_with("/render/maxDepth", v.text, r); }},
+    };
+    return entries;
+}
+
+const AxisEntry* find_entry(const std::string& name) {
+    for (const AxisEntry& entry : axis_entries())
+        if (entry.kind.name == name) return &entry;
+    return nullptr;
+}
+
+/// Where the other optics of a scene stand in the file, the last first.
+std::vector<SceneOverride> without_other_optics(const Scene& scene, const std::string& optic) {
+    std::vector<SceneOverride> removals;
+    std::vector<std::string> names;
+    for (std::size_t m = scene.meshes.size(); m-- > 0;) {
+        if (scene.meshes[m].role != Role::kOptic) continue;
+        names.push_back(scene.meshes[m].name);
+        if (names.back() != optic) removals.push_back({"/meshes/" + std::to_string(m), "", true});
+    }
+    if (removals.size() == names.size())
+        throw InputError(scene.file, "/meshes",
+                         "there is no optic \"" + optic + "\"" + suggestion(optic, names));
+    return removals;
+}
+
+}  // namespace
+
+std::vector<AxisKind> axis_kinds() {
+    std::vector<AxisKind> kinds;
+    for (const AxisEntry& entry : axis_entries()) kinds.push_back(entry.kind);
+    return kinds;
+}
+
+AxisKind find_axis_kind(const std::string& name, const std::string& where) {
+    if (!name.empty() && name[0] == '/') return pointer_kind(name);
+    // As the tables of results call it.
+    if (const AxisEntry* entry = find_entry(name == "tessellation" ? "tessellate" : name)) return entry->kind;
+    std::vector<std::string> names;
+    for (const AxisEntry& entry : axis_entries()) names.push_back(entry.kind.name);
+    throw UsageError(where + ": unknown axis \"" + name + "\"" + suggestion(name, names) +
+                     "; a JSON pointer into the scene, such as /materials/0/ior, is one too");
+}
+
+PointRequest request_at(PointRequest request, const Coordinates& point) {
+    // The engine last: slices and their like only propose one.
+    const AxisValue* engine = nullptr;
+    for (const Coordinate& one : point) {
+        if (one.axis == "engine") engine = &one.value;
+        const AxisEntry* const entry = find_entry(one.axis);
+        if (entry)
+            entry->apply(one.value, request);
+        else
+            override_with(one.axis, one.value.text, request);
+    }
+    if (engine) find_entry("engine")->apply(*engine, request);
+    return request;
+}
+
+Scene load_scene(const PointRequest& request) {
+    if (request.loaded && request.scene.file.empty()) {
+        if (!request.scene.overrides.empty() || !request.optic.empty() || !request.of_optics.empty())
+            throw UsageError("an axis that changes the scene's text needs a scene file");
+        return *request.loaded;
+    }
+    if (request.optic.empty() && request.of_optics.empty()) return load_scene(request.scene);
+    SceneRequest changed = request.scene;
+    if (!request.optic.empty()) {
+        const std::vector<SceneOverride> removals =
+            without_other_optics(load_scene(request.scene), request.optic);
+        changed.overrides.insert(changed.overrides.end(), removals.begin(), removals.end());
+    }
+    const Scene scene = load_scene(changed);
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+        for (const auto& [key, value] : request.of_optics)
+            if (scene.meshes[m].role == Role::kOptic)
+                changed.overrides.push_back({"/meshes/" + std::to_string(m) + "/" + key, value});
+    return request.of_optics.empty() ? scene : load_scene(changed);
+}
+
+}  // namespace trilens

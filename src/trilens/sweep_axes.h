@@ -1,0 +1,44 @@
+// What a sweep can vary: each axis by its name, with what a value does to the request to render.
+//
+//     for (const trilens::AxisKind& kind : trilens::axis_kinds()) std::printf("%s\n", kind.name.c_str());
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/request.h"
+#include "sweep/axis.h"
+#include "trilens/scene.h"
+
+namespace trilens {
+
+/// A request to render, as the point of a sweep makes it; the library's own calls take it from here.
+struct PointRequest {
+    SceneRequest scene;
+    std::shared_ptr<const Scene> loaded = {};  // instead of `scene`, while that names no file
+    std::string camera;                        // empty: the scene's own
+    std::string optic;                         // empty: all; else the one that the scene keeps
+    // A value of a key of every optic: "normals" and its JSON text.
+    std::vector<std::pair<std::string, std::string>> of_optics = {};
+    PictureRequest picture = {};
+    std::string paths_start_here =
+        {};  // folder of scene files that an axis names; empty: where the program runs
+};
+
+/// Every axis but the JSON pointers, in the order in which help names them.
+std::vector<AxisKind> axis_kinds();
+
+/// The kind of this name; any JSON pointer is one. Throws UsageError that starts with `where`, with the
+/// nearest name.
+AxisKind find_axis_kind(const std::string& name, const std::string& where);
+
+/// Makes the point of its base: each coordinate in its turn. Throws UsageError.
+PointRequest request_at(PointRequest base, const Coordinates& point);
+
+/// The point's scene. Throws as load_scene does; UsageError where a point would change the text of a scene in
+/// memory; InputError where no optic has the point's name.
+Scene load_scene(const PointRequest& request);
+
+}  // namespace trilens

@@ -1,0 +1,58 @@
+// The scenes of a sweep's points: what is known of each, and renderers of those in use.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sweep/results.h"
+#include "trilens/render.h"
+#include "trilens/sweep_axes.h"
+
+namespace trilens {
+
+/// What a plan needs to know of one scene.
+struct SubjectFacts {
+    std::string digest;  // of everything that decides its pictures
+    std::vector<SweptOptic> optics;
+    std::string camera;  // the one that is used
+    Film film;
+    std::size_t faces = 0;  // of the optics' cages
+};
+
+/// A renderer with what making it took.
+struct LoadedSubject {
+    Renderer renderer;
+    std::size_t camera = 0;
+    double seconds = 0;  // for surfaces and trees
+};
+
+/// Thread-safe. Scenes that differ by nothing are one; as many renderers are kept as are set.
+class Subjects {
+  public:
+    Subjects(Warn warn, std::size_t kept) : warn_(std::move(warn)), kept_(kept) {}
+
+    /// Throws as load_scene does, InputError where the scene has no optic, UsageError for its camera.
+    const SubjectFacts& facts(const PointRequest& request);
+    std::shared_ptr<const LoadedSubject> load(const PointRequest& request);
+
+  private:
+    void warn_once(const Scene& scene);
+
+    struct Slot {
+        std::mutex making;
+        std::shared_ptr<const LoadedSubject> subject;
+    };
+    Warn warn_;
+    std::size_t kept_;
+    std::mutex mutex_;
+    std::map<std::string, SubjectFacts> facts_;
+    std::map<std::string, bool> warned_;
+    std::deque<std::pair<std::string, std::shared_ptr<Slot>>> slots_;  // the last used first
+};
+
+}  // namespace trilens

@@ -1,0 +1,323 @@
+// Cameras that are not linear: the map of points and the rays are each other's inverses, both written from
+// their own formulas; the RayMesh comes to the exact rays with order 2.
+#include "camera/camera.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "camera/film_mesh.h"
+#include "draw.h"
+#include "every_camera.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+constexpr FilmSize kFilm{320, 240};
+constexpr double kPi = 3.14159265358979323846;
+
+Camera camera_of(const CameraDescription& from, const FilmSize& film = kFilm) {
+    return make_camera(from, film);
+}
+
+/// The mean distance over random places of the film between the place and where the exact camera shows what
+/// the mesh's ray passes at `t`, in pixels; and the largest.
+struct Off {
+    double mean = 0, median = 0, largest = 0;
+    std::size_t count = 0;
+};
+
+Off mesh_off(const Camera& camera, double t) {
+    Draw draw(5);
+    Off off;
+    std::vector<double> all;
+    const std::size_t facets = camera.mesh.facets.size();
+    for (int round = 0; round < 4000; ++round) {
+        const std::size_t f =
+            std::min(facets - 1, static_cast<std::size_t>(draw.uniform(0, 1) * static_cast<double>(facets)));
+        const Vec3 weights = draw.weights();
+        Vec3 at(0);
+        for (int k = 0; k < 3; ++k)
+            at += weights[k] * camera.mesh.screen[camera.mesh.facets[f][static_cast<std::size_t>(k)]];
+        const Ray ray = interpolated_ray(camera.mesh, f, weights);
+        double nearest = -1;
+        for (std::size_t branch = 0; branch < camera.model->branch_count(); ++branch) {
+            if (!camera.model->shows(branch, Vec2(at.x, at.y))) continue;
+            const auto place = camera.model->place(ray.origin + t * ray.direction, branch);
+            if (!place) continue;
+            Vec2 by = place->pixel - Vec2(at.x, at.y);
+            if (camera.model->period() > 0) by.x = std::remainder(by.x, camera.model->period());
+            by.x /= camera.model->stretch(Vec2(at.x, at.y));
+            if (nearest < 0 || length(by) < nearest) nearest = length(by);
+        }
+        if (nearest < 0) continue;
+        off.mean += nearest;
+        off.largest = std::max(off.largest, nearest);
+        all.push_back(nearest);
+        ++off.count;
+    }
+    off.mean /= static_cast<double>(off.count);
+    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
+    off.median = all[all.size() / 2];
+    return off;
+}
+
+}  // namespace
+
+TEST_CASE("a point along an exact ray is shown where the ray leaves the film") {
+    Draw draw(1);
+    for (CameraDescription from : every_camera()) {
+        INFO(from.name);
+        from.facets = 4;
+        const Camera camera = camera_of(from);
+        int tested = 0, missed = 0;
+        for (int round = 0; round < 1000; ++round) {
+            const Vec2 at(draw.uniform(0, kFilm.width), draw.uniform(0, kFilm.height));
+            const std::optional<Ray> ray = exact_ray(camera, at);
+            if (!ray) continue;
+            const double t = draw.log_uniform(0.2, 20);
+            double nearest = 1e9;
+            for (const FilmImage& image : film_positions(camera, ray->origin + t * ray->direction)) {
+                // Every image is one: its own ray passes the point at its t.
+                const Ray there = *exact_ray(camera, image.pixel);
+                CHECK(length(there.origin + image.t * there.direction - ray->origin - t * ray->direction) <
+                      1e-6 * (1 + t));
+                CHECK(length(there.origin - image.origin) < 1e-6);
+                nearest = std::min(nearest, length(image.pixel - at));
+            }
+            missed += !(nearest < 1e-4);
+            ++tested;
+        }
+        CHECK(tested > 400);
+        // Of several images inside one strip of a blend, one is listed.
+        CHECK(missed <= (from.type == CameraType::kMultiPerspective ? tested / 100 : 0));
+    }
+}
+
+TEST_CASE("the RayMesh comes to the exact rays with order 2") {
+    for (CameraDescription from : every_camera()) {
+        INFO(from.name);
+        for (const double t : {1.0, 4.0, 1000.0}) {
+            std::array<Off, 3> off;
+            for (std::size_t k = 0; k < off.size(); ++k) {
+                from.facets = 40 << k;
+                off[k] = mesh_off(camera_of(from), t);
+                CHECK(off[k].count > 3000);
+            }
+            INFO("t " << t << ": mean " << off[0].mean << " " << off[1].mean << " " << off[2].mean
+                      << ", largest " << off[0].largest << " " << off[1].largest << " " << off[2].largest);
+            // Affine combinations of three rays: the mesh is exact.
+            if (from.type == CameraType::kGeneralLinear || from.type == CameraType::kPushbroom) {
+                CHECK(off[0].largest < 1e-8);
+                continue;
+            }
+            // Where a camera shows some points twice, its image folds: there an error of the rays moves an
+            // image by its square root, and one of the two may be taken for the other.
+            if (from.type == CameraType::kMultiPerspective)
+                CHECK(std::log2(off[0].mean / off[2].mean) / 2 > 1.0);
+            else if (from.type == CameraType::kPlanarContext)
+                CHECK(std::log2(off[0].mean / off[2].mean) / 2 > 1.6);
+            else
+                CHECK(std::log2(off[0].mean / off[2].mean) / 2 > 1.9);
+        }
+    }
+}
+
+TEST_CASE("a tolerance is kept all over the film") {
+    for (CameraDescription from : every_camera()) {
+        // Where derivatives jump, or a point is seen twice, more facets help little: not asked of these.
+        if (from.type == CameraType::kDistortion || from.type == CameraType::kMultiPerspective ||
+            from.type == CameraType::kPlanarContext)
+            continue;
+        INFO(from.name);
+        from.tolerance = 0.25;
+        const Camera camera = camera_of(from);
+        for (const double far : {1.0, 30.0})
+            CHECK(mesh_off(camera, far * camera.model->focus()).largest <= 0.25 * 1.1);
+    }
+}
+
+TEST_CASE("what panoramas and fisheyes show where, by hand") {
+    CameraDescription from;
+    from.eye = {0, 0, 0};
+    from.at = {0, 0, -1};
+    const auto pixel = [&](const Vec3& point) {
+        const auto images = film_positions(camera_of(from), point);
+        REQUIRE(images.size() == 1);
+        return images[0].pixel;
+    };
+    from.type = CameraType::kSpherical;
+    CHECK(length(pixel({0, 0, -2}) - Vec2(160, 120)) < 1e-9);
+    CHECK(length(pixel({3, 0, 0}) - Vec2(240, 120)) < 1e-9);  // a quarter turn to the right
+    CHECK(length(pixel({0, 1, -1}) - Vec2(160, 60)) < 1e-9);  // 45 degrees up
+    CHECK(length(pixel({-1, 0, 1}) - Vec2(40, 120)) < 1e-9);  // 135 degrees to the left
+    from.type = CameraType::kCylindrical;
+    from.yfov = 90;
+    CHECK(length(pixel({3, 0, 0}) - Vec2(240, 120)) < 1e-9);
+    CHECK(length(pixel({0, 1, -2}) - Vec2(160, 60)) < 1e-9);  // half way to the top: slope 1/2
+    from.type = CameraType::kFisheye;
+    from.fov = 180;
+    CHECK(length(pixel({1, 0, -1}) - Vec2(220, 120)) < 1e-9);  // 45 of 90 degrees
+    from.mapping = FisheyeMapping::kOrthographic;
+    CHECK(length(pixel({1, 0, -1}) - Vec2(160 + 120 / std::sqrt(2.0), 120)) < 1e-9);
+    from.mapping = FisheyeMapping::kStereographic;
+    CHECK(length(pixel({0, 1, -1}) - Vec2(160, 120 - 120 * std::tan(kPi / 8))) < 1e-9);
+    from.mapping = FisheyeMapping::kEquisolid;
+    CHECK(length(pixel({0, -1, -1}) - Vec2(160, 120 + 120 * std::sin(kPi / 8) * std::sqrt(2.0))) < 1e-9);
+    CHECK_FALSE(exact_ray(camera_of(from), {20, 120}));
+    CHECK(exact_ray(camera_of(from), {41, 120}));
+}
+
+TEST_CASE("the seam of a panorama and the far side of an inward sphere show a point twice") {
+    CameraDescription from;
+    from.eye = {0, 0, 0};
+    from.at = {0, 0, -1};
+    from.type = CameraType::kSpherical;
+    from.hfov = 360;
+    CHECK(film_positions(camera_of(from), {0, 0.4, 2}).size() == 2);  // on the seam: both borders
+    from.hfov = 180;
+    const auto behind = film_positions(camera_of(from), {0.3, 0.4, 2});
+    REQUIRE(behind.size() == 1);
+    CHECK((behind[0].pixel.x < 0 || behind[0].pixel.x > kFilm.width));
+
+    CameraDescription around;
+    around.type = CameraType::kInwardSphere;
+    around.eye = {0, 0, 5};
+    around.radius = 2;
+    const auto images = film_positions(camera_of(around), {0, 0, 0.5});
+    REQUIRE(images.size() >= 2);
+    CHECK(images[0].t == Approx(1.5));
+    CHECK(length(images[0].pixel - Vec2(160, 120)) < 1e-9);
+    CHECK(images.back().t == Approx(2.5));
+}
+
+TEST_CASE("crossed slits that cross are a pinhole, a pushbroom that stands still nearly one") {
+    // Slits through one point, seen from it: where a perspective shows the same points.
+    CameraDescription slits;
+    slits.type = CameraType::kCrossedSlits;
+    slits.eye = {0, 0, 4};
+    slits.slits = {WorldLine{{0, 0, 4}, {0, 1, 0}}, WorldLine{{0, 0, 4 + 1e-7}, {1, 0, 0}}};
+    slits.window = {-2, 2, -1.5, 1.5};
+    CameraDescription pinhole;
+    pinhole.eye = {0, 0, 4};
+    pinhole.yfov = 2 * std::atan(1.5 / 4) * 180 / kPi;
+    const Camera a = camera_of(slits), b = camera_of(pinhole);
+    Draw draw(3);
+    for (int k = 0; k < 100; ++k) {
+        const Vec3 point = draw.in_cube(1.5);
+        const auto in_a = film_positions(a, point), in_b = film_positions(b, point);
+        REQUIRE(in_a.size() == 1);
+        REQUIRE(in_b.size() == 1);
+        CHECK(length(in_a[0].pixel - in_b[0].pixel) < 1e-4);
+    }
+    CameraDescription pushbroom = pinhole;
+    pushbroom.type = CameraType::kPushbroom;
+    pushbroom.travel = {3, 0, 0};
+    const auto image = film_positions(camera_of(pushbroom), {0.75, 1, 0});
+    REQUIRE(image.size() == 1);
+    CHECK(image[0].pixel.x == Approx(160 * 1.5));  // a quarter of the way from the middle
+    CHECK(image[0].pixel.y == Approx(120 * (1 - 1 / 1.5)));
+    CHECK(length(image[0].origin - Vec3(0.75, 0, 4)) < 1e-12);
+}
+
+TEST_CASE("the bent ground: flat near the eye, rigid beyond the arc, continuous between") {
+    CameraDescription from = every_camera().back();
+    from.eye = {0, 1.5, 0};
+    from.at = {0, 1.4, -1};
+    from.angle = 60;
+    from.bend = 3;
+    const Camera camera = camera_of(from);
+    CameraDescription plain = from;
+    plain.type = CameraType::kPerspective;
+    const Camera perspective = camera_of(plain);
+    // Near ground is where a perspective shows it.
+    const auto near_here = film_positions(camera, {0.4, 0, -2.5});
+    const auto near_there = film_positions(perspective, {0.4, 0, -2.5});
+    REQUIRE(!near_here.empty());
+    CHECK(length(near_here[0].pixel - near_there[0].pixel) < 1e-9);
+    // Far ground is where a perspective shows the turned up plane: 6 + s beyond the eye's foot lies at
+    // s along the tail.
+    const double a = kPi / 3, r = 3 / a, s = 4;
+    const Vec3 bent(0.7, r * (1 - std::cos(a)) + s * std::sin(a), -(3 + r * std::sin(a) + s * std::cos(a)));
+    const auto far_here = film_positions(camera, {0.7, 0, -(6 + s)}),
+               far_there = film_positions(perspective, bent);
+    REQUIRE(!far_here.empty());
+    REQUIRE(far_there.size() == 1);
+    CHECK(length(far_here.back().pixel - far_there[0].pixel) < 1e-9);
+    // Ground point by ground point away from the eye, the film shows them without jumps, ever higher.
+    double last = 1e9;
+    for (double z = -2; z > -40; z -= 0.05) {
+        const auto images = film_positions(camera, {0, 0, z});
+        if (images.empty()) {
+            CHECK(z < -6);  // above the film
+            break;
+        }
+        const double y = images[0].pixel.y;
+        CHECK(y < last);
+        if (last < 1e9) CHECK(last - y < 12);
+        last = y;
+    }
+    for (double y = 0; y < 240; y += 0.37) {
+        const Ray one = *exact_ray(camera, {100, y}), next = *exact_ray(camera, {100, y + 1e-6});
+        CHECK(length(one.origin - next.origin) < 1e-5);
+        CHECK(length(one.direction - next.direction) < 1e-5);
+    }
+}
+
+TEST_CASE("the detail is a perspective, the border sees the context's angle") {
+    CameraDescription from;
+    from.type = CameraType::kDistortion;
+    from.eye = {0, 0, 0};
+    from.at = {0, 0, -1};
+    from.detail = {0.25, 0.25, 0.75, 0.75};
+    from.yfov = 20;
+    from.context_fov = 160;
+    const Camera camera = camera_of(from);
+    const double slope = std::tan(kPi / 18);
+    CHECK(length(normalize(exact_ray(camera, {160, 60})->direction) - normalize(Vec3(0, slope, -1))) < 1e-12);
+    CHECK(length(normalize(exact_ray(camera, {200, 120})->direction) -
+                 normalize(Vec3(40 * slope / 60, 0, -1))) < 1e-12);
+    for (const Vec2& at : {Vec2(0, 120), Vec2(320, 120), Vec2(160, 0), Vec2(77, 240), Vec2(320, 240)})
+        CHECK(-normalize(exact_ray(camera, at)->direction).z == Approx(std::cos(80 * kPi / 180)));
+}
+
+TEST_CASE("between views rays pass from one to the next, without a jump") {
+    for (const CameraDescription& from : every_camera()) {
+        if (from.type != CameraType::kMultiPerspective) continue;
+        const Camera camera = camera_of(from);
+        Ray last = *exact_ray(camera, {100, 60});
+        for (double x = 100.01; x < 319; x += 0.01) {
+            const std::optional<Ray> ray = exact_ray(camera, {x, 60});
+            REQUIRE(ray);
+            CHECK(length(ray->origin - last.origin) < 0.01);
+            CHECK(length(ray->direction - last.direction) < 0.01);
+            last = *ray;
+        }
+        CHECK(length(last.origin - Vec3(3.5, 1.5, 2.5)) < 1e-9);
+        CameraDescription hard = from;
+        hard.blend = 0;
+        const Camera cut = camera_of(hard);
+        CHECK(length(exact_ray(cut, {191.999, 60})->origin - from.eye) < 1e-9);
+        CHECK(length(exact_ray(cut, {192.001, 60})->origin - Vec3(3.5, 1.5, 2.5)) < 1e-9);
+    }
+}
+
+TEST_CASE("distorted and back is where it was") {
+    Draw draw(9);
+    for (const CameraDescription& from : every_camera()) {
+        if (from.type != CameraType::kOpencv) continue;
+        INFO(from.name);
+        const Camera camera = camera_of(from);
+        for (int k = 0; k < 300; ++k) {
+            const Vec2 at(draw.uniform(0, 320), draw.uniform(0, 240));
+            const Ray ray = *exact_ray(camera, at);
+            const auto images = film_positions(camera, ray.origin + 2.0 * ray.direction);
+            REQUIRE(images.size() == 1);
+            CHECK(length(images[0].pixel - at) < 1e-8);
+        }
+    }
+}

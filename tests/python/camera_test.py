@@ -1,0 +1,48 @@
+"""The cameras of scenes: rays and places, as the library has them."""
+import json
+import pathlib
+
+import numpy as np
+import pytest
+
+import trilens
+
+SCENE = pathlib.Path(__file__).resolve().parents[2] / "scenes/cameras.json"
+
+
+@pytest.fixture(scope="module")
+def scene():
+    # The lens is given in pixels of the film.
+    cameras = trilens.load_scene(SCENE).to_dict()["cameras"]
+    index = [camera["name"] for camera in cameras].index("lens")
+    pixels = {f"/cameras/{index}/{key}": cameras[index][key] * 96 / 640 for key in ("fx", "fy", "cx", "cy")}
+    return trilens.load_scene(SCENE, {"/film/width": 96, "/film/height": 72, **pixels})
+
+
+def test_every_camera_shows_points_of_its_rays_where_they_leave(scene):
+    places = np.random.default_rng(3).uniform([1, 1], [95, 71], (50, 2))
+    for described in scene.cameras:
+        camera = trilens.FilmCamera(scene, described.name)
+        rays = camera.rays(places)
+        has_ray = ~np.isnan(rays["origin"][:, 0])
+        assert has_ray.sum() > 20, described.name
+        points = (rays["origin"] + 2.5 * rays["direction"])[has_ray]
+        images = camera.project(points)
+        for i, place in enumerate(places[has_ray]):
+            own = images["point"] == i
+            off = np.hypot(images["x"][own] - place[0], images["y"][own] - place[1])
+            assert off.min() < 1e-4, described.name
+
+
+def test_types_are_the_scene_files(scene):
+    types = [entry.get("type", "perspective") for entry in scene.to_dict()["cameras"]]
+    assert [camera.type for camera in scene.cameras] == types
+    assert trilens.FilmCamera(scene, "left half").is_linear
+    assert not trilens.FilmCamera(scene, "fisheye").is_linear
+
+
+def test_a_lens_that_folds_the_film_is_refused(scene):
+    index = [camera.name for camera in scene.cameras].index("lens")
+    broken = scene.with_overrides({f"/cameras/{index}/distortion": [-2, 0, 0, 0]})
+    with pytest.raises(trilens.InputError, match=f"/cameras/{index}/distortion: .*not one-to-one"):
+        trilens.FilmCamera(broken, "lens")

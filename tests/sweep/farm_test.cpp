@@ -1,0 +1,146 @@
+// Sweeps of several machines: merged folders, scripts for batch systems; sweeps kept as files.
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "support/test.h"
+#include "sweep/fake_scene.h"
+#include "sweep/farm_scripts.h"
+#include "sweep/json.h"
+#include "sweep/merge.h"
+#include "sweep/sweep.h"
+#include "sweep/sweep_file.h"
+
+using namespace trilens;
+using trilens_test::FakeSweep;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// summary.json without what tells of the machine.
+std::string comparable(const std::string& folder) {
+    Json json = Json::parse(read_whole_file(folder + "/summary.json").value());
+    for (Json& run : json["runs"]) {
+        Json& metrics = run["metrics"];
+        Json kept;
+        for (const auto& [name, value] : metrics.items())
+            if (name.rfind("t_", 0) != 0 && name.rfind("peak_", 0) != 0 && name.rfind("machine_", 0) != 0)
+                kept[name] = value;
+        metrics = kept;
+    }
+    return json.dump();
+}
+
+}  // namespace
+
+TEST_CASE("sweep: shards in folders of their own merge into what one machine gives") {
+    const std::string home = trilens_test::scratch_dir("farm_merge");
+    FakeSweep whole(home + "/whole", {1, 2, 4, 8, 16});
+    whole.run();
+    std::vector<std::string> parts;
+    for (int i = 0; i < 3; ++i) {
+        parts.push_back(home + "/part" + std::to_string(i));
+        FakeSweep part(parts.back(), {1, 2, 4, 8, 16});
+        part.params.shard = {i, 3};
+        part.run();
+    }
+    CHECK(merge_folders(parts, home + "/all") == 5);
+    report_sweep(home + "/all");
+    CHECK(comparable(home + "/all") == comparable(home + "/whole"));
+    // Again: nothing to do. What is merged can go on.
+    CHECK(merge_folders(parts, home + "/all") == 0);
+    FakeSweep more(home + "/all", {1, 2, 4, 8, 16, 32});
+    more.run();
+    CHECK((more.renders == 1 && more.traces == 0));
+}
+
+TEST_CASE("sweep: only parts of one sweep and one build merge; what is damaged counts as missing") {
+    const std::string home = trilens_test::scratch_dir("farm_refused");
+    FakeSweep one(home + "/one", {1, 2}), camera(home + "/camera", {1, 2}), build(home + "/build", {1, 2});
+    one.run();
+    camera.params.subject.camera = "side";
+    camera.run();
+    build.job_key = "another build";
+    build.run();
+    for (const char* other : {"/camera", "/build"}) {
+        INFO(other);
+        CHECK_THROWS_AS(merge_folders({home + "/one", home + other}, home + "/all"), InputError);
+        CHECK(!fs::exists(home + "/all/runs"));
+    }
+    CHECK_THROWS_AS(merge_folders({home + "/none"}, home + "/all"), InputError);
+    std::string bytes = read_whole_file(home + "/one/runs/n0002/image.exr").value();
+    replace_text_file(home + "/one/runs/n0002/image.exr", bytes.substr(0, bytes.size() / 2));
+    CHECK(merge_folders({home + "/one"}, home + "/all") == 1);
+    CHECK(load_sweep(home + "/all").count(RunState::kMissing) == 1);
+}
+
+TEST_CASE("sweep: scripts name every part once and quote what shells would read") {
+    FarmRequest request;
+    request.parts = 200;
+    request.title = "it's a test";
+    request.folder = "/results/a b";
+    request.command = {"/usr/bin/trilens", "sweep", "run", "a b.json", "--over", "engine=exact,classic"};
+    request.report = {"/usr/bin/trilens", "sweep", "report", "/results/a b"};
+    for (const std::string& system : farm_systems()) {
+        request.system = system;
+        const std::string script = farm_script(request);
+        INFO(script);
+        CHECK(script.find("a b.json") != std::string::npos);
+        if (system == "htcondor") {
+            CHECK(script.find("\nqueue 200\n") != std::string::npos);
+            continue;
+        }
+        const std::string file = trilens_test::scratch_dir("farm_script") + "/script";
+        replace_text_file(file, script);
+        CHECK(std::system(("bash -n " + file).c_str()) == 0);
+    }
+    request.system = "slurmm";
+    CHECK_THROWS_AS(farm_script(request), UsageError);
+    request.system = "slurm", request.parts = 0;
+    CHECK_THROWS_AS(farm_script(request), UsageError);
+    CHECK(shell_quoted("a'b c") == "'a'\\''b c'");
+    CHECK(shell_quoted("/materials/0/ior=1.3,1.5") == "/materials/0/ior=1.3,1.5");
+}
+
+TEST_CASE("sweep: a sweep file says scenes, axes and truth; what it may not say is refused with its place") {
+    const std::string folder = trilens_test::scratch_dir("farm_file"), file = folder + "/sweep.json";
+    replace_text_file(file, R"({ "scenes": ["a.json"], "truth": "facets", "zip": true, // a remark
+        "over": [ {"axis": "resolution", "values": [1, 2, "4..8:x2"]}, {"axis": "/materials/0/ior", "values": "1..4:+1"},
+                  {"axis": "/cameras/0/lookAt/eye", "values": [[0, 1, 4]]} ],
+        "set": {"/film/width": 96} })");
+    CHECK(is_sweep_file(file));
+    const SweepFile sweep = read_sweep_file(file);
+    CHECK(sweep.scenes == std::vector<std::string>{"a.json"});
+    CHECK(sweep.over.at(0).values == std::vector<std::string>{"1", "2", "4..8:x2"});
+    CHECK(sweep.over.at(1).values == std::vector<std::string>{"1..4:+1"});
+    CHECK(sweep.over.at(2).values == std::vector<std::string>{"[0,1,4]"});
+    CHECK((sweep.zip && sweep.truth == "facets"));
+    CHECK(sweep.set.at(0) == std::pair<std::string, std::string>("/film/width", "96"));
+
+    const std::vector<std::pair<std::string, std::string>> bad = {
+        {"", "no JSON"},
+        {"{\"over\": []}", "/over"},
+        {"{\"scenes\": [\"a\"]}", "over"},
+        {"{\"over\": [{\"axis\": \"resolution\"}]}", "/over/0"},
+        {"{\"over\": [{\"axis\": \"resolution\", \"values\": []}]}", "no point"},
+        {"{\"over\": [{\"axis\": 3, \"values\": [1]}]}", "/over/0/axis"},
+        {"{\"over\": [{\"axis\": \"a\", \"values\": [1]}], \"zipp\": true}", "zip"},
+        {"{\"over\": [{\"axis\": \"a\", \"values\": [1]}], \"repeats\": 0}", "/repeats"},
+        {"[1]", "no object"}};
+    for (const auto& [text, named] : bad) {
+        INFO(text);
+        replace_text_file(file, text);
+        try {
+            read_sweep_file(file);
+            FAIL("was read");
+        } catch (const InputError& error) {
+            INFO(error.what());
+            CHECK(std::string(error.what()).find(named) != std::string::npos);
+            CHECK(std::string(error.what()).find("sweep.json") != std::string::npos);
+        }
+    }
+}
