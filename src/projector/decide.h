@@ -4,15 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "projector/facet_rays.h"
+#include "projector/place.h"
 
 namespace trilens {
-
-/// A line meets a triangle.
-struct LineHit {
-    double t = 0;         // any sign, or not a number
-    Vec2 barycentric{0};  // weights of the second and third corner
-};
 
 /// An edge conic (trilinear/edge_conic.h) further from zero than this share of its terms has the sign of the
 /// decision. With p = weight corner - origin', the conic is direction' . (p_a x p_b) / weight. Counting
@@ -20,16 +14,13 @@ struct LineHit {
 /// conic, 16 where coefficients are moved from the facet's corner to another reference, 8 in the ray.
 inline constexpr double kDecisionDoubt = 128 * 2.220446049250313e-16;
 
-/// Below this the value by Cramer's rule is not trusted: a sliver, or a triangle seen edge-on.
-inline constexpr double kLeastDeterminant = 0x1p-30;
-
 /// Whether the ray's line meets the triangle, by exact signs: the corners are projected along the ray on the
 /// plane of two axes, where the ray is the origin. Every triangle with a corner gets the same projection of
 /// it, so the rounded picture is still a mesh without gaps (Woop, Benthin, Wald, Watertight Ray/Triangle
-/// Intersection, JCGT 2(1), 2013). `corner`: from the facet's centre. Where it lies: by Cramer's rule
-/// (Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection, 1997) in the order of operations
-/// that kernel_resolve-inl.h repeats in lanes; where that is no convex combination or not trusted, from the
-/// projection, as convex combinations: never outside the triangle, however thin it is.
-std::optional<LineHit> decide(const SampleRay& ray, const std::array<Vec3, 3>& corner);
+/// Intersection, JCGT 2(1), 2013). `corner`: from the facet's centre. Where it lies: as place() says; where
+/// that says nothing, from the projection, as convex combinations: never outside the triangle, however thin
+/// it is. `ray`: of the facet.
+std::optional<LineHit> decide(const FacetRays& facet, const SampleRay& ray,
+                              const std::array<Vec3, 3>& corner);
 
 }  // namespace trilens

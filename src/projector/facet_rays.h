@@ -2,6 +2,10 @@
 // bit.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "base/ray_mesh.h"
 #include "trilinear/edge_conic.h"
 
@@ -18,7 +22,12 @@ struct FacetOnScreen {
 struct SampleRay {
     Vec3 origin{0}, direction{0};
     double weight = 1;
+    Vec2 from{0};  // FacetRays::screen, to the sample
 };
+
+inline double largest_part(const Vec3& v) {
+    return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
+}
 
 /// Depends on the facet alone, not on its samples. Positions in the world are measured from `centre`, one of
 /// the facet's corner rays' origins, so that scenes far from the world's origin lose nothing; positions on
@@ -27,12 +36,15 @@ struct FacetRays {
     Vec2 screen{0};   // pixels from the film's top left
     Vec3 centre{0};   // world frame
     AffineRays rays;  // over the offset from `screen`, in pixels
+    // What place() needs of them.
+    LineQuadratic line;
+    std::array<double, 3> speed{};  // the largest coordinate of each part of the direction
 
     /// The ray through a position of the screen. Its bits decide what a sample sees.
     SampleRay at(const Vec2& position) const {
         const Vec2 from = position - screen;
         return {rays.origin_at(from.x, from.y), rays.direction_at(from.x, from.y),
-                rays.weight_at(from.x, from.y)};
+                rays.weight_at(from.x, from.y), from};
     }
 };
 

@@ -55,6 +55,7 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
     std::uint32_t tiles = 0;
     for (std::uint32_t g = 0; g < groups.count; ++g) tiles += group[g].count;
     state.first_tile = group[0].first;
+    state.cache.rays = kNone;
     set_up_batch(scene, &scene.tiles->tiles[state.first_tile], tiles, state.lanes);
 
     std::uint32_t left = state.lanes.broken & first_lanes(tiles);

@@ -171,6 +171,11 @@ HWY_INLINE Words choose(const Mask& m, const Words& yes, const Words& no) {
     TRILENS_EACH_PART r.part[i] = hn::IfThenElse(hn::RebindMask(kWord, m.part[i]), yes.part[i], no.part[i]);
     return r;
 }
+HWY_INLINE Mask same(const Words& a, const Words& b) {
+    Mask r;
+    TRILENS_EACH_PART r.part[i] = hn::RebindMask(kFloat, hn::Eq(a.part[i], b.part[i]));
+    return r;
+}
 /// Bit k is lane k.
 HWY_INLINE std::uint32_t bits(const Mask& m) {
     std::uint32_t r = 0;

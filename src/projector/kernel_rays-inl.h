@@ -40,12 +40,11 @@ HWY_NOINLINE void make_vector_beams(const KernelScene& scene, KernelState& state
             // No thinner than a third of a sample, so that the hull has sides.
             const double half_u = std::max<double>(box.half_u[b], 0.6 / std::max(1, tile.width - 1)),
                          half_v = std::max<double>(box.half_v[b], 0.6 / std::max(1, tile.height - 1));
-            put_rectangle(state.lanes, j, {box.centre_u[b], box.centre_v[b], half_u, half_v}, hull, k);
+            const double weight =
+                put_rectangle(state.lanes, j, {box.centre_u[b], box.centre_v[b], half_u, half_v}, hull, k);
             for (int a = 0; a < 3; ++a) hull.centre[a][k] = state.lanes.centre[a][j];
-            // Where the widened rectangle leaves the tile, the weight is no longer known to be positive.
-            const bool inside = 1 - 1.7 * (state.lanes.weight_sum[j] - 1) > 0;
             hull.origin_terms[k] =
-                inside ? state.lanes.origin_terms[j] : std::numeric_limits<double>::infinity();
+                weight > 0.1 ? state.lanes.origin_terms[j] : std::numeric_limits<double>::infinity();
         }
         make_planes(scene, hull);
         VectorBeams& beams = state.beams[g];
@@ -122,7 +121,7 @@ struct alignas(64) RaysInLeaf {
     float edge_doubt[kLanes], above_doubt[kLanes], along_doubt[kLanes];
 };
 
-/// The double part of the doubts of a tile's rays in a leaf. Weights lie above 0.4 (scale_lanes).
+/// The double part of the doubts of a tile's rays in a leaf. Weights lie above kLeastWeight.
 struct RayDoubts {
     double edge, above, slack;  // slack: by how much a box must be larger than the leaf
     double d[3];                // from the facet's centre to the leaf's

@@ -78,15 +78,20 @@ HWY_NOINLINE void gather_tile(const KernelScene& scene, const SampleTile& tile, 
     lanes.weight[0][j] = w[0] + from.x * w[1] + from.y * w[2];
     lanes.weight[1][j] = parts[1] * w[1];
     lanes.weight[2][j] = parts[2] * w[2];
+    lanes.weight_low[j] = tile.low;
+    lanes.weight_high[j] = tile.high;
     lanes.origin_terms[j] = origin_terms;
     lanes.weight_terms[j] = std::fabs(w[0]) + (std::fabs(from.x) + parts[1]) * std::fabs(w[1]) +
                             (std::fabs(from.y) + parts[2]) * std::fabs(w[2]);
 }
 
-/// Scales a lane's rays to weight 1 in the middle and bounds them.
+/// Of a sample, where the largest in its tile is 1.
+inline constexpr double kLeastWeight = 0.4;
+
+/// Scales a lane's rays to weight 1 where it is largest of the samples' and bounds them.
 HWY_NOINLINE void scale_lanes(TileLanes& lanes) {
     for (std::size_t j = 0; j < kLanes; ++j) {
-        const double s = 1 / lanes.weight[0][j];
+        const double s = 1 / lanes.weight_high[j];
         for (int p = 0; p < 3; ++p) {
             lanes.weight[p][j] *= s;
             for (int a = 0; a < 3; ++a) {
@@ -94,26 +99,25 @@ HWY_NOINLINE void scale_lanes(TileLanes& lanes) {
                 lanes.direction[a][p][j] *= s;
             }
         }
-        const double scale = std::fabs(s);
-        lanes.origin_terms[j] *= scale;
-        lanes.weight_terms[j] *= scale;
+        lanes.weight_low[j] *= s;
+        lanes.origin_terms[j] *= s;
+        lanes.weight_terms[j] *= s;
         const double direction_terms =
-            scale * (lanes.direction_sum[0][j] + lanes.direction_sum[1][j] + lanes.direction_sum[2][j]);
+            s * (lanes.direction_sum[0][j] + lanes.direction_sum[1][j] + lanes.direction_sum[2][j]);
         lanes.weight_sum[j] =
             std::fabs(lanes.weight[0][j]) + std::fabs(lanes.weight[1][j]) + std::fabs(lanes.weight[2][j]);
-        const double weight_least = 2 - lanes.weight_sum[j] - kDecisionDoubt * lanes.weight_terms[j];
+        const double weight_least = lanes.weight_low[j] - kDecisionDoubt * lanes.weight_terms[j];
         lanes.decision_doubt[j] = kDecisionDoubt * direction_terms / weight_least;
         for (int a = 0; a < 3; ++a)
             lanes.direction_sum[a][j] = std::fabs(lanes.direction[a][0][j]) +
                                         std::fabs(lanes.direction[a][1][j]) +
                                         std::fabs(lanes.direction[a][2][j]);
     }
-    // Tiles over which the weight changes much, or its sign, and what is not finite.
+    // Tiles over whose samples the weight changes much, or its sign, and what is not finite.
     std::uint32_t broken = 0;
     for (std::size_t j = 0; j < kLanes; ++j) {
-        const bool good = 2 - lanes.weight_sum[j] > 0.25 * lanes.weight_sum[j] &&
-                          lanes.decision_doubt[j] >= 0 && std::isfinite(lanes.decision_doubt[j]) &&
-                          std::isfinite(lanes.origin_terms[j]);
+        const bool good = lanes.weight_low[j] >= kLeastWeight && lanes.decision_doubt[j] >= 0 &&
+                          std::isfinite(lanes.decision_doubt[j]) && std::isfinite(lanes.origin_terms[j]);
         broken |= good ? 0 : 1u << j;
     }
     lanes.broken = broken;
@@ -168,10 +172,8 @@ HWY_NOINLINE void transpose_lanes(std::uint32_t tiles, TileLanes& lanes) {
     }
 }
 
-/// How far apart the rays of neighbouring samples are, at the middle of the tile.
-HWY_NOINLINE void measure_pitch(const KernelScene& scene, std::uint32_t tiles, const SampleTile* tile,
-                                TileLanes& lanes) {
-    (void)scene;
+/// About how far apart the rays of neighbouring samples are, where the weight is 1.
+HWY_NOINLINE void measure_pitch(std::uint32_t tiles, const SampleTile* tile, TileLanes& lanes) {
     for (std::size_t j = 0; j < tiles; ++j) {
         for (int p = 1; p < 3; ++p) {
             double origin = 0, direction = 0;
@@ -193,13 +195,17 @@ struct LocalRectangle {
     double u, v, half_u, half_v;
 };
 
-/// Into lane `at` of `hull`: the rays at the rectangle's corners, of the tile of lane j.
-HWY_NOINLINE void put_rectangle(const TileLanes& lanes, std::size_t j, const LocalRectangle& r,
-                                HullLanes& hull, std::size_t at) {
+/// Into lane `at` of `hull`: the rays at the rectangle's corners, of the tile of lane j. Returns the least
+/// weight there: they are a hull where it is positive.
+HWY_NOINLINE double put_rectangle(const TileLanes& lanes, std::size_t j, const LocalRectangle& r,
+                                  HullLanes& hull, std::size_t at) {
     constexpr double kU[4] = {-1, 1, 1, -1}, kV[4] = {-1, -1, 1, 1};
+    double least = INFINITY;
     for (std::size_t k = 0; k < 4; ++k) {
         const double u = r.u + kU[k] * r.half_u, v = r.v + kV[k] * r.half_v;
-        const double inverse = 1 / (lanes.weight[0][j] + u * lanes.weight[1][j] + v * lanes.weight[2][j]);
+        const double weight = lanes.weight[0][j] + u * lanes.weight[1][j] + v * lanes.weight[2][j];
+        const double inverse = 1 / weight;
+        least = std::min(least, weight);
         for (int a = 0; a < 3; ++a) {
             hull.origin[k][a][at] =
                 inverse * (lanes.origin[a][0][j] + u * lanes.origin[a][1][j] + v * lanes.origin[a][2][j]);
@@ -207,31 +213,32 @@ HWY_NOINLINE void put_rectangle(const TileLanes& lanes, std::size_t j, const Loc
                                                   v * lanes.direction[a][2][j]);
         }
     }
+    return least;
 }
 
-/// The hull of the rays of a tile: of its facet's corner rays, widened to the outermost sample, where the
-/// tile is the whole facet; else of the rays at its rectangle's corners. Both by convexity of the weights.
+/// The hull of the rays of a tile: where the tile is part of its facet, of the rays at its rectangle's
+/// corners, if the weight is positive there; else of the facet's corner rays, widened to the outermost
+/// sample. Both by convexity of the weights.
 HWY_NOINLINE void gather_hull(const KernelScene& scene, const SampleTile& tile, std::size_t j,
                               TileLanes& lanes) {
-    if (tile.whole_facet && tile.least_weight > -1) {
-        const IdTriple& corner = scene.mesh->facets[tile.facet];
-        const double out = std::min(0.0, tile.least_weight) - 1e-9;  // the weight of the other two corners
-        for (int a = 0; a < 3; ++a) {
-            double o[3], d[3];
-            for (std::size_t k = 0; k < 3; ++k) {
-                o[k] = scene.mesh->rays[corner[k]].origin[a] - lanes.centre[a][j];
-                d[k] = scene.mesh->rays[corner[k]].direction[a];
-            }
-            const double o_sum = out * (o[0] + o[1] + o[2]), d_sum = out * (d[0] + d[1] + d[2]);
-            for (std::size_t k = 0; k < 4; ++k) {
-                lanes.hull.origin[k][a][j] = o_sum + (1 - 3 * out) * o[std::min<std::size_t>(k, 2)];
-                lanes.hull.direction[k][a][j] = d_sum + (1 - 3 * out) * d[std::min<std::size_t>(k, 2)];
-            }
-        }
-        return;
+    constexpr double kReach = 1 + 1e-6, kPositive = 0.1;
+    if (!tile.whole_facet || !(tile.least_weight > -1)) {
+        if (put_rectangle(lanes, j, {0, 0, kReach, kReach}, lanes.hull, j) > kPositive) return;
     }
-    constexpr double kReach = 1 + 1e-6;
-    put_rectangle(lanes, j, {0, 0, kReach, kReach}, lanes.hull, j);
+    const IdTriple& corner = scene.mesh->facets[tile.facet];
+    const double out = std::min(0.0, tile.least_weight) - 1e-9;  // the weight of the other two corners
+    for (int a = 0; a < 3; ++a) {
+        double o[3], d[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            o[k] = scene.mesh->rays[corner[k]].origin[a] - lanes.centre[a][j];
+            d[k] = scene.mesh->rays[corner[k]].direction[a];
+        }
+        const double o_sum = out * (o[0] + o[1] + o[2]), d_sum = out * (d[0] + d[1] + d[2]);
+        for (std::size_t k = 0; k < 4; ++k) {
+            lanes.hull.origin[k][a][j] = o_sum + (1 - 3 * out) * o[std::min<std::size_t>(k, 2)];
+            lanes.hull.direction[k][a][j] = d_sum + (1 - 3 * out) * d[std::min<std::size_t>(k, 2)];
+        }
+    }
 }
 
 /// Planes around each tile's hull. A plane holds only if, as floats, its normal points along all four corner
@@ -312,7 +319,7 @@ HWY_NOINLINE void set_up_batch(const KernelScene& scene, const SampleTile* tile,
     scale_lanes(lanes);
     make_lines(lanes);
     transpose_lanes(tiles, lanes);
-    measure_pitch(scene, tiles, tile, lanes);
+    measure_pitch(tiles, tile, lanes);
     for (std::size_t j = 0; j < kLanes; ++j)
         gather_hull(scene, tile[std::min<std::size_t>(j, tiles - 1)], j, lanes);
     std::copy_n(lanes.origin_terms, kLanes, lanes.hull.origin_terms);

@@ -1,11 +1,13 @@
 // What the stages of the vector engine hand to each other: plain arrays, 16 lanes each.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "projector/kernel_scene.h"
+#include "projector/place.h"
 
 namespace trilens {
 
@@ -47,7 +49,7 @@ struct alignas(64) HullLanes {
 };
 
 /// 16 tiles, one per lane, as functions of their local coordinates (parts 1, u, v; quadratics 1, u, v, u^2, u
-/// v, v^2), scaled to weight 1 in the middle; positions from each facet's centre.
+/// v, v^2), scaled to weight 1 where it is largest of the samples'; positions from each facet's centre.
 struct alignas(64) TileLanes {
     double centre[3][kLanes];                                                 // of the facet, world frame
     double weight[3][kLanes], origin[3][3][kLanes], direction[3][3][kLanes];  // [axis][part][lane]
@@ -56,6 +58,7 @@ struct alignas(64) TileLanes {
     double line_sum[3][kLanes];       // of the absolute coefficients of `line`
     double direction_sum[3][kLanes];  // of `direction`
     double weight_sum[kLanes];
+    double weight_low[kLanes], weight_high[kLanes];     // of the samples; high before it is scaled to 1
     double origin_terms[kLanes], weight_terms[kLanes];  // as BlockRays' sizes
     double decision_doubt[kLanes];  // times (weight_terms reach + origin_terms)^2: the decision's own doubt
 
@@ -113,6 +116,22 @@ struct alignas(64) VectorBeams {
     float farthest[kLanes];                        // no farther hit can matter to the vector
 };
 
+/// A triangle's forms through one facet, and which sorted corners are the second and the third of the scene's
+/// own triangle.
+struct CachedForms {
+    PlaceForms forms;
+    Id triangle = kNone;  // index into the scene
+    std::uint8_t second = 1, third = 2;
+};
+
+/// Those of some triangles that one facet sees, by the index into PreparedScene::Data modulo kCachedForms.
+inline constexpr std::size_t kCachedForms = 64;
+struct FormCache {
+    Id rays = kNone;  // of the facet
+    std::array<Id, kCachedForms> triangle{};
+    std::array<CachedForms, kCachedForms> forms;
+};
+
 /// Everything that one thread needs for one batch.
 struct KernelState {
     TileLanes lanes;
@@ -132,6 +151,7 @@ struct KernelState {
     std::uint32_t first_lane = 0, tiles = 0;  // the group's lanes
     std::uint32_t first_vector = 0, vectors = 0;
     std::size_t most_doubts = 0;
+    FormCache cache;
 };
 
 }  // namespace trilens

@@ -108,20 +108,25 @@ class VectorMaker {
     std::vector<std::uint32_t> start_;
 };
 
-/// The smallest weight of any corner at any of the samples; not a number where a weight is not.
-double least_weight(const FacetOnScreen& facet, const SampleGrid& grid,
-                    std::span<const LatticeSample> samples) {
+/// SampleTile's least_weight, low and high.
+void bound_weights(const FacetOnScreen& facet, const SampleGrid& grid, std::span<const LatticeSample> samples,
+                   SampleTile& tile) {
     const Mat3& m = facet.weights.weights_from_screen;
-    double least = INFINITY;
+    tile.least_weight = tile.low = INFINITY;
+    tile.high = 0;
     for (const LatticeSample& s : samples) {
         const double x = grid.x0 + (s.column + 0.5) / grid.side, y = grid.y0 + (s.row + 0.5) / grid.side;
         const double e0 = m[0].x * x + m[1].x * y + m[2].x, e1 = m[0].y * x + m[1].y * y + m[2].y,
                      e2 = m[0].z * x + m[1].z * y + m[2].z;
-        const double sum = e0 + e1 + e2, low = std::min(e0, std::min(e1, e2)) / sum;
-        if (!(sum > 0)) return NAN;
-        least = std::min(least, low);
+        const double sum = e0 + e1 + e2, least = std::min(e0, std::min(e1, e2)) / sum;
+        if (!(sum > 0)) {
+            tile.least_weight = tile.low = tile.high = NAN;
+            return;
+        }
+        tile.least_weight = std::min(tile.least_weight, least);
+        tile.low = std::min(tile.low, sum);
+        tile.high = std::max(tile.high, sum);
     }
-    return least;
 }
 
 /// samples_ into sorted_: by bands of rows, in each by columns, in each by rows. Samples of a column come by
@@ -144,7 +149,7 @@ void VectorMaker::add(const RoughTile& rough) {
     tile.rays = rough.rays;
     tile.facet = static_cast<Id>(rough.facet.facet);
     tile.whole_facet = rough.whole_facet;
-    if (tile.whole_facet) tile.least_weight = least_weight(rough.facet, grid_, samples_);
+    bound_weights(rough.facet, grid_, samples_, tile);
     tile.first_vector = static_cast<std::uint32_t>(out_.vectors.size());
     tile.first_boxes = static_cast<std::uint32_t>(out_.boxes.size());
     tile.samples = static_cast<std::uint32_t>(samples_.size());

@@ -40,6 +40,8 @@ struct SampleTile {
     std::size_t first_slot = 0;                      // of the rectangle's cells in `slot`
     bool whole_facet = false;                        // all of the facet's samples are here
     double least_weight = 0;                         // the smallest weight of a corner at any sample
+    double low = 0,
+           high = 0;  // of the weights' sum (FacetRays' weight) at the samples; not a number: not positive
 };
 
 struct TileGroup {
