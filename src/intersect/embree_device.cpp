@@ -38,19 +38,19 @@ void check_isa(const std::string& isa) {
     throw UsageError("no instruction set '" + isa + "': sse2, sse4.2, avx, avx2 or avx512");
 }
 
+}  // namespace
+
 // Files of the user's that Embree would read are ignored: they could change results behind our back.
-std::string configuration(const std::string& isa) {
+std::string embree_configuration(const std::string& isa) {
     std::string text = "ignore_config_files=1";
     if (const int threads = g_threads.load(); threads > 0) text += ",threads=" + std::to_string(threads);
     if (!isa.empty()) text += ",isa=" + isa;
     return text;
 }
 
-}  // namespace
-
 EmbreeDevice::EmbreeDevice(const std::string& isa) {
     check_isa(isa);
-    const std::string text = configuration(isa);
+    const std::string text = embree_configuration(isa);
     device_ = rtcNewDevice(text.c_str());
     if (!device_) {
         throw ComputationError("Embree makes no device (" + text +

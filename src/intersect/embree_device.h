@@ -13,6 +13,9 @@
 
 namespace trilens {
 
+/// What a device is asked for, in Embree's words.
+std::string embree_configuration(const std::string& isa);
+
 /// An Embree device that keeps the first message of its errors.
 class EmbreeDevice {
   public:
@@ -71,19 +74,37 @@ inline void intersect_one(RTCScene scene, EmbreeContext* context, RTCRayHit* ray
 }
 #endif
 
-/// rtcIntersect16 for rays that travel together.
-inline void intersect_coherent_16(const int* valid, RTCScene scene, RTCRayHit16* rays) {
+/// rtcIntersect16 and rtcIntersect8 for rays that travel together.
 #if TRILENS_EMBREE_MAJOR >= 4
+inline RTCIntersectArguments coherent_arguments() {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
     arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    return arguments;
+}
+inline void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit16* rays) {
+    RTCIntersectArguments arguments = coherent_arguments();
     rtcIntersect16(valid, scene, rays, &arguments);
+}
+inline void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit8* rays) {
+    RTCIntersectArguments arguments = coherent_arguments();
+    rtcIntersect8(valid, scene, rays, &arguments);
+}
 #else
+inline RTCIntersectContext coherent_context() {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(valid, scene, &context, rays);
-#endif
+    return context;
 }
+inline void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit16* rays) {
+    RTCIntersectContext context = coherent_context();
+    rtcIntersect16(valid, scene, &context, rays);
+}
+inline void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit8* rays) {
+    RTCIntersectContext context = coherent_context();
+    rtcIntersect8(valid, scene, &context, rays);
+}
+#endif
 
 }  // namespace trilens

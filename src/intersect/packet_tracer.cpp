@@ -46,23 +46,39 @@ std::vector<PlacedSample> place_samples(const RayMesh& mesh, const FacetSamples&
     return placed;
 }
 
-RTCRayHit16 make_rays(const RayPacket& packet) {
-    RTCRayHit16 rays;
-    std::memcpy(rays.ray.org_x, packet.origin[0], sizeof packet.origin[0]);
-    std::memcpy(rays.ray.org_y, packet.origin[1], sizeof packet.origin[1]);
-    std::memcpy(rays.ray.org_z, packet.origin[2], sizeof packet.origin[2]);
-    std::memcpy(rays.ray.dir_x, packet.direction[0], sizeof packet.direction[0]);
-    std::memcpy(rays.ray.dir_y, packet.direction[1], sizeof packet.direction[1]);
-    std::memcpy(rays.ray.dir_z, packet.direction[2], sizeof packet.direction[2]);
-    for (int i = 0; i < RayPacket::kRays; ++i) {
+/// Traces rays [first, first + kWidth) of a packet.
+template <typename Rays, int kWidth>
+void trace_part(RTCScene scene, const RayPacket& packet, int first, PacketHits& hits) {
+    constexpr std::size_t kBytes = kWidth * sizeof(float);
+    Rays rays;
+    std::memcpy(rays.ray.org_x, packet.origin[0] + first, kBytes);
+    std::memcpy(rays.ray.org_y, packet.origin[1] + first, kBytes);
+    std::memcpy(rays.ray.org_z, packet.origin[2] + first, kBytes);
+    std::memcpy(rays.ray.dir_x, packet.direction[0] + first, kBytes);
+    std::memcpy(rays.ray.dir_y, packet.direction[1] + first, kBytes);
+    std::memcpy(rays.ray.dir_z, packet.direction[2] + first, kBytes);
+    alignas(64) int valid[kWidth];
+    for (int i = 0; i < kWidth; ++i) {
         rays.ray.tnear[i] = 0;
         rays.ray.tfar[i] = std::numeric_limits<float>::infinity();
         rays.ray.time[i] = 0;
         rays.ray.mask[i] = ~0u;
         rays.ray.flags[i] = 0;
-        rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        rays.hit.geomID[i] = rays.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
+        valid[i] = packet.sample[first + i] == kNone ? 0 : -1;
     }
-    return rays;
+    intersect_coherent(valid, scene, &rays);
+    static_assert(RTC_INVALID_GEOMETRY_ID == kNone);
+    std::memcpy(hits.triangle + first, rays.hit.primID, kBytes);
+    std::memcpy(hits.t + first, rays.ray.tfar, kBytes);
+    std::memcpy(hits.u + first, rays.hit.u, kBytes);
+    std::memcpy(hits.v + first, rays.hit.v, kBytes);
+}
+
+void trace_packet(RTCScene scene, int width, const RayPacket& packet, PacketHits& hits) {
+    if (width == 16) return trace_part<RTCRayHit16, 16>(scene, packet, 0, hits);
+    trace_part<RTCRayHit8, 8>(scene, packet, 0, hits);
+    trace_part<RTCRayHit8, 8>(scene, packet, 8, hits);
 }
 
 }  // namespace
@@ -94,6 +110,8 @@ std::vector<RayPacket> make_ray_packets(const RayMesh& mesh, const FacetSamples&
 
 struct PacketTracer::Data : EmbreeTree {
     using EmbreeTree::EmbreeTree;
+    int width = 16;
+    std::string configuration;
 };
 
 void PacketTracer::attach_triangles(const TriangleScene& scene, bool best_tree, Data* data) {
@@ -119,6 +137,8 @@ PacketTracer::PacketTracer(const TriangleScene& scene, const Options& options)
     : data_(std::make_unique<Data>(options.isa)) {
     RTCDevice device = data_->device.get();
     data_->scene = rtcNewScene(device);
+    data_->width = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) ? 16 : 8;
+    data_->configuration = embree_configuration(options.isa);
     rtcSetSceneBuildQuality(data_->scene,
                             options.best_tree ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
     if (scene.size() > 0) attach_triangles(scene, options.best_tree, data_.get());
@@ -133,20 +153,32 @@ PacketTracer& PacketTracer::operator=(PacketTracer&&) noexcept = default;
 void PacketTracer::trace(std::span<const RayPacket> packets, std::span<FloatHit> hits) const {
     parallel_for(packets.size(), kPacketsPerTask, [&](std::size_t first, std::size_t last) {
         for (std::size_t p = first; p < last; ++p) {
-            const RayPacket& packet = packets[p];
-            RTCRayHit16 rays = make_rays(packet);
-            alignas(64) int valid[RayPacket::kRays];
-            for (int i = 0; i < RayPacket::kRays; ++i) valid[i] = packet.sample[i] == kNone ? 0 : -1;
-            intersect_coherent_16(valid, data_->scene, &rays);
+            PacketHits seen;
+            trace_packet(data_->scene, data_->width, packets[p], seen);
             for (int i = 0; i < RayPacket::kRays; ++i) {
-                if (!valid[i]) continue;
-                const bool seen = rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-                hits[packet.sample[i]] =
-                    seen ? FloatHit{rays.hit.primID[i], rays.ray.tfar[i], rays.hit.u[i], rays.hit.v[i]}
-                         : FloatHit{};
+                const Id sample = packets[p].sample[i];
+                if (sample == kNone) continue;
+                hits[sample] = seen.triangle[i] == kNone
+                                   ? FloatHit{}
+                                   : FloatHit{seen.triangle[i], seen.t[i], seen.u[i], seen.v[i]};
             }
         }
     });
+}
+
+void PacketTracer::trace_in_order(std::span<const RayPacket> packets, std::span<PacketHits> hits) const {
+    parallel_for(packets.size(), kPacketsPerTask, [&](std::size_t first, std::size_t last) {
+        for (std::size_t p = first; p < last; ++p)
+            trace_packet(data_->scene, data_->width, packets[p], hits[p]);
+    });
+}
+
+int PacketTracer::rays_at_once() const {
+    return data_->width;
+}
+
+std::string PacketTracer::configuration() const {
+    return data_->configuration;
 }
 
 }  // namespace trilens

@@ -35,6 +35,12 @@ struct FloatHit {
     float u = 0, v = 0;  // weights of the triangle's second and third corner
 };
 
+/// The hits of a packet, ray by ray.
+struct alignas(64) PacketHits {
+    Id triangle[RayPacket::kRays];  // kNone: nothing is seen, or there is no ray
+    float t[RayPacket::kRays], u[RayPacket::kRays], v[RayPacket::kRays];
+};
+
 /// For `bench`, where speed is measured; the truth is Tracer's. Near edges and for thin triangles its hits
 /// may differ from the truth by what float rounds. Thread-safe to read.
 class PacketTracer {
@@ -53,6 +59,14 @@ class PacketTracer {
     /// The first hit (t >= 0) of every ray, written to hits[sample]; other entries are left alone. Runs in
     /// parallel over packets (set_thread_count).
     void trace(std::span<const RayPacket> packets, std::span<FloatHit> hits) const;
+
+    /// The same, left in the packets' order, one entry per packet: Embree's fastest use.
+    void trace_in_order(std::span<const RayPacket> packets, std::span<PacketHits> hits) const;
+
+    /// How many of a packet's rays go to Embree at once: 16, or 8 where the instruction set has no more.
+    int rays_at_once() const;
+    /// What Embree was asked for, in its own words.
+    std::string configuration() const;
 
   private:
     struct Data;

@@ -43,10 +43,12 @@ Beam::Beam(const BlockRays& block) {
     for (std::size_t k = 0; k < 4; ++k) {
         const double u = kCorners[k].x, v = kCorners[k].y;
         origin_[k] = block.rays.origin_at(u, v) / block.rays.weight_at(u, v);
-        direction_[k] = block.rays.direction_at(u, v);
+        direction_[k] = block.rays.direction_at(u, v) / block.rays.weight_at(u, v);
         unit_direction_[k] = normalize_or_zero(direction_[k]);
         origin_size_ = std::max(origin_size_, size_of(origin_[k]));
     }
+    // The origins may be small sums of large terms.
+    origin_size_ = std::max(origin_size_, block.origin_size / block.weight_least);
     add_axis();
 
     // The sides: through adjacent directions where the beam opens or closes, else along the axis.

@@ -1,8 +1,10 @@
-// Sets up a block's rays: weights, origins and directions as linear functions of local screen coordinates.
+// Moves a facet's rays to the local coordinates of a block of its samples.
 #include "projector/block_rays.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "projector/decide.h"
 
 namespace trilens {
 namespace {
@@ -21,61 +23,46 @@ Rectangle bounding_rectangle(std::span<const Vec2> positions, double least) {
     return {(lo + hi) * 0.5, glm::max((hi - lo) * 0.5, Vec2(least))};
 }
 
-double sum_of_sizes(const std::array<Vec3, 3>& v) {
-    double sum = 0;
-    for (const Vec3& part : v) sum += std::fabs(part.x) + std::fabs(part.y) + std::fabs(part.z);
-    return sum;
+double size_of(double v) {
+    return std::fabs(v);
 }
 
-/// The facet's unnormalised weights e as 1, u and v parts, scaled so that they sum to 1 or -1 at `reference`.
-std::array<Vec3, 3> local_weights(const FacetWeights& weights, const Rectangle& rectangle,
-                                  const Vec3& reference) {
-    const double sum = std::fabs(reference.x + reference.y + reference.z);
-    const double scale = sum > 0 ? 1 / sum : 1;
-    return {scale * weights.unnormalised(rectangle.centre.x, rectangle.centre.y),
-            scale * rectangle.half.x * weights.weights_from_screen[0],
-            scale * rectangle.half.y * weights.weights_from_screen[1]};
+double size_of(const Vec3& v) {
+    return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
+}
+
+/// c[0] + x c[1] + y c[2] as a function of u and v, with x = from.x + u half.x, y likewise. Returns the sum
+/// of its absolute terms over the rectangle.
+template <typename T>
+double move_to(const std::array<T, 3>& c, const Vec2& from, const Vec2& half, std::array<T, 3>& moved) {
+    moved = {c[0] + from.x * c[1] + from.y * c[2], half.x * c[1], half.y * c[2]};
+    return size_of(c[0]) + (std::fabs(from.x) + half.x) * size_of(c[1]) +
+           (std::fabs(from.y) + half.y) * size_of(c[2]);
 }
 
 }  // namespace
 
-BlockRays make_block_rays(const FacetOnScreen& facet, const SampleGrid& grid, std::span<const Id> samples) {
+BlockRays make_block_rays(const FacetRays& facet, const SampleGrid& grid, std::span<const Id> samples) {
     BlockRays block;
+    block.facet = &facet;
+    block.centre = facet.centre;
     block.count = samples.size();
     std::array<Vec2, kBlockSamples> position{};
-    for (std::size_t s = 0; s < samples.size(); ++s) position[s] = grid.position(samples[s]);
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+        position[s] = grid.position(samples[s]);
+        block.sample[s] = facet.at(position[s]);
+    }
     const Rectangle rectangle =
         bounding_rectangle(std::span(position).first(samples.size()), 0.125 / grid.side);
-    for (std::size_t s = 0; s < samples.size(); ++s) {
-        const Vec2 from_centre = position[s] - rectangle.centre;
-        block.u[s] = from_centre.x / rectangle.half.x;
-        block.v[s] = from_centre.y / rectangle.half.y;
-    }
 
-    // The local origin is where the middle sample's ray starts: a sample, since the rectangle's own centre
-    // may lie beyond the facet's horizon.
-    const Vec2 middle = position[samples.size() / 2];
-    const Vec3 reference = facet.weights.unnormalised(middle.x, middle.y);
-    const double sum = reference.x + reference.y + reference.z;
-    block.centre = interpolated_ray(facet.mesh, facet.facet, reference / (sum != 0 ? sum : 1)).origin;
-
-    // Interpolate the corner rays with each part of the weights.
-    const std::array<Vec3, 3> e = local_weights(facet.weights, rectangle, reference);
-    for (std::size_t part = 0; part < 3; ++part) {
-        for (int k = 0; k < 3; ++k) {
-            const Ray& ray = facet.mesh.rays[facet.mesh.facets[facet.facet][static_cast<std::size_t>(k)]];
-            block.rays.origin[part] += e[part][k] * (ray.origin - block.centre);
-            block.rays.direction[part] += e[part][k] * ray.direction;
-            block.rays.weight[part] += e[part][k];
-        }
-    }
+    const Vec2 from = rectangle.centre - facet.screen;
+    block.origin_size = move_to(facet.rays.origin, from, rectangle.half, block.rays.origin);
+    block.direction_size = move_to(facet.rays.direction, from, rectangle.half, block.rays.direction);
+    block.weight_size = move_to(facet.rays.weight, from, rectangle.half, block.rays.weight);
     block.line = line_quadratic(block.rays);
 
     const std::array<double, 3>& w = block.rays.weight;
-    block.origin_size = sum_of_sizes(block.rays.origin);
-    block.direction_size = sum_of_sizes(block.rays.direction);
-    block.weight_size = std::fabs(w[0]) + std::fabs(w[1]) + std::fabs(w[2]);
-    block.weight_least = w[0] - std::fabs(w[1]) - std::fabs(w[2]);
+    block.weight_least = w[0] - std::fabs(w[1]) - std::fabs(w[2]) - kDecisionDoubt * block.weight_size;
     return block;
 }
 

@@ -1,125 +1,75 @@
-// The exact engine: for each block of a facet's samples, the scene's tree is walked with the block's beam.
-#include <algorithm>
+// The exact engine: the vector engine over tiles of samples, and blocks where it finds no bounds.
 #include <array>
-#include <utility>
-#include <vector>
+#include <memory>
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "projector/beam.h"
-#include "projector/block_rays.h"
+#include "projector/draw_blocks.h"
 #include "projector/draw_options.h"
-#include "projector/first_hits.h"
+#include "projector/kernel_state.h"
 #include "projector/prepared_scene.h"
 #include "projector/sample_blocks.h"
-#include "projector/triangle_in_block.h"
 
 namespace trilens {
 namespace {
 
-/// A node of the tree that waits, and the smallest t at which a ray of the block can meet it.
-struct Waiting {
-    Id node = 0;
-    double nearest = 0;
-};
-
-class BlockDrawing {
-  public:
-    BlockDrawing(const PreparedScene::Data& scene, const BlockRays& block)
-        : scene_(scene), block_(block), beam_(block), hits_(block.count) {}
-
-    void draw_all() {
-        const auto pass = [&] { draw_range(0, scene_.size()); };
-        pass();
-        if (hits_.order_mattered()) hits_.begin_second_pass(), pass();
-    }
-
-    void draw_culled(std::vector<Waiting>& stack) {
-        walk(stack);
-        if (hits_.order_mattered()) hits_.begin_second_pass(), walk(stack);
-    }
-
-    Hit hit(std::size_t s) const;
-
-  private:
-    void draw_range(std::size_t first, std::size_t last);
-    void push_if_reached(Id node, std::vector<Waiting>& stack) const;
-    void walk(std::vector<Waiting>& stack);
-
-    const PreparedScene::Data& scene_;
-    const BlockRays& block_;
-    Beam beam_;
-    FirstHits hits_;
-};
-
-void BlockDrawing::draw_range(std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-        const LocalTriangle triangle{{scene_.corner(0, i, block_.centre), scene_.corner(1, i, block_.centre),
-                                      scene_.corner(2, i, block_.centre)},
-                                     static_cast<Id>(i),
-                                     scene_.rank[i]};
-        draw_triangle(block_, triangle, hits_);
-    }
-}
-
-void BlockDrawing::push_if_reached(Id node, std::vector<Waiting>& stack) const {
-    const Box& world = scene_.bvh.nodes[node].box;
-    const Box box{world.low - block_.centre, world.high - block_.centre};
-    if (!beam_.misses(box)) stack.push_back({node, beam_.nearest(box)});
-}
-
-void BlockDrawing::walk(std::vector<Waiting>& stack) {
-    stack.clear();
-    if (!scene_.bvh.nodes.empty()) push_if_reached(0, stack);
-    while (!stack.empty()) {
-        const Waiting next = stack.back();
-        stack.pop_back();
-        if (next.nearest > hits_.farthest()) continue;
-        const BvhNode& node = scene_.bvh.nodes[next.node];
-        if (node.count > 0) {
-            draw_range(node.first, node.first + node.count);
-            continue;
+void draw_tile_in_blocks(const KernelScene& scene, const SampleTile& tile) {
+    constexpr std::uint32_t kVectors = kBlockSamples / kLanes;
+    for (std::uint32_t first = 0; first < tile.vectors; first += kVectors) {
+        std::array<Id, kBlockSamples> sample{};
+        std::array<Hit, kBlockSamples> hit{};
+        std::size_t count = 0;
+        const std::uint32_t last = std::min(first + kVectors, tile.vectors);
+        for (std::uint32_t v = first; v < last; ++v) {
+            const VectorSamples& own = scene.tiles->samples[tile.first_vector + v];
+            for (std::size_t k = 0; k < kLanes; ++k)
+                if (own.valid >> k & 1) sample[count++] = own.sample[k];
         }
-        // The nearer child is put on top, so that what it hides need not be looked at.
-        const std::size_t before = stack.size();
-        push_if_reached(node.first, stack);
-        push_if_reached(node.first + 1, stack);
-        if (stack.size() == before + 2 && stack[before].nearest < stack[before + 1].nearest) {
-            std::swap(stack[before], stack[before + 1]);
+        draw_block(*scene.data, scene.tiles->rays[tile.rays], *scene.grid, std::span(sample).first(count),
+                   std::span(hit).first(count));
+        count = 0;
+        for (std::uint32_t v = first; v < last; ++v) {
+            const std::uint32_t vector = tile.first_vector + v;
+            const VectorSamples& own = scene.tiles->samples[vector];
+            for (std::size_t k = 0; k < kLanes; ++k) {
+                if (!(own.valid >> k & 1)) continue;
+                const Hit& seen = hit[count++];
+                if (!scene.hits.empty()) scene.hits[own.sample[k]] = seen;
+                if (!scene.vector_hits.empty()) set_lane(scene.vector_hits[vector], k, seen);
+            }
         }
     }
 }
 
-Hit BlockDrawing::hit(std::size_t s) const {
-    const Id winner = hits_.winner(s);
-    return winner == kNone ? Hit{} : scene_hit(scene_, winner, hits_.hit(s));
+/// A thread's own, kept from one call to the next.
+KernelState& own_state() {
+    thread_local const std::unique_ptr<KernelState> state = std::make_unique<KernelState>();
+    return *state;
 }
 
 }  // namespace
+
+void draw_tiles(const KernelScene& scene, const KernelOptions& options) {
+    parallel_for(scene.tiles->batches.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t b = first; b < last; ++b) {
+            const std::uint32_t left = draw_batch(scene, b, options, own_state());
+            const TileGroup& groups = scene.tiles->batches[b];
+            const std::uint32_t first_tile = scene.tiles->groups[groups.first].first;
+            for (std::uint32_t j = 0; j < kLanes; ++j)
+                if (left >> j & 1) draw_tile_in_blocks(scene, scene.tiles->tiles[first_tile + j]);
+        }
+    });
+}
 
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
           std::span<Hit> hits, const DrawOptions& options) {
     TRILENS_CHECK(hits.size() == grid.size(), "one hit per sample of the grid");
     TRILENS_CHECK(owned.first.size() == mesh.facets.size() + 1,
                   "the samples must be grouped by the mesh's facets");
-    const std::vector<Strip> strips = make_strips(owned, grid);
-    parallel_for(strips.size(), 1, [&](std::size_t first, std::size_t last) {
-        std::vector<Waiting> stack;
-        for (std::size_t i = first; i < last; ++i) {
-            const Strip& strip = strips[i];
-            if (!mesh.has_rays(strip.facet)) continue;
-            const FacetOnScreen facet{mesh, strip.facet, facet_weights(mesh, strip.facet)};
-            if (facet.weights.edge_on) continue;
-            const std::span<const Id> samples(owned.sample.data() + strip.first, strip.last - strip.first);
-            for_each_block(samples, grid, [&](std::span<const Id> block) {
-                const BlockRays rays = make_block_rays(facet, grid, block);
-                BlockDrawing drawing(scene.data(), rays);
-                if (options.cull) drawing.draw_culled(stack);
-                if (!options.cull) drawing.draw_all();
-                for (std::size_t s = 0; s < block.size(); ++s) hits[block[s]] = drawing.hit(s);
-            });
-        }
-    });
+    if (!options.vectors || !options.cull)
+        return draw_in_blocks(scene, mesh, owned, grid, hits, options.cull);
+    const SampleTiles tiles = make_sample_tiles(mesh, owned, grid, options.tiles);
+    draw_tiles({&scene.data(), &scene.data().leaves, &mesh, &grid, &tiles, hits, {}}, options.kernel);
 }
 
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,

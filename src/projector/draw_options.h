@@ -1,12 +1,17 @@
-// Switches of the exact engine that tests and benchmarks turn.
+// Switches of the exact engine that tests and benchmarks turn; none changes a bit of what it draws.
 #pragma once
 
+#include "projector/kernel.h"
 #include "projector/projector.h"
+#include "projector/sample_tiles.h"
 
 namespace trilens {
 
 struct DrawOptions {
-    bool cull = true;  // false: every block tests every triangle; the same hits, slowly
+    bool vectors = true;  // false: block by block, in double
+    bool cull = true;     // false: every block tests every triangle, slowly
+    KernelOptions kernel{};
+    TileParams tiles{};
 };
 
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,

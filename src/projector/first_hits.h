@@ -7,15 +7,10 @@
 #include <limits>
 
 #include "base/triangle_scene.h"
+#include "projector/decide.h"
 #include "projector/sample_blocks.h"
 
 namespace trilens {
-
-/// A line meets a triangle.
-struct LineHit {
-    double t = 0;         // any sign, or not a number
-    Vec2 barycentric{0};  // weights of the second and third sorted corner
-};
 
 /// At each sample: among the triangles whose t is within kDepthTie of the smallest, the one with the smallest
 /// rank. A rival may leave that band after it has driven out another that stays; `order_mattered` then asks

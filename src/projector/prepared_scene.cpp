@@ -94,6 +94,7 @@ PreparedScene::PreparedScene(const TriangleScene& scene) : data_(std::make_uniqu
         return box_of_corners(data.corner(0, i, origin), data.corner(1, i, origin),
                               data.corner(2, i, origin));
     });
+    data.leaves = build_leaf_tree(data);
 }
 
 PreparedScene::~PreparedScene() = default;

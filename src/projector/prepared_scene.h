@@ -8,6 +8,7 @@
 
 #include "projector/bvh.h"
 #include "projector/first_hits.h"
+#include "projector/leaf_tree.h"
 #include "projector/projector.h"
 
 namespace trilens {
@@ -22,6 +23,7 @@ struct PreparedScene::Data {
         was_corner;            // which corner of the scene's triangle a sorted one is
     std::vector<Id> triangle;  // index into the scene
     std::vector<Id> rank;      // its place in the order of (object, primitive, index)
+    LeafTree leaves;           // over the arrays above, for the vector engine
 
     std::size_t size() const { return triangle.size(); }
     /// The sorted corner k of triangle i, from `centre`.

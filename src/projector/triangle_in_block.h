@@ -1,4 +1,4 @@
-// Which samples of a block see a triangle: the heart of the exact engine (mathematics, section 2).
+// Which samples of a block see a triangle (mathematics, section 2).
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ struct LocalTriangle {
     Id rank = 0;
 };
 
-/// Offers the triangle to every sample whose ray's line meets it. Coverage is that of the corners as they
-/// round on the ray's own screen: exact signs, so that triangles around an edge or a corner leave no gap.
+/// Offers the triangle to every sample whose ray's line meets it, as decide() says. Most of those that miss
+/// are told by the edges' conics.
 void draw_triangle(const BlockRays& block, const LocalTriangle& triangle, FirstHits& hits);
 
 }  // namespace trilens

@@ -26,12 +26,21 @@ DrawMesh classic_through(const PreparedScene& scene, const ClassicParams& params
                             std::span<Hit> hits) { draw_classic(scene, mesh, owned, grid, hits, params); };
 }
 
+DrawMesh watched(const WatchMesh& watch, const DrawMesh& draw_mesh) {
+    return [watch, draw_mesh](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                              std::span<Hit> hits) {
+        watch(mesh, owned);
+        draw_mesh(mesh, owned, grid, hits);
+    };
+}
+
 /// All facet engines: the projectors and Embree on the same rays.
 struct FacetViewer {
     const World* world = nullptr;
     Frame frame;
     DrawMesh draw_first;                             // objects, for what lies before what
     DrawMesh draw_objects;                           // objects, as the engine shows them
+    DrawMesh draw_paths;                             // the same, for the rays that leave optics
     std::vector<DrawMesh> draw_optics;               // each optic's facets
     bool redraws_direct = false;                     // draw_objects is another engine than draw_first
     std::vector<std::unique_ptr<OpticPaths>> paths;  // per optic
@@ -126,8 +135,8 @@ void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     count_from_eye(frame.camera, views.samples);
     std::vector<OpticEnds> ends;
     for (std::size_t i = 0; i < frame.optics.size(); ++i)
-        ends.push_back(draw_optic_paths({*world, static_cast<Id>(i), draw_objects, frame.optics[i]},
-                                        *paths[i], grid, views));
+        ends.push_back(draw_optic_paths({*world, static_cast<Id>(i), draw_paths, frame.optics[i]}, *paths[i],
+                                        grid, views));
     collect_ends(ends, views);
 }
 
@@ -137,7 +146,8 @@ Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& en
     return make_facet_views(world, std::move(frame), engine).viewer;
 }
 
-FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine) {
+FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine,
+                            const WatchMesh& watch) {
     auto viewer = std::make_shared<FacetViewer>();
     viewer->world = &world;
     viewer->frame = std::move(frame);
@@ -156,6 +166,7 @@ FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice&
         viewer->draw_objects = classic_through(prepared_objects(world), engine.classic);
         viewer->redraws_direct = true;
     }
+    viewer->draw_paths = watch ? watched(watch, viewer->draw_objects) : viewer->draw_objects;
     return {[viewer](const SampleGrid& grid, SampleViews& views) { (*viewer)(grid, views); },
             [viewer](std::size_t optic) -> const OpticPaths& { return *viewer->paths[optic]; }};
 }

@@ -16,6 +16,10 @@ struct FacetViews {
     Viewer viewer;
     std::function<const OpticPaths&(std::size_t optic)> paths;
 };
-FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine);
+/// `watch`: told every RayMesh that leaves an optic and is drawn through, with the samples that it is drawn
+/// at; both only live for the call.
+using WatchMesh = std::function<void(const RayMesh&, const FacetSamples&)>;
+FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine,
+                            const WatchMesh& watch = {});
 
 }  // namespace trilens

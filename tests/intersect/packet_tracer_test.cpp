@@ -98,3 +98,32 @@ TEST_CASE("packets through an empty scene see nothing") {
         REQUIRE(hits[s].triangle == (film.owner[s] == kNone || film.owner[s] == 1 ? 5 : kNone));
     }
 }
+
+TEST_CASE("hits left in the packets' order are those written per sample") {
+    Random random(42);
+    const TriangleScene scene = random_triangles(random, 300, 1);
+    const Film film = make_film(1);
+    const std::vector<RayPacket> packets = make_ray_packets(film.mesh, film.owned, film.grid);
+    for (const char* isa : {"", "sse2"}) {
+        const PacketTracer tracer(scene, {isa, false});
+        CHECK((tracer.rays_at_once() == 8 || tracer.rays_at_once() == 16));
+        CHECK(tracer.configuration().find("ignore_config_files=1") != std::string::npos);
+        std::vector<FloatHit> hits(film.grid.size());
+        std::vector<PacketHits> in_order(packets.size());
+        tracer.trace(packets, hits);
+        tracer.trace_in_order(packets, in_order);
+        std::size_t seen = 0, different = 0;
+        for (std::size_t p = 0; p < packets.size(); ++p) {
+            for (std::size_t k = 0; k < RayPacket::kRays; ++k) {
+                if (packets[p].sample[k] == kNone) continue;
+                const FloatHit& hit = hits[packets[p].sample[k]];
+                seen += hit.triangle != kNone;
+                different += hit.triangle != in_order[p].triangle[k] ||
+                             (hit.triangle != kNone && (hit.t != in_order[p].t[k] || hit.u != in_order[p].u[k] ||
+                                                        hit.v != in_order[p].v[k]));
+            }
+        }
+        CHECK(seen > 4000);
+        CHECK(different == 0);
+    }
+}

@@ -1,0 +1,131 @@
+// The projector against Embree's packets over workloads, numbers of triangles and facets, films, threads and
+// instruction sets: one line each, and all of them as CSV.
+// Use: bench_race [KEY=VALUE,VALUE...]... with the keys of kKeys below; bench/tables.py draws the CSV.
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/parallel.h"
+#include "base/rasterize.h"
+#include "bench/measure.h"
+#include "intersect/tracer.h"
+#include "workloads.h"
+
+namespace {
+
+using namespace trilens;
+using Values = std::vector<std::string>;
+
+const std::map<std::string, Values> kKeys{
+    {"workload", {"room"}}, {"triangles", {"12", "972", "10092", "99372", "1002252"}},
+    {"n", {"16", "64"}},    {"film", {"1920x1080"}},
+    {"threads", {"1"}},     {"isa", {""}},
+    {"repeats", {"9"}},     {"csv", {""}}};
+
+Values split(const std::string& text, char at) {
+    Values parts;
+    std::stringstream in(text);
+    for (std::string part; std::getline(in, part, at);) parts.push_back(part);
+    if (parts.empty()) parts.push_back("");
+    return parts;
+}
+
+std::map<std::string, Values> read(int count, char** words) {
+    std::map<std::string, Values> chosen = kKeys;
+    for (int i = 1; i < count; ++i) {
+        const std::string word = words[i];
+        const std::size_t equals = word.find('=');
+        if (equals == std::string::npos || !chosen.count(word.substr(0, equals)))
+            throw std::invalid_argument("no key in '" + word + "'");
+        chosen[word.substr(0, equals)] = split(word.substr(equals + 1), ',');
+    }
+    return chosen;
+}
+
+struct Cell {
+    std::string workload, film, isa;
+    int n = 0;
+    RaceResult result;
+};
+
+void print(const Cell& c, std::FILE* csv) {
+    const RaceResult& r = c.result;
+    std::printf(
+        "%-5s %8zu %3d %9s %2d %7s %7zu | %8.2f %8.2f %8.1f %8.1f | %8.2f %8.2f %8.1f %8.1f | %5.2f %5.2f "
+        "%5.2f %5.2f | %zu = %zu + %zu + %zu\n",
+        c.workload.c_str(), r.triangles, c.n, c.film.c_str(), r.threads, r.projector_isa.c_str(), r.pixels,
+        r.draw_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms, r.trace_written_ms, r.rays_ms,
+        r.build_ms, r.ratio.draw, r.ratio.written, r.ratio.with_build, r.ratio.whole, r.mismatches.pixels,
+        r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);
+    std::fflush(stdout);
+    if (!csv) return;
+    std::fprintf(csv,
+                 "%s,%zu,%d,%s,%d,%s,%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%."
+                 "4f,%.4f,%zu,%zu,%zu,%zu\n",
+                 c.workload.c_str(), r.triangles, c.n, c.film.c_str(), r.threads, r.projector_isa.c_str(),
+                 r.pixels, r.facets, r.draw_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms,
+                 r.trace_written_ms, r.rays_ms, r.build_ms, r.ratio.draw, r.ratio.written, r.ratio.with_build,
+                 r.ratio.whole, r.slowest_ratio, r.fastest_ratio, r.mismatches.pixels, r.mismatches.edge,
+                 r.mismatches.depth, r.mismatches.unexplained);
+    std::fflush(csv);
+}
+
+int run(const std::map<std::string, Values>& chosen) {
+    const std::string file = chosen.at("csv").front();
+    std::FILE* csv = file.empty() ? nullptr : std::fopen(file.c_str(), "w");
+    if (!file.empty() && !csv) throw std::runtime_error("cannot write " + file);
+    if (csv)
+        std::fprintf(csv,
+                     "workload,triangles,n,film,threads,isa,pixels,facets,draw_ms,written_ms,samples_ms,"
+                     "prepare_ms,trace_ms,"
+                     "trace_written_ms,rays_ms,build_ms,ratio_draw,ratio_written,ratio_with_build,ratio_"
+                     "whole,lowest,highest,"
+                     "mismatches,edge,depth,unexplained\n");
+    std::printf(
+        "milliseconds, medians; projector: hits in order, by sample, samples, tree | Embree: likewise, rays, "
+        "tree | "
+        "Embree / projector: draw, written, with build, whole | mismatches = at an edge + at one depth + "
+        "others\n");
+    std::size_t unexplained = 0;
+    for (const std::string& threads : chosen.at("threads")) {
+        set_thread_count(std::atoi(threads.c_str()));
+        set_tracer_threads(std::atoi(threads.c_str()));
+        for (const std::string& name : chosen.at("workload")) {
+            for (const std::string& triangles : chosen.at("triangles")) {
+                const TriangleScene scene = trilens_bench::workload(name, std::atof(triangles.c_str()));
+                for (const std::string& film : chosen.at("film")) {
+                    const Values size = split(film, 'x');
+                    for (const std::string& n : chosen.at("n")) {
+                        const trilens_bench::MirrorSphere mirror = trilens_bench::mirror_sphere(
+                            std::atoi(n.c_str()), std::atoi(size[0].c_str()), std::atoi(size.back().c_str()));
+                        const FacetSamples owned = rasterize_facets(mirror.mesh, mirror.grid);
+                        for (const std::string& isa : chosen.at("isa")) {
+                            const RaceParams params{std::atoi(chosen.at("repeats").front().c_str()), isa};
+                            const Cell cell{name, film, isa, std::atoi(n.c_str()),
+                                            race({scene, {{&mirror.mesh, &owned}}, mirror.grid}, params)};
+                            print(cell, csv);
+                            unexplained += cell.result.mismatches.unexplained;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    if (csv) std::fclose(csv);
+    if (unexplained > 0) std::printf("%zu mismatches that no edge or depth explains\n", unexplained);
+    return unexplained == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    try {
+        return run(read(count, words));
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "bench_race: %s\n", error.what());
+        return 2;
+    }
+}

@@ -1,0 +1,34 @@
+// Scenes of any size that speed is measured on, and the mirror that shows them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/linear_camera.h"
+#include "base/ray_mesh.h"
+#include "base/sample_grid.h"
+#include "base/triangle_scene.h"
+
+namespace trilens_bench {
+
+/// A closed bumpy room of 12 cells^2 triangles around the origin, half size 8.
+trilens::TriangleScene bumpy_room(int cells);
+
+/// `count` triangles strewn between a ball of radius 2 and a cube of half size 8, inside a closed box; their
+/// sizes make the same share of rays hit them whatever their number.
+trilens::TriangleScene soup(int count);
+
+/// Ground and `boxes` boxes of 12 triangles around the origin, hollow in the middle: depth complexity.
+trilens::TriangleScene city(int boxes);
+
+/// The named workload of about so many triangles: "room", "soup" or "city". Throws std::invalid_argument.
+trilens::TriangleScene workload(const std::string& name, double triangles);
+
+/// The facets that face the eye of a mirror sphere of radius 1, n x n per face of its cage.
+struct MirrorSphere {
+    trilens::SampleGrid grid;
+    trilens::RayMesh mesh;
+};
+MirrorSphere mirror_sphere(int n, int width, int height);
+
+}  // namespace trilens_bench

@@ -1,0 +1,206 @@
+// Times both sides by turns, so that what else the machine does meets both alike.
+#include "bench/measure.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "intersect/packet_tracer.h"
+#include "projector/kernel.h"
+#include "projector/prepared_scene.h"
+#include "projector/sample_tiles.h"
+
+namespace trilens {
+namespace {
+
+template <typename Work>
+double milliseconds(const Work& work) {
+    const Stopwatch watch;
+    work();
+    return 1000 * watch.seconds();
+}
+
+double median(std::vector<double> v) {
+    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+    std::nth_element(v.begin(), middle, v.end());
+    return *middle;
+}
+
+/// Holds the projector to an instruction set while it lives.
+struct HeldSet {
+    explicit HeldSet(const std::string& isa) {
+        if (!use_instruction_set(isa))
+            throw UsageError("the projector has no instruction set '" + isa + "' on this machine");
+    }
+    ~HeldSet() { use_instruction_set(""); }
+    HeldSet(const HeldSet&) = delete;
+    HeldSet& operator=(const HeldSet&) = delete;
+};
+
+/// How near to a triangle's edge (as a share of its height) and at which t a ray passes its plane.
+struct PlaneMeeting {
+    double t = 0, edge = -INFINITY;
+};
+
+PlaneMeeting meet_plane(const TriangleScene& scene, Id triangle, const Ray& ray) {
+    if (triangle == kNone) return {};
+    const IdTriple& c = scene.triangles[triangle];
+    const Vec3 a = scene.points[c[0]], e1 = scene.points[c[1]] - a, e2 = scene.points[c[2]] - a;
+    const Vec3 p = ray.origin - a, q = cross(ray.direction, e2), r = cross(p, e1);
+    const double determinant = dot(e1, q);
+    if (determinant == 0) return {};
+    const double b1 = dot(p, q) / determinant, b2 = dot(ray.direction, r) / determinant;
+    return {dot(e2, r) / determinant, std::min({b1, b2, 1 - b1 - b2})};
+}
+
+/// Both sides' inputs that are made beforehand, and their outputs, for one view.
+struct View {
+    const RayMesh& mesh;
+    const FacetSamples& owned;
+    SampleTiles tiles;
+    std::vector<RayPacket> packets;
+    std::vector<VectorHits> vector_hits;
+    std::vector<PacketHits> packet_hits;
+    std::vector<Hit> hits;
+    std::vector<FloatHit> float_hits;
+};
+
+void explain(const RaceCourse& course, const View& view, Mismatches& found) {
+    constexpr double kHair = 1e-3;
+    for (std::size_t f = 0; f + 1 < view.owned.first.size(); ++f) {
+        if (!view.mesh.has_rays(f)) continue;
+        const FacetWeights weights = facet_weights(view.mesh, f);
+        for (const Id s : view.owned.of(f)) {
+            const Hit& ours = view.hits[s];
+            const Id theirs = view.float_hits[s].triangle;
+            if (ours.triangle == theirs) continue;
+            ++found.pixels;
+            const Ray ray = sample_ray(view.mesh, f, weights, course.grid.position(s));
+            const PlaneMeeting a = meet_plane(course.scene, ours.triangle, ray),
+                               b = meet_plane(course.scene, theirs, ray);
+            const bool at_edge = std::fabs(a.edge) < kHair || std::fabs(b.edge) < kHair;
+            const bool at_depth =
+                ours.seen() && theirs != kNone && std::fabs(a.t - b.t) <= kHair * std::fabs(a.t);
+            ++(at_edge ? found.edge : at_depth ? found.depth : found.unexplained);
+        }
+    }
+}
+
+View make_view(const RaceView& view, const SampleGrid& grid) {
+    View made{*view.mesh,
+              *view.owned,
+              make_sample_tiles(*view.mesh, *view.owned, grid, {}),
+              make_ray_packets(*view.mesh, *view.owned, grid),
+              {},
+              {},
+              {},
+              {}};
+    made.vector_hits.resize(made.tiles.vectors.size());
+    made.packet_hits.resize(made.packets.size());
+    made.hits.resize(grid.size());
+    made.float_hits.resize(grid.size());
+    return made;
+}
+
+/// Both sides, ready to run.
+struct Sides {
+    PreparedScene prepared;
+    PacketTracer tracer;
+    std::vector<View> views;
+};
+
+struct Times {
+    std::vector<double> draw, written, trace, trace_written, ratio, ratio_written;
+};
+
+void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
+    const PreparedScene::Data& data = sides.prepared.data();
+    const auto draw = [&] {
+        for (View& v : sides.views)
+            draw_tiles({&data, &data.leaves, &v.mesh, &grid, &v.tiles, {}, v.vector_hits}, {});
+    };
+    const auto draw_written = [&] {
+        for (View& v : sides.views)
+            draw_tiles({&data, &data.leaves, &v.mesh, &grid, &v.tiles, v.hits, {}}, {});
+    };
+    const auto trace = [&] {
+        for (View& v : sides.views) sides.tracer.trace_in_order(v.packets, v.packet_hits);
+    };
+    const auto trace_written = [&] {
+        for (View& v : sides.views) sides.tracer.trace(v.packets, v.float_hits);
+    };
+    // There and back, so that a slow change of the machine's speed cancels.
+    const double t1 = milliseconds(trace), d1 = milliseconds(draw), d2 = milliseconds(draw),
+                 t2 = milliseconds(trace);
+    const double v1 = milliseconds(trace_written), w1 = milliseconds(draw_written),
+                 w2 = milliseconds(draw_written), v2 = milliseconds(trace_written);
+    times.trace.insert(times.trace.end(), {t1, t2});
+    times.draw.insert(times.draw.end(), {d1, d2});
+    times.trace_written.insert(times.trace_written.end(), {v1, v2});
+    times.written.insert(times.written.end(), {w1, w2});
+    times.ratio.push_back((t1 + t2) / (d1 + d2));
+    times.ratio_written.push_back((v1 + v2) / (w1 + w2));
+}
+
+/// Builds both sides several times over, then keeps one of each.
+Sides make_sides(const RaceCourse& course, const RaceParams& params, RaceResult& result) {
+    const PacketTracer::Options options{params.isa, false};
+    std::vector<double> prepare, build, samples, rays;
+    for (int i = 0; i < std::max(1, params.repeats / 3); ++i) {
+        build.push_back(milliseconds([&] { PacketTracer(course.scene, options); }));
+        prepare.push_back(milliseconds([&] { PreparedScene(course.scene); }));
+        samples.push_back(milliseconds([&] {
+            for (const RaceView& v : course.views) make_sample_tiles(*v.mesh, *v.owned, course.grid, {});
+        }));
+        rays.push_back(milliseconds([&] {
+            for (const RaceView& v : course.views) make_ray_packets(*v.mesh, *v.owned, course.grid);
+        }));
+    }
+    result.prepare_ms = median(prepare);
+    result.build_ms = median(build);
+    result.samples_ms = median(samples);
+    result.rays_ms = median(rays);
+    Sides sides{PreparedScene(course.scene), PacketTracer(course.scene, options), {}};
+    for (const RaceView& v : course.views) sides.views.push_back(make_view(v, course.grid));
+    return sides;
+}
+
+}  // namespace
+
+RaceResult race(const RaceCourse& course, const RaceParams& params) {
+    RaceResult result;
+    result.projector_isa = params.isa.empty() ? kernel_instruction_sets().front() : params.isa;
+    const HeldSet held(params.isa);
+    result.triangles = course.scene.size();
+    result.threads = thread_count();
+    Sides sides = make_sides(course, params, result);
+    result.embree_configuration = sides.tracer.configuration();
+    result.rays_at_once = sides.tracer.rays_at_once();
+
+    Times times, warm_up;
+    run_round(course.grid, sides, warm_up);
+    for (int i = 0; i < params.repeats; ++i) run_round(course.grid, sides, times);
+    result.draw_ms = median(times.draw);
+    result.written_ms = median(times.written);
+    result.trace_ms = median(times.trace);
+    result.trace_written_ms = median(times.trace_written);
+    result.ratio.draw = median(times.ratio);
+    result.ratio.written = median(times.ratio_written);
+    result.ratio.with_build = (result.trace_ms + result.build_ms) / (result.draw_ms + result.prepare_ms);
+    result.ratio.whole = (result.trace_written_ms + result.build_ms + result.rays_ms) /
+                         (result.written_ms + result.prepare_ms + result.samples_ms);
+    result.slowest_ratio = *std::min_element(times.ratio.begin(), times.ratio.end());
+    result.fastest_ratio = *std::max_element(times.ratio.begin(), times.ratio.end());
+    for (const View& view : sides.views) {
+        result.facets += view.tiles.rays.size();
+        result.pixels += view.owned.sample.size();
+        for (const Id s : view.owned.sample) result.seen += view.hits[s].seen();
+        explain(course, view, result.mismatches);
+    }
+    return result;
+}
+
+}  // namespace trilens

@@ -1,0 +1,128 @@
+// The vector engine's stages put together, once per instruction set, and the choice between those.
+#include "projector/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+// Sets of AVX-512 beyond its first bring this code nothing (the last two are later versions' names for bits).
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | (1LL << 6) | (1LL << 4))
+#endif
+// Processors without SSE4.2 are left to the plain engine.
+#if defined(__x86_64__) && !defined(HWY_BASELINE_TARGETS) && !defined(HWY_COMPILE_ONLY_STATIC)
+#define HWY_BASELINE_TARGETS HWY_SSE4
+#endif
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "projector/kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "projector/kernel_resolve-inl.h"
+#include "projector/kernel_walk-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace trilens {
+namespace HWY_NAMESPACE {
+
+HWY_INLINE void begin_group(const KernelScene& scene, const TileGroup& group, KernelState& state) {
+    const SampleTile* tile = &scene.tiles->tiles[group.first];
+    state.first_lane = group.first - state.first_tile;
+    state.tiles = group.count;
+    state.group_farthest = kNever;
+    store(set(kNever), state.farthest);
+    state.doubts.clear();
+    state.beams_made = false;
+
+    std::size_t samples = 0;
+    for (std::uint32_t i = 0; i < group.count; ++i) samples += tile[i].samples;
+    const SampleTile& last = tile[group.count - 1];
+    state.first_vector = tile[0].first_vector;
+    state.vectors = last.first_vector + last.vectors - state.first_vector;
+    state.most_doubts = 4096 + 64 * samples;
+    if (state.nearest.size() < state.vectors) state.nearest.resize(state.vectors);
+    for (std::uint32_t i = 0; i < state.vectors; ++i) {
+        store(set(kNever), state.nearest[i].low);
+        store(set(kNever), state.nearest[i].high);
+        store_words(set_word(kNone), state.nearest[i].triangle);
+    }
+}
+
+std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const KernelOptions& options,
+                              KernelState& state) {
+    const TileGroup groups = scene.tiles->batches[batch];
+    const TileGroup* group = &scene.tiles->groups[groups.first];
+    std::uint32_t tiles = 0;
+    for (std::uint32_t g = 0; g < groups.count; ++g) tiles += group[g].count;
+    state.first_tile = group[0].first;
+    state.cache.rays = kNone;
+    set_up_batch(scene, &scene.tiles->tiles[state.first_tile], tiles, state.lanes);
+
+    std::uint32_t left = state.lanes.broken & first_lanes(tiles);
+    for (std::uint32_t g = 0; g < groups.count; ++g) {
+        const std::uint32_t lanes = first_lanes(group[g].count) << (group[g].first - state.first_tile);
+        if (left & lanes) {
+            left |= lanes;
+            continue;
+        }
+        begin_group(scene, group[g], state);
+        make_group_beam(scene, state, state.beam);
+        walk_group(scene, options.leaf_mode, state);
+        if (state.doubts.size() > state.most_doubts) {
+            left |= lanes;
+            continue;
+        }
+        resolve_group(scene, state);
+    }
+    return left;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace trilens
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace trilens {
+namespace {
+
+HWY_EXPORT(draw_batch_here);
+
+struct NamedTarget {
+    const char* name;
+    std::int64_t target;
+};
+constexpr NamedTarget kTargets[] = {
+    {"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4.2", HWY_SSE4}, {"neon", HWY_NEON}};
+
+}  // namespace
+
+std::uint32_t draw_batch(const KernelScene& scene, std::size_t batch, const KernelOptions& options,
+                         KernelState& state) {
+    return HWY_DYNAMIC_DISPATCH(draw_batch_here)(scene, batch, options, state);
+}
+
+std::vector<std::string> kernel_instruction_sets() {
+    std::vector<std::string> names;
+    for (const NamedTarget& t : kTargets) {
+        if (hwy::SupportedTargets() & HWY_TARGETS & t.target) names.push_back(t.name);
+    }
+    return names;
+}
+
+bool use_instruction_set(const std::string& name) {
+    hwy::SetSupportedTargetsForTest(0);
+    if (name.empty()) {
+        hwy::GetChosenTarget().DeInit();
+        return true;
+    }
+    for (const NamedTarget& t : kTargets) {
+        if (name != t.name || !(hwy::SupportedTargets() & HWY_TARGETS & t.target)) continue;
+        hwy::SetSupportedTargetsForTest(t.target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        return true;
+    }
+    return false;
+}
+
+}  // namespace trilens
+#endif

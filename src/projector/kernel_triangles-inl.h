@@ -1,0 +1,354 @@
+// A leaf mode: lanes are the leaf's triangles, for one tile. Triangles with few samples walk over them lane
+// by lane; the others meet vectors of samples one by one. Included once per instruction set.
+#if defined(TRILENS_KERNEL_TRIANGLES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TRILENS_KERNEL_TRIANGLES_INL_H
+#undef TRILENS_KERNEL_TRIANGLES_INL_H
+#else
+#define TRILENS_KERNEL_TRIANGLES_INL_H
+#endif
+
+#include "projector/kernel_offer-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace trilens {
+namespace HWY_NAMESPACE {
+
+/// The functions of u and v that decide a triangle, lanes are triangles or tiles: conics of the edges; t =
+/// above / along. Turned so that inside is positive.
+struct alignas(64) Forms {
+    float edge[3][6][kLanes], above[3][kLanes], along[3][kLanes];
+};
+
+/// One tile's rays as floats around a leaf's centre.
+struct TileInLeaf {
+    float line[3][6], moment[3][6], origin[3][3], direction[3][3], weight[3];
+    TileDoubts doubts;
+};
+
+HWY_NOINLINE void move_tile_to_leaf(const TileLanes& lanes, std::size_t j, const Leaf& leaf,
+                                    TileInLeaf& tile) {
+    const double(*c)[8] = lanes.tile[j];
+    const double dx = leaf.centre[0] - lanes.centre[0][j], dy = leaf.centre[1] - lanes.centre[1][j],
+                 dz = leaf.centre[2] - lanes.centre[2][j];
+    TileSums sums{};
+    for (int q = 0; q < 6; ++q) {
+        const double m[3] = {c[3][q] - (dy * c[2][q] - dz * c[1][q]), c[4][q] - (dz * c[0][q] - dx * c[2][q]),
+                             c[5][q] - (dx * c[1][q] - dy * c[0][q])};
+        for (int a = 0; a < 3; ++a) {
+            tile.line[a][q] = static_cast<float>(c[a][q]);
+            tile.moment[a][q] = static_cast<float>(m[a]);
+            sums.moment[a] += std::fabs(m[a]);
+        }
+    }
+    const double d[3] = {dx, dy, dz};
+    for (int p = 0; p < 3; ++p) {
+        for (int a = 0; a < 3; ++a) {
+            const double o = c[6 + a][p] - c[12][p] * d[a];
+            tile.origin[a][p] = static_cast<float>(o);
+            tile.direction[a][p] = static_cast<float>(c[9 + a][p]);
+            sums.origin[a] += std::fabs(o);
+        }
+        tile.weight[p] = static_cast<float>(c[12][p]);
+    }
+    sums.reach = std::fabs(dx) + std::fabs(dy) + std::fabs(dz) + leaf.half[0] + leaf.half[1] + leaf.half[2];
+    tile.doubts = doubts_of(lanes, j, leaf, sums);
+}
+
+/// Linear bounds of the three conics over the tile: conic <= bound[k] + u slope_u[k] + v slope_v[k].
+struct EdgeBounds {
+    Floats slope_u[3], slope_v[3], bound[3];
+};
+
+/// Of which lanes may be seen from the front, where the conics are positive, and from the back.
+struct Sides {
+    std::uint32_t front = 0, back = 0;
+};
+
+/// Middle and swing of a conic over the square: u^2 and v^2 lie in [0, 1].
+HWY_INLINE Floats middle_of(const Floats* c) {
+    return multiply_add(set(0.5f), c[3] + c[5], c[0]);
+}
+HWY_INLINE Floats bend_of(const Floats* c, const Floats& doubt) {
+    return doubt + multiply_add(set(0.5f), absolute(c[3]) + absolute(c[5]), absolute(c[4]));
+}
+
+HWY_INLINE Sides sides_of(const Floats (&conic)[3][6], const Floats& doubt) {
+    Mask no_front = mask_of(0), no_back = no_front;
+    for (int k = 0; k < 3; ++k) {
+        const Floats middle = middle_of(conic[k]);
+        const Floats swing = absolute(conic[k][1]) + absolute(conic[k][2]) + bend_of(conic[k], doubt);
+        no_front = no_front | (middle + swing < set(0.0f));
+        no_back = no_back | (middle - swing > set(0.0f));
+    }
+    return {kAllLanes & ~bits(no_front), kAllLanes & ~bits(no_back)};
+}
+
+/// The conics and the depth of 16 triangles through one tile.
+HWY_NOINLINE void triangle_forms(const TileInLeaf& tile, const LeafEdges& edges, Floats (&conic)[3][6],
+                                 Floats (&above)[3], Floats (&along)[3]) {
+    for (int k = 0; k < 3; ++k) {
+        const Floats lx = load(edges.edge[k][0]), ly = load(edges.edge[k][1]), lz = load(edges.edge[k][2]);
+        const Floats mx = load(edges.moment[k][0]), my = load(edges.moment[k][1]),
+                     mz = load(edges.moment[k][2]);
+        for (int q = 0; q < 6; ++q) {
+            conic[k][q] = multiply_add(
+                set(tile.line[0][q]), mx,
+                multiply_add(set(tile.line[1][q]), my,
+                             multiply_add(set(tile.line[2][q]), mz,
+                                          multiply_add(set(tile.moment[0][q]), lx,
+                                                       multiply_add(set(tile.moment[1][q]), ly,
+                                                                    set(tile.moment[2][q]) * lz)))));
+        }
+    }
+    const Floats nx = load(edges.normal[0]), ny = load(edges.normal[1]), nz = load(edges.normal[2]),
+                 height = load(edges.height);
+    for (int p = 0; p < 3; ++p) {
+        above[p] = subtract_product(
+            nx, set(tile.origin[0][p]),
+            subtract_product(ny, set(tile.origin[1][p]),
+                             subtract_product(nz, set(tile.origin[2][p]), set(tile.weight[p]) * height)));
+        along[p] = multiply_add(nx, set(tile.direction[0][p]),
+                                multiply_add(ny, set(tile.direction[1][p]), nz * set(tile.direction[2][p])));
+    }
+}
+
+/// The rectangle of local coordinates outside which no lane's triangle is seen.
+struct Extent {
+    Floats u_low, u_high, v_low, v_high;
+};
+
+/// From the corners where two of the edges' bounds meet. Where their determinant is less than 2^-7 of its
+/// terms, or a bound is far outside the square, nothing is known. Else a corner inside 1.5 times the square
+/// is right to 2^-11: the determinant to 2^-14 of itself, the numerators to 2^-12 of it.
+HWY_NOINLINE Extent extent_of(const EdgeBounds& e) {
+    Floats u[3], v[3];
+    Mask turned_right = mask_of(kAllLanes), turned_left = turned_right;
+    for (int k = 0; k < 3; ++k) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        const Floats determinant = multiply_subtract(e.slope_u[i], e.slope_v[j], e.slope_v[i] * e.slope_u[j]);
+        const Floats size_i = absolute(e.slope_u[i]) + absolute(e.slope_v[i]),
+                     size_j = absolute(e.slope_u[j]) + absolute(e.slope_v[j]);
+        const Floats trust = set(0x1p-7f) * (size_i * size_j);
+        const Floats inverse = reciprocal(determinant);
+        turned_right =
+            turned_right & (determinant > trust) &
+            (absolute(e.bound[k]) <= set(4.0f) * (absolute(e.slope_u[k]) + absolute(e.slope_v[k])));
+        turned_left = turned_left & (set(0.0f) - determinant > trust) &
+                      (absolute(e.bound[k]) <= set(4.0f) * (absolute(e.slope_u[k]) + absolute(e.slope_v[k])));
+        u[k] = multiply_subtract(e.slope_v[i], e.bound[j], e.slope_v[j] * e.bound[i]) * inverse;
+        v[k] = multiply_subtract(e.slope_u[j], e.bound[i], e.slope_u[i] * e.bound[j]) * inverse;
+    }
+    const Mask known = turned_right | turned_left;
+    const Floats one = set(1.0f), minus_one = set(-1.0f), pad = set(0x1p-10f);
+    const auto bounded_below = [&](const Floats* c) HWY_ATTR {
+        return choose(known, largest(minus_one, least(c[0], least(c[1], c[2])) - pad), minus_one);
+    };
+    const auto bounded_above = [&](const Floats* c) HWY_ATTR {
+        return choose(known, least(one, largest(c[0], largest(c[1], c[2])) + pad), one);
+    };
+    return {bounded_below(u), bounded_above(u), bounded_below(v), bounded_above(v)};
+}
+
+/// One tile, one leaf, and the state they are drawn into.
+struct TileDrawing {
+    const KernelScene& scene;
+    KernelState& state;
+    const SampleTile& tile;
+    const TileDoubts& doubts;
+    const Leaf& leaf;
+    std::uint32_t first_vector;  // of the tile, in the group
+};
+
+/// A triangle, whose forms are in `lane`, against one vector of the tile.
+HWY_INLINE void meet_vector(const TileDrawing& drawing, const Forms& forms, std::size_t lane, Id triangle,
+                            std::uint32_t vector) {
+    const SampleVector& samples = drawing.scene.tiles->vectors[drawing.tile.first_vector + vector];
+    const Floats u = load(samples.u), v = load(samples.v);
+    const auto conic = [&](const float(&c)[6][kLanes]) HWY_ATTR {
+        return multiply_add(
+            u, multiply_add(u, set(c[3][lane]), multiply_add(v, set(c[4][lane]), set(c[1][lane]))),
+            multiply_add(v, multiply_add(v, set(c[5][lane]), set(c[2][lane])), set(c[0][lane])));
+    };
+    const auto linear = [&](const float(&c)[3][kLanes]) HWY_ATTR {
+        return multiply_add(u, set(c[1][lane]), multiply_add(v, set(c[2][lane]), set(c[0][lane])));
+    };
+    const TileDoubts& doubts = drawing.doubts;
+    const Floats low = least(conic(forms.edge[0]), least(conic(forms.edge[1]), conic(forms.edge[2])));
+    const Floats along = linear(forms.along), inverse = reciprocal(along), t = linear(forms.above) * inverse;
+    offer_lanes(drawing.state, drawing.first_vector + vector, triangle,
+                {low<set(-doubts.edge), low> set(doubts.edge), along > set(doubts.along), t,
+                 doubt_of_time(t, inverse, set(doubts.above), set(doubts.along))},
+                drawing.scene.tiles->samples[drawing.tile.first_vector + vector].valid);
+}
+
+/// Cells of the tile's lattice.
+struct Cells {
+    Floats x_low, x_high, y_low, y_high;
+};
+
+HWY_INLINE Cells cells_in(const Extent& extent, const SampleTile& tile) {
+    const float middle_x = static_cast<float>(tile.width - 1) / 2, half_x = std::max(0.5f, middle_x);
+    const float middle_y = static_cast<float>(tile.height - 1) / 2, half_y = std::max(0.5f, middle_y);
+    const Floats zero = set(0.0f), slack = set(1e-3f);
+    return {
+        largest(zero, round_up(multiply_add(extent.u_low, set(half_x), set(middle_x)) - slack)),
+        least(set(2 * middle_x), round_down(multiply_add(extent.u_high, set(half_x), set(middle_x)) + slack)),
+        largest(zero, round_up(multiply_add(extent.v_low, set(half_y), set(middle_y)) - slack)),
+        least(set(2 * middle_y),
+              round_down(multiply_add(extent.v_high, set(half_y), set(middle_y)) + slack))};
+}
+
+/// Each lane walks over its own cells.
+HWY_NOINLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, const Cells& cells,
+                             std::uint32_t lanes) {
+    const SampleTile& tile = drawing.tile;
+    const float middle_x = static_cast<float>(tile.width - 1) / 2,
+                middle_y = static_cast<float>(tile.height - 1) / 2;
+    const Floats scale_u = set(1 / std::max(0.5f, middle_x)), scale_v = set(1 / std::max(0.5f, middle_y));
+    const std::uint16_t* slots = &drawing.scene.tiles->slot[tile.first_slot];
+    const TileDoubts& doubts = drawing.doubts;
+    Floats x = cells.x_low, y = cells.y_low;
+    while (lanes) {
+        const Floats u = (x - set(middle_x)) * scale_u, v = (y - set(middle_y)) * scale_v;
+        const auto conic = [&](const float(&c)[6][kLanes]) HWY_ATTR {
+            return multiply_add(u, multiply_add(u, load(c[3]), multiply_add(v, load(c[4]), load(c[1]))),
+                                multiply_add(v, multiply_add(v, load(c[5]), load(c[2])), load(c[0])));
+        };
+        const Floats low = least(conic(forms.edge[0]), least(conic(forms.edge[1]), conic(forms.edge[2])));
+        const std::uint32_t near = lanes & ~bits(low < set(-doubts.edge));
+        if (near) {
+            const auto linear = [&](const float(&c)[3][kLanes]) HWY_ATTR {
+                return multiply_add(u, load(c[1]), multiply_add(v, load(c[2]), load(c[0])));
+            };
+            const Floats along = linear(forms.along), inverse = reciprocal(along);
+            const Floats t = linear(forms.above) * inverse;
+            const Floats off = doubt_of_time(t, inverse, set(doubts.above), set(doubts.along));
+            const std::uint32_t inside = bits(low > set(doubts.edge)),
+                                placed = bits(along > set(doubts.along));
+            alignas(64) float t_low[kLanes], t_high[kLanes], at_x[kLanes], at_y[kLanes];
+            store(t - off, t_low);
+            store(t + off, t_high);
+            store(x, at_x);
+            store(y, at_y);
+            for (Each lane(near); lane; ++lane) {
+                const std::size_t j = *lane;
+                const std::uint16_t slot =
+                    slots[static_cast<int>(at_y[j]) * tile.width + static_cast<int>(at_x[j])];
+                if (slot == kNoSlot) continue;
+                offer_one(drawing.state, drawing.first_vector + slot / kLanes, slot % kLanes,
+                          drawing.leaf.triangle[j], t_low[j], t_high[j], inside >> j & 1, placed >> j & 1);
+            }
+        }
+        x = x + set(1.0f);
+        const Mask row_done = x > cells.x_high;
+        x = choose(row_done, cells.x_low, x);
+        y = choose(row_done, y + set(1.0f), y);
+        lanes &= bits(y <= cells.y_high);
+    }
+}
+
+/// Pairs of vectors and triangles that may meet: for each vector, its rectangle against all lanes at once.
+HWY_NOINLINE std::size_t list_pairs(const TileDrawing& drawing, const EdgeBounds& bounds,
+                                    const Extent& extent, std::uint32_t lanes) {
+    const SampleTile& tile = drawing.tile;
+    std::vector<std::uint32_t>& pairs = drawing.state.pairs;
+    if (pairs.size() < (tile.vectors + 1) * kLanes) pairs.resize((tile.vectors + 1) * kLanes);
+    Floats steep_u[3], steep_v[3];
+    for (int k = 0; k < 3; ++k) {
+        steep_u[k] = absolute(bounds.slope_u[k]);
+        steep_v[k] = absolute(bounds.slope_v[k]);
+    }
+    const Mask of = mask_of(lanes);
+    const Floats none_low = set(9.0f), none_high = set(-9.0f);
+    const Floats u_low = set(least_lane(choose(of, extent.u_low, none_low))),
+                 u_high = set(largest_lane(choose(of, extent.u_high, none_high))),
+                 v_low = set(least_lane(choose(of, extent.v_low, none_low))),
+                 v_high = set(largest_lane(choose(of, extent.v_high, none_high)));
+    std::size_t count = 0;
+    for (std::uint32_t g = 0; g * kLanes < tile.vectors; ++g) {
+        const VectorBoxes& box = drawing.scene.tiles->boxes[tile.first_boxes + g];
+        const Floats cu = load(box.centre_u), cv = load(box.centre_v), hu = load(box.half_u),
+                     hv = load(box.half_v);
+        const std::uint32_t near =
+            bits((cu + hu >= u_low) & (cu - hu <= u_high) & (cv + hv >= v_low) & (cv - hv <= v_high));
+        for (Each vector(near); vector; ++vector) {
+            const std::size_t z = *vector;
+            const Floats bu = set(box.centre_u[z]), bv = set(box.centre_v[z]), wu = set(box.half_u[z]),
+                         wv = set(box.half_v[z]);
+            Mask outside = (bu + wu < extent.u_low) | (bu - wu > extent.u_high) | (bv + wv < extent.v_low) |
+                           (bv - wv > extent.v_high);
+            for (int k = 0; k < 3; ++k) {
+                const Floats highest = multiply_add(
+                    steep_u[k], wu,
+                    multiply_add(steep_v[k], wv,
+                                 multiply_add(bounds.slope_u[k], bu,
+                                              multiply_add(bounds.slope_v[k], bv, bounds.bound[k]))));
+                outside = outside | (highest < set(0.0f));
+            }
+            const std::uint32_t first = static_cast<std::uint32_t>((g * kLanes + z) * kLanes);
+            for (Each lane(lanes & ~bits(outside)); lane; ++lane) pairs[count++] = first + *lane;
+        }
+    }
+    return count;
+}
+
+/// Draws the lanes that are turned one way.
+HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, const EdgeBounds& bounds,
+                              std::uint32_t lanes) {
+    constexpr float kFewCells = 4;  // measured: above, vectors are faster
+    const Extent extent = extent_of(bounds);
+    const Cells cells = cells_in(extent, drawing.tile);
+    lanes &= ~bits((cells.x_low > cells.x_high) | (cells.y_low > cells.y_high));
+    if (!lanes) return;
+    const Floats one = set(1.0f);
+    const Floats area = (cells.x_high - cells.x_low + one) * (cells.y_high - cells.y_low + one);
+    const std::uint32_t small = lanes & bits(area <= set(kFewCells));
+    if (small) walk_cells(drawing, forms, cells, small);
+    if (!(lanes & ~small)) return;
+    const std::size_t pairs = list_pairs(drawing, bounds, extent, lanes & ~small);
+    for (std::size_t p = 0; p < pairs; ++p) {
+        const std::uint32_t pair = drawing.state.pairs[p];
+        meet_vector(drawing, forms, pair % kLanes, drawing.leaf.triangle[pair % kLanes],
+                    pair / static_cast<std::uint32_t>(kLanes));
+    }
+}
+
+/// The leaf's triangles through the tile of lane `j`.
+HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf, std::size_t j,
+                                      KernelState& state) {
+    TileInLeaf in_leaf;
+    move_tile_to_leaf(state.lanes, j, leaf, in_leaf);
+    Floats conic[3][6], above[3], along[3];
+    triangle_forms(in_leaf, state.edges, conic, above, along);
+    const Floats doubt = set(in_leaf.doubts.edge);
+    const Sides sides = sides_of(conic, doubt);
+    const std::uint32_t live = first_lanes(leaf.count);
+    const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
+    const TileDrawing drawing{scene,          state, tile,
+                              in_leaf.doubts, leaf,  tile.first_vector - state.first_vector};
+
+    // Front where it may be seen, else back; then the back of those that may be seen from both sides.
+    const std::uint32_t first_back = sides.back & ~sides.front, second_back = sides.back & sides.front;
+    for (int pass = 0; pass < 2; ++pass) {
+        const std::uint32_t lanes = live & (pass == 0 ? sides.front | sides.back : second_back);
+        if (!lanes) break;
+        const Floats flip = choose(mask_of(pass == 0 ? first_back : second_back), set(-0.0f), set(0.0f));
+        Forms forms;
+        EdgeBounds bounds;
+        for (int k = 0; k < 3; ++k) {
+            bounds.slope_u[k] = flip_signs(conic[k][1], flip);
+            bounds.slope_v[k] = flip_signs(conic[k][2], flip);
+            bounds.bound[k] = flip_signs(middle_of(conic[k]), flip) + bend_of(conic[k], doubt);
+            for (int q = 0; q < 6; ++q) store(flip_signs(conic[k][q], flip), forms.edge[k][q]);
+            store(flip_signs(above[k], flip), forms.above[k]);
+            store(flip_signs(along[k], flip), forms.along[k]);
+        }
+        draw_turned(drawing, forms, bounds, lanes);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace trilens
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,47 @@
+// The scene for the vector engine: triangles in leaves of 16, as floats around each leaf's centre, under
+// nodes of 16 children.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/ids.h"
+#include "base/vec.h"
+#include "projector/projector.h"
+
+namespace trilens {
+
+inline constexpr std::size_t kLanes = 16;
+
+/// Up to 16 triangles; lanes beyond `count` hold zeros. A corner's float differs from the double corner by
+/// half a unit in the last place of the difference from `centre`, and its magnitude is at most `half`.
+struct alignas(64) Leaf {
+    float x[3][kLanes], y[3][kLanes], z[3][kLanes];  // sorted corners, from `centre`
+    Id triangle[kLanes];                             // index into PreparedScene::Data
+    double centre[3];                                // world frame
+    float half[3];
+    std::uint32_t count;
+};
+
+/// Boxes of up to 16 children, from the tree's centre, rounded outwards; empty lanes hold boxes that every
+/// plane misses.
+struct alignas(64) WideNode {
+    float low[3][kLanes], high[3][kLanes];
+    std::int32_t child[kLanes];  // a node, or the complement of a leaf
+    std::uint32_t count;
+};
+
+struct LeafTree {
+    std::vector<Leaf> leaves;
+    std::vector<WideNode> nodes;
+    std::int32_t root = 0;  // as a child
+    Vec3 centre{0};         // world frame; of all boxes
+    Vec3 half{0};           // every point is within it of the centre
+
+    bool empty() const { return leaves.empty(); }
+};
+
+/// The same data give the same tree.
+LeafTree build_leaf_tree(const PreparedScene::Data& data);
+
+}  // namespace trilens

@@ -1,0 +1,80 @@
+// The samples of a RayMesh as the vector engine wants them: tiles of one facet's samples, each in vectors of
+// 16 neighbours, and groups of neighbouring tiles that walk the tree together.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/facet_samples.h"
+#include "base/ray_mesh.h"
+#include "base/sample_grid.h"
+#include "projector/facet_rays.h"
+#include "projector/leaf_tree.h"
+
+namespace trilens {
+
+/// 16 samples of one tile, in its local coordinates: u, v over [-1, 1]^2 of the tile's rectangle. Lanes that
+/// hold no sample repeat the last one.
+struct alignas(64) SampleVector {
+    float u[kLanes], v[kLanes];
+};
+
+/// Which samples a vector holds.
+struct VectorSamples {
+    Id sample[kLanes];
+    std::uint32_t valid;  // bit k: lane k holds a sample
+};
+
+/// Rectangles, in local coordinates, of 16 consecutive vectors of a tile; lanes without a vector are far
+/// away.
+struct alignas(64) VectorBoxes {
+    float centre_u[kLanes], centre_v[kLanes], half_u[kLanes], half_v[kLanes];
+};
+
+/// A rectangle of the lattice of samples, and those of one facet in it.
+struct SampleTile {
+    Id rays = 0;  // of its facet, in SampleTiles::rays
+    Id facet = 0;
+    std::uint32_t first_vector = 0, vectors = 0, first_boxes = 0, samples = 0;
+    int column = 0, row = 0, width = 0, height = 0;  // of the rectangle, in samples from the window's corner
+    std::size_t first_slot = 0;                      // of the rectangle's cells in `slot`
+    bool whole_facet = false;                        // all of the facet's samples are here
+    double least_weight = 0;                         // the smallest weight of a corner at any sample
+    double low = 0,
+           high = 0;  // of the weights' sum (FacetRays' weight) at the samples; not a number: not positive
+};
+
+struct TileGroup {
+    std::uint32_t first = 0, count = 0;  // tiles, at most kLanes
+};
+
+struct SampleTiles {
+    std::vector<FacetRays> rays;  // of the facets that have tiles
+    std::vector<SampleTile> tiles;
+    std::vector<TileGroup> groups;   // of all tiles, in order
+    std::vector<TileGroup> batches;  // of groups: consecutive ones with at most kLanes tiles in all
+    std::vector<SampleVector> vectors;
+    std::vector<VectorSamples> samples;  // by vector
+    std::vector<VectorBoxes> boxes;
+    std::vector<std::uint16_t> slot;  // by cell: 16 vector + lane inside the tile, or kNoSlot
+};
+
+inline constexpr std::uint16_t kNoSlot = 65535;
+
+struct TileParams {
+    std::uint32_t group_samples = 1000;  // groups grow up to this
+    std::uint32_t group_tiles = kLanes;
+    int tile_side = 48;  // samples
+};
+
+/// All samples that `owned` gives to facets with rays and an area on the screen.
+SampleTiles make_sample_tiles(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                              const TileParams& params);
+
+/// The position on the screen of local coordinates (0, 0), and half the rectangle's size in pixels.
+struct TileFrame {
+    Vec2 centre{0}, half{0};
+};
+TileFrame tile_frame(const SampleTile& tile, const SampleGrid& grid);
+
+}  // namespace trilens

@@ -1,0 +1,35 @@
+// How fast the projector draws a scene's rays, against Embree's packets on the same rays in the same run.
+//
+//     trilens::BenchRequest request;
+//     request.race.repeats = 9;
+//     const trilens::BenchResult result = trilens::run_bench(trilens::load_scene({"scene.json"}), request);
+//     std::printf("%.2f times Embree\n", result.race.ratio.draw);
+#pragma once
+
+#include <string>
+
+#include "base/progress.h"
+#include "bench/measure.h"
+#include "render/request.h"
+#include "scene/scene.h"
+
+namespace trilens {
+
+struct BenchRequest {
+    FrameParams frame;
+    RaceParams race;
+};
+
+struct BenchResult {
+    RaceResult race;
+    bool direct = false;  // the camera's own rays, since it sees no optic; else all that leave the optics
+    double surface_ms = 0,
+           rays_ms = 0;  // the optics' surfaces and the scene's triangles; corner rays and samples
+};
+
+/// The rays that leave the scene's optics through the facets' samples (every path of every optic that the
+/// camera sees), or the camera's own where it sees none. Throws as Renderer::draw, and UsageError for an
+/// instruction set that this machine does not have.
+BenchResult run_bench(Scene scene, const BenchRequest& request, const Warn& warn = {});
+
+}  // namespace trilens

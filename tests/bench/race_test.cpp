@@ -1,0 +1,76 @@
+// A race gives times, ratios that fit them, and names what the two sides see differently.
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/rasterize.h"
+#include "bench/measure.h"
+#include "support/test.h"
+
+using namespace trilens;
+
+namespace {
+
+/// A square pinhole film before a bumpy wall.
+struct Course {
+    SampleGrid grid{0, 0, 64, 48, 1};
+    RayMesh mesh;
+    TriangleScene scene;
+    FacetSamples owned;
+
+    Course() {
+        for (const Vec2 corner : {Vec2(0, 0), Vec2(64, 0), Vec2(64, 48), Vec2(0, 48)}) {
+            mesh.screen.push_back({corner, 1});
+            mesh.rays.push_back({Vec3(0), {(corner.x - 32) / 32, (corner.y - 24) / 32, 1}});
+        }
+        mesh.facets = {{0, 1, 2}, {0, 2, 3}};
+        for (int j = 0; j <= 20; ++j)
+            for (int i = 0; i <= 20; ++i)
+                scene.points.push_back({i * 0.5 - 5, j * 0.5 - 5, 4 + 0.2 * std::sin(i + 2.0 * j)});
+        for (Id j = 0; j < 20; ++j) {
+            for (Id i = 0; i < 20; ++i) {
+                const Id a = j * 21 + i;
+                for (const IdTriple& t : {IdTriple{a, a + 1, a + 22}, IdTriple{a, a + 22, a + 21}}) {
+                    scene.primitive.push_back(static_cast<Id>(scene.triangles.size()));
+                    scene.object.push_back(0);
+                    scene.triangles.push_back(t);
+                }
+            }
+        }
+        owned = rasterize_facets(mesh, grid);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a race counts its course and times both sides") {
+    const Course course;
+    const RaceResult r = race({course.scene, {{&course.mesh, &course.owned}}, course.grid}, {3, ""});
+    CHECK(r.pixels == course.grid.size());
+    CHECK(r.seen == r.pixels);
+    CHECK(r.facets == 2);
+    CHECK(r.triangles == 800);
+    for (const double ms : {r.prepare_ms, r.samples_ms, r.draw_ms, r.written_ms, r.build_ms, r.rays_ms, r.trace_ms,
+                            r.trace_written_ms})
+        CHECK(ms > 0);
+    CHECK(r.slowest_ratio <= r.ratio.draw);
+    CHECK(r.ratio.draw <= r.fastest_ratio);
+    CHECK(r.ratio.with_build == Approx((r.trace_ms + r.build_ms) / (r.draw_ms + r.prepare_ms)));
+    CHECK(r.mismatches.pixels == r.mismatches.edge + r.mismatches.depth + r.mismatches.unexplained);
+    CHECK(r.mismatches.unexplained == 0);
+    CHECK(r.mismatches.pixels < r.pixels / 100);
+}
+
+TEST_CASE("two views of a course add up") {
+    const Course course;
+    const RaceView view{&course.mesh, &course.owned};
+    const RaceResult r = race({course.scene, {view, view}, course.grid}, {1, ""});
+    CHECK(r.pixels == 2 * course.grid.size());
+    CHECK(r.facets == 4);
+}
+
+TEST_CASE("an instruction set that a side does not have is a usage error") {
+    const Course course;
+    CHECK_THROWS_AS(race({course.scene, {{&course.mesh, &course.owned}}, course.grid}, {1, "mmx"}), UsageError);
+    // The next race has all of them again.
+    CHECK(race({course.scene, {{&course.mesh, &course.owned}}, course.grid}, {1, ""}).pixels > 0);
+}

@@ -1,0 +1,81 @@
+// The wide tree: every triangle in one leaf, inside every box above it; a leaf's floats are its corners.
+#include "projector/leaf_tree.h"
+
+#include "projector/prepared_scene.h"
+#include "random_cases.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+struct Count {
+    std::vector<int> seen;
+    std::size_t outside = 0, inexact = 0, wide = 0;
+};
+
+struct FloatBounds {
+    Vec3 low{-1e300}, high{1e300};  // from the tree's centre
+};
+
+void visit(const PreparedScene::Data& data, std::int32_t child, const FloatBounds& above, Count& count) {
+    const LeafTree& tree = data.leaves;
+    if (child >= 0) {
+        const WideNode& node = tree.nodes[static_cast<std::size_t>(child)];
+        count.wide += node.count >= 2;
+        for (std::size_t k = 0; k < node.count; ++k) {
+            const FloatBounds box{Vec3(node.low[0][k], node.low[1][k], node.low[2][k]),
+                                  Vec3(node.high[0][k], node.high[1][k], node.high[2][k])};
+            visit(data, node.child[k], box, count);
+        }
+        return;
+    }
+    const Leaf& leaf = tree.leaves[static_cast<std::size_t>(~child)];
+    const Vec3 centre(leaf.centre[0], leaf.centre[1], leaf.centre[2]);
+    for (std::size_t k = 0; k < leaf.count; ++k) {
+        ++count.seen[leaf.triangle[k]];
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Vec3 exact = data.corner(c, leaf.triangle[k], centre);
+            const Vec3 stored(leaf.x[c][k], leaf.y[c][k], leaf.z[c][k]);
+            const Vec3 from_tree = data.corner(c, leaf.triangle[k], tree.centre);
+            for (int a = 0; a < 3; ++a) {
+                count.inexact += std::fabs(stored[a] - exact[a]) > 0x1p-24 * std::fabs(exact[a]);
+                count.outside += std::fabs(stored[a]) > leaf.half[a] || from_tree[a] < above.low[a] ||
+                                 from_tree[a] > above.high[a] || std::fabs(from_tree[a]) > tree.half[a];
+            }
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("every triangle is in one leaf, inside all boxes above it") {
+    Random random(31);
+    for (const int size : {1, 16, 17, 40, 300, 5000}) {
+        for (int i = 0; i < 5; ++i) {
+            Frame frame = random_frame(random);
+            if (i == 4) frame.offset = random.in_cube(1e6);
+            const TriangleScene scene = random_triangles(random, frame, size);
+            const PreparedScene prepared(scene);
+            Count count;
+            count.seen.resize(scene.size(), 0);
+            visit(prepared.data(), prepared.data().leaves.root, {}, count);
+            CHECK(std::count(count.seen.begin(), count.seen.end(), 1) ==
+                  static_cast<std::ptrdiff_t>(scene.size()));
+            CHECK(count.outside == 0);
+            CHECK(count.inexact == 0);
+            CHECK(count.wide == prepared.data().leaves.nodes.size());
+        }
+    }
+}
+
+TEST_CASE("triangles that all coincide still make a tree") {
+    TriangleScene scene;
+    for (int i = 0; i < 1000; ++i) add_triangle(scene, {0, 0, 1}, {1, 0, 1}, {0, 1, 1});
+    const PreparedScene prepared(scene);
+    Count count;
+    count.seen.resize(scene.size(), 0);
+    visit(prepared.data(), prepared.data().leaves.root, {}, count);
+    CHECK(std::count(count.seen.begin(), count.seen.end(), 1) == 1000);
+}

@@ -1,0 +1,180 @@
+// The vector engine against the plain one: the same hits, bit for bit, in every leaf mode and instruction
+// set.
+#include <algorithm>
+
+#include "base/rasterize.h"
+#include "film_mesh.h"
+#include "projector/draw_options.h"
+#include "projector/projector.h"
+#include "random_cases.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+struct Tally {
+    std::size_t samples = 0, seen = 0, different = 0;
+};
+
+bool same(const Hit& a, const Hit& b) {
+    return a.triangle == b.triangle && (!a.seen() || (a.t == b.t && a.barycentric == b.barycentric));
+}
+
+struct Case {
+    const TriangleScene& scene;
+    const RayMesh& mesh;
+    const SampleGrid& grid;
+    FacetSamples owned;
+};
+
+void compare(const Case& c, const DrawOptions& options, Tally& tally) {
+    const PreparedScene prepared(c.scene);
+    std::vector<Hit> plain(c.grid.size()), fast(c.grid.size());
+    draw(prepared, c.mesh, c.owned, c.grid, plain, {.vectors = false});
+    draw(prepared, c.mesh, c.owned, c.grid, fast, options);
+    for (const Id s : c.owned.sample) {
+        ++tally.samples;
+        tally.seen += plain[s].seen();
+        tally.different += !same(plain[s], fast[s]);
+    }
+}
+
+DrawOptions with(LeafMode mode) {
+    DrawOptions options;
+    options.kernel.leaf_mode = mode;
+    return options;
+}
+
+constexpr LeafMode kModes[] = {LeafMode::kCheapest, LeafMode::kTriangles, LeafMode::kFacets, LeafMode::kRays};
+
+/// Cells x cells quads over the film, a bowed mirror around the frame's origin.
+RayMesh bowed_mesh(const SampleGrid& grid, const Frame& frame, int cells) {
+    return film_mesh(grid, cells, [&](double x, double y) {
+        return Ray{frame(Vec3(x, y, 0.3 * (x * x + y * y))), frame.scale * Vec3(0.6 * x, 0.6 * y, 1)};
+    });
+}
+
+/// A closed bumpy room around the frame's origin.
+TriangleScene bumpy_room(const Frame& frame, int cells) {
+    TriangleScene scene;
+    const auto point = [&](int wall, int i, int j) {
+        const double x = 2.0 * i / cells - 1, y = 2.0 * j / cells - 1, s = wall % 2 == 0 ? 1 : -1;
+        const Vec3 p = wall < 2 ? Vec3(s, x, y) : wall < 4 ? Vec3(x, s, y) : Vec3(x, y, s);
+        return frame(8.0 * p *
+                     (1 + 0.05 * std::sin(9 * p.x) * std::sin(7 * p.y + 1) * std::sin(8 * p.z + 2)));
+    };
+    for (int wall = 0; wall < 6; ++wall) {
+        for (int j = 0; j < cells; ++j) {
+            for (int i = 0; i < cells; ++i) {
+                add_triangle(scene, point(wall, i, j), point(wall, i + 1, j), point(wall, i + 1, j + 1));
+                add_triangle(scene, point(wall, i, j), point(wall, i + 1, j + 1), point(wall, i, j + 1));
+            }
+        }
+    }
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens of every kind") {
+    Random random(21);
+    for (const LeafMode mode : kModes) {
+        Tally tally;
+        for (int i = 0; i < 400; ++i) {
+            const int x0 = random.below(2000);
+            const SampleGrid grid{x0, 7, x0 + 8 + random.below(40), 7 + 8 + random.below(40),
+                                  1 + random.below(3)};
+            const Frame frame = random_frame(random);
+            const RayMesh mesh =
+                random_facet(random, grid, frame, static_cast<Rays>(i % 5), static_cast<Screen>(i / 5 % 4));
+            const TriangleScene scene = random_triangles(random, frame, 1 + random.below(300));
+            const bool outside = i % 7 == 0;
+            compare({scene, mesh, grid, outside ? all_samples(grid) : rasterize_facets(mesh, grid)},
+                    with(mode), tally);
+        }
+        INFO("mode " << static_cast<int>(mode) << " samples " << tally.samples << " seen " << tally.seen);
+        CHECK(tally.different == 0);
+        CHECK(tally.seen > 50000);
+    }
+}
+
+TEST_CASE("the vector engine draws the plain engine's bits through many facets, large and small") {
+    Random random(22);
+    for (const LeafMode mode : kModes) {
+        Tally tally;
+        for (const int cells : {1, 3, 9, 30}) {
+            for (const int room : {1, 5, 20}) {
+                const SampleGrid grid{0, 0, 131, 97, 1 + (cells + room) % 2};
+                const Frame frame = random_frame(random);
+                const RayMesh mesh = bowed_mesh(grid, frame, cells);
+                const TriangleScene scene = bumpy_room(frame, room);
+                compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, with(mode), tally);
+            }
+        }
+        INFO("mode " << static_cast<int>(mode));
+        CHECK(tally.different == 0);
+        CHECK(tally.seen == tally.samples);
+    }
+}
+
+TEST_CASE("every instruction set draws the same bits") {
+    const std::vector<std::string> sets = kernel_instruction_sets();
+    REQUIRE(!sets.empty());
+    CHECK_FALSE(use_instruction_set("none of them"));
+    Random random(23);
+    const SampleGrid grid{0, 0, 160, 120, 1};
+    for (const std::string& set : sets) {
+        REQUIRE(use_instruction_set(set));
+        Tally tally;
+        for (const LeafMode mode : kModes) {
+            const Frame frame = random_frame(random);
+            const RayMesh mesh = bowed_mesh(grid, frame, 8);
+            const TriangleScene scene = random_triangles(random, frame, 2000);
+            compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, with(mode), tally);
+        }
+        INFO(set);
+        CHECK(tally.different == 0);
+        CHECK(tally.seen > 10000);
+    }
+    CHECK(use_instruction_set(""));
+}
+
+TEST_CASE(
+    "no wrong pixel: slivers, needles, coincident and edge-on triangles, far coordinates and all scales") {
+    Random random(24);
+    for (const LeafMode mode : kModes) {
+        Tally tally;
+        for (int i = 0; i < 120; ++i) {
+            const SampleGrid grid{0, 0, 48, 40, 1};
+            Frame frame = random_frame(random);
+            if (i % 3 == 0) frame.offset = random.in_cube(1e6);
+            const RayMesh mesh = i % 2 == 0 ? bowed_mesh(grid, frame, 1 + random.below(12))
+                                            : random_facet(random, grid, frame, static_cast<Rays>(i % 5),
+                                                           static_cast<Screen>(i / 5 % 4));
+            TriangleScene scene;
+            for (int k = 0; k < 60; ++k) {
+                // Slivers, needles and specks, some through the rays' origins; each twice, turned.
+                const Vec3 a = random.in_cube(3);
+                const Vec3 b = a + random.in_cube(random.log_uniform(1e-6, 100));
+                const Vec3 c =
+                    a + random.uniform(-1, 2) * (b - a) + random.in_cube(random.log_uniform(1e-14, 100));
+                add_triangle(scene, frame(a), frame(b), frame(k % 5 == 0 ? a : c));
+                add_triangle(scene, frame(b), frame(a), frame(k % 5 == 0 ? a : c));
+                scene.object.back() = static_cast<Id>(random.below(3));
+                // Planes seen edge-on or nearly so, and sheets a hair behind one another.
+                const double z = random.uniform(0.5, 6), hair = random.log_uniform(1e-12, 1e-2);
+                for (const double depth : {z, z * (1 + hair)})
+                    add_triangle(scene, frame(Vec3(-4, -3, depth)), frame(Vec3(5, -2, depth)),
+                                 frame(Vec3(0, 6, depth)));
+                const double lean = random.log_uniform(1e-12, 1);
+                add_triangle(scene, frame(Vec3(0, -4, 0)), frame(Vec3(lean, 4, 0)), frame(Vec3(0, 0, 9)));
+            }
+            compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, with(mode), tally);
+        }
+        INFO("mode " << static_cast<int>(mode) << " samples " << tally.samples << " seen " << tally.seen);
+        CHECK(tally.different == 0);
+        CHECK(tally.seen > 50000);
+    }
+}
