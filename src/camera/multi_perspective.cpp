@@ -8,10 +8,12 @@ namespace trilens {
 namespace {
 
 constexpr int kNewtonSteps = 15;
-constexpr double kAtRest = 1e-10;  // share of the film
-constexpr int kStartsAcross = 24;  // places across the film from which images are looked for
-constexpr int kStrips = 8;         // patches across a blend: there a point may be seen several times
-constexpr double kBeyond = 3;      // a patch of a blend goes on by so many of its sizes
+constexpr double kAtRest = 1e-10;        // share of the film
+constexpr int kStartsAcross = 24;        // places across the film from which images are looked for
+constexpr int kStrips = 8;               // patches across a blend: there a point may be seen several times
+constexpr double kSame = 1e-7;           // share of the film: images nearer to each other are one
+constexpr double kCurvatureStep = 2e-4;  // share of the film, for second differences
+constexpr double kBeyond = 3;            // a patch of a blend goes on by so many of its sizes
 
 struct View {
     ModelPointer model;
@@ -29,6 +31,7 @@ class MultiPerspective final : public CameraModel {
     std::optional<Ray> ray(const Vec2& at) const override { return ray_of_patch(patch_at(at), at); }
     std::size_t branch_count() const override { return patches_.size(); }
     std::optional<FilmImage> place(const Vec3& point, std::size_t patch) const override;
+    std::vector<FilmImage> places(const Vec3& point, std::size_t patch) const override;
     bool shows(std::size_t patch, const Vec2& at) const override { return patch_at(at) == patch; }
     std::vector<double> breaks_x() const override { return breaks_[0]; }
     std::vector<double> breaks_y() const override { return breaks_[1]; }
@@ -51,7 +54,10 @@ class MultiPerspective final : public CameraModel {
     double ramp(Ramp kind, int axis, const View& view, double at) const;
     std::size_t patch_at(const Vec2& at) const;
     std::optional<Ray> ray_of_patch(std::size_t patch, const Vec2& at) const;
-    std::optional<FilmImage> search(const Vec3& point, std::size_t patch) const;
+    template <class Found>
+    void search(const Vec3& point, std::size_t patch, int across, const Found& found) const;
+    std::optional<Vec3> miss(const Vec3& point, std::size_t patch, const Vec2& at) const;
+    std::optional<Vec2> beyond_fold(const Vec3& point, std::size_t patch, const Vec2& at) const;
     std::optional<FilmImage> solve(const Vec3& point, std::size_t patch, Vec2 at) const;
 
     FilmSize film_;
@@ -188,7 +194,19 @@ std::optional<Ray> MultiPerspective::ray_of_patch(std::size_t patch, const Vec2&
 std::optional<FilmImage> MultiPerspective::place(const Vec3& point, std::size_t patch) const {
     const std::vector<Share>& shares = patches_[patch].shares;
     if (shares.empty()) return std::nullopt;
-    if (shares.size() > 1) return search(point, patch);
+    if (shares.size() > 1) {
+        // The image in the patch, or the one nearest to it: a blend may show a point several times.
+        std::optional<FilmImage> best;
+        double nearest = 0;
+        search(point, patch, kStartsAcross, [&](const FilmImage& image) {
+            const Patch& there = patches_[patch];
+            const double distance =
+                length(glm::max(glm::abs(image.pixel - there.middle) - there.half, Vec2(0)));
+            if (!best || distance < nearest) best = image, nearest = distance;
+            return distance == 0;
+        });
+        return best;
+    }
     const View& view = views_[shares[0].view];
     // Of a view with several branches the one that its film shows there.
     std::optional<FilmImage> best;
@@ -203,43 +221,94 @@ std::optional<FilmImage> MultiPerspective::place(const Vec3& point, std::size_t 
     return best;
 }
 
-/// The image in the patch, or the one nearest to it: a blend may show a point several times.
-std::optional<FilmImage> MultiPerspective::search(const Vec3& point, std::size_t patch) const {
+/// Calls `found` with what Newton's method comes to from places all over the patch, `across` of them to a
+/// film's width, until that answers true.
+template <class Found>
+void MultiPerspective::search(const Vec3& point, std::size_t patch, int across, const Found& found) const {
     const Patch& there = patches_[patch];
-    const auto starts = [](double half, double size) {
-        return std::max(1, static_cast<int>(std::ceil(2 * half * kStartsAcross / size)));
+    const auto starts = [across](double half, double size) {
+        return std::max(across / kStartsAcross, static_cast<int>(std::ceil(2 * half * across / size)));
     };
     const int columns = starts(there.half.x, film_.width), rows = starts(there.half.y, film_.height);
-    std::optional<FilmImage> best;
-    double nearest = 0;
     for (int j = 0; j < rows; ++j)
         for (int i = 0; i < columns; ++i) {
             const Vec2 share((2 * i + 1.0) / columns - 1, (2 * j + 1.0) / rows - 1);
-            const auto found = solve(point, patch, there.middle + share * there.half);
-            if (!found) continue;
-            const Vec2 off = glm::max(glm::abs(found->pixel - there.middle) - there.half, Vec2(0));
-            const double distance = length(off);
-            if (!best || distance < nearest) best = found, nearest = distance;
-            if (distance == 0) return best;
+            const auto image = solve(point, patch, there.middle + share * there.half);
+            if (image && found(*image)) return;
         }
-    return best;
+}
+
+std::vector<FilmImage> MultiPerspective::places(const Vec3& point, std::size_t patch) const {
+    const std::vector<Share>& shares = patches_[patch].shares;
+    std::vector<FilmImage> images;
+    if (shares.size() == 1) {
+        const View& view = views_[shares[0].view];
+        for (std::size_t branch = 0; branch < view.model->branch_count(); ++branch)
+            for (FilmImage image : view.model->places(point, branch)) {
+                if (!view.model->shows(branch, image.pixel)) continue;
+                image.pixel += view.low;
+                images.push_back(image);
+            }
+        if (!images.empty()) return images;
+    }
+    if (shares.size() <= 1) return CameraModel::places(point, patch);
+    const auto add = [&](const FilmImage& image) {
+        for (const FilmImage& known : images)
+            if (length(known.pixel - image.pixel) < kSame * film_.width) return false;
+        images.push_back(image);
+        return true;
+    };
+    search(point, patch, 2 * kStartsAcross, [&](const FilmImage& image) {
+        if (!add(image)) return false;
+        const auto other_side = beyond_fold(point, patch, image.pixel);
+        if (!other_side) return false;
+        if (const auto partner = solve(point, patch, *other_side)) add(*partner);
+        return false;
+    });
+    return images;
+}
+
+/// How far the point lies from the patch's ray there, as a share of its distance along the ray.
+std::optional<Vec3> MultiPerspective::miss(const Vec3& point, std::size_t patch, const Vec2& at) const {
+    const std::optional<Ray> ray = ray_of_patch(patch, at);
+    if (!ray) return std::nullopt;
+    const Vec3 from = point - ray->origin;
+    const double t = dot(from, ray->direction) / dot(ray->direction, ray->direction);
+    return from / std::max(std::fabs(t), 1e-9) - (t < 0 ? -1.0 : 1.0) * ray->direction;
+}
+
+/// About where the image lies that merges with this one at a fold: along the direction in which the miss
+/// changes least, where its second order cancels the first.
+std::optional<Vec2> MultiPerspective::beyond_fold(const Vec3& point, std::size_t patch,
+                                                  const Vec2& at) const {
+    const double step = kCurvatureStep * film_.width;
+    const auto here = miss(point, patch, at), x1 = miss(point, patch, at + Vec2(step, 0)),
+               x0 = miss(point, patch, at - Vec2(step, 0)), y1 = miss(point, patch, at + Vec2(0, step)),
+               y0 = miss(point, patch, at - Vec2(0, step));
+    if (!here || !x1 || !x0 || !y1 || !y0) return std::nullopt;
+    const Vec3 dx = (*x1 - *x0) / (2 * step), dy = (*y1 - *y0) / (2 * step);
+    const double angle = 0.5 * std::atan2(2 * dot(dx, dy), dot(dx, dx) - dot(dy, dy));
+    const Vec2 most(std::cos(angle), std::sin(angle)), least(-most.y, most.x);
+    const Vec3 strong = normalize_or_zero(most.x * dx + most.y * dy);
+    const auto ahead = miss(point, patch, at + step * least), back = miss(point, patch, at - step * least);
+    if (!ahead || !back) return std::nullopt;
+    const Vec3 first = (*ahead - *back) / (2 * step);
+    Vec3 second = (*ahead - 2.0 * *here + *back) / (step * step);
+    second -= dot(second, strong) * strong;
+    const double bend = dot(second, second);
+    if (!(bend > 0)) return std::nullopt;
+    return at - (2 * dot(first, second) / bend) * least;
 }
 
 /// Newton's method on the place of the film; none where it leaves the patch's surroundings, or finds the
 /// point behind the ray.
 std::optional<FilmImage> MultiPerspective::solve(const Vec3& point, std::size_t patch, Vec2 at) const {
-    const auto miss = [&](const Vec2& place) -> std::optional<Vec3> {
-        const std::optional<Ray> ray = ray_of_patch(patch, place);
-        if (!ray) return std::nullopt;
-        const Vec3 from = point - ray->origin;
-        const double t = dot(from, ray->direction) / dot(ray->direction, ray->direction);
-        return from / std::max(std::fabs(t), 1e-9) - (t < 0 ? -1.0 : 1.0) * ray->direction;
-    };
     const Vec2 half = patches_[patch].half;
     const double step = 1e-5 * film_.width, reach = 2 * std::max(half.x, half.y);
     for (int i = 0; i < kNewtonSteps; ++i) {
-        const auto here = miss(at), x1 = miss(at + Vec2(step, 0)), x0 = miss(at - Vec2(step, 0)),
-                   y1 = miss(at + Vec2(0, step)), y0 = miss(at - Vec2(0, step));
+        const auto here = miss(point, patch, at), x1 = miss(point, patch, at + Vec2(step, 0)),
+                   x0 = miss(point, patch, at - Vec2(step, 0)), y1 = miss(point, patch, at + Vec2(0, step)),
+                   y0 = miss(point, patch, at - Vec2(0, step));
         if (!here || !x1 || !x0 || !y1 || !y0) return std::nullopt;
         const Vec3 dx = (*x1 - *x0) / (2 * step), dy = (*y1 - *y0) / (2 * step);
         const double xx = dot(dx, dx), xy = dot(dx, dy), yy = dot(dy, dy), area = xx * yy - xy * xy;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "camera/film_mesh.h"
+#include "camera/ray_spread.h"
 #include "draw.h"
 #include "every_camera.h"
 #include "support/test.h"
@@ -24,14 +25,30 @@ Camera camera_of(const CameraDescription& from, const FilmSize& film = kFilm) {
     return make_camera(from, film);
 }
 
+/// Whether the images of points at t, or up to a tenth nearer or farther, fold within eight pixels of the
+/// place: there an error of the rays moves an image by its square root, however fine the mesh.
+bool near_fold(const CameraModel& model, const Vec2& at, double t) {
+    constexpr int kAround = 16;
+    constexpr double kReach = 8;
+    int positive = 0, negative = 0;
+    for (int k = 0; k < kAround; ++k)
+        for (const double reach : {0.5 * kReach, kReach}) {
+            const double angle = 2 * kPi * k / kAround;
+            const auto spread = film_spread(model, at + reach * Vec2(std::cos(angle), std::sin(angle)), 0.01);
+            if (!spread) continue;
+            for (const double depth : {0.9 * t, t, 1.1 * t}) ++(spread->at(depth) > 0 ? positive : negative);
+        }
+    return positive > 0 && negative > 0;
+}
+
 /// The mean distance over random places of the film between the place and where the exact camera shows what
-/// the mesh's ray passes at `t`, in pixels; and the largest.
+/// the mesh's ray passes at `t`, in pixels; and the largest. Places at a fold take no part, and are counted.
 struct Off {
     double mean = 0, median = 0, largest = 0;
-    std::size_t count = 0;
+    std::size_t count = 0, at_folds = 0;
 };
 
-Off mesh_off(const Camera& camera, double t) {
+Off mesh_off(const Camera& camera, double t, bool folds = false) {
     Draw draw(5);
     Off off;
     std::vector<double> all;
@@ -43,16 +60,20 @@ Off mesh_off(const Camera& camera, double t) {
         Vec3 at(0);
         for (int k = 0; k < 3; ++k)
             at += weights[k] * camera.mesh.screen[camera.mesh.facets[f][static_cast<std::size_t>(k)]];
+        if (folds && near_fold(*camera.model, Vec2(at), t)) {
+            ++off.at_folds;
+            continue;
+        }
         const Ray ray = interpolated_ray(camera.mesh, f, weights);
         double nearest = -1;
         for (std::size_t branch = 0; branch < camera.model->branch_count(); ++branch) {
             if (!camera.model->shows(branch, Vec2(at.x, at.y))) continue;
-            const auto place = camera.model->place(ray.origin + t * ray.direction, branch);
-            if (!place) continue;
-            Vec2 by = place->pixel - Vec2(at.x, at.y);
-            if (camera.model->period() > 0) by.x = std::remainder(by.x, camera.model->period());
-            by.x /= camera.model->stretch(Vec2(at.x, at.y));
-            if (nearest < 0 || length(by) < nearest) nearest = length(by);
+            for (const FilmImage& place : camera.model->places(ray.origin + t * ray.direction, branch)) {
+                Vec2 by = place.pixel - Vec2(at.x, at.y);
+                if (camera.model->period() > 0) by.x = std::remainder(by.x, camera.model->period());
+                by.x /= camera.model->stretch(Vec2(at.x, at.y));
+                if (nearest < 0 || length(by) < nearest) nearest = length(by);
+            }
         }
         if (nearest < 0) continue;
         off.mean += nearest;
@@ -89,25 +110,29 @@ TEST_CASE("a point along an exact ray is shown where the ray leaves the film") {
                 CHECK(length(there.origin - image.origin) < 1e-6);
                 nearest = std::min(nearest, length(image.pixel - at));
             }
+            if (!(nearest < 1e-4)) UNSCOPED_INFO("missed at " << at.x << ", " << at.y << " t " << t);
             missed += !(nearest < 1e-4);
             ++tested;
         }
         CHECK(tested > 400);
-        // Of several images inside one strip of a blend, one is listed.
-        CHECK(missed <= (from.type == CameraType::kMultiPerspective ? tested / 100 : 0));
+        CHECK(missed == 0);
     }
 }
 
 TEST_CASE("the RayMesh comes to the exact rays with order 2") {
     for (CameraDescription from : every_camera()) {
         INFO(from.name);
+        const bool folds =
+            from.type == CameraType::kMultiPerspective || from.type == CameraType::kPlanarContext;
         for (const double t : {1.0, 4.0, 1000.0}) {
             std::array<Off, 3> off;
             for (std::size_t k = 0; k < off.size(); ++k) {
                 from.facets = 40 << k;
-                off[k] = mesh_off(camera_of(from), t);
+                off[k] = mesh_off(camera_of(from), t, folds);
                 CHECK(off[k].count > 3000);
+                CHECK(off[k].at_folds < 600);
             }
+            INFO("at folds " << off[0].at_folds << " " << off[2].at_folds);
             INFO("t " << t << ": mean " << off[0].mean << " " << off[1].mean << " " << off[2].mean
                       << ", largest " << off[0].largest << " " << off[1].largest << " " << off[2].largest);
             // Affine combinations of three rays: the mesh is exact.
@@ -115,14 +140,7 @@ TEST_CASE("the RayMesh comes to the exact rays with order 2") {
                 CHECK(off[0].largest < 1e-8);
                 continue;
             }
-            // Where a camera shows some points twice, its image folds: there an error of the rays moves an
-            // image by its square root, and one of the two may be taken for the other.
-            if (from.type == CameraType::kMultiPerspective)
-                CHECK(std::log2(off[0].mean / off[2].mean) / 2 > 1.0);
-            else if (from.type == CameraType::kPlanarContext)
-                CHECK(std::log2(off[0].mean / off[2].mean) / 2 > 1.6);
-            else
-                CHECK(std::log2(off[0].mean / off[2].mean) / 2 > 1.9);
+            CHECK(std::log2(off[0].mean / off[2].mean) / 2 > 1.9);
         }
     }
 }

@@ -1,0 +1,167 @@
+// The kinds of general linear cameras: rays built as each kind is defined, and the criterion of Yu and
+// McMillan in their own coordinates as a second answer.
+#include "camera/general_linear.h"
+
+#include <cmath>
+
+#include "draw.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+using Rays = std::array<Ray, 3>;
+
+GeneralLinearKind kind_of(const Rays& rays) {
+    const auto camera = general_linear_camera(rays, {0, 0, 1}, 1e-7);
+    REQUIRE(camera);
+    return camera->kind;
+}
+
+/// A ray that meets both lines, at those places along them.
+Ray through(const Ray& one, double at_one, const Ray& other, double at_other) {
+    const Vec3 from = one.origin + at_one * one.direction;
+    return {from, other.origin + at_other * other.direction - from};
+}
+
+/// Anywhere on their lines, any length, the same sense.
+Rays shaken(Rays rays, Draw& draw) {
+    for (Ray& ray : rays) {
+        ray.origin += draw.uniform(-0.5, 0.5) * ray.direction;
+        ray.direction *= draw.uniform(0.5, 2);
+    }
+    return rays;
+}
+
+/// The characteristic equation as the paper writes it: rays [s, t, u, v] between z = 0 and z = 1.
+struct Characteristic {
+    double a = 0, b = 0, c = 0;
+};
+Characteristic characteristic(const Rays& rays) {
+    std::array<double, 3> s, t, u, v;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 at0 = rays[k].origin - rays[k].origin.z / rays[k].direction.z * rays[k].direction;
+        const Vec3 at1 = at0 + rays[k].direction / rays[k].direction.z;
+        s[k] = at0.x, t[k] = at0.y, u[k] = at1.x, v[k] = at1.y;
+    }
+    const auto det = [](const std::array<double, 3>& p, const std::array<double, 3>& q) {
+        return p[0] * (q[1] - q[2]) - q[0] * (p[1] - p[2]) + (p[1] * q[2] - p[2] * q[1]);
+    };
+    std::array<double, 3> du, dv;
+    for (std::size_t k = 0; k < 3; ++k) du[k] = u[k] - s[k], dv[k] = v[k] - t[k];
+    return {det(du, dv), det(s, v) - det(t, u) - 2 * det(s, t), det(s, t)};
+}
+
+}  // namespace
+
+TEST_CASE("rays of each general linear camera are named as what they are") {
+    Draw draw(21);
+    for (int round = 0; round < 200; ++round) {
+        const Vec3 eye = draw.in_cube(1);
+        Rays pinhole, parallel;
+        for (Ray& ray : pinhole) ray = {eye, Vec3(0, 0, 2) + draw.in_cube(0.8)};
+        const Vec3 way = Vec3(0, 0, 1) + draw.in_cube(0.4);
+        for (Ray& ray : parallel) ray = {draw.in_cube(2), way};
+        CHECK(kind_of(shaken(pinhole, draw)) == GeneralLinearKind::kPinhole);
+        CHECK(kind_of(shaken(parallel, draw)) == GeneralLinearKind::kOrthographic);
+
+        // Two slits across z, two apart.
+        const double turn = draw.uniform(0.4, 2.7);
+        const Ray one{Vec3(0, 0, 0), Vec3(1, 0, 0)},
+            other{Vec3(0, 0, 2), Vec3(std::cos(turn), std::sin(turn), 0)};
+        const Rays slits{through(one, 0, other, 0.1), through(one, 1, other, 0.2),
+                         through(one, 0.3, other, 1)};
+        CHECK(kind_of(shaken(slits, draw)) == GeneralLinearKind::kCrossedSlits);
+        const auto camera = general_linear_camera(shaken(slits, draw), {0, 0, 1}, 1e-7);
+        REQUIRE(camera->meets.size() == 2);
+        // The middle ray meets both.
+        for (const Ray& slit : {one, other}) {
+            double nearest = 1e9;
+            for (const Vec3& meet : camera->meets)
+                nearest = std::min(nearest, length(cross(meet - slit.origin, slit.direction)));
+            CHECK(nearest < 1e-8);
+        }
+
+        // The eye walks along a line; rays parallel to a plane that the line is not.
+        const Rays pushbroom{Ray{Vec3(0, 0, 0), Vec3(0, draw.uniform(-1, 1), 2)},
+                             Ray{Vec3(1, 0, 0), Vec3(0, draw.uniform(-1, 1), 2)},
+                             Ray{Vec3(2.5, 0, 0), Vec3(0, draw.uniform(1.2, 2), 2)}};
+        CHECK(kind_of(shaken(pushbroom, draw)) == GeneralLinearKind::kPushbroom);
+
+        // Parallel to a plane, turning with the height: (x, y) at depth z goes to (x + k y z, y).
+        const double k = draw.uniform(0.3, 1);
+        Rays twisted;
+        for (Ray& ray : twisted) {
+            const Vec3 at = draw.in_cube(1);
+            ray = {Vec3(at.x, at.y, 0), Vec3(k * at.y, 0, 1)};
+        }
+        CHECK(kind_of(shaken(twisted, draw)) == GeneralLinearKind::kTwistedOrthographic);
+
+        // Turning about the axis: the map of the planes has no real eigenvalue, so no depth flattens it.
+        Rays bilinear;
+        for (Ray& ray : bilinear) {
+            const Vec3 at = draw.in_cube(1);
+            ray = {Vec3(at.x, at.y, 0), Vec3(-k * at.y, k * at.x, 1)};
+        }
+        CHECK(kind_of(shaken(bilinear, draw)) == GeneralLinearKind::kBilinear);
+
+        // Through a line, each point of it with a plane of rays: the map has one eigenvalue, but is no
+        // multiple.
+        Rays pencil;
+        for (Ray& ray : pencil) {
+            const Vec3 at = draw.in_cube(1);
+            ray = {Vec3(at.x, at.y, 0), Vec3(-0.5 * at.x + k * at.y, -0.5 * at.y, 1)};
+        }
+        CHECK(kind_of(shaken(pencil, draw)) == GeneralLinearKind::kPencil);
+
+        Rays plane;
+        for (Ray& ray : plane) ray = {Vec3(draw.uniform(-1, 1), 0, 0), Vec3(draw.uniform(-1, 1), 0, 2)};
+        CHECK(kind_of(shaken(plane, draw)) == GeneralLinearKind::kPlane);
+    }
+}
+
+TEST_CASE("random rays have as many roots as the paper's characteristic equation") {
+    Draw draw(22);
+    int slits = 0, bilinear = 0;
+    for (int round = 0; round < 2000; ++round) {
+        Rays rays;
+        for (Ray& ray : rays) ray = {draw.in_cube(1), Vec3(0, 0, 1.5) + draw.in_cube(0.6)};
+        const auto [a, b, c] = characteristic(rays);
+        const auto camera = general_linear_camera(rays, {0, 0, 3});
+        REQUIRE(camera);
+        if (b * b - 4 * a * c > 0) {
+            ++slits;
+            CHECK(camera->kind == GeneralLinearKind::kCrossedSlits);
+            // At a root in z the three rays' points lie on one line, and so does the middle ray's.
+            for (const Vec3& meet : camera->meets) {
+                std::array<Vec3, 3> at;
+                const Vec3 axis(0, 0, 1);
+                for (std::size_t k = 0; k < 3; ++k)
+                    at[k] = rays[k].origin + dot(meet - rays[k].origin, axis) / dot(rays[k].direction, axis) *
+                                                 rays[k].direction;
+                const Vec3 e = at[1] - at[0], f = at[2] - at[0];
+                CHECK(length(cross(e, f)) < 1e-6 * (dot(e, e) + dot(f, f)));
+            }
+        } else {
+            ++bilinear;
+            CHECK(camera->kind == GeneralLinearKind::kBilinear);
+            CHECK(camera->meets.empty());
+        }
+    }
+    CHECK(slits > 200);
+    CHECK(bilinear > 200);
+}
+
+TEST_CASE("three rays that make no camera have no kind") {
+    const Ray ray{Vec3(0), Vec3(0, 0, 1)};
+    const Vec3 axis(0, 0, 1);
+    CHECK_FALSE(general_linear_camera({ray, ray, Ray{Vec3(1, 0, 0), Vec3(0, 0, 1)}}, axis));
+    CHECK_FALSE(general_linear_camera(
+        {ray, Ray{Vec3(1, 0, 0), Vec3(0, 0, -1)}, Ray{Vec3(0, 1, 0), Vec3(0, 0.1, 1)}}, axis));
+    CHECK_FALSE(
+        general_linear_camera({ray, Ray{Vec3(1, 0, 0), Vec3(0)}, Ray{Vec3(0, 1, 0), Vec3(0, 0, 1)}}, axis));
+    CHECK_FALSE(general_linear_camera(
+        {ray, Ray{Vec3(1, 0, 0), Vec3(0, 0, 1)}, Ray{Vec3(0, 1, 0), Vec3(0, 0, 1)}}, Vec3(0)));
+}
