@@ -1,5 +1,6 @@
 // How fast the projector draws a scene's rays, against Embree's packets on the same rays in the same run.
 //
+//     #include <trilens/scene.h>
 //     trilens::BenchRequest request;
 //     request.race.repeats = 9;
 //     const trilens::BenchResult result = trilens::run_bench(trilens::load_scene({"scene.json"}), request);
