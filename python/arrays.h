@@ -73,12 +73,4 @@ py::array_t<Value> array_of(std::vector<Value> values) {
     return array_of(std::move(values), {size});
 }
 
-/// A 1-D structured array of `rows`, whose numpy type is np.dtype(type).
-template <class Row>
-py::array records_of(const std::vector<Row>& rows, const py::object& type) {
-    const py::object dtype = py::module_::import("numpy").attr("dtype")(type);
-    return py::array(py::dtype::from_args(dtype), {static_cast<py::ssize_t>(rows.size())},
-                     {static_cast<py::ssize_t>(sizeof(Row))}, rows.data());
-}
-
 }  // namespace trilens::python

@@ -1,6 +1,7 @@
 // Where world points appear, as one structured array.
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 
@@ -11,16 +12,30 @@
 namespace trilens::python {
 namespace {
 
-/// One image of a point, as numpy sees it.
+/// One image of a point, as numpy sees it; its steps stand behind it.
 struct ImageRow {
     std::int64_t point;
     double x, y, t, length;
-    Id optic, object, facet;
+    double derivative[2][3];
+    Id optic, object, facet, step_count;
     char32_t path[7];
-    bool inside, visible, refined, complete;
+    bool inside, visible, refined, complete, has_derivative;
 };
 
-py::object row_type() {
+struct StepRow {
+    Id optic;
+    char32_t event[8];
+};
+
+/// Rows of one length: each an ImageRow and so many StepRow.
+struct Rows {
+    std::size_t steps = 1;
+    std::vector<std::byte> bytes;
+
+    std::size_t row_size() const { return sizeof(ImageRow) + steps * sizeof(StepRow); }
+};
+
+py::object row_type(std::size_t steps) {
     py::list names, formats, offsets;
     const auto add = [&](const char* name, const char* format, std::size_t offset) {
         names.append(name);
@@ -40,32 +55,79 @@ py::object row_type() {
     add("visible", "?", offsetof(ImageRow, visible));
     add("refined", "?", offsetof(ImageRow, refined));
     add("complete", "?", offsetof(ImageRow, complete));
+    add("has_derivative", "?", offsetof(ImageRow, has_derivative));
+    add("derivative", "(2,3)f8", offsetof(ImageRow, derivative));
+    add("step_count", "u4", offsetof(ImageRow, step_count));
+    py::dict step;
+    step["names"] = py::make_tuple("optic", "event");
+    step["formats"] = py::make_tuple("u4", "U8");
+    step["offsets"] = py::make_tuple(offsetof(StepRow, optic), offsetof(StepRow, event));
+    step["itemsize"] = sizeof(StepRow);
+    names.append("steps");
+    formats.append(py::make_tuple(step, steps));
+    offsets.append(sizeof(ImageRow));
     py::dict type;
     type["names"] = names;
     type["formats"] = formats;
     type["offsets"] = offsets;
-    type["itemsize"] = sizeof(ImageRow);
+    type["itemsize"] = sizeof(ImageRow) + steps * sizeof(StepRow);
     return type;
 }
 
-std::vector<ImageRow> rows_of(const std::vector<PointProjection>& points) {
-    std::vector<ImageRow> rows;
-    for (std::size_t p = 0; p < points.size(); ++p) {
+void copy_text(std::string_view text, char32_t* target) {
+    std::copy(text.begin(), text.end(), target);
+}
+
+ImageRow row_of(const WorldImage& image) {
+    ImageRow row;
+    std::memset(&row, 0, sizeof row);  // the gaps too: equal images, equal bytes
+    row.x = image.pixel.x, row.y = image.pixel.y;
+    row.t = image.t, row.length = image.length;
+    row.optic = image.optic, row.object = image.object, row.facet = image.facet;
+    copy_text(path_name(image.path), row.path);
+    row.inside = image.inside, row.visible = image.visible, row.refined = image.refined;
+    row.has_derivative = image.has_derivative;
+    for (int axis = 0; axis < 2; ++axis)
+        for (int k = 0; k < 3; ++k)
+            row.derivative[axis][k] = image.derivative[static_cast<std::size_t>(axis)][k];
+    row.step_count = static_cast<Id>(image.steps.size());
+    return row;
+}
+
+StepRow row_of(const Step* step) {
+    StepRow row;
+    std::memset(&row, 0, sizeof row);
+    row.optic = step ? step->optic : kNone;
+    if (step) copy_text(event_name(step->event), row.event);
+    return row;
+}
+
+Rows rows_of(const std::vector<PointProjection>& points) {
+    Rows rows;
+    for (const PointProjection& point : points)
+        for (const WorldImage& image : point.images) rows.steps = std::max(rows.steps, image.steps.size());
+    const auto append = [&](const auto& row) {
+        const std::size_t at = rows.bytes.size();
+        rows.bytes.resize(at + sizeof row);
+        std::memcpy(rows.bytes.data() + at, &row, sizeof row);
+    };
+    for (std::size_t p = 0; p < points.size(); ++p)
         for (const WorldImage& image : points[p].images) {
-            ImageRow row;
-            std::memset(&row, 0, sizeof row);  // the gaps too: equal images, equal bytes
+            ImageRow row = row_of(image);
             row.point = static_cast<std::int64_t>(p);
-            row.x = image.pixel.x, row.y = image.pixel.y;
-            row.t = image.t, row.length = image.length;
-            row.optic = image.optic, row.object = image.object, row.facet = image.facet;
-            const std::string_view path = path_name(image.path);
-            std::copy(path.begin(), path.end(), row.path);
-            row.inside = image.inside, row.visible = image.visible, row.refined = image.refined;
             row.complete = points[p].complete;
-            rows.push_back(row);
+            append(row);
+            for (std::size_t i = 0; i < rows.steps; ++i)
+                append(row_of(i < image.steps.size() ? &image.steps[i] : nullptr));
         }
-    }
     return rows;
+}
+
+py::array array_of(const Rows& rows) {
+    const py::object dtype = py::module_::import("numpy").attr("dtype")(row_type(rows.steps));
+    const auto stride = static_cast<py::ssize_t>(rows.row_size());
+    return py::array(py::dtype::from_args(dtype), {static_cast<py::ssize_t>(rows.bytes.size()) / stride},
+                     {stride}, rows.bytes.data());
 }
 
 /// What the facets have is all that can be told without refining.
@@ -81,18 +143,20 @@ void bind_project(RendererClass& renderer) {
     renderer.def(
         "project",
         [](const Renderer& self, const Doubles& points, int resolution,
-           const std::optional<std::string>& camera, const std::string& search, bool refine,
-           bool visibility) {
+           const std::optional<std::string>& camera, const std::string& search, bool refine, bool visibility,
+           bool derivatives) {
             const std::vector<Vec3> given = points_of(points, "points");
             ProjectRequest request;
             request.frame = frame_params(self, resolution, camera);
             request.search = search_of(search, refine);
             request.refine = refine;
             request.visibility = visibility;
-            return records_of(Talk().run([&] { return rows_of(self.project(given, request)); }), row_type());
+            request.derivatives = derivatives;
+            return array_of(Talk().run([&] { return rows_of(self.project(given, request)); }));
         },
         py::arg("points"), py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(),
         py::arg("search") = "complete", py::arg("refine") = true, py::arg("visibility") = true,
+        py::arg("derivatives") = false,
         "Where world points appear: directly and over every optic, all images of all points.\n\n"
         "points: (N, 3), world frame.\n"
         "search: \"complete\" looks at every part of the exact surfaces; \"facets\" only near what the "
@@ -100,6 +164,7 @@ void bind_project(RendererClass& renderer) {
         "faster, and may miss images.\n"
         "refine: on the exact surface; False: as the facets have it, which only \"facets\" can say.\n"
         "visibility: ask what hides each image; else visible is False.\n"
+        "derivatives: of the pixel with respect to the point, for images over one optic too.\n"
         "Returns a structured array with one entry per image, in the order of the points:\n"
         "  point    index into points\n"
         "  x, y     pixels from the film's top left; a pixel's centre is at .5\n"
@@ -112,6 +177,13 @@ void bind_project(RendererClass& renderer) {
         "  visible  nothing lies between\n"
         "  refined  on the exact surface\n"
         "  complete no image of this point is missing from the list, which is proven\n"
+        "  derivative      (2, 3): how x and y move with the point, pixels per scene unit; set where\n"
+        "  has_derivative\n"
+        "  step_count      meetings with optics\n"
+        "  steps           which optic, and what happened there: \"reflect\", \"transmit\" or \"pass\"; as "
+        "many "
+        "as the\n"
+        "                  longest path of all has, behind step_count of them NONE and \"\"\n"
         "Raises InputError for points that are not finite.");
 }
 

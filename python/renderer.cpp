@@ -48,8 +48,13 @@ ClassicParams classic_params(const ClassicArguments& given) {
 struct FacetArguments {
     std::optional<std::string> rays;
     std::optional<double> max_error;
+    std::optional<std::string> grid;
 
     FrameParams of(FrameParams frame) const {
+        if (grid) {
+            require_known("grid", *grid, Names{"surface", "screen"});
+            frame.grid = *grid == "screen" ? GridKind::kScreen : GridKind::kSurface;
+        }
         if (rays) {
             require_known("rays", *rays, Names{"fitted", "interpolated"});
             frame.rays = *rays == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
@@ -103,11 +108,12 @@ void bind_pictures(RendererClass& renderer) {
            const std::string& engine, const std::optional<Names>& layers, const std::optional<Window>& window,
            const std::optional<std::string>& curves, const std::optional<std::string>& clip,
            std::optional<int> pieces, std::optional<double> tolerance, const std::optional<std::string>& rays,
-           std::optional<double> max_error, const py::object& progress, const py::object& warn) {
+           std::optional<double> max_error, const std::optional<std::string>& grid,
+           const py::object& progress, const py::object& warn) {
             Talk talk(progress, warn);
             return draw(
                 self,
-                {FacetArguments{rays, max_error}.of(frame_params(self, resolution, camera)),
+                {FacetArguments{rays, max_error, grid}.of(frame_params(self, resolution, camera)),
                  projecting_engine(engine, {curves, clip, pieces, tolerance}), layer_request(layers, window)},
                 "render", talk);
         },
@@ -115,11 +121,12 @@ void bind_pictures(RendererClass& renderer) {
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("curves") = py::none(), py::arg("clip") = py::none(), py::arg("pieces") = py::none(),
         py::arg("tolerance") = py::none(), py::arg("rays") = py::none(), py::arg("max_error") = py::none(),
-        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        py::arg("grid") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the scene by projection. The same pixels for any number of threads.\n\n"
         "resolution: 1..1024, of every optic's grid; 0: as the scene says.\n"
         "camera: by name; None: the scene's own.\n"
-        "engine: \"exact\" or \"classic\" (the thesis' engine).\n"
+        "engine: \"exact\", \"classic\" (the thesis' engine), \"envmap\" or \"planar\" (the usual "
+        "approximations).\n"
         "layers: to keep beside R G B A, of layer_names(); None: all.\n"
         "window: (x0, y0, x1, y1) of the film in pixels, x1 and y1 outside; None: all of it.\n"
         "curves, clip, pieces, tolerance: of the classic engine: \"arcs\", \"slices\", \"tessellate\" or\n"
@@ -129,6 +136,8 @@ void bind_pictures(RendererClass& renderer) {
         "max_error: pixels; facets whose predicted displacement is more are divided, and at last traced; 0: "
         "none;\n"
         "None: as the scene says.\n"
+        "grid: \"surface\" (n x n facets on each face) or \"screen\" (n x n over each optic's bounds on the "
+        "film).\n"
         "progress: called as progress(done, job), done in 0..1; returning False raises Interrupted.\n"
         "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
         "Raises UsageError for a camera, layer or window that there is not, InputError where the picture "
@@ -140,20 +149,21 @@ void bind_pictures(RendererClass& renderer) {
         [](const Renderer& self, const std::string& surface, int resolution,
            const std::optional<std::string>& camera, const std::optional<Names>& layers,
            const std::optional<Window>& window, const std::optional<std::string>& rays,
-           std::optional<double> max_error, const py::object& progress, const py::object& warn) {
+           std::optional<double> max_error, const std::optional<std::string>& grid,
+           const py::object& progress, const py::object& warn) {
             require_known("surface", surface, Names{"limit", "facets"});
-            if (surface == "limit" && (rays || max_error))
-                throw UsageError("rays and max_error are about facets; add surface=\"facets\"");
+            if (surface == "limit" && (rays || max_error || grid))
+                throw UsageError("rays, max_error and grid are about facets; add surface=\"facets\"");
             Talk talk(progress, warn);
             return draw(self,
-                        {FacetArguments{rays, max_error}.of(frame_params(self, resolution, camera)),
+                        {FacetArguments{rays, max_error, grid}.of(frame_params(self, resolution, camera)),
                          engine_choice(surface), layer_request(layers, window)},
                         "trace", talk);
         },
         py::arg("surface") = "limit", py::arg("resolution") = 0, py::arg("camera") = py::none(),
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
-        py::arg("rays") = py::none(), py::arg("max_error") = py::none(), py::arg("progress") = py::none(),
-        py::arg("warn") = py::none(),
+        py::arg("rays") = py::none(), py::arg("max_error") = py::none(), py::arg("grid") = py::none(),
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the same scene by ray tracing: the truth.\n\n"
         "surface: \"limit\" (the exact surfaces) or \"facets\" (the rays that render's facets interpolate).\n"
         "The other arguments, and what is raised, are those of render.");
@@ -164,6 +174,7 @@ void bind_line_drawing(py::module_& module, RendererClass& renderer) {
         .def_readonly("svg", &LineDrawing::svg, "One SVG document.")
         .def_readonly("curves", &LineDrawing::curves, "How many curves it has.")
         .def_readonly("arcs", &LineDrawing::arcs, "How many arcs the curves have.")
+        .def_readonly("folds", &LineDrawing::folds, "How many fold curves it has.")
         .def("_repr_svg_", [](const LineDrawing& drawing) { return drawing.svg; })
         .def(
             "save",
@@ -174,15 +185,20 @@ void bind_line_drawing(py::module_& module, RendererClass& renderer) {
     renderer.def(
         "draw_lines",
         [](const Renderer& self, int resolution, const std::optional<std::string>& camera, bool wire,
+           bool folds, const std::optional<std::string>& rays, const std::optional<std::string>& grid,
            const py::object& warn) {
             Talk talk(py::none(), warn);
-            const FrameParams frame = frame_params(self, resolution, camera);
-            return talk.run([&] { return self.draw_lines(frame, wire, talk.warner()); });
+            const FrameParams frame =
+                FacetArguments{rays, std::nullopt, grid}.of(frame_params(self, resolution, camera));
+            return talk.run([&] { return self.draw_lines(frame, {wire, folds}, talk.warner()); });
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(), py::arg("wire") = false,
+        py::arg("folds") = false, py::arg("rays") = py::none(), py::arg("grid") = py::none(),
         py::arg("warn") = py::none(),
         "The outlines of what the camera and the optics show, every curved edge an exact conic.\n"
-        "wire: hidden edges too. The other arguments are those of render.");
+        "wire: hidden edges too. folds: the curves too where what an optic shows turns over on the film "
+        "(the\n"
+        "eye's caustics). The other arguments are those of render.");
 }
 
 void bind_facts(RendererClass& renderer) {

@@ -174,6 +174,8 @@ class LineDrawing:
     def curves(self) -> int: ...
     @property
     def arcs(self) -> int: ...
+    @property
+    def folds(self) -> int: ...
     def save(self, file: _File) -> None: ...
     def _repr_svg_(self) -> str: ...
 
@@ -201,6 +203,7 @@ class Renderer:
         tolerance: Optional[float] = None,
         rays: Optional[str] = None,
         max_error: Optional[float] = None,
+        grid: Optional[str] = None,
         progress: _Progress = None,
         warn: _Warn = None,
     ) -> Image: ...
@@ -214,6 +217,7 @@ class Renderer:
         *,
         rays: Optional[str] = None,
         max_error: Optional[float] = None,
+        grid: Optional[str] = None,
         progress: _Progress = None,
         warn: _Warn = None,
     ) -> Image: ...
@@ -226,12 +230,21 @@ class Renderer:
         search: str = "complete",
         refine: bool = True,
         visibility: bool = True,
+        derivatives: bool = False,
     ) -> NDArray[np.void]: ...
     def explain(
         self, x: int, y: int, resolution: int = 0, camera: Optional[str] = None, engine: str = "exact"
     ) -> dict[str, Any]: ...
     def draw_lines(
-        self, resolution: int = 0, camera: Optional[str] = None, *, wire: bool = False, warn: _Warn = None
+        self,
+        resolution: int = 0,
+        camera: Optional[str] = None,
+        *,
+        wire: bool = False,
+        folds: bool = False,
+        rays: Optional[str] = None,
+        grid: Optional[str] = None,
+        warn: _Warn = None,
     ) -> LineDrawing: ...
 
 def layer_names() -> list[str]: ...

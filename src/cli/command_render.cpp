@@ -28,7 +28,7 @@ struct RenderOptions {
     int slices = 0, tessellate = 0;  // 0: not asked for
     std::string surface = "limit";
     std::string format;  // empty: by the output's ending
-    bool wire = false;
+    bool wire = false, folds = false;
     std::string rays;       // empty: each optic's own
     double max_error = -1;  // < 0: as the scene says
     std::string grid;       // empty: as the scene says
@@ -52,6 +52,11 @@ std::optional<CornerRays> chosen_rays(const RenderOptions& options) {
     return options.rays == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
 }
 
+std::optional<GridKind> chosen_grid(const RenderOptions& options) {
+    if (options.grid.empty()) return std::nullopt;
+    return options.grid == "screen" ? GridKind::kScreen : GridKind::kSurface;
+}
+
 /// Outlines instead of pixels.
 Answer run_vector(const RenderOptions& options, const Renderer& renderer, Console& console) {
     if (!options.scene.crop.empty())
@@ -60,12 +65,14 @@ Answer run_vector(const RenderOptions& options, const Renderer& renderer, Consol
     FrameParams frame;
     frame.camera = camera;
     frame.rays = chosen_rays(options);
-    const LineDrawing drawing = renderer.draw_lines(frame, options.wire, console.warner());
+    frame.grid = chosen_grid(options);
+    const LineDrawing drawing = renderer.draw_lines(frame, {options.wire, options.folds}, console.warner());
     Answer answer = write_output(options.output, drawing.svg, console);
     answer.fields.update(Json{{"engine", "exact"},
                               {"width", renderer.scene().film.width},
                               {"height", renderer.scene().film.height},
                               {"wire", options.wire},
+                              {"folds", drawing.folds},
                               {"curves", drawing.curves},
                               {"arcs", drawing.arcs}});
     return answer;
@@ -77,6 +84,8 @@ void check_options(const RenderOptions& options, const std::string& format, cons
     if (format == "svg" && options.max_error >= 0)
         throw UsageError("--max-error is for pictures of pixels; an .svg shows the facets undivided");
     if (options.wire && format != "svg") throw UsageError("--wire is for .svg outputs");
+    if (options.folds && format != "svg")
+        throw UsageError("--folds is for .svg outputs; layer magnification has folds in pixels");
 }
 
 Answer draw(const RenderOptions& options, const std::string& format, const PictureRequest& request,
@@ -133,8 +142,7 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
     request.frame.rays = chosen_rays(options);
     if (options.max_error >= 0) request.frame.max_error = options.max_error;
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
-    if (!options.grid.empty())
-        request.frame.grid = options.grid == "screen" ? GridKind::kScreen : GridKind::kSurface;
+    request.frame.grid = chosen_grid(options);
     check_on_film(options, request.layers, renderer.scene().film);
     if (options.pixel.empty())
         return format == "svg" ? run_vector(options, renderer, console)
@@ -235,15 +243,18 @@ EngineChoice chosen_engine(const RenderOptions& options) {
 std::vector<Command> render_commands() {
     auto render = std::make_shared<RenderOptions>(), trace = std::make_shared<RenderOptions>();
     Command by_projection{.name = "render", .summary = "draw the scene by projection", .schema = "render"};
-    by_projection.options =
-        joined({picture_options(*render, ".exr (all layers), .png (beauty) or .svg (outlines)"),
-                engine_options(*render),
-                facet_options(*render),
-                {{.names = "--format",
-                  .target = &render->format,
-                  .help = "what to write, whatever the output is called",
-                  .choices = {"exr", "png", "svg"}},
-                 {.names = "--wire", .target = &render->wire, .help = "svg: hidden edges too"}}});
+    by_projection.options = joined(
+        {picture_options(*render, ".exr (all layers), .png (beauty) or .svg (outlines)"),
+         engine_options(*render),
+         facet_options(*render),
+         {{.names = "--format",
+           .target = &render->format,
+           .help = "what to write, whatever the output is called",
+           .choices = {"exr", "png", "svg"}},
+          {.names = "--wire", .target = &render->wire, .help = "svg: hidden edges too"},
+          {.names = "--folds",
+           .target = &render->folds,
+           .help = "svg: also the curves where what an optic shows turns over (the eye's caustics)"}}});
     by_projection.body = [render](Console& console) {
         return run(*render, "render", chosen_engine(*render), console);
     };

@@ -102,6 +102,7 @@ void fit_first_rays(const FirstOptic& optic, PathMesh& path) {
         const Vec3 &o = ray.origin, &d = ray.direction;
         values.push_back({o.x, o.y, o.z, d.x, d.y, d.z, 0});
     }
+    even_out(samples, values);
     fit_linear(samples, values);
     for (std::size_t c = 0; c < values.size(); ++c)
         path.mesh.rays[c] = {{values[c][0], values[c][1], values[c][2]},

@@ -1,6 +1,7 @@
 #include "paths/fit_linear.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/check.h"
@@ -12,6 +13,8 @@ namespace {
 constexpr int kSteps = 24;  // each gains (sqrt 5 + 1) / (sqrt 5 - 1) = 2.6; all of them 1e10
 constexpr double kSmallestEigenvalue = 0.2, kLargestEigenvalue = 1;
 constexpr std::size_t kRowsPerTask = 1024;
+constexpr std::size_t kRayParts = 6;  // of a value: origin and direction
+constexpr double kNoMiss = 1e-9;      // facets that miss by less are exact
 
 /// The mass matrix by rows, and its right-hand sides.
 struct Equations {
@@ -67,7 +70,33 @@ FitValue row_times(const Equations& equations, std::size_t row, std::span<const 
     return product;
 }
 
+/// The square of how far a ray is from what its sample asks, in parts of its direction's length.
+double relative_miss(const FitSample& sample, std::span<const FitValue> values) {
+    double miss = 0, direction = 0;
+    for (std::size_t p = 0; p < kRayParts; ++p) {
+        double off = -sample.value[p];
+        for (std::size_t k = 0; k < 3; ++k)
+            off += sample.weights[static_cast<int>(k)] * values[sample.corners[k]][p];
+        miss += off * off;
+        if (p >= kRayParts / 2) direction += sample.value[p] * sample.value[p];
+    }
+    return direction > 0 ? miss / direction : 0;
+}
+
 }  // namespace
+
+void even_out(std::span<FitSample> samples, std::span<const FitValue> values) {
+    for (std::size_t first = 0, end = 0; first < samples.size(); first = end) {
+        double miss = 0, whole = 0;
+        for (; end < samples.size() && samples[end].corners == samples[first].corners; ++end) {
+            const double share = samples[end].measure;
+            miss += share * relative_miss(samples[end], values);
+            whole += share;
+        }
+        const double scale = 1 / (std::sqrt(miss / whole) + kNoMiss);
+        for (std::size_t i = first; i < end; ++i) samples[i].measure *= scale;
+    }
+}
 
 void fit_linear(std::span<const FitSample> samples, std::span<FitValue> values) {
     const Equations equations = make_equations(samples, values.size());

@@ -21,6 +21,12 @@ struct FitSample {
     FitValue value{};
 };
 
+/// Divides the measure of each facet's samples, which stand side by side, by how far the values as they are
+/// miss them (root of the mean square, in parts of the direction's length). The sum below is then one of
+/// errors, no longer of their squares: a facet in which rays turn much, beside a crease or at a silhouette,
+/// does not draw its neighbours' corners away from what they ask. Flat mirrors stay exact.
+void even_out(std::span<FitSample> samples, std::span<const FitValue> values);
+
 /// Sets the values at corners so that the sum over samples of measure * |interpolated - value|^2 is least.
 /// Values that are exact already stay as they are; corners that no sample names keep theirs, and where the
 /// samples leave a choice they stay near theirs. The same bytes for any number of threads.

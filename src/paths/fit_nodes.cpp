@@ -87,11 +87,12 @@ bool takes_part(const FacetPart& part) {
     });
 }
 
-void fit_node(const std::vector<FitSample>& samples, PathNode& node) {
+void fit_node(std::vector<FitSample>& samples, PathNode& node) {
     std::vector<FitValue> values;
     values.reserve(node.mesh.rays.size());
     for (std::size_t c = 0; c < node.mesh.rays.size(); ++c)
         values.push_back(value_of(node.mesh.rays[c], node.next[c]));
+    even_out(samples, values);
     fit_linear(samples, values);
     for (std::size_t c = 0; c < values.size(); ++c) {
         const FitValue& v = values[c];

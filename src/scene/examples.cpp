@@ -194,12 +194,70 @@ constexpr const char* kMirrorCylinder = R"json({
 }
 )json";
 
+constexpr const char* kCrystalBall = R"json({
+  // A crystal ball on a ring of brass before a checkered floor: light goes into the glass and out of it, and what is behind
+  // hangs upside down in it.
+  "version": 1,
+  "film": { "width": 640, "height": 480, "spp": 2 },
+  "cameras": [ { "name": "main", "yfov": 34, "lookAt": { "eye": [0.5, 1.9, 5.4], "at": [0, 1, 0] } } ],
+  "background": { "color": [0.55, 0.68, 0.85] },
+  "materials": [
+    { "name": "crystal", "transmissionFactor": 1, "ior": 1.5, "volume": { "attenuationColor": [0.9, 0.96, 0.94], "attenuationDistance": 4 } },
+    { "name": "marble", "baseColorFactor": [0.8, 0.79, 0.75] },
+    { "name": "slate", "baseColorFactor": [0.1, 0.11, 0.13] },
+    { "name": "brass", "baseColorFactor": [0.55, 0.4, 0.14] },
+    { "name": "red", "baseColorFactor": [0.7, 0.1, 0.07] },
+    { "name": "blue", "baseColorFactor": [0.1, 0.22, 0.62] }
+  ],
+  "meshes": [
+    { "name": "ball", "role": "optic", "material": "crystal", "resolution": 16,
+      "primitive": { "type": "sphere", "center": [0, 1.15, 0], "radius": 1 } },
+    // Eight-sided, its upper edge just below the ball.
+    { "name": "ring", "role": "object", "material": "brass",
+      "points": [[0.6,0,0],[0.42,0,0.42],[0,0,0.6],[-0.42,0,0.42],[-0.6,0,0],[-0.42,0,-0.42],[0,0,-0.6],[0.42,0,-0.42],
+                 [0.5,0.26,0],[0.35,0.26,0.35],[0,0.26,0.5],[-0.35,0.26,0.35],[-0.5,0.26,0],[-0.35,0.26,-0.35],[0,0.26,-0.5],[0.35,0.26,-0.35]],
+      "faceVertexCounts": [4,4,4,4,4,4,4,4],
+      "faceVertexIndices": [1,0,8,9, 2,1,9,10, 3,2,10,11, 4,3,11,12, 5,4,12,13, 6,5,13,14, 7,6,14,15, 0,7,15,8] },
+    { "name": "floor", "role": "object", "material": "marble",
+      "points": [[-6,0,-8],[6,0,-8],[6,0,8],[-6,0,8]], "faceVertexCounts": [4], "faceVertexIndices": [3,2,1,0] },
+    // Every other tile of those between the ball and the horizon, row by row.
+    { "name": "tiles", "role": "object", "material": "slate", "transform": { "translate": [0, 0.002, 0] },
+      "points": [[-4,0,-6],[-4,0,-5],[-3,0,-5],[-3,0,-6],[-2,0,-6],[-2,0,-5],[-1,0,-5],[-1,0,-6],[0,0,-6],[0,0,-5],
+                 [1,0,-5],[1,0,-6],[2,0,-6],[2,0,-5],[3,0,-5],[3,0,-6],[-3,0,-4],[-2,0,-4],[-1,0,-4],[0,0,-4],[1,0,-4],
+                 [2,0,-4],[3,0,-4],[4,0,-4],[4,0,-5],[-4,0,-4],[-4,0,-3],[-3,0,-3],[-2,0,-3],[-1,0,-3],[0,0,-3],
+                 [1,0,-3],[2,0,-3],[3,0,-3],[-3,0,-2],[-2,0,-2],[-1,0,-2],[0,0,-2],[1,0,-2],[2,0,-2],[3,0,-2],[4,0,-2],
+                 [4,0,-3],[-4,0,-2],[-4,0,-1],[-3,0,-1],[-2,0,-1],[-1,0,-1],[0,0,-1],[1,0,-1],[2,0,-1],[3,0,-1],
+                 [-3,0,0],[-2,0,0],[-1,0,0],[0,0,0],[1,0,0],[2,0,0],[3,0,0],[4,0,0],[4,0,-1],[-4,0,0],[-4,0,1],
+                 [-3,0,1],[-2,0,1],[-1,0,1],[0,0,1],[1,0,1],[2,0,1],[3,0,1],[-3,0,2],[-2,0,2],[-1,0,2],[0,0,2],[1,0,2],
+                 [2,0,2],[3,0,2],[4,0,2],[4,0,1],[-4,0,2],[-4,0,3],[-3,0,3],[-2,0,3],[-1,0,3],[0,0,3],[1,0,3],[2,0,3],
+                 [3,0,3]],
+      "faceVertexCounts": [4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4],
+      "faceVertexIndices": [0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,2,16,17,5,6,18,19,9,10,20,21,13,14,22,23,24,
+                           25,26,27,16,17,28,29,18,19,30,31,20,21,32,33,22,27,34,35,28,29,36,37,30,31,38,39,32,
+                           33,40,41,42,43,44,45,34,35,46,47,36,37,48,49,38,39,50,51,40,45,52,53,46,47,54,55,48,
+                           49,56,57,50,51,58,59,60,61,62,63,52,53,64,65,54,55,66,67,56,57,68,69,58,63,70,71,64,
+                           65,72,73,66,67,74,75,68,69,76,77,78,79,80,81,70,71,82,83,72,73,84,85,74,75,86,87,76] },
+    { "name": "pillar", "role": "object", "material": "red", "transform": { "translate": [-1.7, 0, -3.2] },
+      "points": [[-0.4,0,-0.4],[0.4,0,-0.4],[0.4,0,0.4],[-0.4,0,0.4],[-0.4,2.4,-0.4],[0.4,2.4,-0.4],[0.4,2.4,0.4],[-0.4,2.4,0.4]],
+      "faceVertexCounts": [4,4,4,4,4], "faceVertexIndices": [1,0,4,5, 2,1,5,6, 3,2,6,7, 0,3,7,4, 7,6,5,4] },
+    { "name": "pyramid", "role": "object", "material": "blue", "transform": { "translate": [1.5, 0, -2.2] },
+      "points": [[-0.6,0,-0.6],[0.6,0,-0.6],[0.6,0,0.6],[-0.6,0,0.6],[0,1.3,0]],
+      "faceVertexCounts": [3,3,3,3], "faceVertexIndices": [1,0,4, 2,1,4, 3,2,4, 0,3,4] }
+  ],
+  "lights": [
+    { "type": "directional", "direction": [-0.5, -1, -0.6], "intensity": 2.2, "shadows": true },
+    { "type": "ambient", "color": [0.26, 0.27, 0.3] }
+  ]
+}
+)json";
+
 constexpr SceneExample kExamples[] = {
     {"mirror-sphere", "an exact mirror sphere in a painted room", kMirrorSphere},
     {"creased-cage", "a gold Catmull-Clark cage with semi-sharp edges and sharp corners", kCreasedCage},
     {"water-patch", "a pool: refraction through a wavy interface of water", kWaterPatch},
     {"mirror-cylinder", "anamorphic art: a mirror cylinder folds a stretched shape into a heart",
      kMirrorCylinder},
+    {"crystal-ball", "light into glass and out of it again, and what is behind upside down", kCrystalBall},
 };
 
 }  // namespace

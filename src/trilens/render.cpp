@@ -27,7 +27,8 @@ void check_frame(const World& world, const FrameParams& frame) {
     if (frame.resolution < 0 || frame.resolution > kMaxResolution)
         throw UsageError(fmt::format("a resolution of {} is not in 1..{}", frame.resolution, kMaxResolution));
     if (frame.max_error && !(*frame.max_error >= 0 && *frame.max_error <= kMostMaxError))
-        throw UsageError(fmt::format("an error of {} pixels is not in 0..{}", *frame.max_error, kMostMaxError));
+        throw UsageError(
+            fmt::format("an error of {} pixels is not in 0..{}", *frame.max_error, kMostMaxError));
 }
 
 void check_engine(const EngineChoice& engine) {
@@ -110,13 +111,14 @@ std::vector<PointProjection> Renderer::project(std::span<const Vec3> points,
     return project_points(*world_, request, points);
 }
 
-LineDrawing Renderer::draw_lines(const FrameParams& frame, bool wire, const Warn& warn) const {
+LineDrawing Renderer::draw_lines(const FrameParams& frame, const LineChoice& choice, const Warn& warn) const {
     check_frame(*world_, frame);
-    const std::unique_ptr<Drawing> drawing = make_drawing(*world_, frame, wire, warn);
+    const std::unique_ptr<Drawing> drawing = make_drawing(*world_, frame, choice, warn);
     LineDrawing lines;
     lines.svg = drawing_svg(*drawing, *world_);
     for (const auto& layer : drawing->layers) {
         lines.curves += layer->curves.size();
+        lines.folds += layer->folds.size();
         for (const EdgeCurve& curve : layer->curves) lines.arcs += curve.arcs.size();
     }
     return lines;

@@ -20,6 +20,7 @@
 #include "render/project.h"
 #include "render/request.h"
 #include "scene/scene.h"
+#include "vector/line_choice.h"
 
 namespace trilens {
 
@@ -50,6 +51,7 @@ struct EncodedPicture {
 struct LineDrawing {
     std::string svg;                   // one document; see the command's help for its attributes
     std::size_t curves = 0, arcs = 0;  // of it
+    std::size_t folds = 0;             // curves where what an optic shows turns over
 };
 
 /// A scene with what is built from it, each part once: surfaces, trees, grids. Pictures of one renderer may
@@ -92,8 +94,9 @@ class Renderer {
     std::vector<PointProjection> project(std::span<const Vec3> points,
                                          const ProjectRequest& request = {}) const;
 
-    /// The picture as lines. `wire`: hidden edges too.
-    LineDrawing draw_lines(const FrameParams& frame, bool wire = false, const Warn& warn = {}) const;
+    /// The picture as lines.
+    LineDrawing draw_lines(const FrameParams& frame, const LineChoice& lines = {},
+                           const Warn& warn = {}) const;
 
     /// A digest (16 hexadecimal digits) of all that the scene holds: equal digests, equal pictures.
     std::string digest() const;

@@ -8,6 +8,7 @@
 #include "base/rasterize.h"
 #include "projector/projector.h"
 #include "render/facet_engine.h"
+#include "render/geometry.h"
 
 namespace trilens {
 namespace {
@@ -83,10 +84,11 @@ std::vector<Id> nodes_seen(const SampleIds& ids, Id optic, std::size_t path) {
 
 }  // namespace
 
-std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& params, bool wire,
+std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& params, const LineChoice& lines,
                                       const Warn& warn) {
     auto drawing = std::make_unique<Drawing>();
-    drawing->width = world.scene.film.width, drawing->height = world.scene.film.height, drawing->wire = wire;
+    drawing->width = world.scene.film.width, drawing->height = world.scene.film.height,
+    drawing->lines = lines;
     const Frame frame = make_frame(world, params, warn);
     const SampleGrid grid{0, 0, drawing->width, drawing->height, kSide};
 
@@ -115,16 +117,22 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     if (world.scene.render.direct) {
         const DrawnEdges edges = drawn_edges(drawing->visible, {material, world.objects.size()});
         add(Path::kDirect, kNone,
-            {drawing->visible, edges, frame.camera.mesh, grid, ids.camera_facet, ids.visible, wire});
+            {drawing->visible, edges, frame.camera.mesh, grid, ids.camera_facet, ids.visible, lines.wire});
     }
     const DrawnEdges edges = drawn_edges(world.objects, {material, world.objects.size()});
     for (Id i = 0; i < world.optics.size(); ++i)
         for (std::size_t p = 0; p < kOpticPaths.size(); ++p)
             for (const Id node : nodes_seen(ids, i, p)) {
                 const OpticPaths& paths = views.paths(i);
+                const RayMesh& mesh = paths.nodes()[node].mesh;
+                const std::vector<Id> leaves = leaves_at(ids, i, p, node);
                 add(kOpticPaths[p], world.optics[i].mesh,
-                    {world.objects, edges, paths.nodes()[node].mesh, grid, leaves_at(ids, i, p, node),
-                     ids.seen[p], wire});
+                    {world.objects, edges, mesh, grid, leaves, ids.seen[p], lines.wire});
+                if (lines.folds)
+                    drawing->layers.back()->folds =
+                        fold_curves({mesh, grid, leaves,
+                                     [&](const Ray& ray) { return object_tracer(world).first_hit(ray); },
+                                     [&](Id triangle) { return world.objects.object[triangle]; }});
                 for (EdgeCurve& curve : drawing->layers.back()->curves)
                     curve.facet = frame.optics[i].grid_facet(paths.leaves()[curve.facet].facet);
             }

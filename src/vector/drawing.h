@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "render/frame.h"
+#include "vector/fold_curves.h"
+#include "vector/line_choice.h"
 #include "vector/view.h"
 
 namespace trilens {
@@ -16,18 +18,19 @@ struct DrawingLayer {
     Id optic = kNone;                      // object id of the optic that shows them; kNone for "direct"
     const TriangleScene* scene = nullptr;  // of the curves' triangles
     std::vector<EdgeCurve> curves;
+    std::vector<FoldCurve> folds;
 };
 
 struct Drawing {
     int width = 0, height = 0;
-    bool wire = false;
+    LineChoice lines;
     TriangleScene visible;  // objects, then the optics' facets: what "direct" shows
     std::vector<std::unique_ptr<DrawingLayer>> layers;
 };
 
 /// Draws what the exact engine shows over each pixel's principal paths; one layer for each history. `warn` is
 /// told of what is traced and so has no lines. The world must outlive the drawing. Throws as make_frame does.
-std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& frame, bool wire,
+std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& frame, const LineChoice& lines,
                                       const Warn& warn);
 
 /// How far, in pixels, the Bezier curves of the SVG may leave the exact conics.

@@ -12,6 +12,7 @@ namespace {
 constexpr double kStraightPixels = 1e-4;  // an arc whose control point is this near its chord is a line
 constexpr int kDeepest = 12;
 constexpr double kStrokeWidth = 0.9;
+constexpr const char* kFoldColour = "#c01010";
 
 /// An arc in standard form: Bezier weights 1, w, 1.
 struct StandardArc {
@@ -124,11 +125,12 @@ std::string colour_of(Id object) {
 }
 
 std::string description(const Drawing& drawing) {
-    std::string text = drawing.wire ? "Wire drawing: hidden edges are drawn too. "
-                                    : "Hidden edges are removed by testing points about 0.4 px apart against "
-                                      "a picture of 2 x 2 samples per pixel: visible "
-                                      "pieces end right to about half a pixel, and edges whose surroundings "
-                                      "are thinner than a sample may be missing. ";
+    std::string text = drawing.lines.wire
+                           ? "Wire drawing: hidden edges are drawn too. "
+                           : "Hidden edges are removed by testing points about 0.4 px apart against "
+                             "a picture of 2 x 2 samples per pixel: visible "
+                             "pieces end right to about half a pixel, and edges whose surroundings "
+                             "are thinner than a sample may be missing. ";
     text +=
         "Drawn are borders, creases, changes of material and silhouettes of the polygons, as the first optic "
         "shows them through "
@@ -139,6 +141,10 @@ std::string description(const Drawing& drawing) {
         number(kSvgTolerance, "%g") +
         " px of the exact conic arcs in data-conic: x0 y0 x1 y1 x2 y2 w, a rational "
         "quadratic Bezier curve of weights 1 w 1 for each arc.";
+    if (drawing.lines.folds)
+        text +=
+            " Dashed, of class fold: where what an optic shows turns over on the film, the images of "
+            "caustics as the eye has them, as polygonal lines; none where paths are traced.";
     return text;
 }
 
@@ -153,6 +159,20 @@ std::string group(const DrawingLayer& layer, Id object, const std::vector<const 
         svg += "<path d=\"" + path + "\" data-primitive=\"" +
                std::to_string(layer.scene->primitive[curve->triangle]) + "\" data-facet=\"" +
                std::to_string(curve->facet) + "\" data-conic=\"" + exact_text(*curve) + "\"/>\n";
+    }
+    return svg + "</g>\n";
+}
+
+std::string fold_group(const DrawingLayer& layer, const World& world) {
+    if (layer.folds.empty()) return "";
+    std::string svg = "<g class=\"fold\" data-path=\"" + layer.path + "\" data-optic=\"" +
+                      std::to_string(layer.optic) + "\" stroke=\"" + kFoldColour +
+                      "\" stroke-dasharray=\"3 2\">\n<title>" + escaped(world.names[layer.optic]) +
+                      "</title>\n";
+    for (const FoldCurve& fold : layer.folds) {
+        std::string path = "M" + place(fold.points[0]);
+        for (std::size_t i = 1; i < fold.points.size(); ++i) path += "L" + place(fold.points[i]);
+        svg += "<path d=\"" + path + "\" data-object=\"" + std::to_string(fold.object) + "\"/>\n";
     }
     return svg + "</g>\n";
 }
@@ -173,6 +193,7 @@ std::string drawing_svg(const Drawing& drawing, const World& world) {
             by_object[layer->scene->object[curve.triangle]].push_back(&curve);
         for (const auto& [object, curves] : by_object) svg += group(*layer, object, curves, world);
     }
+    for (const auto& layer : drawing.layers) svg += fold_group(*layer, world);
     return svg + "</g>\n</svg>\n";
 }
 

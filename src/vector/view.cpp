@@ -11,6 +11,7 @@
 #include "trilinear/conic_arc.h"
 #include "trilinear/outline.h"
 #include "trilinear/view_plane.h"
+#include "vector/lattice.h"
 
 namespace trilens {
 namespace {
@@ -21,27 +22,6 @@ constexpr double kBefore = 1e-3;   // a surface nearer than the edge by this sha
 constexpr double kOutside = 1e-9;  // how far weights may leave [0, 1] on the facet's border
 constexpr double kShortest =
     1.0;  // pixels: visible pieces and hidden gaps below this are rounding of the test
-
-/// Samples as a lattice of rows.
-struct Lattice {
-    const SampleGrid& grid;
-    int columns() const { return grid.width() * grid.side; }
-    int rows() const { return grid.height() * grid.side; }
-    bool holds(int column, int row) const {
-        return column >= 0 && row >= 0 && column < columns() && row < rows();
-    }
-    std::size_t sample(int column, int row) const {
-        const int s = grid.side;
-        return grid.first_sample(grid.x0 + column / s, grid.y0 + row / s) +
-               static_cast<std::size_t>(row % s * s + column % s);
-    }
-    int column(std::size_t sample) const {
-        return static_cast<int>(std::lround((grid.position(sample).x - grid.x0) * grid.side - 0.5));
-    }
-    int row(std::size_t sample) const {
-        return static_cast<int>(std::lround((grid.position(sample).y - grid.y0) * grid.side - 0.5));
-    }
-};
 
 /// One facet at work.
 class FacetPen {

@@ -90,6 +90,41 @@ def test_projected_points_are_the_commands(command, tmp_path, scene, refine, vis
         assert row["facet"] == (trilens.NONE if image["facet"] is None else image["facet"])
 
 
+def test_whole_paths_and_derivatives_of_points_are_the_commands(command):
+    scene = SOURCE / "scenes" / "paths" / "glass-before-mirror.json"
+    point = [0.2, 0.6, -1.2]
+    _, answer = command("project", scene, "--point", ",".join(map(str, point)), "-n", 6, "--derivatives", *size_options(SMALL))
+    loaded = trilens.load_scene(scene, SMALL, 6, warn=silent)
+    ours = trilens.Renderer(loaded, warn=silent).project([point], derivatives=True)
+    theirs = answer["points"][0]["images"]
+    assert len(ours) == len(theirs) > 0
+    assert max(row["step_count"] for row in ours) >= 2
+    for row, image in zip(ours, theirs):
+        assert row["step_count"] == len(image["steps"])
+        for i, step in enumerate(row["steps"]):
+            if i >= row["step_count"]:
+                assert step["optic"] == trilens.NONE and step["event"] == ""
+                continue
+            assert step["event"] == image["steps"][i]["event"]
+        assert row["has_derivative"] == (image.get("derivative") is not None)
+        if row["has_derivative"]:
+            assert row["derivative"].tolist() == image["derivative"]
+
+
+def test_facets_on_the_screen_and_folds_are_the_commands(command, tmp_path):
+    scene = SOURCE / "scenes" / "saddle.json"
+    renderer = trilens.Renderer(trilens.load_scene(scene, SMALL, 8, warn=silent), warn=silent)
+    code, _ = command("render", scene, "-n", 8, "--grid", "screen", *size_options(SMALL), "-o", tmp_path / "theirs.exr")
+    assert code == 0
+    ours, theirs = renderer.render(grid="screen"), trilens.read_image(tmp_path / "theirs.exr")
+    assert all(ours[name].tobytes() == theirs[name].tobytes() for name in theirs)
+    assert not np.array_equal(ours["R"], renderer.render(grid="surface")["R"])
+    code, answer = command("render", scene, "-n", 8, "--folds", *size_options(SMALL), "-o", tmp_path / "theirs.svg")
+    lines = renderer.draw_lines(folds=True)
+    assert code == 0 and lines.folds == answer["folds"] > 0
+    assert lines.svg == (tmp_path / "theirs.svg").read_text() and 'class="fold"' in lines.svg
+
+
 @pytest.mark.parametrize("options", [{}, {"layer": "reflect"}, {"mask_object": 0, "fail": 0.5, "hardfail": 9.0, "warn": 9.0}])
 def test_a_comparison_is_the_commands(command, tmp_path, image, truth, options):
     truth.save(tmp_path / "truth.exr"), image.save(tmp_path / "image.exr")

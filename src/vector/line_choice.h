@@ -1,0 +1,12 @@
+// Which lines a drawing has.
+#pragma once
+
+namespace trilens {
+
+/// What is drawn beside the visible edges.
+struct LineChoice {
+    bool wire = false;   // hidden edges too
+    bool folds = false;  // curves where what the optics show turns over on the film (fold_curves.h)
+};
+
+}  // namespace trilens

@@ -1,0 +1,184 @@
+// Fold curves of line drawings against the exact truth: there, and only there, what an optic shows turns
+// over.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/test.h"
+#include "trilens/trilens.h"
+
+using namespace trilens;
+
+namespace {
+
+constexpr int kFiner = 8;  // the truth's pixels along one of the drawing's
+
+Scene before_wall(const Primitive& optic, bool glass, double wall, const Vec3& eye) {
+    Scene scene;
+    scene.film = {80, 60, 1};
+    CameraDescription camera;
+    camera.name = "main";
+    camera.eye = eye;
+    camera.at = {0, 0, 0};
+    camera.yfov = 40;
+    scene.cameras.push_back(camera);
+    Material bright, red;
+    bright.transmission_factor = glass ? 1 : 0;
+    bright.metallic_factor = glass ? 0 : 1;
+    red.unlit = true;
+    scene.materials = {bright, red};
+    Mesh body, far;
+    body.name = "optic", body.role = Role::kOptic, body.material = 0, body.resolution = 32;
+    body.primitive = optic;
+    far.name = "wall";
+    far.object.points = {{-60, -60, wall}, {60, -60, wall}, {60, 60, wall}, {-60, 60, wall}};
+    far.object.triangles = {{0, 1, 2}, {0, 2, 3}};
+    far.object.material = {1, 1};
+    scene.meshes = {body, far};
+    return scene;
+}
+
+/// What the truth shows on the wall z = const, and how its orientation goes over the film.
+class TurningTruth {
+  public:
+    TurningTruth(Scene scene, const std::string& path) {
+        scene.film.width *= kFiner, scene.film.height *= kFiner;
+        PictureRequest request;
+        request.engine = Engine::kLimitTruth;
+        request.layers.layers = {path};
+        image_ = Renderer(std::move(scene)).draw(request).image;
+        object_ = &image_.find(path + "ID.object")->ids();
+        x_ = &image_.find(path + "P.X")->floats(), y_ = &image_.find(path + "P.Y")->floats();
+    }
+
+    /// The sign of the Jacobian by differences of neighbours; 0 where one of them does not see the wall.
+    int side(int x, int y) const {
+        if (x < 1 || y < 1 || x + 1 >= image_.width || y + 1 >= image_.height) return 0;
+        const std::size_t w = static_cast<std::size_t>(image_.width),
+                          at = static_cast<std::size_t>(y) * w + static_cast<std::size_t>(x);
+        for (const std::size_t one : {at, at - 1, at + 1, at - w, at + w})
+            if ((*object_)[one] != 1) return 0;
+        const double xx = (*x_)[at + 1] - (*x_)[at - 1], xy = (*x_)[at + w] - (*x_)[at - w],
+                     yx = (*y_)[at + 1] - (*y_)[at - 1], yy = (*y_)[at + w] - (*y_)[at - w];
+        const double jacobian = xx * yy - xy * yx;
+        return (jacobian > 0) - (jacobian < 0);
+    }
+
+    /// Whether both orientations, or a border of what shows the wall, are within `reach` of a place in the
+    /// drawing's pixels.
+    bool turns_near(const Vec2& place, double reach) const {
+        bool plus = false, minus = false;
+        const int x = static_cast<int>(place.x * kFiner), y = static_cast<int>(place.y * kFiner),
+                  r = static_cast<int>(std::ceil(reach * kFiner));
+        for (int dy = -r; dy <= r; ++dy)
+            for (int dx = -r; dx <= r; ++dx) {
+                plus |= side(x + dx, y + dy) > 0;
+                minus |= side(x + dx, y + dy) < 0;
+            }
+        return plus && minus;
+    }
+
+    /// Places in the drawing's pixels where the orientation changes from one pixel to the next.
+    std::vector<Vec2> turns() const {
+        std::vector<Vec2> found;
+        for (int y = 0; y < image_.height; ++y)
+            for (int x = 0; x < image_.width; ++x) {
+                if (side(x, y) * side(x + 1, y) < 0)
+                    found.push_back(Vec2(x + 1.0, y + 0.5) / 1.0 / double(kFiner));
+                if (side(x, y) * side(x, y + 1) < 0) found.push_back(Vec2(x + 0.5, y + 1.0) / double(kFiner));
+            }
+        return found;
+    }
+
+  private:
+    Image image_;
+    const std::vector<Id>* object_ = nullptr;
+    const std::vector<float>*x_ = nullptr, *y_ = nullptr;
+};
+
+/// The lines of a drawing's folds over this path.
+std::vector<std::vector<Vec2>> folds_in(const std::string& svg, const std::string& path) {
+    std::vector<std::vector<Vec2>> folds;
+    const std::string start = "<g class=\"fold\" data-path=\"" + path + "\"";
+    for (std::size_t group = svg.find(start); group != std::string::npos;
+         group = svg.find(start, group + 1)) {
+        const std::size_t end = svg.find("</g>", group);
+        for (std::size_t at = svg.find("d=\"M", group); at < end; at = svg.find("d=\"M", at + 1)) {
+            std::string numbers = svg.substr(at + 4, svg.find('"', at + 4) - at - 4);
+            std::replace(numbers.begin(), numbers.end(), 'L', ' ');
+            std::stringstream in(numbers);
+            folds.emplace_back();
+            for (Vec2 p; in >> p.x >> p.y;) folds.back().push_back(p);
+        }
+    }
+    return folds;
+}
+
+double distance(const Vec2& p, const std::vector<std::vector<Vec2>>& lines) {
+    double nearest = 1e9;
+    for (const std::vector<Vec2>& line : lines)
+        for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+            const Vec2 along = line[i + 1] - line[i];
+            const double u =
+                std::clamp(dot(p - line[i], along) / std::max(dot(along, along), 1e-300), 0.0, 1.0);
+            nearest = std::min(nearest, length(p - line[i] - u * along));
+        }
+    return nearest;
+}
+
+void check_folds(const Scene& scene, const std::string& path) {
+    const LineDrawing drawing = Renderer(scene).draw_lines({}, {.wire = false, .folds = true});
+    const auto folds = folds_in(drawing.svg, path);
+    const TurningTruth truth(scene, path);
+
+    std::size_t points = 0, on_turn = 0;
+    for (const std::vector<Vec2>& fold : folds)
+        for (const Vec2& p : fold) {
+            ++points;
+            on_turn += truth.turns_near(p, 0.5);
+        }
+    const std::vector<Vec2> turns = truth.turns();
+    std::vector<double> off;
+    for (const Vec2& turn : turns) off.push_back(distance(turn, folds));
+    std::sort(off.begin(), off.end());
+    REQUIRE(points > 40);
+    REQUIRE(off.size() > 200);
+    INFO(path << ": " << points << " points, " << on_turn << " on turns; " << turns.size()
+              << " turns, off median " << off[off.size() / 2] << " p95 " << off[off.size() * 95 / 100]
+              << " most " << off.back());
+    CHECK(on_turn * 100 >= points * 98);
+    CHECK(off[off.size() / 2] < 0.1);
+    CHECK(off[off.size() * 95 / 100] < 0.5);
+}
+
+}  // namespace
+
+TEST_CASE("folds drawn through glass and in a mirror are where the truth's Jacobian changes its sign",
+          "[laws]") {
+    // A wall inside the caustic of a ball lens.
+    check_folds(before_wall(Primitive{}, true, -1.4, {0, 0.2, 4.2}), "refract");
+
+    // A concave mirror that throws the image of an eye beside its axis about on the wall behind the camera.
+    Primitive bowl;
+    bowl.type = Primitive::Type::kParaboloid;
+    bowl.center = {0, 0, -1};
+    bowl.axis = {0, 0, 1};
+    bowl.radius = 1.5, bowl.focal_length = 2.6;
+    Scene scene = before_wall(bowl, false, 4.5, {0.9, 0.4, 4});
+    scene.render.max_depth = 0;
+    check_folds(scene, "reflect");
+}
+
+TEST_CASE("flat and convex mirrors have no folds, and none are drawn that nobody asked for", "[laws]") {
+    Scene ball = before_wall(Primitive{}, false, 6, {0, 0.2, 4});
+    CHECK(Renderer(ball).draw_lines({}, {.folds = true}).folds == 0);
+    Primitive flat;
+    flat.type = Primitive::Type::kPlane;
+    flat.axis = {0, 0, 1};
+    CHECK(Renderer(before_wall(flat, false, 6, {0, 0.2, 4})).draw_lines({}, {.folds = true}).folds == 0);
+    const LineDrawing plain = Renderer(before_wall(Primitive{}, true, -1.4, {0, 0.2, 4.2})).draw_lines({});
+    CHECK(plain.folds == 0);
+    CHECK(plain.svg.find("class=\"fold\"") == std::string::npos);
+}
