@@ -27,7 +27,8 @@ void check_frame(const World& world, const FrameParams& frame) {
     if (frame.resolution < 0 || frame.resolution > kMaxResolution)
         throw UsageError(fmt::format("a resolution of {} is not in 1..{}", frame.resolution, kMaxResolution));
     if (frame.max_error && !(*frame.max_error >= 0 && *frame.max_error <= kMostMaxError))
-        throw UsageError(fmt::format("an error of {} pixels is not in 0..{}", *frame.max_error, kMostMaxError));
+        throw UsageError(
+            fmt::format("an error of {} pixels is not in 0..{}", *frame.max_error, kMostMaxError));
 }
 
 void check_engine(const EngineChoice& engine) {
@@ -41,6 +42,11 @@ Renderer::Renderer(Scene scene, const Warn& warn) : world_(make_checked_world(st
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+KeptParts Renderer::change(Scene scene, const Warn& warn) {
+    check_scene(scene);
+    return change_scene(*world_, std::move(scene), warn);
+}
 
 const Scene& Renderer::scene() const {
     return world_->scene;
