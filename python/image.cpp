@@ -168,12 +168,20 @@ void bind_image(py::module_& module) {
              "linear Rec.709. Raises KeyError where the image has none.")
         .def(
             "save",
-            [](const HeldImage& held, const std::filesystem::path& file) {
-                Talk().run([&] { return write_image(file.string(), held.image), true; });
+            [](const HeldImage& held, const std::filesystem::path& file, double exposure,
+               const std::string& tone, double white) {
+                Talk().run([&] {
+                    return write_image(file.string(), held.image, {exposure, tone_curve(tone), white}), true;
+                });
             },
-            py::arg("file"),
-            "Writes OpenEXR, every channel to the last bit (.exr), or the beauty as 8-bit sRGB (.png).\n"
-            "Raises UsageError for other endings, OutputError where the file cannot be written.");
+            py::arg("file"), py::kw_only(), py::arg("exposure") = 0.0, py::arg("tone") = "none",
+            py::arg("white") = ToneMapping().white,
+            "Writes OpenEXR, every channel to the last bit (.exr), or the beauty as 8-bit sRGB (.png).\n\n"
+            "exposure: stops by which the light is made brighter first; png only, as the rest.\n"
+            "tone: \"none\", \"reinhard\" (2002, extended), \"aces\" (Narkowicz's fit) or \"neutral\" "
+            "(Khronos).\n"
+            "white: the least luminance that \"reinhard\" shows as white.\n"
+            "Raises UsageError for other endings and names, OutputError where the file cannot be written.");
     module.def(
         "count_regions",
         [](const HeldImage& held, std::size_t least) {

@@ -248,6 +248,20 @@ void bind_renderer(py::module_& module) {
                  }),
                  py::arg("scene"), py::kw_only(), py::arg("warn") = py::none(),
                  "Raises InputError where a cage has no limit surface. warn: see load_scene.");
+    renderer.def(
+        "change",
+        [](Renderer& self, const Scene& scene, const py::object& warn) {
+            Talk talk(py::none(), warn);
+            const KeptParts kept = talk.run([&] { return self.change(scene, talk.warner()); });
+            py::dict parts;
+            parts["objects"] = kept.objects;
+            parts["optics"] = kept.optics;
+            return parts;
+        },
+        py::arg("scene"), py::kw_only(), py::arg("warn") = py::none(),
+        "Goes on with another scene, as of an animation's next frame; what is built of meshes that are the "
+        "same\nin both stays. Returns what stayed: objects (all of them, or not) and how many optics. Not "
+        "while another\nthread draws.");
     bind_pictures(renderer);
     bind_line_drawing(module, renderer);
     bind_project(renderer);

@@ -61,6 +61,14 @@ void bind_parts(py::module_& module) {
     py::class_<Film> film(module, "Film", "The picture plane.");
     bind_fields(film, field("width", &Film::width, "Pixels."), field("height", &Film::height, "Pixels."),
                 field("spp", &Film::spp, "S: every pixel has S x S samples."));
+    film.def_property_readonly(
+        "filter",
+        [](const Film& one) {
+            return one.filter == FilterKind::kMitchell   ? "mitchell"
+                   : one.filter == FilterKind::kGaussian ? "gaussian"
+                                                         : "box";
+        },
+        "How samples make a pixel's colour.");
 
     py::class_<CameraDescription>(module, "Camera", "A camera as the scene gives it.")
         .def_readonly("name", &CameraDescription::name)
@@ -184,6 +192,33 @@ void bind_scene(py::module_& module) {
             },
             py::arg("overrides") = py::dict(), py::arg("resolution") = 0, py::kw_only(),
             py::arg("warn") = py::none(), "The scene with these changes, as a new one; see load_scene.")
+        .def(
+            "at_frame",
+            [](const Scene& scene, double frame, int frames, const std::string& camera) {
+                const std::vector<SceneOverride> turned =
+                    frames > 0 ? turntable(scene, find_camera(scene, camera), static_cast<int>(frame), frames)
+                               : std::vector<SceneOverride>();
+                return scene_at_frame(scene, frame, turned);
+            },
+            py::arg("frame"), py::kw_only(), py::arg("turntable") = 0, py::arg("camera") = "",
+            "The scene at a frame of its animation, as a new one without animation. Values are held before "
+            "their\nfirst key and after their last.\n\n"
+            "turntable: frames of a whole turn of the camera about what it looks at; 0: it stays.\n"
+            "camera: the one that turns; \"\": the scene's own.\n"
+            "Raises UsageError for a scene built in memory, InputError for values that are none.")
+        .def_property_readonly(
+            "animation",
+            [](const Scene& scene) -> py::object {
+                const auto found = find_animation(scene);
+                if (!found) return py::none();
+                py::dict info;
+                info["first"] = found->first;
+                info["last"] = found->last;
+                info["fps"] = found->fps;
+                info["tracks"] = found->tracks;
+                return info;
+            },
+            "A dict of first and last (frames with keys), fps and tracks; None where nothing moves.")
         .def("__repr__", [](const Scene& scene) {
             return "<trilens.Scene '" + scene_title(scene) + "', " + std::to_string(scene.film.width) +
                    " x " + std::to_string(scene.film.height) + ", " + std::to_string(scene.meshes.size()) +

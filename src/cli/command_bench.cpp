@@ -1,8 +1,7 @@
 // trilens bench: the projector against Embree on the same rays, in the same run.
 #include <trilens/bench.h>
 
-#include <cmath>
-
+#include "answer/race.h"
 #include "cli/commands.h"
 #include "cli/scene_options.h"
 #include "terminal/format.h"
@@ -16,70 +15,6 @@ struct BenchOptions {
     std::string isa;
 };
 
-Json fields(const BenchResult& bench) {
-    const RaceResult& r = bench.race;
-    return {{"pixels", r.pixels},
-            {"facets", r.facets},
-            {"triangles", r.triangles},
-            {"rays", bench.direct ? "direct" : "optics"},
-            {"threads", r.threads},
-            {"isa", r.projector_isa},
-            {"surface_ms", bench.surface_ms},
-            {"rays_ms", bench.rays_ms},
-            {"projector",
-             {{"prepare_ms", r.prepare_ms},
-              {"samples_ms", r.samples_ms},
-              {"draw_ms", r.draw_ms},
-              {"written_ms", r.written_ms}}},
-            {"embree",
-             {{"build_ms", r.build_ms},
-              {"rays_ms", r.rays_ms},
-              {"trace_ms", r.trace_ms},
-              {"written_ms", r.trace_written_ms},
-              {"configuration", r.embree_configuration},
-              {"rays_at_once", r.rays_at_once}}},
-            {"ratio",
-             {{"draw", r.ratio.draw},
-              {"draw_low", r.slowest_ratio},
-              {"draw_high", r.fastest_ratio},
-              {"written", r.ratio.written},
-              {"with_build", r.ratio.with_build},
-              {"whole", r.ratio.whole}}},
-            {"mismatch_pixels", r.mismatches.pixels},
-            {"mismatch",
-             {{"edge", r.mismatches.edge},
-              {"depth", r.mismatches.depth},
-              {"unexplained", r.mismatches.unexplained}}}};
-}
-
-std::string line(const std::string& phase, double projector, double embree) {
-    return fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>7.2f}\n", phase, projector, embree, embree / projector);
-}
-
-std::string text(const BenchResult& bench) {
-    const RaceResult& r = bench.race;
-    std::string text = fmt::format(
-        "{} pixels through {} facets, {} rays; {} triangles; {} thread{}, {}\n"
-        "Embree: {}, packets of {}, coherent, triangles and rays in float\n"
-        "surfaces {:.1f} ms, corner rays and samples {:.1f} ms\n\n",
-        r.pixels, r.facets, bench.direct ? "the camera's own" : "the optics'", r.triangles, r.threads,
-        r.threads == 1 ? "" : "s", r.projector_isa, r.embree_configuration, r.rays_at_once, bench.surface_ms,
-        bench.rays_ms);
-    text += fmt::format("{:<34} {:>10} {:>10} {:>7}\n", "medians, ms", "projector", "Embree", "ratio");
-    text += line("tree", r.prepare_ms, r.build_ms);
-    text += line("samples in vectors, rays in packets", r.samples_ms, r.rays_ms);
-    text +=
-        fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>7.2f}  ({:.2f} to {:.2f})\n", "hits left in that order",
-                    r.draw_ms, r.trace_ms, r.ratio.draw, r.slowest_ratio, r.fastest_ratio);
-    text += line("hits written per sample", r.written_ms, r.trace_written_ms);
-    text += fmt::format("with both trees {:.2f}, with samples, rays and trees {:.2f} times Embree's speed\n",
-                        r.ratio.with_build, r.ratio.whole);
-    text += fmt::format(
-        "{} pixels differ: {} within a thousandth of an edge, {} at one depth to a thousandth, {} otherwise",
-        r.mismatches.pixels, r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);
-    return text;
-}
-
 Answer run(const BenchOptions& options, Console& console) {
     BenchRequest request;
     const Scene scene = load_scene(options.scene, console);
@@ -90,10 +25,7 @@ Answer run(const BenchOptions& options, Console& console) {
     if (bench.race.mismatches.unexplained > 0)
         console.warn(fmt::format("{} pixels show another triangle than Embree's, away from edges",
                                  bench.race.mismatches.unexplained));
-    Answer answer;
-    answer.fields = fields(bench);
-    answer.text = text(bench);
-    return answer;
+    return race_answer(bench);
 }
 
 }  // namespace

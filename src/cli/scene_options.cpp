@@ -29,6 +29,7 @@ std::vector<SceneOverride> file_overrides(const SceneOptions& options) {
         overrides.push_back({"/film/height", std::to_string(size[1])});
     }
     if (options.spp > 0) overrides.push_back({"/film/spp", std::to_string(options.spp)});
+    if (!options.filter.empty()) overrides.push_back({"/film/filter", '"' + options.filter + '"'});
     if (options.max_depth >= 0) overrides.push_back({"/render/maxDepth", std::to_string(options.max_depth)});
     return overrides;
 }
@@ -100,6 +101,10 @@ std::vector<Option> scene_overrides(SceneOptions& options) {
              .help = "S x S samples per pixel",
              .value = "S",
              .range = {1, 64}},
+            {.names = "--filter",
+             .target = &options.filter,
+             .help = "how samples make a pixel's colour; other than box also from pixels around",
+             .choices = {"box", "mitchell", "gaussian"}},
             {.names = "--camera",
              .target = &options.camera,
              .help = "camera by name; default: the first",

@@ -18,6 +18,7 @@ struct SceneOptions {
     int resolution = 0;            // 0: as the scene says
     std::string size;              // "640x480"; empty: as the scene says
     int spp = 0;                   // 0: as the scene says
+    std::string filter;            // empty: as the scene says
     int max_depth = -1;            // < 0: as the scene says
     std::vector<std::string> set;  // "/json/pointer=VALUE"
     std::string crop;              // "x0,y0,x1,y1"
@@ -26,7 +27,7 @@ struct SceneOptions {
 
 /// The scene argument and its resolution.
 std::vector<Option> scene_argument(SceneOptions& options);
-/// The overrides alone: --size, --spp, --camera, --max-depth, --set.
+/// The overrides alone: --size, --spp, --filter, --camera, --max-depth, --set.
 std::vector<Option> scene_overrides(SceneOptions& options);
 /// --crop and --aov.
 std::vector<Option> window_options(SceneOptions& options);

@@ -37,6 +37,7 @@ std::vector<std::string> command_words(const SweepOptions& options, const std::s
     if (!options.scene.camera.empty()) add("--camera", options.scene.camera);
     if (!options.scene.size.empty()) add("--size", options.scene.size);
     if (options.scene.spp > 0) add("--spp", std::to_string(options.scene.spp));
+    if (!options.scene.filter.empty()) add("--filter", options.scene.filter);
     if (options.scene.max_depth >= 0) add("--max-depth", std::to_string(options.scene.max_depth));
     for (const std::string& set : options.scene.set) add("--set", set);
     add("-o", options.output);

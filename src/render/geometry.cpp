@@ -34,19 +34,32 @@ struct OpticGeometry {
     std::shared_ptr<const OpticFacets> facets;
 };
 
-struct WorldGeometry {
-    explicit WorldGeometry(std::size_t optics) : optic(optics) {}
+/// What is kept of all objects.
+struct ObjectGeometry {
     Lazy<PreparedScene> prepared;
     Lazy<Tracer> tracer;
+};
+
+struct WorldGeometry {
+    std::shared_ptr<ObjectGeometry> objects = std::make_shared<ObjectGeometry>();
     Lazy<PathWorld> paths;
-    std::vector<OpticGeometry> optic;
+    std::vector<std::shared_ptr<OpticGeometry>> optic;
 };
 
 World::World() = default;
 World::~World() = default;
 
 void prepare_geometry(World& world) {
-    world.geometry = std::make_unique<WorldGeometry>(world.optics.size());
+    keep_geometry(world, std::vector<Id>(world.optics.size(), kNone), false);
+}
+
+void keep_geometry(World& world, const std::vector<Id>& kept_optics, bool keeps_objects) {
+    auto geometry = std::make_unique<WorldGeometry>();
+    if (keeps_objects) geometry->objects = world.geometry->objects;
+    for (const Id before : kept_optics)
+        geometry->optic.push_back(before == kNone ? std::make_shared<OpticGeometry>()
+                                                  : world.geometry->optic[before]);
+    world.geometry = std::move(geometry);
 }
 
 TriangleScene OpticFacets::scene() const {
@@ -64,15 +77,16 @@ const Tracer& OpticFacets::tracer() const {
 }
 
 const PreparedScene& prepared_objects(const World& world) {
-    return world.geometry->prepared.get([&] { return std::make_unique<PreparedScene>(world.objects); });
+    return world.geometry->objects->prepared.get(
+        [&] { return std::make_unique<PreparedScene>(world.objects); });
 }
 
 const Tracer& object_tracer(const World& world) {
-    return world.geometry->tracer.get([&] { return std::make_unique<Tracer>(world.objects); });
+    return world.geometry->objects->tracer.get([&] { return std::make_unique<Tracer>(world.objects); });
 }
 
 const LimitTracer& limit_tracer(const World& world, std::size_t optic) {
-    return world.geometry->optic[optic].limit.get([&] {
+    return world.geometry->optic[optic]->limit.get([&] {
         const Surface& surface = *world.optics[optic].surface;
         const SurfaceGrid fine =
             surface.has_closed_form() ? SurfaceGrid{} : make_grid(surface, fine_resolution(surface));
@@ -120,7 +134,7 @@ void prepare_shadows(const World& world) {
 }
 
 std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t optic, int n) {
-    OpticGeometry& kept = world.geometry->optic[optic];
+    OpticGeometry& kept = *world.geometry->optic[optic];
     const std::lock_guard lock(kept.mutex);
     if (!kept.facets || kept.resolution != n) {
         kept.facets.reset();  // the old one goes first, unless a picture still uses it

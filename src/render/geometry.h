@@ -33,6 +33,10 @@ class OpticFacets {
 /// Makes room for what is built later; called once, when the world has all its optics.
 void prepare_geometry(World& world);
 
+/// The same where a changed world keeps parts: `kept_optics` holds, per optic of now, the index it had before
+/// or kNone; `keeps_objects`: all objects are as they were.
+void keep_geometry(World& world, const std::vector<Id>& kept_optics, bool keeps_objects);
+
 /// The objects for the projector, and for rays.
 const PreparedScene& prepared_objects(const World& world);
 const Tracer& object_tracer(const World& world);

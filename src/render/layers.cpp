@@ -1,10 +1,12 @@
 #include "render/layers.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "render/channels.h"
+#include "render/pixel_filter.h"
 
 namespace trilens {
 namespace {
@@ -22,18 +24,71 @@ bool lacks_ray(const World& world, const SampleViews& views, const SampleView& v
            !reflects_totally(world.scene.materials[optic.material], view.incidence);
 }
 
-SampleColour mean_colour(const World& world, const SampleViews& views, std::size_t first, std::size_t count) {
-    SampleColour sum;
-    for (std::size_t s = first; s < first + count; ++s) {
-        const SampleColour one = sample_colour(world, views, views.samples[s]);
-        sum.direct += one.direct;
-        sum.reflect += one.reflect;
-        sum.refract += one.refract;
-        sum.coverage += one.coverage;
-    }
-    const double share = 1.0 / static_cast<double>(count);
-    return {share * sum.direct, share * sum.reflect, share * sum.refract, share * sum.coverage};
+void add(SampleColour& sum, double weight, const SampleColour& one) {
+    sum.direct += weight * one.direct;
+    sum.reflect += weight * one.reflect;
+    sum.refract += weight * one.refract;
+    sum.coverage += weight * one.coverage;
 }
+
+SampleColour mean_colour(const World& world, const SampleViews& views, std::size_t first, std::size_t count) {
+    SampleColour sum, mean;
+    for (std::size_t s = first; s < first + count; ++s)
+        add(sum, 1, sample_colour(world, views, views.samples[s]));
+    add(mean, 1.0 / static_cast<double>(count), sum);
+    return mean;
+}
+
+/// The samples of a window and of the pixels around it that a filter reaches, with their colours.
+class FilteredSamples {
+  public:
+    FilteredSamples(const World& world, const Viewer& viewer, const SampleGrid& window,
+                    const PixelFilter& filter)
+        : filter_(filter), grid_(window) {
+        const Film& film = world.scene.film;
+        grid_.x0 = std::max(0, window.x0 - filter.reach);
+        grid_.y0 = std::max(0, window.y0 - filter.reach);
+        grid_.x1 = std::min(film.width, window.x1 + filter.reach);
+        grid_.y1 = std::min(film.height, window.y1 + filter.reach);
+        SampleViews views;
+        viewer(grid_, views);
+        colours_.resize(grid_.size());
+        parallel_for(colours_.size(), 1024, [&](std::size_t from, std::size_t to) {
+            for (std::size_t s = from; s < to; ++s)
+                colours_[s] = sample_colour(world, views, views.samples[s]);
+        });
+    }
+
+    /// Pixels beyond the film have no samples: the weights of those that there are count as one.
+    SampleColour colour(int x, int y) const {
+        SampleColour sum, mean;
+        double total = 0;
+        for (int py = std::max(grid_.y0, y - filter_.reach); py <= std::min(grid_.y1 - 1, y + filter_.reach);
+             ++py)
+            for (int px = std::max(grid_.x0, x - filter_.reach);
+                 px <= std::min(grid_.x1 - 1, x + filter_.reach); ++px) {
+                std::size_t sample = grid_.first_sample(px, py);
+                for (int j = 0; j < grid_.side; ++j)
+                    for (int i = 0; i < grid_.side; ++i) {
+                        const double weight = weight_at(px - x, i) * weight_at(py - y, j);
+                        add(sum, weight, colours_[sample++]);
+                        total += weight;
+                    }
+            }
+        add(mean, 1 / total, sum);
+        mean.coverage = std::clamp(mean.coverage, 0.0, 1.0);
+        return mean;
+    }
+
+  private:
+    double weight_at(int pixel, int sample) const {
+        return filter_.weights[static_cast<std::size_t>((pixel + filter_.reach) * grid_.side + sample)];
+    }
+
+    const PixelFilter& filter_;
+    SampleGrid grid_;
+    std::vector<SampleColour> colours_;
+};
 
 /// How many rows of pixels are drawn together: whole blocks of sixteen, as files keep them, where they are
 /// many.
@@ -70,11 +125,14 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
         sink->begin(layout);
     }
     LayerStatistics counts;
+    const PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
     SampleViews views, centres;
     for (int y = request.y0; y < request.y1; y += rows) {
         if (progress.cancelled()) throw Interrupted();
         const SampleGrid grid{request.x0, y, request.x1, std::min(y + rows, request.y1), side};
-        viewer(grid, views);
+        std::optional<FilteredSamples> filtered;
+        if (filter.reach > 0) filtered.emplace(world, viewer, grid, filter);
+        if (!filtered || side == 1) viewer(grid, views);
 
         // With one sample a pixel its centre is that sample; otherwise the centres are looked at once more.
         if (side > 1) viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, centres);
@@ -83,7 +141,11 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
             sink ? 0 : static_cast<std::size_t>(y - request.y0) * static_cast<std::size_t>(grid.width());
         parallel_for(grid.pixels(), 256, [&](std::size_t from, std::size_t to) {
             for (std::size_t p = from; p < to; ++p) {
-                canvas.put_colour(mean_colour(world, views, p * per_pixel, per_pixel), first + p);
+                const int across = static_cast<int>(p % static_cast<std::size_t>(grid.width())),
+                          down = static_cast<int>(p / static_cast<std::size_t>(grid.width()));
+                canvas.put_colour(filtered ? filtered->colour(grid.x0 + across, grid.y0 + down)
+                                           : mean_colour(world, views, p * per_pixel, per_pixel),
+                                  first + p);
                 canvas.put_centre(world, middle, middle.samples[p], first + p);
             }
         });

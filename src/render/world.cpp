@@ -5,6 +5,7 @@
 #include "base/box.h"
 #include "base/error.h"
 #include "render/geometry.h"
+#include "scene/scene_digest.h"
 #include "shade/optic_weights.h"
 #include "surfaces/machine_memory.h"
 #include "surfaces/normal_override.h"
@@ -113,32 +114,89 @@ void check_facet_count(const World& world, int resolution) {
                  {machine_memory(), scene_title(world.scene)});
 }
 
+namespace {
+
+/// The objects' triangles, and what shading knows of each.
+void gather_objects(World& world) {
+    world.objects = {};
+    world.shading = {};
+    reserve_objects(world);
+    for (Id id = 0; id < world.scene.meshes.size(); ++id)
+        if (world.scene.meshes[id].role == Role::kObject) append_object(world, id, world.scene.meshes[id]);
+    world.shading.triangles = &world.objects;
+    world.shading.size = diagonal(world.objects);
+}
+
+/// What the scene says beside its meshes.
+void set_up_shading(World& world) {
+    world.names.clear();
+    for (const Mesh& mesh : world.scene.meshes) world.names.push_back(mesh.name);
+    world.shading.materials = world.scene.materials;
+    world.shading.lights = world.scene.lights;
+    world.shading.background = world.scene.background;
+    world.shading.occluded = {};
+    if (has_shadows(world))
+        world.shading.occluded = [self = &world](const Vec3& from, const Vec3& to) {
+            return casts_shadow(*self, {from, to - from});
+        };
+}
+
+std::vector<std::string> digests_of(const Scene& scene) {
+    std::vector<std::string> digests;
+    for (const Mesh& mesh : scene.meshes) digests.push_back(mesh_digest(mesh));
+    return digests;
+}
+
+}  // namespace
+
 std::unique_ptr<World> make_world(Scene scene, const Warn& warn) {
     auto world = std::make_unique<World>();
     world->scene = std::move(scene);
-    reserve_objects(*world);
-    for (Id id = 0; id < world->scene.meshes.size(); ++id) {
-        const Mesh& mesh = world->scene.meshes[id];
-        world->names.push_back(mesh.name);
-        if (mesh.role == Role::kObject) {
-            append_object(*world, id, mesh);
-        } else {
+    for (Id id = 0; id < world->scene.meshes.size(); ++id)
+        if (world->scene.meshes[id].role == Role::kOptic)
             world->optics.push_back(make_optic(world->scene, id, warn));
+    gather_objects(*world);
+    prepare_geometry(*world);
+    set_up_shading(*world);
+    return world;
+}
+
+KeptParts change_scene(World& world, Scene scene, const Warn& warn) {
+    if (world.mesh_digests.empty()) world.mesh_digests = digests_of(world.scene);
+    std::vector<std::string> digests = digests_of(scene);
+    const auto is_kept = [&](std::size_t mesh) {
+        return mesh < world.mesh_digests.size() && digests[mesh] == world.mesh_digests[mesh];
+    };
+    KeptParts kept;
+    kept.objects = digests.size() == world.mesh_digests.size();
+    std::vector<Optic> optics;
+    std::vector<Id> kept_optics;
+    for (Id id = 0; id < scene.meshes.size(); ++id) {
+        if (scene.meshes[id].role == Role::kObject) {
+            kept.objects = kept.objects && is_kept(id);
+            continue;
+        }
+        const auto before = std::find_if(world.optics.begin(), world.optics.end(),
+                                         [id](const Optic& optic) { return optic.mesh == id; });
+        if (is_kept(id) && before != world.optics.end()) {
+            optics.push_back(*before);
+            optics.back().mirror = is_mirror(scene.materials[before->material]);
+            kept_optics.push_back(static_cast<Id>(before - world.optics.begin()));
+            ++kept.optics;
+        } else {
+            kept.objects = kept.objects && before != world.optics.end();  // it was an object
+            optics.push_back(make_optic(scene, id, warn));
+            kept_optics.push_back(kNone);
         }
     }
 
-    prepare_geometry(*world);
-
-    world->shading.triangles = &world->objects;
-    world->shading.materials = world->scene.materials;
-    world->shading.lights = world->scene.lights;
-    world->shading.background = world->scene.background;
-    world->shading.size = diagonal(world->objects);
-    if (has_shadows(*world))
-        world->shading.occluded = [self = world.get()](const Vec3& from, const Vec3& to) {
-            return casts_shadow(*self, {from, to - from});
-        };
-    return world;
+    world.scene = std::move(scene);
+    world.optics = std::move(optics);
+    world.mesh_digests = std::move(digests);
+    if (!kept.objects) gather_objects(world);
+    keep_geometry(world, kept_optics, kept.objects);
+    set_up_shading(world);
+    return kept;
 }
 
 }  // namespace trilens

@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "base/surface.h"
+#include "render/kept_parts.h"
 #include "scene/scene.h"
 #include "shade/shade.h"
 
@@ -37,10 +38,15 @@ struct World {
     std::vector<Optic> optics;
     std::vector<std::string> names;  // object id -> name
     std::unique_ptr<WorldGeometry> geometry;
+    std::vector<std::string> mesh_digests;  // of scene.meshes, once change_scene has asked for them
 };
 
 /// Builds the surfaces and gathers the triangles. Throws InputError where a cage cannot be used.
 std::unique_ptr<World> make_world(Scene scene, const Warn& warn);
+
+/// Gives the world another scene. Meshes that are the same in both, at the same index, keep what is built of
+/// them. Throws as make_world does, and then nothing has changed. Nobody may draw meanwhile.
+KeptParts change_scene(World& world, Scene scene, const Warn& warn);
 
 /// The resolution of an optic's grid: `asked`, or its own where that is 0.
 inline int grid_resolution(const Optic& optic, int asked) {

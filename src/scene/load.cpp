@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "scene/animation_keys.h"
 #include "scene/files.h"
 #include "scene/json_check.h"
 #include "scene/override.h"
@@ -68,6 +69,8 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
     apply_overrides(json, overrides, file);
     if (const auto found = find_problem(json, scene_schema_json()))
         fail_at(file, found->place, found->message);
+
+    if (json.contains("animation")) check_animation({json, "", file});
 
     Reading reading(file, source.folder, textures);
     const Node root{json, "", file};

@@ -44,6 +44,10 @@ Film read_film(const Node& scene) {
     film.width = int_or(node, "width", film.width);
     film.height = int_or(node, "height", film.height);
     film.spp = int_or(node, "spp", film.spp);
+    const std::string filter = string_or(node, "filter", "box");
+    film.filter = filter == "mitchell"   ? FilterKind::kMitchell
+                  : filter == "gaussian" ? FilterKind::kGaussian
+                                         : FilterKind::kBox;
     if (static_cast<long long>(film.width) * film.height > kMostPixels)
         node.fail(std::to_string(film.width) + " x " + std::to_string(film.height) +
                   " pixels are more than " + std::to_string(kMostPixels));

@@ -25,9 +25,13 @@ inline constexpr int kMaxSpp = 64;
 inline constexpr int kMaxResolution = 1024;
 inline constexpr double kMostMaxError = 1000;  // pixels
 
+/// How samples make a pixel's colour: see make_pixel_filter.
+enum class FilterKind { kBox, kMitchell, kGaussian };
+
 struct Film {
     int width = 640, height = 480;
     int spp = 1;  // S: S x S samples per pixel
+    FilterKind filter = FilterKind::kBox;
 };
 
 enum class Role { kObject, kOptic };

@@ -91,12 +91,18 @@ void add(const std::vector<T>& list, Digest& digest) {
 
 }  // namespace
 
+std::string mesh_digest(const Mesh& mesh) {
+    Digest digest;
+    add(mesh, digest);
+    return digest.digits();
+}
+
 std::string scene_digest(const Scene& scene) {
     [[maybe_unused]] const auto& [file, folder, label, resolved, film, cameras, own_camera, background,
                                   materials, meshes, lights, render, files, warnings] = scene;
     Digest digest;
-    const auto& [width, height, spp] = film;
-    digest.add_all(width, height, spp, own_camera);
+    const auto& [width, height, spp, filter] = film;
+    digest.add_all(width, height, spp, filter, own_camera);
     add(cameras, digest);
     add(background, digest);
     add(materials, digest);

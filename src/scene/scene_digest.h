@@ -11,4 +11,7 @@ namespace trilens {
 /// with where it came from (file, folder, label, files), its warnings, or its text (resolved).
 std::string scene_digest(const Scene& scene);
 
+/// The same of all that one mesh holds.
+std::string mesh_digest(const Mesh& mesh);
+
 }  // namespace trilens

@@ -24,7 +24,8 @@ const char* scene_schema() {
   "materials": { "type": "array", "items": { "$ref": "#/definitions/material" } },
   "meshes": { "type": "array", "items": { "$ref": "#/definitions/mesh" } },
   "lights": { "type": "array", "items": { "$ref": "#/definitions/light" } },
-  "render": { "$ref": "#/definitions/render" }
+  "render": { "$ref": "#/definitions/render" },
+  "animation": { "$ref": "#/definitions/animation" }
 },
 "definitions": {
   "number": { "type": "number", "minimum": -1e30, "maximum": 1e30 },
@@ -43,7 +44,8 @@ const char* scene_schema() {
     "properties": {
       "width": { "type": "integer", "minimum": 1, "maximum": 32768, "default": 640 },
       "height": { "type": "integer", "minimum": 1, "maximum": 32768, "default": 480 },
-      "spp": { "type": "integer", "minimum": 1, "maximum": 64, "default": 1, "description": "S: S x S samples per pixel." }
+      "spp": { "type": "integer", "minimum": 1, "maximum": 64, "default": 1, "description": "S: S x S samples per pixel." },
+      "filter": { "enum": ["box", "mitchell", "gaussian"], "default": "box", "description": "How samples make a pixel's colour: the mean of its own, or weighted with those of pixels around." }
     }
   },
 )json" + std::string(camera_schema()) +
@@ -218,6 +220,37 @@ const char* scene_schema() {
       { "if": { "properties": { "type": { "const": "ambient" } } },
         "then": { "title": "an ambient light", "properties": { "position": false, "direction": false, "shadows": false } } }
     ]
+  },
+
+  "animation": {
+    "title": "an animation", "description": "Values of this scene by frame; without a frame that is asked for, the scene is as it stands.",
+    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "required": ["tracks"],
+    "properties": {
+      "fps": { "$ref": "#/definitions/positive", "default": 24, "description": "Frames per second of an animated picture." },
+      "tracks": { "type": "array", "minItems": 1, "items": { "$ref": "#/definitions/track" } }
+    }
+  },
+
+  "track": {
+    "title": "a track", "description": "One value over time: held before the first key and after the last.",
+    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "required": ["target", "keys"],
+    "properties": {
+      "target": { "type": "string", "minLength": 1, "description": "JSON pointer of a number, or of an array of numbers, of this scene: /cameras/0/yfov, /meshes/2/points." },
+      "interpolation": { "enum": ["linear", "smooth", "step"], "default": "linear", "description": "From key to key; rotations go by the shorter great arc." },
+      "keys": { "type": "array", "minItems": 1, "items": { "$ref": "#/definitions/key" } }
+    }
+  },
+
+  "key": {
+    "title": "a key",
+    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "required": ["frame", "value"],
+    "properties": {
+      "frame": { "$ref": "#/definitions/number" },
+      "value": {}
+    }
   },
 
   "render": {

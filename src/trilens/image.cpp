@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "image/image_io.h"
 
 namespace trilens {
@@ -23,6 +24,20 @@ std::vector<float> beauty_of(const Image& image) {
         for (std::size_t p = 0; p < values.size(); ++p) rgb[3 * p + static_cast<std::size_t>(c)] = values[p];
         ++c;
     }
+    return rgb;
+}
+
+std::vector<float> shown_beauty(const Image& image, const ToneMapping& tone) {
+    check_tone_mapping(tone);
+    std::vector<float> rgb = beauty_of(image);
+    if (tone.curve == ToneCurve::kLinear && tone.exposure == 0) return rgb;
+    parallel_for(rgb.size() / 3, 1 << 14, [&](std::size_t from, std::size_t to) {
+        for (std::size_t p = from; p < to; ++p) {
+            const Vec3 shown = tone_mapped(Vec3(rgb[3 * p], rgb[3 * p + 1], rgb[3 * p + 2]), tone);
+            for (std::size_t c = 0; c < 3; ++c)
+                rgb[3 * p + c] = static_cast<float>(shown[static_cast<int>(c)]);
+        }
+    });
     return rgb;
 }
 
@@ -74,22 +89,32 @@ std::vector<ImagePart> read_image_parts(const std::string& file) {
     return parts;
 }
 
-void write_image(const std::string& file, const Image& image) {
-    if (ends_with(file, ".exr")) return write_image_as(file, image, ImageFormat::kExr);
-    if (ends_with(file, ".png")) return write_image_as(file, image, ImageFormat::kPng);
+ToneCurve tone_curve(const std::string& name) {
+    if (name == "none") return ToneCurve::kLinear;
+    if (name == "reinhard") return ToneCurve::kReinhard;
+    if (name == "aces") return ToneCurve::kAces;
+    if (name == "neutral") return ToneCurve::kNeutral;
+    throw UsageError("there is no tone curve \"" + name + "\": none, reinhard, aces, neutral");
+}
+
+void write_image(const std::string& file, const Image& image, const ToneMapping& tone) {
+    if (ends_with(file, ".exr")) return write_image_as(file, image, ImageFormat::kExr, tone);
+    if (ends_with(file, ".png")) return write_image_as(file, image, ImageFormat::kPng, tone);
     throw UsageError("the image \"" + file + "\" must end in .exr (all channels) or .png (the beauty, sRGB)");
 }
 
-void write_image_as(const std::string& file, const Image& image, ImageFormat format) {
+void write_image_as(const std::string& file, const Image& image, ImageFormat format,
+                    const ToneMapping& tone) {
     check_image(image);
     if (format == ImageFormat::kPng)
-        return write_png(file, image.data_width, image.data_height, beauty_of(image));
+        return write_png(file, image.data_width, image.data_height, shown_beauty(image, tone));
     write_exr(file, image);
 }
 
-std::vector<unsigned char> encode_image_as(const Image& image, ImageFormat format) {
+std::vector<unsigned char> encode_image_as(const Image& image, ImageFormat format, const ToneMapping& tone) {
     check_image(image);
-    if (format == ImageFormat::kPng) return encode_png(image.data_width, image.data_height, beauty_of(image));
+    if (format == ImageFormat::kPng)
+        return encode_png(image.data_width, image.data_height, shown_beauty(image, tone));
     return encode_exr("image", image);
 }
 

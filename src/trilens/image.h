@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "image/tone.h"
 
 namespace trilens {
 
@@ -28,19 +29,24 @@ struct ImagePart {
 std::vector<ImagePart> read_image_parts(const std::string& file);
 
 /// Writes OpenEXR, all channels to the last bit (a name that ends in ".exr"), or the beauty R G B as 8-bit
-/// sRGB
-/// (".png"); beside the name, then renamed. Metadata is kept where its name starts with "trilens:". Throws
-/// UsageError for other endings, InputError for an image that is none (see check_image), OutputError where
-/// the file cannot be written.
-void write_image(const std::string& file, const Image& image);
+/// sRGB after exposure and tone curve (".png"); beside the name, then renamed. Metadata is kept where its
+/// name starts with "trilens:". Throws UsageError for other endings and for a mapping that is none,
+/// InputError for an image that is none (see check_image), OutputError where the file cannot be written.
+/// OpenEXR holds the light of the scene: `tone` is not asked for it.
+void write_image(const std::string& file, const Image& image, const ToneMapping& tone = {});
 
 enum class ImageFormat { kExr, kPng };
 
 /// The same, whatever the name ends in.
-void write_image_as(const std::string& file, const Image& image, ImageFormat format);
+void write_image_as(const std::string& file, const Image& image, ImageFormat format,
+                    const ToneMapping& tone = {});
 
 /// The bytes of that file.
-std::vector<unsigned char> encode_image_as(const Image& image, ImageFormat format);
+std::vector<unsigned char> encode_image_as(const Image& image, ImageFormat format,
+                                           const ToneMapping& tone = {});
+
+/// The curve of that name: "none", "reinhard", "aces" or "neutral". Throws UsageError for another.
+ToneCurve tone_curve(const std::string& name);
 
 /// The bytes of that OpenEXR file.
 std::vector<unsigned char> encode_image(const Image& image);

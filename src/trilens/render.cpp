@@ -43,6 +43,11 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
+KeptParts Renderer::change(Scene scene, const Warn& warn) {
+    check_scene(scene);
+    return change_scene(*world_, std::move(scene), warn);
+}
+
 const Scene& Renderer::scene() const {
     return world_->scene;
 }

@@ -17,6 +17,7 @@
 
 #include "base/progress.h"
 #include "render/explain.h"
+#include "render/kept_parts.h"
 #include "render/project.h"
 #include "render/request.h"
 #include "scene/scene.h"
@@ -64,6 +65,10 @@ class Renderer {
     ~Renderer();
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
+
+    /// Goes on with another scene, as of an animation's next frame; what is built of meshes that are the same
+    /// in both stays. Throws as the constructor does, and then nothing has changed. Not while others draw.
+    KeptParts change(Scene scene, const Warn& warn = {});
 
     const Scene& scene() const;
     std::vector<OpticInfo> optics() const;

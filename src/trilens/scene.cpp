@@ -6,6 +6,7 @@
 #include "base/nearest.h"
 #include "image/image_io.h"
 #include "scene/named_files.h"
+#include "trilens/animation.h"
 
 namespace trilens {
 namespace {
@@ -55,6 +56,10 @@ Scene parse_scene(const std::string& json, const std::string& folder,
     scene.file.clear();
     scene.label = label;
     return scene;
+}
+
+Scene scene_at_frame(const Scene& scene, double frame, std::span<const SceneOverride> changes) {
+    return load_frame(scene, frame, changes, texture_reader());
 }
 
 std::size_t find_camera(const Scene& scene, const std::string& name) {

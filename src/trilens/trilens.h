@@ -4,6 +4,7 @@
 //     trilens::write_image("mine.exr", renderer.draw({}).image);
 #pragma once
 
+#include <trilens/animation.h>
 #include <trilens/bench.h>
 #include <trilens/camera.h>
 #include <trilens/compare.h>

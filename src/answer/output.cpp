@@ -1,4 +1,4 @@
-#include "cli/image_output.h"
+#include "answer/output.h"
 
 #include <trilens/files.h>
 #include <trilens/stopwatch.h>
@@ -31,13 +31,14 @@ void check_output(const std::string& output, Console& console) {
     console.files().writes(output);
 }
 
-Answer write_output(const std::string& output, const Image& image, ImageFormat format, Console& console) {
+Answer write_output(const std::string& output, const Image& image, const OutputFormat& format,
+                    Console& console) {
     const Stopwatch watch;
     if (is_standard_stream(output)) {
-        const std::vector<unsigned char> bytes = encode_image_as(image, format);
+        const std::vector<unsigned char> bytes = encode_image_as(image, format.file, format.tone);
         write_bytes(bytes.data(), bytes.size());
     } else {
-        write_image_as(output, image, format);
+        write_image_as(output, image, format.file, format.tone);
     }
     return answer_of(output, watch, console);
 }

@@ -1,0 +1,174 @@
+#include "cli/render_options.h"
+
+#include <trilens/animation.h>
+#include <algorithm>
+#include <filesystem>
+
+#include "terminal/format.h"
+
+namespace trilens {
+
+std::vector<Option> picture_options(RenderOptions& options, const std::string& formats) {
+    return joined(
+        {scene_argument(options.scene),
+         scene_overrides(options.scene),
+         window_options(options.scene),
+         {{.names = "-o,--output",
+           .target = &options.output,
+           .help = "file to write, by its ending: " + formats + "; - for standard output",
+           .value = "OUT",
+           .offer = Offer::kImage},
+          {.names = "--exposure",
+           .target = &options.exposure,
+           .help = "png: stops by which the light is made brighter first",
+           .value = "EV",
+           .range = {-100, 100}},
+          {.names = "--tone",
+           .target = &options.tone,
+           .help = "png: how bright light is brought into the screen's range: not (none), Reinhard's "
+                   "extended curve of 2002, Narkowicz's fit to ACES, or Khronos' PBR Neutral",
+           .choices = {"none", "reinhard", "aces", "neutral"}},
+          {.names = "--white",
+           .target = &options.white,
+           .help = "png: the least luminance that --tone reinhard shows as white",
+           .value = "L",
+           .range = {1e-6, 1e6}},
+          {.names = "--grid",
+           .target = &options.grid,
+           .help = "where the optics' facets lie: on the surface, or on the film over the optic",
+           .choices = {"surface", "screen"}},
+          {.names = "--pixel",
+           .target = &options.pixel,
+           .help = "explain one pixel as JSON",
+           .value = "x,y"}}});
+}
+
+std::vector<Option> frame_options(FrameOptions& options) {
+    return {
+        {.names = "--frames",
+         .target = &options.frames,
+         .help =
+             "draw these frames of the scene's animation, each into a file of its own (-o f.####.exr), or "
+             "all into one .apng",
+         .value = "A..B"},
+        {.names = "--turntable",
+         .target = &options.turntable,
+         .help = "turn the camera once around what it looks at, in K frames; --frames chooses some of them",
+         .value = "K",
+         .range = {1, kMostFrames}}};
+}
+
+std::vector<Option> facet_options(RenderOptions& options) {
+    return {
+        {.names = "--rays",
+         .target = &options.rays,
+         .help = "of every optic's facets, whatever the scene says: fitted to the exact rays in the mean, or "
+                 "exact at the corners and interpolated between them",
+         .choices = {"fitted", "interpolated"}},
+        {.names = "--max-error",
+         .target = &options.max_error,
+         .help = "divide facets until they show things this many pixels from their place at most, as "
+                 "predicted, and trace where that does not help; 0: leave them as they are",
+         .value = "PX",
+         .range = {0, 1000}}};
+}
+
+std::vector<Option> engine_options(RenderOptions& options) {
+    return {
+        {.names = "--engine",
+         .target = &options.engine,
+         .help = "exact; classic: by the outlines of projected triangles; auto (which is exact for now); for "
+                 "comparison, envmap: an environment map at the optic's centre, planar: flat facets",
+         .choices = {"exact", "classic", "auto", "envmap", "planar"}},
+        {.names = "--slices",
+         .target = &options.slices,
+         .help = "classic: curved edges by K straight pieces between levels of t, not arcs",
+         .value = "K",
+         .range = {1, 1024}},
+        {.names = "--tessellate",
+         .target = &options.tessellate,
+         .help = "classic: curved edges by K x K smaller triangles, not arcs",
+         .value = "K",
+         .range = {1, 1024},
+         .excludes = "--slices"},
+        {.names = "--clip",
+         .target = &options.clip,
+         .help = "classic: where outlines are cut at a facet's border: in the scene, on the screen, or not "
+                 "(none)",
+         .choices = {"scene", "screen", "none"}}};
+}
+
+std::string output_format(const RenderOptions& options, const std::string& command) {
+    if (!options.format.empty()) return options.format;
+    if (is_standard_stream(options.output)) return "exr";
+    const std::string ending = std::filesystem::path(options.output).extension().string();
+    if (options.frames.asks() && ending == ".apng") return "apng";
+    if (ending == ".exr" || ending == ".png" || (ending == ".svg" && command == "render"))
+        return ending.substr(1);
+    throw UsageError("the output \"" + options.output + "\" must end in .exr (all layers)" +
+                     (command == "render" ? ", .png (the beauty, sRGB) or .svg (outlines)"
+                                          : " or .png (the beauty, sRGB)"));
+}
+
+EngineChoice chosen_engine(const RenderOptions& options) {
+    if (options.engine != "classic") {
+        if (options.slices > 0 || options.tessellate > 0 || options.clip != "scene")
+            throw UsageError(
+                "--slices, --tessellate and --clip are the classic engine's; add --engine classic");
+        return options.engine == "envmap"   ? Engine::kEnvironment
+               : options.engine == "planar" ? Engine::kPlanar
+                                            : Engine::kExact;
+    }
+    ClassicParams params;
+    params.clip = options.clip == "scene"    ? Clip::kScene
+                  : options.clip == "screen" ? Clip::kScreen
+                                             : Clip::kUnclipped;
+    params.curves = options.slices > 0       ? Curves::kSlices
+                    : options.tessellate > 0 ? Curves::kTessellate
+                                             : Curves::kArcs;
+    if (params.curves != Curves::kArcs) params.pieces = std::max(options.slices, options.tessellate);
+    return params;
+}
+
+PictureRequest picture_request(const RenderOptions& options, const EngineChoice& engine) {
+    PictureRequest request;
+    request.engine = engine;
+    request.layers = layer_request(options.scene);
+    if (!options.rays.empty())
+        request.frame.rays = options.rays == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
+    if (!options.grid.empty())
+        request.frame.grid = options.grid == "screen" ? GridKind::kScreen : GridKind::kSurface;
+    if (options.max_error >= 0) request.frame.max_error = options.max_error;
+    return request;
+}
+
+void check_options(const RenderOptions& options, const std::string& format, const EngineChoice& engine) {
+    if (format == "svg" && engine.engine == Engine::kClassic)
+        throw UsageError("an .svg is drawn by the exact engine; leave out --engine classic");
+    if (format == "svg" && options.max_error >= 0)
+        throw UsageError("--max-error is for pictures of pixels; an .svg shows the facets undivided");
+    if (options.frames.asks() && (format == "svg" || !options.pixel.empty()))
+        throw UsageError("--frames and --turntable are for .exr, .png and .apng outputs");
+    if (options.maps_tones() && format != "png" && format != "apng")
+        throw UsageError(
+            "--exposure, --tone and --white are for .png outputs; an .exr holds the light of the scene");
+    if (options.white != ToneMapping().white && options.tone != "reinhard")
+        throw UsageError("--white is for --tone reinhard");
+    if (options.wire && format != "svg") throw UsageError("--wire is for .svg outputs");
+    if (options.folds && format != "svg")
+        throw UsageError("--folds is for .svg outputs; layer magnification has folds in pixels");
+}
+
+void check_on_film(const RenderOptions& options, const LayerRequest& window, const Film& film) {
+    const std::string size = fmt::format("the film of {} x {} pixels", film.width, film.height);
+    const bool fits = window.x0 >= 0 && window.y0 >= 0 && window.x1 <= film.width &&
+                      window.y1 <= film.height && window.x0 < window.x1 && window.y0 < window.y1;
+    if (!options.scene.crop.empty() && !fits)
+        throw UsageError("--crop " + options.scene.crop + " is no window of " + size);
+    if (options.pixel.empty()) return;
+    const std::vector<int> pixel = parse_integers(options.pixel, ',', 2, "--pixel");
+    if (pixel[0] < 0 || pixel[1] < 0 || pixel[0] >= film.width || pixel[1] >= film.height)
+        throw UsageError("--pixel " + options.pixel + " is not on " + size);
+}
+
+}  // namespace trilens

@@ -1,0 +1,116 @@
+#include "scene/animation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.h"
+#include "base/format.h"
+#include "scene/animation_keys.h"
+#include "scene/json_check.h"
+#include "scene/override.h"
+#include "scene/reading.h"
+
+namespace trilens {
+namespace {
+
+bool same_part(const Json& a, const Json& b, const char* key) {
+    return a.contains(key) == b.contains(key) && (!a.contains(key) || a.at(key) == b.at(key));
+}
+
+/// Reads what stands beside meshes, materials and background again, into a copy of `from`.
+Scene with_cameras(const Scene& from, const Json& json, const TextureReader& textures) {
+    const std::string title = scene_title(from);
+    Reading reading(title, from.folder, textures);
+    const Node root{json, "", reading.file};
+    reading.scene = from;
+    reading.scene.film = read_film(root);
+    for (std::size_t i = 0; i < reading.scene.cameras.size(); ++i)
+        reading.scene.cameras[i] = read_camera(root["cameras"][i], i, reading);
+    reading.scene.lights.clear();
+    if (root.has("lights"))
+        for (std::size_t i = 0; i < root["lights"].size(); ++i)
+            reading.scene.lights.push_back(read_light(root["lights"][i]));
+    reading.scene.render = read_render(root);
+    return std::move(reading.scene);
+}
+
+}  // namespace
+
+std::optional<AnimationInfo> find_animation(const Scene& scene) {
+    if (scene.resolved.empty()) return std::nullopt;
+    const Json json = Json::parse(scene.resolved);
+    if (!json.contains("animation")) return std::nullopt;
+    const Json& animation = json.at("animation");
+    AnimationInfo info;
+    info.fps = animation.value("fps", info.fps);
+    bool any = false;
+    for (const Json& track : animation.at("tracks")) {
+        ++info.tracks;
+        for (const Json& key : track.at("keys")) {
+            const double frame = key.at("frame").get<double>();
+            info.first = any ? std::min(info.first, frame) : frame;
+            info.last = any ? std::max(info.last, frame) : frame;
+            any = true;
+        }
+    }
+    return info;
+}
+
+Scene load_frame(const Scene& scene, double frame, std::span<const SceneOverride> changes,
+                 const TextureReader& textures) {
+    if (scene.resolved.empty())
+        throw UsageError("a scene built in memory has no animation: change its values instead");
+    if (!std::isfinite(frame)) throw UsageError("a frame is a finite number");
+    const std::string title = scene_title(scene);
+    const Json still = Json::parse(scene.resolved);
+    Json json = still;
+    apply_animation(json, frame, title);
+    apply_overrides(json, changes, title);
+    Scene next;
+    if (json.at("cameras").size() == scene.cameras.size() && same_part(still, json, "meshes") &&
+        same_part(still, json, "materials") && same_part(still, json, "background")) {
+        if (const auto found = find_problem(json, scene_schema_json()))
+            throw InputError(title, found->place, found->message);
+        next = with_cameras(scene, json, textures);
+    } else {
+        next = load_scene_text(json.dump(), SceneSource(title, scene.folder), {}, textures);
+        next.file = scene.file;
+        next.folder = scene.folder;
+        next.label = scene.label;
+        // The scene file itself stands before what it names.
+        for (auto read = scene.files.rbegin(); read != scene.files.rend(); ++read) {
+            const auto known = std::find_if(next.files.begin(), next.files.end(),
+                                            [&](const FileRead& one) { return one.path == read->path; });
+            if (known == next.files.end()) next.files.insert(next.files.begin(), *read);
+        }
+        next.own_camera = std::min(scene.own_camera, next.cameras.size() - 1);
+    }
+    next.resolved = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return next;
+}
+
+std::vector<SceneOverride> turntable(const Scene& scene, std::size_t camera, int frame, int frames) {
+    const CameraDescription& from = scene.cameras.at(camera);
+    switch (from.type) {
+        case CameraType::kRayMesh:
+        case CameraType::kViewVolume:
+        case CameraType::kPushbroom:
+        case CameraType::kCrossedSlits:
+        case CameraType::kGeneralLinear:
+        case CameraType::kMultiPerspective:
+            throw UsageError("the camera \"" + from.name + "\" (" + camera_type_name(from.type) +
+                             ") does not turn with its lookAt alone: animate its values instead");
+        default:
+            break;
+    }
+    const Vec3 axis = normalize_or_zero(from.up), arm = from.eye - from.at;
+    if (axis == Vec3(0)) throw UsageError("the camera \"" + from.name + "\" has no up axis to turn about");
+    if (frame == 0) return {};
+    const double angle = 2 * std::numbers::pi * frame / frames, c = std::cos(angle), s = std::sin(angle);
+    // Rodrigues' formula.
+    const Vec3 eye = from.at + c * arm + s * cross(axis, arm) + (1 - c) * dot(axis, arm) * axis;
+    return {{fmt::format("/cameras/{}/lookAt/eye", camera), Json::array({eye.x, eye.y, eye.z}).dump()}};
+}
+
+}  // namespace trilens
