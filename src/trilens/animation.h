@@ -1,6 +1,8 @@
 // Scenes that move: frames of an animation, turntables, animated pictures.
 //
-//     const trilens::Scene scene = trilens::load_scene({"scene.json"});
+//     #include <trilens/image.h>
+//     #include <trilens/render.h>
+//     const trilens::Scene scene = trilens::load_scene(trilens::SceneRequest{"scene.json"});
 //     trilens::Renderer renderer(trilens::scene_at_frame(scene, 0));
 //     for (int frame = 0; frame < 120; ++frame) {
 //         renderer.change(trilens::scene_at_frame(scene, frame));
