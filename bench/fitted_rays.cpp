@@ -1,8 +1,11 @@
-// How far facets show things from their place: fitted against interpolated corner rays, uniform grids against
-// facets divided for an error. CSV on standard output.
+// How far facets show things from their place: fitted against interpolated corner rays and the usual
+// approximations, uniform grids against facets divided for an error; and which projected pixels are off by
+// more than a pixel though no fold is near. CSV on standard output.
 //
 //     bench_fitted rays n,n,.. SCENE.json [/json/pointer=VALUE ..]
 //     bench_fitted error PX n,n,.. SCENE.json [/json/pointer=VALUE ..]
+//     bench_fitted silent n,n,.. SCENE.json [/json/pointer=VALUE ..]
+#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <sstream>
@@ -12,6 +15,7 @@
 
 #include "image/image_io.h"
 #include "measure/displacement.h"
+#include "measure/folds.h"
 #include "render/picture.h"
 #include "render/world.h"
 #include "scene/load.h"
@@ -48,10 +52,10 @@ struct Study {
         return draw_picture(*world, request, {}, {});
     }
 
-    void tell(const std::string& way, const FrameParams& frame) const {
-        draw(frame, Engine::kExact);  // trees and grids once
+    void tell(const std::string& way, const FrameParams& frame, Engine engine = Engine::kExact) const {
+        draw(frame, engine);  // trees and grids once
         const double start = cpu_seconds();
-        const Picture picture = draw(frame, Engine::kExact);
+        const Picture picture = draw(frame, engine);
         const double seconds = cpu_seconds() - start;
         for (const char* layer : {"reflect", "refract"}) {
             const auto found = measure_displacement(truth, picture.image, layer);
@@ -62,6 +66,37 @@ struct Study {
                         found->summary->max, found->pixels, found->lost, counts.projected_facets,
                         counts.optic_pixels, counts.subdivided_pixels, counts.traced_pixels,
                         counts.predicted_error, seconds, trace_seconds);
+            std::fflush(stdout);
+        }
+    }
+
+    /// Projected pixels alone: none that was traced.
+    void tell_silent(const std::string& way, const FrameParams& frame) const {
+        const Image image = draw(frame, Engine::kExact).image;
+        const std::vector<Id>& method = image.find("stat.method")->ids();
+        for (const char* layer : {"reflect", "refract"}) {
+            const auto found = measure_displacement(truth, image, layer);
+            auto field = make_seen_field(truth, layer);
+            if (!found || !found->summary || !field) continue;
+            link_neighbours(*field);
+            const std::vector<std::uint8_t> fold = near_folds(*field);
+            std::size_t count[2] = {0, 0}, off[2] = {0, 0}, lost[2] = {0, 0}, worst_at = 0;
+            double worst[2] = {0, 0};
+            for (std::size_t p = 0; p < method.size(); ++p) {
+                if (method[p] == 2 || found->state[p] == Shift::kNothing) continue;
+                const std::size_t near = fold[p];
+                ++count[near];
+                lost[near] += found->state[p] == Shift::kLost;
+                const double shift = std::hypot(found->shift_x[p], found->shift_y[p]);
+                off[near] += shift > 1;
+                if (shift > worst[near] && near == 0) worst_at = p;
+                worst[near] = std::max(worst[near], shift);
+            }
+            std::printf("%s,%s,%d,%s,%zu,%zu,%zu,%.3f,%zu,%zu,%zu,%zu,%zu,%.3f\n", scene.c_str(), way.c_str(),
+                        frame.resolution, layer, count[0], off[0], lost[0], worst[0],
+                        worst_at % static_cast<std::size_t>(image.width),
+                        worst_at / static_cast<std::size_t>(image.width), count[1], off[1], lost[1],
+                        worst[1]);
             std::fflush(stdout);
         }
     }
@@ -85,22 +120,35 @@ Study make_study(const std::string& file, const std::vector<std::string>& settin
 }
 
 int run(const std::vector<std::string>& words) {
-    if (words.size() < 3) throw std::runtime_error("rays N,N SCENE, or error PX N,N SCENE");
-    const bool rays = words[0] == "rays";
-    const std::size_t at = rays ? 1 : 2;
+    if (words.size() < 3)
+        throw std::runtime_error("rays N,N SCENE, or error PX N,N SCENE, or silent N,N SCENE");
+    const bool rays = words[0] == "rays", silent = words[0] == "silent";
+    const std::size_t at = rays || silent ? 1 : 2;
     const Study study =
         make_study(words.at(at + 1), {words.begin() + static_cast<std::ptrdiff_t>(at) + 2, words.end()});
-    std::printf(
-        "scene,way,n,layer,mean,p99,max,pixels,lost,facets,optic_pixels,subdivided,traced,predicted,"
-        "cpu_s,trace_cpu_s\n");
-    for (const int n : numbers(words[at]))
+    std::puts(
+        silent ? "scene,way,n,layer,pixels,over_1px,lost,max,max_x,max_y,fold_pixels,fold_over_1px,fold_lost,"
+                 "fold_max"
+               : "scene,way,n,layer,mean,p99,max,pixels,lost,facets,optic_pixels,subdivided,traced,predicted,"
+                 "cpu_s,trace_cpu_s");
+    for (const int n : numbers(words[at])) {
         for (const CornerRays way : {CornerRays::kInterpolated, CornerRays::kFitted}) {
             FrameParams frame;
             frame.resolution = n;
             frame.rays = way;
-            frame.max_error = rays ? 0 : std::stod(words[1]);
-            study.tell(corner_rays_name(way), frame);
+            frame.max_error = rays || silent ? 0 : std::stod(words[1]);
+            if (silent)
+                study.tell_silent(corner_rays_name(way), frame);
+            else
+                study.tell(corner_rays_name(way), frame);
         }
+        for (const Engine engine : {Engine::kEnvironment, Engine::kPlanar}) {
+            if (!rays) break;
+            FrameParams frame;
+            frame.resolution = n;
+            study.tell(engine_name(engine), frame, engine);
+        }
+    }
     return 0;
 }
 

@@ -33,7 +33,7 @@ struct LeafPoint {
         if (!node.ends[leaf]) {
             double next = 0;
             for (int k = 0; k < 3; ++k) next += weights[k] * node.next[corner[static_cast<std::size_t>(k)]];
-            if (!(hit.seen() && hit.t < next)) return 0;
+            if (!(hit.seen() && hit.t <= next)) return 0;
         }
         // What little light a side path carries counts for little.
         const double light = exact.principal ? 1 : std::min(1.0, largest(exact.weight));

@@ -94,7 +94,7 @@ Id OpticPaths::film_facet(const Vec2& pixel) const {
 }
 
 OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
-    : looking_(std::move(looking)), grid_(first.grid) {
+    : looking_(std::move(looking)), grid_(first.grid), ends_first_(true) {
     const SurfaceGrid& grid = *first.grid;
     const RayMesh *const reflection = first.reflection, *const refraction = first.refraction;
     outline_.facets = grid.facets;
@@ -110,7 +110,6 @@ OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
         leaves_.push_back({static_cast<Id>(f)});
         cells_[f].leaf = static_cast<Id>(f);
     }
-    std::fill(prepared_.begin(), prepared_.end(), 1);
     const auto add = [&](const RayMesh& mesh, Event event, Id medium) -> PathNode& {
         PathSegment segment;
         segment.step = {looking_.optic, event};
@@ -208,6 +207,13 @@ void OpticPaths::complete_nodes() {
 }
 
 void OpticPaths::prepare(std::span<const Id> facets) {
+    if (ends_first_) {
+        for (const Id f : facets) {
+            projected_count_ += !prepared_[f];
+            prepared_[f] = 1;
+        }
+        return;
+    }
     const std::vector<Id> fresh = wanted_facets(facets);
     look_at_corners(fresh);
 

@@ -156,6 +156,7 @@ class OpticPaths {
     std::vector<std::unordered_map<Id, Id>> corner_of_node_;  // per node: shared corner -> corner of its mesh
     std::array<bool, 2> side_fitted_{};                       // back, front
     std::vector<Id> leaf_cell_;                               // per leaf
+    bool ends_first_ = false;  // paths end after the first optic: all is known from the beginning
     std::size_t projected_count_ = 0;
     CutPaths cut_;
 };

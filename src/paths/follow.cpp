@@ -110,10 +110,11 @@ void Follower::run(const Pending& from) {
     segment.turned = from.turned;
 
     std::optional<NextOptic> next;
-    if (world_.max_depth > 0) next = next_optic(world_, segment.ray, from.branch.step.optic);
+    if (world_.max_depth > 0)
+        next = next_optic(world_, {segment.ray, from.branch.step.optic, from.branch.media});
     if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
     if (next && segment.hit.seen()) {
-        if (segment.hit.t < next->distance)
+        if (segment.hit.t <= next->distance + next->touch)  // an object that an optic lies on is seen in it
             next.reset();
         else
             segment.hit = {};
@@ -139,6 +140,45 @@ FollowedPaths Follower::follow(const Meeting& first, double way) {
     return std::move(followed_);
 }
 
+NextOptic next_at(Id optic, const Ray& ray, const SurfaceHit& hit, double touch) {
+    NextOptic next;
+    next.distance = std::max(hit.t, 0.0);
+    next.touch = touch;
+    next.hit = hit;
+    Meeting& at = next.meeting;
+    at.optic = optic;
+    at.incoming = ray.direction;
+    at.point = hit.point.position;
+    at.normal = hit.point.normal;
+    at.front = dot(ray.direction, at.normal) <= 0;
+    return next;
+}
+
+/// The ray's first meeting with one optic. Where it starts on another one that touches this, it meets this
+/// one's glass there if it comes into a body in which it is not yet, or leaves one in which it is.
+std::optional<NextOptic> meet(const PathWorld& world, Id optic, const LeavingRay& leaving) {
+    const PathOptic& asked = world.optics[optic];
+    const Ray& ray = leaving.ray;
+    const double touch = asked.tracer->self_hit_t_min(ray);
+    if (leaving.from != kNone && leaving.from != optic) {
+        const auto hit = asked.tracer->first_hit({ray.origin - touch * ray.direction, ray.direction});
+        if (!hit) return std::nullopt;
+        SurfaceHit here = *hit;
+        here.t -= touch;
+        const NextOptic next = next_at(optic, ray, here, touch);
+        if (here.t > touch || (!asked.mirror && next.meeting.front != leaving.media.holds(optic)))
+            return next;
+    }
+    const auto hit = asked.tracer->first_hit(ray, leaving.from == kNone ? 0 : touch);
+    if (!hit) return std::nullopt;
+    return next_at(optic, ray, *hit, touch);
+}
+
+/// Among optics that are met at the same place.
+int turn_of(const PathWorld& world, const NextOptic& next) {
+    return world.optics[next.meeting.optic].mirror ? 0 : next.meeting.front ? 1 : 2;
+}
+
 /// The branch that a segment took; null where there is none.
 const Branch* same_branch(const std::vector<Branch>& ways, const PathSegment& like) {
     for (const Branch& one : ways)
@@ -148,25 +188,19 @@ const Branch* same_branch(const std::vector<Branch>& ways, const PathSegment& li
 
 }  // namespace
 
-std::optional<NextOptic> next_optic(const PathWorld& world, const Ray& ray, Id from) {
-    std::optional<NextOptic> next;
-    for (std::size_t i = 0; i < world.optics.size(); ++i) {
-        const LimitTracer& tracer = *world.optics[i].tracer;
-        const double t_min = i == from ? tracer.self_hit_t_min(ray) : 0;
-        const std::optional<SurfaceHit> hit = tracer.first_hit(ray, t_min);
-        if (!hit || (next && hit->t >= next->distance)) continue;
-        next.emplace();
-        next->distance = hit->t;
-        next->hit = *hit;
-        next->meeting.optic = static_cast<Id>(i);
+std::optional<NextOptic> next_optic(const PathWorld& world, const LeavingRay& leaving) {
+    std::vector<NextOptic> met;
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        if (const auto one = meet(world, static_cast<Id>(i), leaving)) met.push_back(*one);
+    if (met.empty()) return std::nullopt;
+    const NextOptic& nearest = *std::min_element(
+        met.begin(), met.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
+    const NextOptic* first = nullptr;
+    for (const NextOptic& one : met) {
+        if (one.distance > nearest.distance + std::max(one.touch, nearest.touch)) continue;
+        if (!first || turn_of(world, one) < turn_of(world, *first)) first = &one;
     }
-    if (!next) return std::nullopt;
-    Meeting& at = next->meeting;
-    at.incoming = ray.direction;
-    at.point = next->hit.point.position;
-    at.normal = next->hit.point.normal;
-    at.front = dot(ray.direction, at.normal) <= 0;
-    return next;
+    return *first;
 }
 
 FollowedPaths follow_paths(const PathWorld& world, const Meeting& first, double way,
@@ -193,7 +227,8 @@ std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, con
         segment.way = from.way;
         segment.turned = std::fabs(dot(from.meeting.incoming, from.meeting.normal));
         if (!segment.ends) {
-            const std::optional<NextOptic> next = next_optic(world, segment.ray, segment.step.optic);
+            const std::optional<NextOptic> next =
+                next_optic(world, {segment.ray, segment.step.optic, branch->media});
             if (!next) continue;
             segment.next = next->distance;
             after[i] = {branches(world, next->meeting, branch->media, branch->colours), next->meeting,

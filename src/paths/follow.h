@@ -62,10 +62,20 @@ std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, con
 struct NextOptic {
     Meeting meeting;
     double distance = 0;
+    double touch = 0;  // what is met this much farther away is met at the same place
     SurfaceHit hit;
 };
 
-/// `ray`: unit direction. `from`: the optic that it leaves, whose own start is left out; kNone: none.
-std::optional<NextOptic> next_optic(const PathWorld& world, const Ray& ray, Id from);
+/// A ray that leaves an optic.
+struct LeavingRay {
+    Ray ray;          // unit direction
+    Id from = kNone;  // the optic, whose own start is left out; kNone: none
+    Media media{};    // where it runs
+};
+
+/// Optics that touch, to 1e-9 of their sizes, are met one after the other, at no distance: mirrors first,
+/// then bodies that the ray comes into, then those that it leaves. So bodies that touch have no air between
+/// them, and light that comes through a body to a mirror on it is mirrored in the body.
+std::optional<NextOptic> next_optic(const PathWorld& world, const LeavingRay& leaving);
 
 }  // namespace trilens

@@ -11,6 +11,7 @@ namespace trilens {
 namespace {
 
 constexpr std::size_t kSamplesPerTask = 256;
+constexpr double kTouch = 1e-9;  // of t: an object on which the next optic lies is seen in it
 
 /// The samples that see the optic, by facet of its paths.
 FacetSamples samples_by_facet(const OpticEndsParams& params, const OpticPaths& paths, const SampleGrid& grid,
@@ -157,7 +158,7 @@ void NodeDrawer::draw(Id index, OpticEnds& out) {
                     double next = 0;
                     for (int k = 0; k < 3; ++k)
                         next += share[k] * node.next[corner[static_cast<std::size_t>(k)]];
-                    goes_on[s] = !(hits[s].seen() && hits[s].t < next);
+                    goes_on[s] = !(hits[s].seen() && hits[s].t <= next * (1 + kTouch));
                     if (goes_on[s]) continue;
                 }
                 finish(node, s, weights, ends[i]);

@@ -58,7 +58,8 @@ void tell_omissions(const World& world, Engine engine, const LayerStatistics& st
         if (statistics.deep_light > kLeastWeight)
             warn(fmt::format(
                 "paths end after {} optics (maxDepth {}): up to {:.1f} % of a pixel's light would go "
-                "on to another",
+                "on to another; light that runs along a hollow mirror, or inside a wall of glass, meets them "
+                "many times",
                 settings.max_depth + 1, settings.max_depth, 100 * statistics.deep_light));
         return;
     }

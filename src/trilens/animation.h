@@ -2,6 +2,7 @@
 //
 //     #include <trilens/image.h>
 //     #include <trilens/render.h>
+//     #include <trilens/scene.h>
 //     const trilens::Scene scene = trilens::load_scene(trilens::SceneRequest{"scene.json"});
 //     trilens::Renderer renderer(trilens::scene_at_frame(scene, 0));
 //     for (int frame = 0; frame < 120; ++frame) {

@@ -35,7 +35,7 @@ std::optional<FollowedPaths> exact_paths(const Stage& stage, Id optic, const Pat
                                          const Vec3& chord) {
     const Ray ray = camera.ray({}, chord);
     const Ray unit{ray.origin, normalize(ray.direction)};
-    const auto first = next_optic(stage.world, unit, kNone);
+    const auto first = next_optic(stage.world, {unit});
     if (!first || first->meeting.optic != optic || length(first->meeting.point - chord) > 1e-6)
         return std::nullopt;
     return follow_paths(stage.world, first->meeting, first->distance,

@@ -56,7 +56,7 @@ class Stage {
     /// The ray's paths from the first optic that it meets; none where it meets none. `direction` any length.
     std::optional<trilens::FollowedPaths> follow(const Vec3& from, const Vec3& direction,
                                                  double least_weight = trilens::kLeastWeight) const {
-        const auto first = trilens::next_optic(world, {from, normalize(direction)}, trilens::kNone);
+        const auto first = trilens::next_optic(world, {{from, normalize(direction)}});
         if (!first) return std::nullopt;
         return trilens::follow_paths(world, first->meeting, first->distance,
                                      {.objects = nullptr, .least_weight = least_weight});

@@ -60,7 +60,7 @@ void check_energy(bool fresnel, double dispersion, double least, std::uint64_t s
         fill(stage, random, dispersion);
         for (int k = 0; k < 10; ++k) {
             const Vec3 from = 5.0 * random.direction(), direction = normalize(random.in_box(0.8) - from);
-            const auto first = next_optic(stage.world, {from, direction}, kNone);
+            const auto first = next_optic(stage.world, {{from, direction}});
             const auto paths = stage.follow(from, direction, least);
             REQUIRE(first.has_value() == paths.has_value());
             if (!first) continue;
@@ -188,7 +188,7 @@ TEST_CASE("the same paths again from the same place, and from beside it") {
         Stage stage;
         fill(stage, random, 1.0);
         const Vec3 from = 5.0 * random.direction(), direction = normalize(random.in_box(0.5) - from);
-        const auto first = next_optic(stage.world, {from, direction}, kNone);
+        const auto first = next_optic(stage.world, {{from, direction}});
         if (!first) continue;
         const FollowedPaths paths = follow_paths(stage.world, first->meeting, first->distance);
         const auto again = repeat_paths(stage.world, first->meeting, first->distance, paths.segments);
@@ -204,7 +204,7 @@ TEST_CASE("the same paths again from the same place, and from beside it") {
         }
         // From beside: as followed there, wherever that has the history.
         const Vec3 beside = normalize(direction + 1e-4 * random.direction());
-        const auto near = next_optic(stage.world, {from, beside}, kNone);
+        const auto near = next_optic(stage.world, {{from, beside}});
         if (!near || near->meeting.optic != first->meeting.optic) continue;
         const FollowedPaths there = follow_paths(stage.world, near->meeting, near->distance,
                                                  {.objects = nullptr, .least_weight = 0.1 * kLeastWeight});
