@@ -1,7 +1,5 @@
 #include "image/apng.h"
 
-#include <libdeflate.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,6 +27,22 @@ std::uint32_t read32(std::span<const unsigned char> bytes) {
            bytes[3];
 }
 
+/// The checksum of PNG's chunks (ISO 3309, the polynomial of its annex on CRC), byte by byte.
+std::uint32_t checksum(std::span<const unsigned char> bytes) {
+    static const std::array<std::uint32_t, 256> table = [] {
+        std::array<std::uint32_t, 256> sums{};
+        for (std::uint32_t byte = 0; byte < 256; ++byte) {
+            sums[byte] = byte;
+            for (int bit = 0; bit < 8; ++bit)
+                sums[byte] = (sums[byte] & 1) ? 0xedb88320u ^ (sums[byte] >> 1) : sums[byte] >> 1;
+        }
+        return sums;
+    }();
+    std::uint32_t sum = 0xffffffffu;
+    for (const unsigned char byte : bytes) sum = table[(sum ^ byte) & 0xff] ^ (sum >> 8);
+    return ~sum;
+}
+
 struct Chunk {
     std::string_view type;
     std::span<const unsigned char> data;
@@ -39,7 +53,7 @@ void put_chunk(Bytes& file, const Chunk& chunk) {
     const std::size_t first = file.size();
     file.insert(file.end(), chunk.type.begin(), chunk.type.end());
     file.insert(file.end(), chunk.data.begin(), chunk.data.end());
-    put32(file, libdeflate_crc32(0, file.data() + first, file.size() - first));
+    put32(file, checksum(std::span(file).subspan(first)));
 }
 
 std::vector<Chunk> chunks_of(std::span<const unsigned char> png) {

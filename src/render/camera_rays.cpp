@@ -2,28 +2,26 @@
 
 #include <algorithm>
 
-#include "base/error.h"
 #include "base/parallel.h"
+#include "render/ray_mesh_model.h"
 
 namespace trilens {
 namespace {
 
-void refuse_optics(const Scene& scene, std::size_t index) {
-    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-        if (scene.meshes[m].role != Role::kOptic) continue;
-        throw InputError(
-            scene_title(scene), "/cameras/" + std::to_string(index),
-            "a rayMesh camera shows objects only, but mesh \"" + scene.meshes[m].name + "\" is an optic");
-    }
+bool has_optics(const Scene& scene) {
+    return std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                       [](const Mesh& mesh) { return mesh.role == Role::kOptic; });
 }
 
 }  // namespace
 
 CameraRays make_camera_rays(const Scene& scene, std::size_t index) {
     const CameraDescription& from = scene.cameras[index];
-    if (from.type == CameraType::kRayMesh) refuse_optics(scene, index);
     const FilmSize film{static_cast<double>(scene.film.width), static_cast<double>(scene.film.height)};
-    return make_camera(from, film, {scene.file, "/cameras/" + std::to_string(index)});
+    CameraRays camera = make_camera(from, film, {scene.file, "/cameras/" + std::to_string(index)});
+    if (from.type == CameraType::kRayMesh && has_optics(scene))
+        camera.model = make_ray_mesh_model(camera.mesh, film);
+    return camera;
 }
 
 void set_camera_rays(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,

@@ -15,8 +15,8 @@ namespace trilens {
 /// A scene's camera: its exact rays, its linear map where it has one, and its RayMesh.
 using CameraRays = Camera;
 
-/// The camera `index` of the scene. Throws InputError with its place where it is none, and where it is an
-/// explicit RayMesh and the scene has optics: their grids have no place on its screen.
+/// The camera `index` of the scene; an explicit RayMesh has a model (ray_mesh_model.h) where the scene has
+/// optics, whose grids then lie on its film. Throws InputError with its place where it is none.
 CameraRays make_camera_rays(const Scene& scene, std::size_t index);
 
 /// Sets the camera's ray of every sample that `owned` gives to a facet.

@@ -4,6 +4,7 @@
 
 #include "base/box.h"
 #include "paths/fit_first.h"
+#include "render/ray_mesh_model.h"
 
 namespace trilens {
 namespace {
@@ -22,6 +23,7 @@ FramedOptic frame_optic(const World& world, std::size_t index, const CameraRays&
     framed.facets = optic_facets(world, index, framed.resolution);
     if (camera.model) {
         framed.model = camera.model;
+        if (is_ray_mesh_model(*camera.model)) framed.grid = GridKind::kScreen;
         framed.film_grid =
             std::make_shared<FilmGrid>(make_film_grid(framed.facets->grid(), *camera.model, camera.film));
     }
@@ -138,6 +140,8 @@ FilmWindow film_window(const World& world, const FramedOptic& framed, std::span<
     window.high = glm::clamp(window.high + 1.0, Vec2(0), film);
     if (!(window.low.x < window.high.x && window.low.y < window.high.y))
         window.low = Vec2(0), window.high = film;
+    const auto middle = views.empty() && framed.model ? framed.model->ray(0.5 * film) : std::nullopt;
+    if (middle) depth = length(0.5 * (box.low + box.high) - middle->origin);
     window.depth = depth > 0 ? depth : 1;
     window.reach = length(box.size());
     return window;

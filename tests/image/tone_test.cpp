@@ -73,8 +73,9 @@ TEST_CASE("ACES by Narkowicz: values by hand, rising, and the quadratic's root t
 }
 
 TEST_CASE("PBR Neutral: the specification's inverse takes it back") {
-    for (double r = 0; r < 6; r += 0.37)
-        for (double g = 0; g < 6; g += 0.41)
+    // Not from 0 on: there the inverse is a square root, which makes much of rounding.
+    for (double r = 0.009; r < 6; r += 0.37)
+        for (double g = 0.011; g < 6; g += 0.41)
             for (double b = 0.013; b < 6; b += 0.53) {
                 const Vec3 colour(r, g, b);
                 const Vec3 shown = tone_mapped(colour, {0, ToneCurve::kNeutral, 4});
