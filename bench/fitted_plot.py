@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Plots what bench_fitted printed: displacement over n, fitted against interpolated corner rays.
+"""Plots what bench_fitted printed: displacement over n, fitted and interpolated corner rays, and the usual approximations.
 
-    for s in scenes/sphere.json scenes/torus.json; do bench_fitted rays 4,8,16,32 $s; done > rays.csv
+    for s in scenes/sphere.json scenes/torus.json; do bench_fitted rays 4,8,16 $s; done > rays.csv
     bench/fitted_plot.py rays.csv rays.svg
+
+One plot for each scene and layer: the mean over its pixels, on logarithmic scales.
 """
 import csv
 import os
@@ -11,40 +13,54 @@ import sys
 import matplotlib
 
 matplotlib.use("Agg")
+matplotlib.rcParams["svg.hashsalt"] = "trilens"
 import matplotlib.pyplot as plt
+
+WAYS = {
+    "planar": ("flat facets", "#a05a2c", ":"),
+    "envmap": ("environment map", "#7a7a7a", ":"),
+    "interpolated": ("exact corner rays", "#1f5fa8", "--"),
+    "fitted": ("fitted corner rays", "#c0392b", "-"),
+}
+
+
+def read(source):
+    """Per (scene, layer) and way the points (n, mean)."""
+    curves = {}
+    with open(source, newline="") as file:
+        for row in csv.DictReader(file):
+            if row["scene"] == "scene":  # each run prints its header
+                continue
+            name = os.path.splitext(os.path.basename(row["scene"].split(" ")[0]))[0]
+            ways = curves.setdefault((name, row["layer"]), {})
+            ways.setdefault(row["way"], []).append((int(row["n"]), float(row["mean"])))
+    return curves
 
 
 def main(source, target):
-    curves = {}
-    with open(source, newline="") as file:
-        for row in csv.reader(file):
-            if row[0] == "scene":  # each run prints its header
-                continue
-            name = os.path.splitext(os.path.basename(row[0].split(" ")[0]))[0]
-            curves.setdefault((name, row[3]), {}).setdefault(row[1], []).append(
-                (int(row[2]), float(row[4]), float(row[5]))
-            )
-    figure, plots = plt.subplots(1, 2, figsize=(11, 5), sharex=True)
-    for colour, (key, ways) in enumerate(sorted(curves.items())):
-        for way, points in ways.items():
-            points.sort()
-            style = "-" if way == "fitted" else "--"
-            for plot, column in zip(plots, (1, 2)):
-                plot.plot(
-                    [p[0] for p in points],
-                    [p[column] for p in points],
-                    style,
-                    color=f"C{colour}",
-                    marker="o",
-                    label=f"{key[0]}, {key[1]}, {way}",
-                )
-    for plot, title in zip(plots, ("mean", "99th percentile")):
-        plot.set(xscale="log", yscale="log", xlabel="n", ylabel="displacement [pixels]", title=title)
-        plot.set_xticks([4, 8, 16, 32], ["4", "8", "16", "32"])
-        plot.grid(True, which="both", alpha=0.3)
-    plots[1].legend(fontsize=7)
-    figure.tight_layout()
-    figure.savefig(target)
+    curves = read(source)
+    ticks = sorted({n for ways in curves.values() for points in ways.values() for n, _ in points})
+    columns = min(4, len(curves))
+    rows = (len(curves) + columns - 1) // columns
+    figure, plots = plt.subplots(rows, columns, figsize=(3.1 * columns, 3.0 * rows), sharex=True, sharey=True, squeeze=False)
+    for plot in plots.flat[len(curves) :]:
+        plot.axis("off")
+    for plot, ((name, layer), ways) in zip(plots.flat, curves.items()):
+        for way, (label, colour, style) in WAYS.items():
+            points = sorted(ways.get(way, []))
+            plot.plot([p[0] for p in points], [p[1] for p in points], style, color=colour, marker="o", markersize=4, label=label)
+        plot.set(xscale="log", yscale="log", title=f"{name}, {layer}")
+        plot.set_xticks(ticks, [str(n) for n in ticks])
+        plot.minorticks_off()
+        plot.grid(True, alpha=0.3)
+    for plot in plots[-1]:
+        plot.set_xlabel("n")
+    for row in plots:
+        row[0].set_ylabel("displacement [pixels]")
+    handles, labels = plots[0][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="upper center", ncol=4, frameon=False)
+    figure.tight_layout(rect=(0, 0, 1, 0.94))
+    figure.savefig(target, metadata={"Date": None})
 
 
 if __name__ == "__main__":
