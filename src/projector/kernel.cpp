@@ -15,6 +15,7 @@
 #endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "projector/kernel.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -41,10 +42,23 @@ HWY_INLINE void begin_group(const KernelScene& scene, const TileGroup& group, Ke
     state.vectors = last.first_vector + last.vectors - state.first_vector;
     state.most_doubts = 4096 + 64 * samples;
     if (state.nearest.size() < state.vectors) state.nearest.resize(state.vectors);
+    const SampleVector* vector = &scene.tiles->vectors[state.first_vector];
     for (std::uint32_t i = 0; i < state.vectors; ++i) {
+        hwy::Prefetch(vector[i].u);
+        hwy::Prefetch(vector[i].v);
+        hwy::Prefetch(&scene.tiles->samples[state.first_vector + i]);
         store(set(kNever), state.nearest[i].low);
         store(set(kNever), state.nearest[i].high);
         store_words(set_word(kNone), state.nearest[i].triangle);
+    }
+}
+
+/// The facets' rays of a batch: their misses wait together, not one after the other.
+HWY_INLINE void prefetch_rays(const KernelScene& scene, std::uint32_t tiles, std::uint32_t first_tile) {
+    for (std::uint32_t j = 0; j < tiles; ++j) {
+        const char* from =
+            reinterpret_cast<const char*>(&scene.tiles->rays[scene.tiles->tiles[first_tile + j].rays]);
+        for (std::size_t at = 0; at < sizeof(FacetRays); at += 64) hwy::Prefetch(from + at);
     }
 }
 
@@ -56,6 +70,7 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
     for (std::uint32_t g = 0; g < groups.count; ++g) tiles += group[g].count;
     state.first_tile = group[0].first;
     state.cache.rays = kNone;
+    prefetch_rays(scene, tiles, state.first_tile);
     set_up_batch(scene, &scene.tiles->tiles[state.first_tile], tiles, state.lanes);
 
     std::uint32_t left = state.lanes.broken & first_lanes(tiles);
@@ -74,6 +89,7 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
         }
         resolve_group(scene, state);
     }
+    if (!scene.vector_hits.empty()) hwy::FlushStream();
     return left;
 }
 

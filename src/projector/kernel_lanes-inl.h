@@ -56,6 +56,9 @@ HWY_INLINE Floats load(const float* from) {
 HWY_INLINE void store(const Floats& v, float* to) {
     TRILENS_EACH_PART hn::Store(v.part[i], kFloat, to + i * kPart);
 }
+HWY_INLINE void stream(const Floats& v, float* to) {
+    TRILENS_EACH_PART hn::Stream(v.part[i], kFloat, to + i * kPart);
+}
 HWY_INLINE Words set_word(std::uint32_t v) {
     Words r;
     TRILENS_EACH_PART r.part[i] = hn::Set(kWord, v);
@@ -68,6 +71,9 @@ HWY_INLINE Words load_words(const std::uint32_t* from) {
 }
 HWY_INLINE void store_words(const Words& v, std::uint32_t* to) {
     TRILENS_EACH_PART hn::Store(v.part[i], kWord, to + i * kPart);
+}
+HWY_INLINE void stream_words(const Words& v, std::uint32_t* to) {
+    TRILENS_EACH_PART hn::Stream(v.part[i], kWord, to + i * kPart);
 }
 
 #define TRILENS_LANES_OPERATION(name, Name)                           \
@@ -207,6 +213,16 @@ HWY_INLINE float least_lane(const Floats& a) {
     auto all = a.part[0];
     for (std::size_t i = 1; i < kParts; ++i) all = hn::Min(all, a.part[i]);
     return hn::GetLane(hn::MinOfLanes(kFloat, all));
+}
+/// Writes the numbers of the lanes, plus `plus`, one after the other, and returns how many there are. There
+/// is room for kLanes words.
+HWY_INLINE std::size_t list_lanes(const Mask& lanes, std::uint32_t plus, std::uint32_t* to) {
+    std::size_t count = 0;
+    TRILENS_EACH_PART {
+        const auto number = hn::Iota(kWord, plus + static_cast<std::uint32_t>(i * kPart));
+        count += hn::CompressStore(number, hn::RebindMask(kWord, lanes.part[i]), kWord, to + count);
+    }
+    return count;
 }
 /// Every lane's own bit, lowest first: for (Each lane(mask); lane; ++lane) use(*lane).
 class Each {

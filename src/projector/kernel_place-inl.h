@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include "projector/kernel_setup-inl.h"
@@ -38,7 +39,7 @@ struct FormLanes {
     Double above[3], along[3], second[6], third[6], size;
 };
 
-HWY_INLINE FormLanes broadcast(const PlaceForms& forms) {
+HWY_INLINE FormLanes broadcast(const CachedForms& forms) {
     FormLanes f;
     for (std::size_t k = 0; k < 3; ++k) {
         f.above[k] = hn::Set(kDouble, forms.above[k]);
@@ -50,6 +51,44 @@ HWY_INLINE FormLanes broadcast(const PlaceForms& forms) {
     }
     f.size = hn::Set(kDouble, forms.size);
     return f;
+}
+
+HWY_NOINLINE void set_facet(const FacetRays& facet, FacetCoefficients& to) {
+    std::memset(&to, 0, sizeof to);
+    for (int a = 0; a < 3; ++a) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            to.origin[a][k] = facet.rays.origin[k][a];
+            to.direction[a][k] = facet.rays.direction[k][a];
+            to.weight[k] = facet.rays.weight[k];
+        }
+        for (std::size_t k = 0; k < 6; ++k) {
+            to.line[a][k] = facet.line.direction[k][a];
+            to.moment[a][k] = facet.line.moment[k][a];
+        }
+    }
+}
+
+HWY_INLINE Vector3 load8(const double (*from)[8], std::size_t at) {
+    return {hn::Load(kDouble, from[0] + at), hn::Load(kDouble, from[1] + at),
+            hn::Load(kDouble, from[2] + at)};
+}
+
+/// place_forms() for one triangle, lanes are coefficients.
+HWY_INLINE void make_forms(const FacetCoefficients& facet, const Vec3* corner, CachedForms& forms) {
+    const Vec3 e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
+    const Vector3 first = set3(corner[0]), along_e1 = set3(e1), turned = set3(corner[0] - corner[2]),
+                  normal = set3(cross(e1, e2));
+    for (std::size_t at = 0; at < 8; at += kDoubles) {
+        const Vector3 moment = minus(load8(facet.moment, at), exact_outer(first, load8(facet.line, at)));
+        hn::Store(exact_inner(turned, moment), kDouble, forms.second + at);
+        hn::Store(exact_inner(along_e1, moment), kDouble, forms.third + at);
+        if (at >= 3) continue;
+        const Vector3 from =
+            minus(times(hn::Load(kDouble, facet.weight + at), first), load8(facet.origin, at));
+        hn::Store(exact_inner(from, normal), kDouble, forms.above + at);
+        hn::Store(exact_inner(load8(facet.direction, at), normal), kDouble, forms.along + at);
+    }
+    forms.size = trilens::largest_part(e1) * trilens::largest_part(e2);
 }
 
 /// place_forms() in lanes.
@@ -74,10 +113,9 @@ HWY_INLINE FormLanes forms_in_lanes(const FacetRays& facet, const Vector3 (&corn
     return forms;
 }
 
-/// Some samples of a facet, as offsets from its screen, and what does not depend on triangles.
+/// Some samples of a facet, as offsets from its screen, and their weights.
 struct SampleLanes {
-    Double x, y, weight, speed;
-    hn::Mask<DoubleTag> good;  // the weight is trusted
+    Double x, y, weight;
 };
 
 HWY_INLINE Double linear_at(const Double& c0, const Double& c1, const Double& c2, const Double& x,
@@ -92,36 +130,48 @@ HWY_INLINE Double quadratic_at(const Double (&c)[6], const Double& x, const Doub
 
 HWY_INLINE SampleLanes sample_lanes(const FacetRays& facet, const Double& x, const Double& y) {
     const auto broadcast = [](double v) HWY_ATTR { return hn::Set(kDouble, v); };
-    const std::array<double, 3>&w = facet.rays.weight, &v = facet.speed;
-    const Double far_x = hn::Abs(x), far_y = hn::Abs(y);
-    const Double weight = linear_at(broadcast(w[0]), broadcast(w[1]), broadcast(w[2]), x, y);
-    const Double terms = linear_at(broadcast(std::fabs(w[0])), broadcast(std::fabs(w[1])),
-                                   broadcast(std::fabs(w[2])), far_x, far_y);
-    return {x, y, weight, linear_at(broadcast(v[0]), broadcast(v[1]), broadcast(v[2]), far_x, far_y),
-            hn::Ge(hn::Abs(weight), hn::Mul(broadcast(kLeastWeightShare), terms))};
+    const std::array<double, 3>& w = facet.rays.weight;
+    return {x, y, linear_at(broadcast(w[0]), broadcast(w[1]), broadcast(w[2]), x, y)};
 }
 
-/// `good`: lanes in which place() gives a value.
+/// What place() asks of its terms, bounded over a tile.
+struct TileTrust {
+    double least_along = 0;  // times PlaceForms::size: a larger denominator is trusted
+    bool weight = false;     // every sample's is
+};
+
+HWY_INLINE TileTrust trust_of(const FacetRays& facet, const SampleTile& tile, const SampleGrid& grid) {
+    const TileFrame frame = tile_frame(tile, grid);
+    const Vec2 from = frame.centre - facet.screen;
+    const double x = std::fabs(from.x) + frame.half.x + 1, y = std::fabs(from.y) + frame.half.y + 1;
+    const std::array<double, 3>&w = facet.rays.weight, &v = facet.speed;
+    const double terms = std::fabs(w[0]) + x * std::fabs(w[1]) + y * std::fabs(w[2]);
+    return {1.001 * kLeastDeterminant * (v[0] + x * v[1] + y * v[2]),
+            tile.low >= 1.001 * kLeastWeightShare * terms};
+}
+
+/// `good`: lanes in which place() gives this value. It may give one in others too.
 struct PlacedLanes {
     Double t, first, second, third;  // weights of the sorted corners
     hn::Mask<DoubleTag> good;
 };
 
-HWY_INLINE PlacedLanes place_lanes(const FormLanes& f, const SampleLanes& s) {
-    const Double one = hn::Set(kDouble, 1.0), zero = hn::Zero(kDouble);
+HWY_INLINE PlacedLanes place_lanes(const FormLanes& f, const SampleLanes& s, const TileTrust& trust) {
+    const Double one = hn::Set(kDouble, 1.0);
     const Double along = linear_at(f.along[0], f.along[1], f.along[2], s.x, s.y);
     const Double scale = hn::Div(one, hn::Mul(s.weight, along));
     PlacedLanes p;
     p.t = hn::Mul(linear_at(f.above[0], f.above[1], f.above[2], s.x, s.y), hn::Mul(s.weight, scale));
     p.second = hn::Mul(quadratic_at(f.second, s.x, s.y), scale);
     p.third = hn::Mul(quadratic_at(f.third, s.x, s.y), scale);
-    p.first = hn::Max(zero, hn::Sub(hn::Sub(one, p.second), p.third));
-    const Double least_along = hn::Mul(hn::Set(kDouble, kLeastDeterminant), hn::Mul(s.speed, f.size));
+    p.first = hn::Sub(hn::Sub(one, p.second), p.third);
+    // More than its rounding, so that second + third is at most 1.
+    const Double inside = hn::Set(kDouble, 0x1p-50);
     const Double infinity = hn::Set(kDouble, std::numeric_limits<double>::infinity());
-    const auto inside =
-        hn::And(hn::Ge(hn::Min(p.second, p.third), zero), hn::Le(hn::Add(p.second, p.third), one));
-    const auto sound = hn::And(hn::Ge(hn::Abs(along), least_along), hn::Lt(hn::Abs(p.t), infinity));
-    p.good = hn::And(s.good, hn::And(sound, inside));
+    const auto sound = hn::And(hn::Gt(hn::Abs(along), hn::Mul(hn::Set(kDouble, trust.least_along), f.size)),
+                               hn::Lt(hn::Abs(p.t), infinity));
+    p.good = hn::And(
+        sound, hn::And(hn::Gt(p.first, inside), hn::And(hn::Gt(p.second, inside), hn::Gt(p.third, inside))));
     return p;
 }
 

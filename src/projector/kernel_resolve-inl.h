@@ -29,19 +29,22 @@ HWY_INLINE void set_lane(Placed& placed, std::size_t lane, const Hit& hit) {
     placed.third[lane] = hit.barycentric.y;
 }
 
-HWY_INLINE void store_floats(const double* from, float* to) {
+/// Past the caches: nobody here reads it again.
+HWY_INLINE void stream_floats(const double* from, float* to) {
     const hn::Rebind<float, DoubleTag> some;
+    alignas(64) float floats[kLanes];
     for (std::size_t at = 0; at < kLanes; at += kDoubles)
-        hn::Store(hn::DemoteTo(some, hn::Load(kDouble, from + at)), some, to + at);
+        hn::Store(hn::DemoteTo(some, hn::Load(kDouble, from + at)), some, floats + at);
+    stream(load(floats), to);
 }
 
 HWY_NOINLINE void write_hits(const KernelScene& scene, std::uint32_t vector, const Placed& placed) {
     if (!scene.vector_hits.empty()) {
         VectorHits& out = scene.vector_hits[vector];
-        std::memcpy(out.triangle, placed.triangle, sizeof out.triangle);
-        store_floats(placed.t, out.t);
-        store_floats(placed.second, out.u);
-        store_floats(placed.third, out.v);
+        stream_words(load_words(placed.triangle), out.triangle);
+        stream_floats(placed.t, out.t);
+        stream_floats(placed.second, out.u);
+        stream_floats(placed.third, out.v);
     }
     if (scene.hits.empty()) return;
     const VectorSamples& samples = scene.tiles->samples[vector];
@@ -65,13 +68,14 @@ HWY_NOINLINE Hit decide_sure(const KernelScene& scene, const FacetRays& facet, I
     return scene_hit(*scene.data, triangle, *hit);
 }
 
-HWY_NOINLINE void fill_forms(const KernelScene& scene, const FacetRays& facet, Id triangle, CachedForms& to) {
-    to.forms = place_forms(facet, corners_of(*scene.data, triangle, facet.centre));
+HWY_NOINLINE void fill_forms(const KernelScene& scene, const Vec3& centre, Id triangle,
+                             const FacetCoefficients& facet, CachedForms& to) {
+    const std::array<Vec3, 3> corner = corners_of(*scene.data, triangle, centre);
+    make_forms(facet, corner.data(), to);
     to.triangle = scene.data->triangle[triangle];
-    for (std::uint8_t k = 0; k < 3; ++k) {
-        if (scene.data->was_corner[triangle][k] == 1) to.second = k;
-        if (scene.data->was_corner[triangle][k] == 2) to.third = k;
-    }
+    const std::array<std::uint8_t, 3>& was = scene.data->was_corner[triangle];
+    to.second_corner = was[0] == 1 ? 0 : was[1] == 1 ? 1 : 2;
+    to.third_corner = was[0] == 2 ? 0 : was[1] == 2 ? 1 : 2;
 }
 
 HWY_INLINE bool has_forms(const FormCache& cache, const SampleTile& tile, Id triangle) {
@@ -83,10 +87,11 @@ HWY_INLINE const CachedForms& cached_forms(const KernelScene& scene, const Sampl
     if (cache.rays != tile.rays) {
         cache.triangle.fill(kNone);
         cache.rays = tile.rays;
+        set_facet(scene.tiles->rays[tile.rays], cache.facet);
     }
     const std::size_t at = triangle % kCachedForms;
     if (cache.triangle[at] != triangle) {
-        fill_forms(scene, scene.tiles->rays[tile.rays], triangle, cache.forms[at]);
+        fill_forms(scene, scene.tiles->rays[tile.rays].centre, triangle, cache.facet, cache.forms[at]);
         cache.triangle[at] = triangle;
     }
     return cache.forms[at];
@@ -109,17 +114,17 @@ HWY_INLINE hn::Mask<DoubleTag> mask_of_doubles(std::uint32_t lanes) {
 
 /// Lanes of a vector that see one triangle. Returns those where place() says nothing.
 HWY_INLINE std::uint32_t place_on_one(const CachedForms& cached, const SampleLanes* samples,
-                                      std::uint32_t lanes, Placed& placed) {
-    const FormLanes forms = broadcast(cached.forms);
+                                      std::uint32_t lanes, const TileTrust& trust, Placed& placed) {
+    const FormLanes forms = broadcast(cached);
     std::uint32_t bad = 0;
     for (std::size_t at = 0, i = 0; at < kLanes; at += kDoubles, ++i) {
         const std::uint32_t own = lanes >> at & first_lanes(kDoubles);
         if (!own) continue;
-        const PlacedLanes p = place_lanes(forms, samples[i]);
+        const PlacedLanes p = place_lanes(forms, samples[i], trust);
         const auto mask = mask_of_doubles(own);
         hn::BlendedStore(p.t, mask, kDouble, placed.t + at);
-        hn::BlendedStore(weight_of(p, cached.second), mask, kDouble, placed.second + at);
-        hn::BlendedStore(weight_of(p, cached.third), mask, kDouble, placed.third + at);
+        hn::BlendedStore(weight_of(p, cached.second_corner), mask, kDouble, placed.second + at);
+        hn::BlendedStore(weight_of(p, cached.third_corner), mask, kDouble, placed.third + at);
         bad |= (own & ~bits(p.good)) << at;
     }
     return bad;
@@ -128,7 +133,7 @@ HWY_INLINE std::uint32_t place_on_one(const CachedForms& cached, const SampleLan
 /// Lanes that see many triangles: each its own forms.
 HWY_NOINLINE std::uint32_t place_on_many(const KernelScene& scene, const FacetRays& facet,
                                          const SampleLanes* samples, const Id* triangle, std::uint32_t lanes,
-                                         Placed& placed) {
+                                         const TileTrust& trust, Placed& placed) {
     const PreparedScene::Data& data = *scene.data;
     std::uint32_t bad = 0;
     for (std::size_t at = 0, i = 0; at < kLanes; at += kDoubles, ++i) {
@@ -147,7 +152,7 @@ HWY_NOINLINE std::uint32_t place_on_many(const KernelScene& scene, const FacetRa
         for (int k = 0; k < 3; ++k)
             corner[k] = {hn::Load(kDouble, at_corner[k][0]), hn::Load(kDouble, at_corner[k][1]),
                          hn::Load(kDouble, at_corner[k][2])};
-        const PlacedLanes p = place_lanes(forms_in_lanes(facet, corner), samples[i]);
+        const PlacedLanes p = place_lanes(forms_in_lanes(facet, corner), samples[i], trust);
         HWY_ALIGN double weight[3][kDoubles], t[kDoubles];
         hn::Store(p.t, kDouble, t);
         hn::Store(p.first, kDouble, weight[0]);
@@ -170,16 +175,18 @@ HWY_NOINLINE std::uint32_t place_on_many(const KernelScene& scene, const FacetRa
 
 /// What the samples of a vector surely see.
 HWY_NOINLINE void place_sure_hits(const KernelScene& scene, const SampleTile& tile, std::uint32_t vector,
-                                  const Nearest& nearest, FormCache& cache, Placed& placed) {
-    constexpr int kSeveral = 3;  // measured: so many lanes that see one triangle are worth its own forms
+                                  const Nearest& nearest, const TileTrust& trust, FormCache& cache,
+                                  Placed& placed) {
+    constexpr int kSeveral = 4;  // measured: so many lanes that see one triangle are worth its own forms
     const FacetRays& facet = scene.tiles->rays[tile.rays];
     SampleLanes samples[kLanes / kDoubles];
     for (std::size_t at = 0, i = 0; at < kLanes; at += kDoubles, ++i)
         samples[i] = samples_of(*scene.grid, facet, tile, scene.tiles->vectors[vector], at);
 
     const Words triangles = load_words(nearest.triangle);
-    std::uint32_t left = kAllLanes & ~bits(same(triangles, set_word(kNone))), bad = 0;
-    if (left != kAllLanes) {
+    const std::uint32_t see = kAllLanes & ~bits(same(triangles, set_word(kNone)));
+    std::uint32_t left = see, bad = 0;
+    if (see != kAllLanes) {
         for (std::size_t k = 0; k < kLanes; ++k) set_lane(placed, k, Hit{});
     }
     std::uint32_t alone = 0;
@@ -194,11 +201,12 @@ HWY_NOINLINE void place_sure_hits(const KernelScene& scene, const SampleTile& ti
             const CachedForms& forms = cached_forms(scene, tile, triangle, cache);
             store_words(choose(see_it, set_word(forms.triangle), load_words(placed.triangle)),
                         placed.triangle);
-            bad |= place_on_one(forms, samples, own, placed);
+            bad |= place_on_one(forms, samples, own, trust, placed);
         }
         left &= ~own | 1u << first;
     }
-    if (alone) bad |= place_on_many(scene, facet, samples, nearest.triangle, alone, placed);
+    if (alone) bad |= place_on_many(scene, facet, samples, nearest.triangle, alone, trust, placed);
+    if (!trust.weight) bad = see;
     for (Each lane(bad); lane; ++lane)
         set_lane(
             placed, *lane,
@@ -241,11 +249,12 @@ HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
     for (std::uint32_t j = state.first_lane; j < state.first_lane + state.tiles; ++j) {
         const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
         const FacetRays& facet = scene.tiles->rays[tile.rays];
+        const TileTrust trust = trust_of(facet, tile, *scene.grid);
         Placed placed;
         for (std::uint32_t i = 0; i < tile.vectors; ++i) {
             const std::uint32_t vector = tile.first_vector + i, in_group = vector - state.first_vector;
             const Nearest& nearest = state.nearest[in_group];
-            place_sure_hits(scene, tile, vector, nearest, state.cache, placed);
+            place_sure_hits(scene, tile, vector, nearest, trust, state.cache, placed);
             while (next < doubts.size() && doubts[next].vector == in_group) {
                 std::size_t end = next;
                 while (end < doubts.size() && doubts[end].vector == in_group &&

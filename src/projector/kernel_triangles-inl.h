@@ -286,7 +286,7 @@ HWY_NOINLINE std::size_t list_pairs(const TileDrawing& drawing, const EdgeBounds
                 outside = outside | (highest < set(0.0f));
             }
             const std::uint32_t first = static_cast<std::uint32_t>((g * kLanes + z) * kLanes);
-            for (Each lane(lanes & ~bits(outside)); lane; ++lane) pairs[count++] = first + *lane;
+            count += list_lanes(without(of, outside), first, &pairs[count]);
         }
     }
     return count;

@@ -53,12 +53,7 @@ void put_triangle(PreparedScene::Data& data, const TriangleScene& scene, std::si
         const Vec3 &p = point[a], &q = point[b];
         return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
     });
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& p = point[corner[k]];
-        data.x[k][place] = p.x;
-        data.y[k][place] = p.y;
-        data.z[k][place] = p.z;
-    }
+    for (std::size_t k = 0; k < 3; ++k) data.corners[place][k] = point[corner[k]];
     data.was_corner[place] = corner;
 }
 
@@ -81,8 +76,7 @@ PreparedScene::PreparedScene(const TriangleScene& scene) : data_(std::make_uniqu
     const std::vector<Id> rank = tie_ranks(scene);
     data.rank.resize(count);
     data.was_corner.resize(count);
-    for (std::size_t k = 0; k < 3; ++k)
-        for (auto* values : {&data.x[k], &data.y[k], &data.z[k]}) values->resize(count);
+    data.corners.resize(count);
     parallel_for(count, kTogether, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             put_triangle(data, scene, i);

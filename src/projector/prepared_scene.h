@@ -1,4 +1,4 @@
-// A scene made ready for drawing: triangles in the order of a tree's leaves, as a structure of arrays.
+// A scene made ready for drawing: triangles in the order of a tree's leaves.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@ namespace trilens {
 /// triangles with the same corners give the same bits whatever their winding: coincident triangles tie
 /// exactly.
 struct PreparedScene::Data {
-    Bvh bvh;                                     // `order` is emptied: leaves index the arrays below
-    std::array<std::vector<double>, 3> x, y, z;  // by sorted corner
+    Bvh bvh;                                   // `order` is emptied: leaves index the arrays below
+    std::vector<std::array<Vec3, 3>> corners;  // sorted
     std::vector<std::array<std::uint8_t, 3>>
         was_corner;            // which corner of the scene's triangle a sorted one is
     std::vector<Id> triangle;  // index into the scene
@@ -27,9 +27,7 @@ struct PreparedScene::Data {
 
     std::size_t size() const { return triangle.size(); }
     /// The sorted corner k of triangle i, from `centre`.
-    Vec3 corner(std::size_t k, std::size_t i, const Vec3& centre) const {
-        return {x[k][i] - centre.x, y[k][i] - centre.y, z[k][i] - centre.z};
-    }
+    Vec3 corner(std::size_t k, std::size_t i, const Vec3& centre) const { return corners[i][k] - centre; }
 };
 
 /// A line's hit of triangle `index` of the data, in the terms of the scene's own triangle.

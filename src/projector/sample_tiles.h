@@ -64,7 +64,7 @@ inline constexpr std::uint16_t kNoSlot = 65535;
 struct TileParams {
     std::uint32_t group_samples = 1000;  // groups grow up to this
     std::uint32_t group_tiles = kLanes;
-    int tile_side = 48;  // samples
+    int tile_side = 96;  // samples
 };
 
 /// All samples that `owned` gives to facets with rays and an area on the screen.
