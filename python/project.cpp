@@ -64,7 +64,7 @@ py::object row_type(std::size_t steps) {
     step["offsets"] = py::make_tuple(offsetof(StepRow, optic), offsetof(StepRow, event));
     step["itemsize"] = sizeof(StepRow);
     names.append("steps");
-    formats.append(py::make_tuple(step, steps));
+    formats.append(py::make_tuple(step, py::make_tuple(steps)));
     offsets.append(sizeof(ImageRow));
     py::dict type;
     type["names"] = names;
