@@ -83,7 +83,7 @@ TEST_CASE("an unknown key is named with the nearest known one") {
           "room.json: /materials/1/volume/attenuationColour: unknown key 'attenuationColour' of a volume; "
           "did you mean 'attenuationColor'?");
     CHECK(error_of(replaced(kRoom, "\"spp\"", "\"a/b~c\"")) ==
-          "room.json: /film/a~1b~0c: unknown key 'a/b~c' of a film; known: width, height, spp");
+          "room.json: /film/a~1b~0c: unknown key 'a/b~c' of a film; known: width, height, spp, filter");
     CHECK(error_of(replaced(kRoom, "\"radius\": 1", "\"height\": 1")) ==
           "room.json: /meshes/1/primitive/height: 'height' is no key of a sphere");
 }
