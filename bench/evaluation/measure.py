@@ -31,13 +31,19 @@ def draw(method, scene, out, *options):
     return run([words[0], scene, *words[1:], *options, "-t", 1, "-o", out])
 
 
+LONG = 10  # seconds
+
+
 def timed(method, scene, out, *options, repeats=5):
-    """Seconds to prepare and draw: the median of `repeats`, after one that is not counted, and half the range."""
+    """Seconds to prepare and draw: the median of `repeats`, after one that is not counted, and half the range. What
+    takes long is drawn once."""
     seconds = []
     for _ in range(repeats + 1):
         answer = draw(method, scene, out, *options)
         seconds.append(answer["prepare_seconds"] + answer["draw_seconds"])
-    seconds = seconds[1:]
+        if seconds[0] > LONG:
+            break
+    seconds = seconds[1:] or seconds
     return {"seconds": statistics.median(seconds), "spread": (max(seconds) - min(seconds)) / 2,
             "facets": answer["facets"], "triangles": answer["triangles"]}
 

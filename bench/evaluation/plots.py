@@ -11,13 +11,14 @@ from measure import METHODS
 plt.rcParams.update({"svg.hashsalt": "trilens", "svg.fonttype": "none", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3})
 
 
-def lines(file, curves, title, x, y, log="xy"):
-    """Writes a plot of `curves`: name -> [(x, y)...]."""
+def lines(file, curves, title, x, y, log="xy", upright=None):
+    """Writes a plot of `curves`: name -> [(x, y)...] in their order; `upright`: (x, name) of a vertical line."""
     figure, plot = plt.subplots(figsize=(5.2, 3.6))
     for name, points in curves.items():
-        points = sorted(points)
         dashes = "--" if name in ("packets", "projector alone") else "-"
         plot.plot([p[0] for p in points], [p[1] for p in points], dashes, marker="o", markersize=3, label=name)
+    if upright:
+        plot.axvline(upright[0], color="black", linestyle=":", label=upright[1])
     plot.set(title=title, xlabel=x, ylabel=y)
     if "x" in log:
         plot.set_xscale("log", base=2)
@@ -52,9 +53,9 @@ def draw_all(folder, data):
     """Writes every plot and returns [(figure, file, caption)...]."""
     made = []
 
-    def plot(number, caption, curves, x, y, log="xy"):
+    def plot(number, caption, curves, x, y, log="xy", upright=None):
         file = folder / f"fig_{number.replace('.', '_')}.svg"
-        lines(file, curves, caption, x, y, log)
+        lines(file, curves, caption, x, y, log, upright)
         made.append((number, file.name, caption))
 
     seconds = "seconds"
@@ -86,9 +87,10 @@ def draw_all(folder, data):
     plot("8.16", "What clipping to the facet costs", by(clipped, "size", "triangles", "cost"), triangles, "time clipped / not", "x")
 
     engines = [row for row in data["error_against_time"] if row["n"]]
-    plot("error", "Mirror ball: what a smaller error costs",
+    plot("error", "Mirror ball, each line from n = 1 to 32",
          {name: [(row["seconds"], row["mean px"]) for row in engines if row["engine"] == name] for name in {row["engine"]: 0 for row in engines}},
-         seconds, "mean displacement [pixels]", "y")
+         seconds, "mean displacement [pixels]", "y",
+         next((row["seconds"], row["engine"]) for row in data["error_against_time"] if not row["n"]))
     return made
 
 

@@ -74,13 +74,13 @@ def projections(plan):
 
 
 def examples(plan):
-    """Time of example pictures (table 8.1): the figures' scenes and those of scenes/, all at their own film."""
+    """Time of example pictures (table 8.1): the figures' scenes and those of scenes/."""
     files = sorted((ROOT / "scenes/thesis").glob("*.json")) + sorted((ROOT / "scenes").glob("*.json"))
-    small = ["--size", "80x60"] if plan.repeats == 1 else []
+    across = plan.scene_size * 4 // 5
     for file in files[:2] if plan.repeats == 1 else files:
         row = {"scene": str(file.relative_to(ROOT / "scenes"))}
         for method in METHODS:
-            measured = timed(method, file, plan.out, *small, repeats=min(3, plan.repeats))
+            measured = timed(method, file, plan.out, "--size", f"{across}x{across * 3 // 4}", "--spp", 1, repeats=min(3, plan.repeats))
             row |= {method: measured["seconds"], "facets": measured["facets"], "triangles": measured["triangles"]}
         yield row
 
