@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "vector/lattice.h"
+#include "vector/sample_lattice.h"
 
 namespace trilens {
 namespace {
@@ -112,7 +112,7 @@ class FoldFinder {
     std::vector<FoldCurve> walk();
 
     const FoldView& view_;
-    Lattice lattice_;
+    SampleLattice lattice_;
     std::vector<RaySlope> slope_;  // per corner of the mesh
     std::vector<Shown> at_sample_;
     std::map<Crossing, Found> crossings_;

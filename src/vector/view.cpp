@@ -11,7 +11,7 @@
 #include "trilinear/conic_arc.h"
 #include "trilinear/outline.h"
 #include "trilinear/view_plane.h"
-#include "vector/lattice.h"
+#include "vector/sample_lattice.h"
 
 namespace trilens {
 namespace {
@@ -70,7 +70,7 @@ std::vector<Id> FacetPen::candidates(std::span<const Id> samples) const {
         return found;
     }
     // What is seen at the facet's samples and beside them, and the edges around it.
-    const Lattice lattice{view_.grid};
+    const SampleLattice lattice{view_.grid};
     std::vector<Id> seen;
     for (const Id s : samples) {
         const int column = lattice.column(s), row = lattice.row(s);
@@ -181,7 +181,7 @@ bool FacetPen::unhidden(const Edge& edge, const Vec3& weights, const Vec2& at) c
     const SampleGrid& grid = view_.grid;
     const int column = static_cast<int>(std::floor((at.x - grid.x0) * grid.side - 0.5));
     const int row = static_cast<int>(std::floor((at.y - grid.y0) * grid.side - 0.5));
-    const Lattice lattice{grid};
+    const SampleLattice lattice{grid};
     for (int k = 0; k < 4; ++k) {
         if (!lattice.holds(column + k % 2, row + k / 2)) continue;
         const std::size_t s = lattice.sample(column + k % 2, row + k / 2);

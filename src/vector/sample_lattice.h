@@ -7,7 +7,7 @@
 
 namespace trilens {
 
-struct Lattice {
+struct SampleLattice {
     const SampleGrid& grid;
 
     int columns() const { return grid.width() * grid.side; }
