@@ -5,6 +5,7 @@ find_package(tinyobjloader REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(OpenEXR 3.1 REQUIRED CONFIG)
 find_package(Libdeflate REQUIRED MODULE)
+find_package(PNG REQUIRED)
 find_package(OpenImageIO REQUIRED CONFIG)
 find_package(TinyGLTF REQUIRED CONFIG)
 

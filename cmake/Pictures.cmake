@@ -1,4 +1,4 @@
-# The room of pictures as a library that the program loads when it meets the first picture other than OpenEXR.
+# The room of pictures as a library that the program loads when it meets the first picture other than OpenEXR and ordinary PNG.
 set(pictures_name trilens_pictures-${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 target_compile_definitions(trilens_image PRIVATE
   TRILENS_PICTURES_FILE="${CMAKE_SHARED_MODULE_PREFIX}${pictures_name}${CMAKE_SHARED_MODULE_SUFFIX}"

@@ -10,14 +10,11 @@
 #include "image/exr_file.h"
 #include "image/image_io.h"
 #include "image/picture_library.h"
+#include "image/png_file.h"
+#include "image/srgb.h"
 
 namespace trilens {
 namespace {
-
-// IEC 61966-2-1 (sRGB).
-double srgb_from_linear(double v) {
-    return v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-}
 
 std::uint8_t stored_from_linear(float value) {
     if (!(value > 0)) return 0;
@@ -33,12 +30,6 @@ const PictureLibrary& library_to_read(const std::string& name) {
     throw InputError(name, "", kNeedsLibrary + reason);
 }
 
-const PictureLibrary& library_to_write(const std::string& name) {
-    std::string reason;
-    if (const PictureLibrary* library = picture_library(reason)) return *library;
-    throw OutputError(name, kNeedsLibrary + reason);
-}
-
 std::vector<unsigned char> encode_named_png(const std::string& name, int width, int height,
                                             std::span<const float> rgb) {
     TRILENS_CHECK(width > 0 && height > 0, "a picture has pixels");
@@ -48,7 +39,7 @@ std::vector<unsigned char> encode_named_png(const std::string& name, int width, 
     parallel_for(rgb.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) stored[i] = stored_from_linear(rgb[i]);
     });
-    return library_to_write(name).encode_png(name, width, height, stored);
+    return encode_stored_png(name, width, height, stored);
 }
 
 bool is_exr(std::span<const unsigned char> bytes) {
@@ -111,6 +102,7 @@ std::shared_ptr<const Texture> exr_texture(ExrFile& in, const std::string& name)
 }  // namespace
 
 std::shared_ptr<const Texture> read_texture(const std::string& file) {
+    if (std::shared_ptr<const Texture> texture = read_ordinary_png(file)) return texture;
     if (!is_exr_file(file)) return library_to_read(file).read(file);
     ExrFile in(file);
     // Luminance and chroma at different rates are the other library's work.
@@ -120,6 +112,7 @@ std::shared_ptr<const Texture> read_texture(const std::string& file) {
 
 std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> encoded,
                                               const std::string& name) {
+    if (std::shared_ptr<const Texture> texture = decode_ordinary_png(encoded)) return texture;
     if (!is_exr(encoded)) return library_to_read(name).decode(encoded, name);
     ExrFile in(encoded, name);
     if (!in.is_deep(0) && !in.is_sampled_everywhere(0)) return library_to_read(name).decode(encoded, name);

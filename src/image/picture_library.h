@@ -1,5 +1,5 @@
-// The library of pictures other than OpenEXR, which is loaded when the first such picture is met: OpenImageIO
-// brings hundreds of libraries with it, and most commands need none of them.
+// The library of pictures other than OpenEXR and ordinary PNG, which is loaded when the first such picture is
+// met: OpenImageIO brings hundreds of libraries with it, and most commands need none of them.
 #pragma once
 
 #include <memory>
@@ -17,9 +17,6 @@ struct PictureLibrary {
     std::shared_ptr<const Texture> (*read)(const std::string& file) = nullptr;
     std::shared_ptr<const Texture> (*decode)(std::span<const unsigned char> encoded,
                                              const std::string& name) = nullptr;
-    /// An 8-bit PNG of the values as they are stored, three per pixel. `name`: for messages.
-    std::vector<unsigned char> (*encode_png)(const std::string& name, int width, int height,
-                                             std::span<const unsigned char> stored) = nullptr;
     void (*set_threads)(int threads) = nullptr;
 };
 

@@ -18,6 +18,7 @@
 #include "image/library_reason.h"
 #include "image/library_talk.h"
 #include "image/picture_library.h"
+#include "image/srgb.h"
 
 namespace trilens {
 namespace {
@@ -25,11 +26,6 @@ namespace {
 /// No usual codec shrinks a picture that much; a header that claims more is damaged or hostile.
 constexpr double kLargestCompression = 4096;
 constexpr double kSmallHeader = 65536;
-
-// IEC 61966-2-1 (sRGB).
-double linear_from_srgb(double v) {
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
 
 /// 8 and 16 bit values as fractions of one are all multiples of 1/65535, so one table serves both.
 float linear_from_stored(float fraction) {
@@ -136,19 +132,6 @@ bool is_png_file(const std::string& file) {
     return in && name_for_format(start) == "memory.png";
 }
 
-std::vector<unsigned char> encode_png(const std::string& name, int width, int height,
-                                      std::span<const unsigned char> stored) {
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput proxy(bytes);
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeUInt8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    const auto out = OIIO::ImageOutput::create("png", &proxy);
-    if (!out) throw OutputError(name, "OpenImageIO cannot write PNG: " + library_reason(OIIO::geterror()));
-    if (!(out->open("image.png", spec) && out->write_image(OIIO::TypeUInt8, stored.data()) && out->close()))
-        throw OutputError(name, "cannot be encoded: " + library_reason(out->geterror()));
-    return bytes;
-}
-
 std::shared_ptr<const Texture> read(const std::string& file) {
     const std::size_t size = readable_size(file);
     const OIIO::ImageSpec hints = reading_hints();
@@ -184,6 +167,6 @@ void set_threads(int threads) {
 
 const trilens::PictureLibrary* trilens_picture_library() {
     static const trilens::PictureLibrary library{trilens::kVersion, trilens::read, trilens::decode,
-                                                 trilens::encode_png, trilens::set_threads};
+                                                 trilens::set_threads};
     return &library;
 }

@@ -87,6 +87,7 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"Imf", {"src/image/exr_"}},
     {"Iex", {"src/image/exr_"}},
     {"libdeflate.h", {"src/image/exr_chunk.cpp"}},
+    {"png.h", {"src/image/png_file.cpp"}},
     {"embree", {"src/intersect/"}},
     {"CLI/", {"src/terminal/parse.cpp"}},
     {"fmt/", {"src/base/format.h", "src/terminal/format.h"}},
