@@ -19,7 +19,8 @@ Json fields(const BenchResult& bench) {
              {{"prepare_ms", r.prepare_ms},
               {"samples_ms", r.samples_ms},
               {"draw_ms", r.draw_ms},
-              {"written_ms", r.written_ms}}},
+              {"written_ms", r.written_ms},
+              {"whole_ms", r.whole_ms}}},
             {"embree",
              {{"build_ms", r.build_ms},
               {"rays_ms", r.rays_ms},
@@ -61,6 +62,7 @@ std::string text(const BenchResult& bench) {
         fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>7.2f}  ({:.2f} to {:.2f})\n", "hits left in that order",
                     r.draw_ms, r.trace_ms, r.ratio.draw, r.slowest_ratio, r.fastest_ratio);
     text += line("hits written per sample", r.written_ms, r.trace_written_ms);
+    text += line("samples, rays and hits per sample", r.whole_ms, r.rays_ms + r.trace_written_ms);
     text += fmt::format("with both trees {:.2f}, with samples, rays and trees {:.2f} times Embree's speed\n",
                         r.ratio.with_build, r.ratio.whole);
     text += fmt::format(

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "intersect/packet_tracer.h"
-#include "projector/kernel.h"
+#include "projector/draw_options.h"
 #include "projector/prepared_scene.h"
 #include "projector/sample_tiles.h"
 
@@ -113,7 +113,7 @@ struct Sides {
 };
 
 struct Times {
-    std::vector<double> draw, written, trace, trace_written, ratio, ratio_written;
+    std::vector<double> draw, written, whole, trace, trace_written, ratio, ratio_written;
 };
 
 void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
@@ -126,6 +126,9 @@ void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
         for (View& v : sides.views)
             draw_tiles({&data, &data.leaves, &v.mesh, &grid, &v.tiles, v.hits, {}}, {});
     };
+    const auto draw_whole = [&] {
+        for (View& v : sides.views) trilens::draw(sides.prepared, v.mesh, v.owned, grid, v.hits);
+    };
     const auto trace = [&] {
         for (View& v : sides.views) sides.tracer.trace_in_order(v.packets, v.packet_hits);
     };
@@ -137,6 +140,7 @@ void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
                  t2 = milliseconds(trace);
     const double v1 = milliseconds(trace_written), w1 = milliseconds(draw_written),
                  w2 = milliseconds(draw_written), v2 = milliseconds(trace_written);
+    times.whole.push_back(milliseconds(draw_whole));
     times.trace.insert(times.trace.end(), {t1, t2});
     times.draw.insert(times.draw.end(), {d1, d2});
     times.trace_written.insert(times.trace_written.end(), {v1, v2});
@@ -185,13 +189,14 @@ RaceResult race(const RaceCourse& course, const RaceParams& params) {
     for (int i = 0; i < params.repeats; ++i) run_round(course.grid, sides, times);
     result.draw_ms = median(times.draw);
     result.written_ms = median(times.written);
+    result.whole_ms = median(times.whole);
     result.trace_ms = median(times.trace);
     result.trace_written_ms = median(times.trace_written);
     result.ratio.draw = median(times.ratio);
     result.ratio.written = median(times.ratio_written);
     result.ratio.with_build = (result.trace_ms + result.build_ms) / (result.draw_ms + result.prepare_ms);
-    result.ratio.whole = (result.trace_written_ms + result.build_ms + result.rays_ms) /
-                         (result.written_ms + result.prepare_ms + result.samples_ms);
+    result.ratio.whole =
+        (result.trace_written_ms + result.build_ms + result.rays_ms) / (result.whole_ms + result.prepare_ms);
     result.slowest_ratio = *std::min_element(times.ratio.begin(), times.ratio.end());
     result.fastest_ratio = *std::max_element(times.ratio.begin(), times.ratio.end());
     for (const View& view : sides.views) {

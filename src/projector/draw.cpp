@@ -46,18 +46,35 @@ KernelState& own_state() {
     thread_local const std::unique_ptr<KernelState> state = std::make_unique<KernelState>();
     return *state;
 }
+SampleTiles& own_tiles() {
+    thread_local SampleTiles tiles;
+    return tiles;
+}
+
+void clear(SampleTiles& tiles) {
+    tiles.rays.clear();
+    tiles.tiles.clear();
+    tiles.groups.clear();
+    tiles.batches.clear();
+    tiles.vectors.clear();
+    tiles.samples.clear();
+    tiles.boxes.clear();
+    tiles.slot.clear();
+}
+
+void draw_one_batch(const KernelScene& scene, std::size_t batch, const KernelOptions& options) {
+    const std::uint32_t left = draw_batch(scene, batch, options, own_state());
+    const TileGroup& groups = scene.tiles->batches[batch];
+    const std::uint32_t first_tile = scene.tiles->groups[groups.first].first;
+    for (std::uint32_t j = 0; j < kLanes; ++j)
+        if (left >> j & 1) draw_tile_in_blocks(scene, scene.tiles->tiles[first_tile + j]);
+}
 
 }  // namespace
 
 void draw_tiles(const KernelScene& scene, const KernelOptions& options) {
     parallel_for(scene.tiles->batches.size(), 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t b = first; b < last; ++b) {
-            const std::uint32_t left = draw_batch(scene, b, options, own_state());
-            const TileGroup& groups = scene.tiles->batches[b];
-            const std::uint32_t first_tile = scene.tiles->groups[groups.first].first;
-            for (std::uint32_t j = 0; j < kLanes; ++j)
-                if (left >> j & 1) draw_tile_in_blocks(scene, scene.tiles->tiles[first_tile + j]);
-        }
+        for (std::size_t b = first; b < last; ++b) draw_one_batch(scene, b, options);
     });
 }
 
@@ -68,8 +85,18 @@ void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& o
                   "the samples must be grouped by the mesh's facets");
     if (!options.vectors || !options.cull)
         return draw_in_blocks(scene, mesh, owned, grid, hits, options.cull);
-    const SampleTiles tiles = make_sample_tiles(mesh, owned, grid, options.tiles);
-    draw_tiles({&scene.data(), &scene.data().leaves, &mesh, &grid, &tiles, hits, {}}, options.kernel);
+    // A batch's vectors are made, drawn and forgotten while they are in cache.
+    const TilePlan plan = plan_tiles(mesh, owned, grid, options.tiles);
+    parallel_for(plan.batches.size(), 1, [&](std::size_t first, std::size_t last) {
+        TileMaker maker(grid);
+        SampleTiles& tiles = own_tiles();
+        for (std::size_t b = first; b < last; ++b) {
+            clear(tiles);
+            maker.add_batch(plan, b, tiles);
+            draw_one_batch({&scene.data(), &scene.data().leaves, &mesh, &grid, &tiles, hits, {}}, 0,
+                           options.kernel);
+        }
+    });
 }
 
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/facet_samples.h"
@@ -10,6 +11,7 @@
 #include "base/sample_grid.h"
 #include "projector/facet_rays.h"
 #include "projector/leaf_tree.h"
+#include "projector/sample_lattice.h"
 
 namespace trilens {
 
@@ -49,7 +51,7 @@ struct TileGroup {
 };
 
 struct SampleTiles {
-    std::vector<FacetRays> rays;  // of the facets that have tiles
+    std::vector<FacetRays> rays;  // of the facets that have tiles, some several times
     std::vector<SampleTile> tiles;
     std::vector<TileGroup> groups;   // of all tiles, in order
     std::vector<TileGroup> batches;  // of groups: consecutive ones with at most kLanes tiles in all
@@ -67,7 +69,50 @@ struct TileParams {
     int tile_side = 96;  // samples
 };
 
-/// All samples that `owned` gives to facets with rays and an area on the screen.
+inline constexpr int kLargestTile = 240;  // whose slots fit 16 bits
+
+/// A tile before its vectors are made: the samples, ascending, and what they span.
+struct RoughTile {
+    FacetOnScreen facet;
+    std::span<const Id> samples;
+    LatticeExtent extent;
+    bool whole_facet = false;
+};
+
+/// What must be known of all samples before any is drawn. Refers to the mesh and its samples.
+struct TilePlan {
+    std::vector<RoughTile> tiles;            // in the groups' order
+    std::vector<TileGroup> groups, batches;  // as in SampleTiles
+    std::vector<std::vector<Id>> binned;     // what tiles of facets in several tiles refer to
+};
+
+/// Of all samples that `owned` gives to facets with rays and an area on the screen.
+TilePlan plan_tiles(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                    const TileParams& params);
+
+/// Makes the tiles of one batch after the other, with tables of its own that are kept in between.
+class TileMaker {
+  public:
+    explicit TileMaker(const SampleGrid& grid) : grid_(&grid) {}
+
+    /// Appends the plan's batch to `tiles`.
+    void add_batch(const TilePlan& plan, std::size_t batch, SampleTiles& tiles);
+
+  private:
+    void add_tile(const RoughTile& rough, SampleTiles& tiles);
+    void place_samples(const RoughTile& rough, SampleTile& tile);
+    void sort_by_bands(const SampleTile& tile);
+    void add_vector(const SampleTile& tile, std::size_t first, std::size_t count, SampleTiles& tiles);
+
+    const SampleGrid* grid_;
+    std::vector<Id> cells_;  // samples by band, column and row
+    std::vector<std::uint32_t> band_ends_;
+    std::vector<int> first_column_, last_column_;  // by row of the tile
+    std::vector<std::int32_t> column_, row_;       // in the order of vectors
+    std::vector<Id> sample_;                       // likewise
+};
+
+/// The plan's tiles, all at once.
 SampleTiles make_sample_tiles(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                               const TileParams& params);
 
