@@ -11,8 +11,9 @@
 namespace trilens {
 namespace {
 
-/// Samples that are held at once; bounds the memory of a frame.
-constexpr std::size_t kBandSamples = 1u << 18;
+// Samples that are held at once: what stays in cache (measured), and what bounds the memory of a frame.
+constexpr std::size_t kBandSamples = 1u << 16, kMostBandSamples = 1u << 18;
+constexpr std::size_t kBlockRows = 16;  // of a block of the file, one thread's work
 
 /// Whether a path that the scene asks for has no ray at this sample, and not because all light is reflected.
 bool lacks_ray(const World& world, const SampleViews& views, const SampleView& view) {
@@ -90,11 +91,13 @@ class FilteredSamples {
     std::vector<SampleColour> colours_;
 };
 
-/// How many rows of pixels are drawn together: whole blocks of sixteen, as files keep them, where they are
-/// many.
+/// How many rows of pixels are drawn together: whole blocks where they are many, one for each thread at
+/// least.
 int band_rows(std::size_t samples_per_row) {
-    const int rows = static_cast<int>(std::max<std::size_t>(1, kBandSamples / samples_per_row));
-    return rows > 16 ? rows / 16 * 16 : rows;
+    const std::size_t wanted =
+        std::max(kBandSamples / samples_per_row, kBlockRows * static_cast<std::size_t>(thread_count()));
+    const std::size_t rows = std::max<std::size_t>(1, std::min(wanted, kMostBandSamples / samples_per_row));
+    return static_cast<int>(rows > kBlockRows ? rows / kBlockRows * kBlockRows : rows);
 }
 
 Image empty_image(const World& world, const LayerRequest& request) {
