@@ -1,6 +1,7 @@
 // The projector against Embree's packets over workloads, numbers of triangles and facets, films, threads and
 // instruction sets: one line each, and all of them as CSV.
-// Use: bench_race [KEY=VALUE,VALUE...]... with the keys of kKeys below; bench/tables.py draws the CSV.
+// Use: bench_race [KEY=VALUE,VALUE...]... with the keys of kKeys below (isa=all: every instruction set of
+// this machine); bench/tables.py draws the CSV.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include "base/rasterize.h"
 #include "bench/measure.h"
 #include "intersect/tracer.h"
+#include "projector/kernel.h"
 #include "workloads.h"
 
 namespace {
@@ -74,6 +76,7 @@ void print(const Cell& c, std::FILE* csv) {
 }
 
 int run(const std::map<std::string, Values>& chosen) {
+    const Values sets = chosen.at("isa").front() == "all" ? kernel_instruction_sets() : chosen.at("isa");
     const std::string file = chosen.at("csv").front();
     std::FILE* csv = file.empty() ? nullptr : std::fopen(file.c_str(), "w");
     if (!file.empty() && !csv) throw std::runtime_error("cannot write " + file);
@@ -102,7 +105,7 @@ int run(const std::map<std::string, Values>& chosen) {
                         const trilens_bench::MirrorSphere mirror = trilens_bench::mirror_sphere(
                             std::atoi(n.c_str()), std::atoi(size[0].c_str()), std::atoi(size.back().c_str()));
                         const FacetSamples owned = rasterize_facets(mirror.mesh, mirror.grid);
-                        for (const std::string& isa : chosen.at("isa")) {
+                        for (const std::string& isa : sets) {
                             const RaceParams params{std::atoi(chosen.at("repeats").front().c_str()), isa};
                             const Cell cell{name, film, isa, std::atoi(n.c_str()),
                                             race({scene, {{&mirror.mesh, &owned}}, mirror.grid}, params)};

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Draws what bench_race measured: python3 bench/tables.py FILE.csv FOLDER
+"""Draws what bench_race measured: python3 bench/tables.py FILE.csv... FOLDER
 
-Writes FOLDER/table.md (today beside the aim) and plots of the ratio over triangles, one line per workload, n,
-film, threads and instruction set.
+Writes FOLDER/table.md (today beside the aim) and plots of the ratio over triangles, over n, and over the film,
+one line per combination of the others.
 """
 import csv
 import pathlib
@@ -39,40 +39,63 @@ def table(rows):
     return "\n".join(lines) + "\n"
 
 
-def plot(rows, column, title, file):
+AXES = {"triangles": "triangles of the scene", "n": "n: facets along an edge of the sphere's six faces",
+        "film": "pixels of the film"}
+OTHERS = {"workload": "{}", "triangles": "{} triangles", "n": "n = {}", "film": "{}", "threads": "{} threads",
+          "isa": "{}"}
+
+
+def number(row, axis):
+    if axis == "film":
+        width, height = row["film"].split("x")
+        return int(width) * int(height)
+    return int(row[axis])
+
+
+def plot(rows, axis, column, file):
+    """Lines with three values of the axis or more; nothing, and no file, where there is none."""
     lines = {}
     for r in rows:
-        key = f'{r["workload"]}, n = {r["n"]}, {r["film"]}, {r["threads"]} thread, {r["isa"]}'
-        lines.setdefault(key, []).append((int(r["triangles"]), float(r[column])))
+        key = ", ".join(text.format(r[name]) for name, text in OTHERS.items() if name != axis)
+        lines.setdefault(key, {})[number(r, axis)] = float(r[column])
+    lines = {key: points for key, points in lines.items() if len(points) >= 3}
+    if not lines:
+        return
     figure, axes = plt.subplots(figsize=(8, 5))
     for key, points in sorted(lines.items()):
-        axes.plot(*zip(*sorted(points)), marker="o", label=key)
+        axes.plot(*zip(*sorted(points.items())), marker="o", label=key)
     axes.axhline(1, color="grey", linewidth=0.8)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlabel("triangles of the scene")
+    axes.set_xlabel(AXES[axis])
     axes.set_ylabel("Embree's time / projector's time")
-    axes.set_title(title)
-    axes.legend(fontsize=7)
+    axes.set_title(TITLES[column])
+    axes.legend(fontsize=6)
     axes.grid(True, which="both", alpha=0.3)
     figure.tight_layout()
     figure.savefig(file)
     plt.close(figure)
 
 
+TITLES = {"ratio_draw": "Hits left in order, rays and samples made beforehand",
+          "ratio_written": "Hits written per sample", "ratio_whole": "With trees, rays and samples"}
+
+
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) < 3:
         sys.exit(__doc__)
-    with open(sys.argv[1], newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = []
+    for name in sys.argv[1:-1]:
+        with open(name, newline="") as file:
+            rows += list(csv.DictReader(file))
     if not rows:
-        sys.exit(f"{sys.argv[1]} holds no measurements")
-    folder = pathlib.Path(sys.argv[2])
+        sys.exit("no measurements")
+    folder = pathlib.Path(sys.argv[-1])
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "table.md").write_text(table(rows))
-    plot(rows, "ratio_draw", "Hits left in order, rays and samples made beforehand", folder / "draw.svg")
-    plot(rows, "ratio_written", "Hits written per sample", folder / "written.svg")
-    plot(rows, "ratio_whole", "With trees, rays and samples", folder / "whole.svg")
+    for column in TITLES:
+        for axis in AXES:
+            plot(rows, axis, column, folder / f"{column.removeprefix('ratio_')}-over-{axis}.svg")
 
 
 if __name__ == "__main__":
