@@ -69,6 +69,9 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
         throw UsageError("--pixel explains on standard output, where -o - writes the image: give -o a name");
     check_options(options, format, engine);
     PictureRequest request = picture_request(options, engine);
+    // A .png shows the beauty alone; the count of regions in a JSON answer needs the ids.
+    const bool is_beauty = format == "png" || format == "apng";
+    if (is_beauty && request.layers.layers.empty() && !console.wants_json()) request.layers.layers = {"Z"};
     if (options.frames.asks()) return draw_frames(options, format, request, console);
     const Renderer renderer = load_renderer(options.scene, console);
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);

@@ -1,4 +1,5 @@
 // Textures come out linear, PNGs come out sRGB.
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -89,6 +90,29 @@ TEST_CASE("every 8-bit value survives reading and writing", "[image]") {
     const auto first = decode_texture(encode_png(16, 16, rgb), "first");
     for (std::size_t i = 0; i < rgb.size(); ++i) CHECK(first->rgb[i] == Approx(rgb[i]).epsilon(1e-6));
     CHECK(encode_png(16, 16, first->rgb) == encode_png(16, 16, rgb));
+}
+
+TEST_CASE("every value is stored as the nearest step of sRGB", "[image]") {
+    // Every 9973rd float of (0, 1], and those next to where two steps meet.
+    std::vector<float> values;
+    for (std::uint32_t bits = 1; bits <= std::bit_cast<std::uint32_t>(1.0f); bits += 9973)
+        values.push_back(std::bit_cast<float>(bits));
+    for (int step = 0; step < 255; ++step) {
+        float at = static_cast<float>(linear_from_srgb((step + 0.5) / 255));
+        for (int k = 0; k < 4; ++k) at = std::nextafter(at, 0.0f);
+        for (int k = 0; k < 8; ++k) values.push_back(at), at = std::nextafter(at, 1.0f);
+    }
+    while (values.size() % 3 != 0) values.push_back(0);
+    const int pixels = static_cast<int>(values.size() / 3);
+    const auto back = decode_texture(encode_png(pixels, 1, values), "steps");
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double v = static_cast<double>(values[i]);
+        const double srgb = v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+        wrong += back->rgb[i] != static_cast<float>(linear_from_srgb(std::lround(255 * srgb) / 255.0));
+    }
+    CHECK(values.size() > 100000);
+    CHECK(wrong == 0);
 }
 
 TEST_CASE("values outside 0..1 and NaN have a defined colour", "[image]") {
