@@ -76,66 +76,55 @@ HWY_INLINE void stream_words(const Words& v, std::uint32_t* to) {
     TRILENS_EACH_PART hn::Stream(v.part[i], kWord, to + i * kPart);
 }
 
-#define TRILENS_LANES_OPERATION(name, Name)                           \
-    HWY_INLINE Floats name(const Floats& a, const Floats& b) {        \
-        Floats r;                                                     \
+#define TRILENS_LANES_OPERATION(Result, name, Name, Argument)         \
+    HWY_INLINE Result name(const Argument& a, const Argument& b) {    \
+        Result r;                                                     \
         TRILENS_EACH_PART r.part[i] = hn::Name(a.part[i], b.part[i]); \
         return r;                                                     \
     }
-TRILENS_LANES_OPERATION(operator+, Add)
-TRILENS_LANES_OPERATION(operator-, Sub)
-TRILENS_LANES_OPERATION(operator*, Mul)
-TRILENS_LANES_OPERATION(least, Min)
-TRILENS_LANES_OPERATION(largest, Max)
-TRILENS_LANES_OPERATION(flip_signs, Xor)
-#undef TRILENS_LANES_OPERATION
-
-#define TRILENS_LANES_COMPARISON(name, Name)                          \
-    HWY_INLINE Mask name(const Floats& a, const Floats& b) {          \
-        Mask r;                                                       \
-        TRILENS_EACH_PART r.part[i] = hn::Name(a.part[i], b.part[i]); \
-        return r;                                                     \
-    }
+TRILENS_LANES_OPERATION(Floats, operator+, Add, Floats)
+TRILENS_LANES_OPERATION(Floats, operator-, Sub, Floats)
+TRILENS_LANES_OPERATION(Floats, operator*, Mul, Floats)
+TRILENS_LANES_OPERATION(Floats, least, Min, Floats)
+TRILENS_LANES_OPERATION(Floats, largest, Max, Floats)
+TRILENS_LANES_OPERATION(Floats, flip_signs, Xor, Floats)
 // All are false where a lane is not a number.
-TRILENS_LANES_COMPARISON(operator<, Lt)
-TRILENS_LANES_COMPARISON(operator<=, Le)
-TRILENS_LANES_COMPARISON(operator>, Gt)
-TRILENS_LANES_COMPARISON(operator>=, Ge)
-#undef TRILENS_LANES_COMPARISON
+TRILENS_LANES_OPERATION(Mask, operator<, Lt, Floats)
+TRILENS_LANES_OPERATION(Mask, operator<=, Le, Floats)
+TRILENS_LANES_OPERATION(Mask, operator>, Gt, Floats)
+TRILENS_LANES_OPERATION(Mask, operator>=, Ge, Floats)
+TRILENS_LANES_OPERATION(Mask, operator&, And, Mask)
+TRILENS_LANES_OPERATION(Mask, operator|, Or, Mask)
+#undef TRILENS_LANES_OPERATION
+/// b and not a.
+HWY_INLINE Mask without(const Mask& b, const Mask& a) {
+    Mask r;
+    TRILENS_EACH_PART r.part[i] = hn::AndNot(a.part[i], b.part[i]);
+    return r;
+}
 
-/// a b + c, fused where the machine can: only for values whose rounding is bounded.
-HWY_INLINE Floats multiply_add(const Floats& a, const Floats& b, const Floats& c) {
-    Floats r;
-    TRILENS_EACH_PART r.part[i] = hn::MulAdd(a.part[i], b.part[i], c.part[i]);
-    return r;
-}
-/// a b - c.
-HWY_INLINE Floats multiply_subtract(const Floats& a, const Floats& b, const Floats& c) {
-    Floats r;
-    TRILENS_EACH_PART r.part[i] = hn::MulSub(a.part[i], b.part[i], c.part[i]);
-    return r;
-}
-/// c - a b.
-HWY_INLINE Floats subtract_product(const Floats& a, const Floats& b, const Floats& c) {
-    Floats r;
-    TRILENS_EACH_PART r.part[i] = hn::NegMulAdd(a.part[i], b.part[i], c.part[i]);
-    return r;
-}
-HWY_INLINE Floats absolute(const Floats& a) {
-    Floats r;
-    TRILENS_EACH_PART r.part[i] = hn::Abs(a.part[i]);
-    return r;
-}
-HWY_INLINE Floats round_up(const Floats& a) {
-    Floats r;
-    TRILENS_EACH_PART r.part[i] = hn::Ceil(a.part[i]);
-    return r;
-}
-HWY_INLINE Floats round_down(const Floats& a) {
-    Floats r;
-    TRILENS_EACH_PART r.part[i] = hn::Floor(a.part[i]);
-    return r;
-}
+#define TRILENS_LANES_FUNCTION(name, Name)                 \
+    HWY_INLINE Floats name(const Floats& a) {              \
+        Floats r;                                          \
+        TRILENS_EACH_PART r.part[i] = hn::Name(a.part[i]); \
+        return r;                                          \
+    }
+TRILENS_LANES_FUNCTION(absolute, Abs)
+TRILENS_LANES_FUNCTION(round_up, Ceil)
+TRILENS_LANES_FUNCTION(round_down, Floor)
+#undef TRILENS_LANES_FUNCTION
+
+#define TRILENS_LANES_FUSED(name, Name)                                          \
+    HWY_INLINE Floats name(const Floats& a, const Floats& b, const Floats& c) {  \
+        Floats r;                                                                \
+        TRILENS_EACH_PART r.part[i] = hn::Name(a.part[i], b.part[i], c.part[i]); \
+        return r;                                                                \
+    }
+// Fused where the machine can: only for values whose rounding is bounded. a b + c, a b - c, c - a b.
+TRILENS_LANES_FUSED(multiply_add, MulAdd)
+TRILENS_LANES_FUSED(multiply_subtract, MulSub)
+TRILENS_LANES_FUSED(subtract_product, NegMulAdd)
+#undef TRILENS_LANES_FUSED
 /// 1 / a to 2^-22.
 HWY_INLINE Floats reciprocal(const Floats& a) {
     Floats r;
@@ -151,22 +140,6 @@ HWY_INLINE Floats reciprocal(const Floats& a) {
     return r;
 }
 
-HWY_INLINE Mask operator&(const Mask& a, const Mask& b) {
-    Mask r;
-    TRILENS_EACH_PART r.part[i] = hn::And(a.part[i], b.part[i]);
-    return r;
-}
-HWY_INLINE Mask operator|(const Mask& a, const Mask& b) {
-    Mask r;
-    TRILENS_EACH_PART r.part[i] = hn::Or(a.part[i], b.part[i]);
-    return r;
-}
-/// a and not b.
-HWY_INLINE Mask without(const Mask& a, const Mask& b) {
-    Mask r;
-    TRILENS_EACH_PART r.part[i] = hn::AndNot(b.part[i], a.part[i]);
-    return r;
-}
 HWY_INLINE Floats choose(const Mask& m, const Floats& yes, const Floats& no) {
     Floats r;
     TRILENS_EACH_PART r.part[i] = hn::IfThenElse(m.part[i], yes.part[i], no.part[i]);
