@@ -5,17 +5,19 @@
 #include <mutex>
 #include <utility>
 
+#include "base/parallel.h"
+
 namespace trilens {
 
 /// Thread-safe: of several threads that ask at once one makes the value and the others wait. A maker that
-/// throws leaves nothing; the next one to ask tries again.
+/// throws leaves nothing; the next one to ask tries again. May be asked from inside a parallel loop.
 template <typename T>
 class Lazy {
   public:
     /// `make` returns a std::unique_ptr<T>.
     template <typename Make>
     const T& get(Make&& make) const {
-        std::call_once(made_, [&] { value_ = std::forward<Make>(make)(); });
+        std::call_once(made_, [&] { run_isolated([&] { value_ = std::forward<Make>(make)(); }); });
         return *value_;
     }
 

@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <memory>
 #include <thread>
@@ -35,6 +36,10 @@ void parallel_for(std::size_t count, std::size_t grain,
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, grain > 0 ? grain : 1),
         [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
+}
+
+void run_isolated(const std::function<void()>& work) {
+    tbb::this_task_arena::isolate(work);
 }
 
 }  // namespace trilens

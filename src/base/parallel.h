@@ -18,4 +18,8 @@ int thread_count();
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t first, std::size_t last)>& body);
 
+/// Calls work() so that its own loops, while they wait, take up no part of the loops around them: for work
+/// that others wait for, such as a value made once.
+void run_isolated(const std::function<void()>& work);
+
 }  // namespace trilens

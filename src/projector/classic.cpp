@@ -150,12 +150,13 @@ void FacetDrawing::draw() {
     const BlockRays block = rays_over_weights(facet_);
     const Beam beam(block);
     std::vector<Id> waiting;
-    if (!scene_.bvh.nodes.empty()) waiting.push_back(0);
+    const Bvh& bvh = scene_.bvh();
+    if (!bvh.nodes.empty()) waiting.push_back(0);
     while (!waiting.empty()) {
-        const BvhNode& node = scene_.bvh.nodes[waiting.back()];
+        const BvhNode& node = bvh.nodes[waiting.back()];
         waiting.pop_back();
         if (beam.misses({node.box.low - block.centre, node.box.high - block.centre})) continue;
-        for (Id i = node.first; i < node.first + node.count; ++i) draw_triangle(i);
+        for (Id i = node.first; i < node.first + node.count; ++i) draw_triangle(bvh.order[i]);
         if (node.count == 0) waiting.insert(waiting.end(), {node.first, node.first + 1});
     }
 }

@@ -29,7 +29,9 @@ class BlockDrawing {
         : scene_(scene), block_(block), beam_(block), hits_(block.count) {}
 
     void draw_all() {
-        const auto pass = [&] { draw_range(0, scene_.size()); };
+        const auto pass = [&] {
+            for (std::size_t i = 0; i < scene_.size(); ++i) draw_one(static_cast<Id>(i));
+        };
         pass();
         if (hits_.order_mattered()) hits_.begin_second_pass(), pass();
     }
@@ -42,8 +44,8 @@ class BlockDrawing {
     Hit hit(std::size_t s) const;
 
   private:
-    void draw_range(std::size_t first, std::size_t last);
-    void push_if_reached(Id node, std::vector<Waiting>& stack) const;
+    void draw_one(Id index);
+    void push_if_reached(const Bvh& bvh, Id node, std::vector<Waiting>& stack) const;
     void walk(std::vector<Waiting>& stack);
 
     const PreparedScene::Data& scene_;
@@ -52,38 +54,38 @@ class BlockDrawing {
     FirstHits hits_;
 };
 
-void BlockDrawing::draw_range(std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-        const LocalTriangle triangle{{scene_.corner(0, i, block_.centre), scene_.corner(1, i, block_.centre),
-                                      scene_.corner(2, i, block_.centre)},
-                                     static_cast<Id>(i),
-                                     scene_.rank[i]};
-        draw_triangle(block_, triangle, hits_);
-    }
+void BlockDrawing::draw_one(Id index) {
+    const LocalTriangle triangle{
+        {scene_.corner(0, index, block_.centre), scene_.corner(1, index, block_.centre),
+         scene_.corner(2, index, block_.centre)},
+        index,
+        scene_.rank[index]};
+    draw_triangle(block_, triangle, hits_);
 }
 
-void BlockDrawing::push_if_reached(Id node, std::vector<Waiting>& stack) const {
-    const Box& world = scene_.bvh.nodes[node].box;
+void BlockDrawing::push_if_reached(const Bvh& bvh, Id node, std::vector<Waiting>& stack) const {
+    const Box& world = bvh.nodes[node].box;
     const Box box{world.low - block_.centre, world.high - block_.centre};
     if (!beam_.misses(box)) stack.push_back({node, beam_.nearest(box)});
 }
 
 void BlockDrawing::walk(std::vector<Waiting>& stack) {
+    const Bvh& bvh = scene_.bvh();
     stack.clear();
-    if (!scene_.bvh.nodes.empty()) push_if_reached(0, stack);
+    if (!bvh.nodes.empty()) push_if_reached(bvh, 0, stack);
     while (!stack.empty()) {
         const Waiting next = stack.back();
         stack.pop_back();
         if (next.nearest > hits_.farthest()) continue;
-        const BvhNode& node = scene_.bvh.nodes[next.node];
+        const BvhNode& node = bvh.nodes[next.node];
         if (node.count > 0) {
-            draw_range(node.first, node.first + node.count);
+            for (Id i = node.first; i < node.first + node.count; ++i) draw_one(bvh.order[i]);
             continue;
         }
         // The nearer child is put on top, so that what it hides need not be looked at.
         const std::size_t before = stack.size();
-        push_if_reached(node.first, stack);
-        push_if_reached(node.first + 1, stack);
+        push_if_reached(bvh, node.first, stack);
+        push_if_reached(bvh, node.first + 1, stack);
         if (stack.size() == before + 2 && stack[before].nearest < stack[before + 1].nearest) {
             std::swap(stack[before], stack[before + 1]);
         }

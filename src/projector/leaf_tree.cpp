@@ -7,10 +7,13 @@
 #include <numeric>
 #include <utility>
 
+#include "base/parallel.h"
 #include "projector/prepared_scene.h"
 
 namespace trilens {
 namespace {
+
+constexpr std::size_t kTogether = 4096;  // triangles that are worth a thread
 
 struct FloatBox {
     std::array<float, 3> low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
@@ -39,30 +42,43 @@ struct Range {
 
 class Builder {
   public:
-    explicit Builder(const PreparedScene::Data& data) : data_(data), items_(data.size()) {}
-    LeafTree build();
+    Builder(std::size_t count, const BoxOf& box_of) : items_(count), box_(count) { take_boxes(box_of); }
+    LeafTree build(std::vector<Id>& order);
 
   private:
     struct Item {
         std::array<float, 3> middle{};  // twice the box's, from the tree's centre
         Id triangle = 0;
     };
-    Box box_of(std::size_t i) const;
+    void take_boxes(const BoxOf& box_of);
     FloatBox bounds(const Range& range) const;
     std::size_t halve(const Range& range, std::size_t unit);
     std::int32_t add_leaf(const Range& range);
     std::int32_t add(const Range& range);
 
-    const PreparedScene::Data& data_;
     std::vector<Item> items_;
     std::vector<FloatBox> box_;  // by triangle
     LeafTree tree_;
 };
 
-Box Builder::box_of(std::size_t i) const {
-    Box box;
-    for (std::size_t k = 0; k < 3; ++k) box.include(data_.corner(k, i, Vec3(0)));
-    return box;
+void Builder::take_boxes(const BoxOf& box_of) {
+    Box all;
+    for (std::size_t i = 0; i < items_.size(); ++i) all.include(box_of(static_cast<Id>(i)));
+    if (items_.empty()) return;
+    tree_.centre = 0.5 * all.low + 0.5 * all.high;
+    tree_.half = glm::max(all.high - tree_.centre, tree_.centre - all.low);
+    parallel_for(items_.size(), kTogether, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const Box box = box_of(static_cast<Id>(i));
+            for (std::size_t k = 0; k < 3; ++k) {
+                const int c = static_cast<int>(k);
+                box_[i].low[k] = below(box.low[c] - tree_.centre[c]);
+                box_[i].high[k] = above(box.high[c] - tree_.centre[c]);
+                items_[i].middle[k] = box_[i].low[k] + box_[i].high[k];
+            }
+            items_[i].triangle = static_cast<Id>(i);
+        }
+    });
 }
 
 FloatBox Builder::bounds(const Range& range) const {
@@ -97,23 +113,10 @@ std::size_t Builder::halve(const Range& range, std::size_t unit) {
 }
 
 std::int32_t Builder::add_leaf(const Range& range) {
-    Box box;
-    for (std::size_t i = range.first; i < range.last; ++i) box.include(box_of(items_[i].triangle));
-    const Vec3 centre = 0.5 * box.low + 0.5 * box.high;
     Leaf leaf{};
     leaf.count = static_cast<std::uint32_t>(range.size());
-    for (int k = 0; k < 3; ++k) leaf.centre[k] = centre[k];
-    for (std::size_t lane = 0; lane < range.size(); ++lane) {
-        const Id triangle = items_[range.first + lane].triangle;
-        leaf.triangle[lane] = triangle;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 corner = data_.corner(k, triangle, centre);
-            leaf.x[k][lane] = static_cast<float>(corner.x);
-            leaf.y[k][lane] = static_cast<float>(corner.y);
-            leaf.z[k][lane] = static_cast<float>(corner.z);
-            for (int c = 0; c < 3; ++c) leaf.half[c] = std::max(leaf.half[c], above(std::fabs(corner[c])));
-        }
-    }
+    for (std::size_t lane = 0; lane < range.size(); ++lane)
+        leaf.triangle[lane] = static_cast<Id>(range.first + lane);
     tree_.leaves.push_back(leaf);
     return ~static_cast<std::int32_t>(tree_.leaves.size() - 1);
 }
@@ -156,33 +159,42 @@ std::int32_t Builder::add(const Range& range) {
     return static_cast<std::int32_t>(id);
 }
 
-LeafTree Builder::build() {
-    if (data_.size() == 0) return {};
-    Box all;
-    for (std::size_t i = 0; i < data_.size(); ++i) all.include(box_of(i));
-    tree_.centre = 0.5 * all.low + 0.5 * all.high;
-    tree_.half = glm::max(all.high - tree_.centre, tree_.centre - all.low);
-
-    box_.resize(data_.size());
-    for (std::size_t i = 0; i < data_.size(); ++i) {
-        const Box box = box_of(i);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const int c = static_cast<int>(k);
-            box_[i].low[k] = below(box.low[c] - tree_.centre[c]);
-            box_[i].high[k] = above(box.high[c] - tree_.centre[c]);
-            items_[i].middle[k] = box_[i].low[k] + box_[i].high[k];
-        }
-        items_[i].triangle = static_cast<Id>(i);
-    }
-    tree_.leaves.reserve(data_.size() / kLanes + 16);
-    tree_.root = add({0, data_.size()});
+LeafTree Builder::build(std::vector<Id>& order) {
+    if (items_.empty()) return {};
+    tree_.leaves.reserve(items_.size() / kLanes + 16);
+    tree_.root = add({0, items_.size()});
+    order.resize(items_.size());
+    for (std::size_t i = 0; i < items_.size(); ++i) order[i] = items_[i].triangle;
     return std::move(tree_);
+}
+
+void fill_leaf(const PreparedScene::Data& data, Leaf& leaf) {
+    Box box;
+    for (std::size_t lane = 0; lane < leaf.count; ++lane)
+        for (std::size_t k = 0; k < 3; ++k) box.include(data.corner(k, leaf.triangle[lane], Vec3(0)));
+    const Vec3 centre = 0.5 * box.low + 0.5 * box.high;
+    for (int k = 0; k < 3; ++k) leaf.centre[k] = centre[k];
+    for (std::size_t lane = 0; lane < leaf.count; ++lane) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 corner = data.corner(k, leaf.triangle[lane], centre);
+            leaf.x[k][lane] = static_cast<float>(corner.x);
+            leaf.y[k][lane] = static_cast<float>(corner.y);
+            leaf.z[k][lane] = static_cast<float>(corner.z);
+            for (int c = 0; c < 3; ++c) leaf.half[c] = std::max(leaf.half[c], above(std::fabs(corner[c])));
+        }
+    }
 }
 
 }  // namespace
 
-LeafTree build_leaf_tree(const PreparedScene::Data& data) {
-    return Builder(data).build();
+LeafTree cut_leaf_tree(std::size_t count, const BoxOf& box_of, std::vector<Id>& order) {
+    return Builder(count, box_of).build(order);
+}
+
+void fill_leaves(const PreparedScene::Data& data, LeafTree& tree) {
+    parallel_for(tree.leaves.size(), kTogether / kLanes, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) fill_leaf(data, tree.leaves[i]);
+    });
 }
 
 }  // namespace trilens

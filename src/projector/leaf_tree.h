@@ -7,6 +7,7 @@
 
 #include "base/ids.h"
 #include "base/vec.h"
+#include "projector/bvh.h"
 #include "projector/projector.h"
 
 namespace trilens {
@@ -41,7 +42,12 @@ struct LeafTree {
     bool empty() const { return leaves.empty(); }
 };
 
-/// The same data give the same tree.
-LeafTree build_leaf_tree(const PreparedScene::Data& data);
+/// A tree over triangles 0 .. count - 1 by their boxes (called from many threads, finite and not empty),
+/// whose leaves have no corners yet and name places of `order`, in which every triangle comes once. The same
+/// boxes give the same tree.
+LeafTree cut_leaf_tree(std::size_t count, const BoxOf& box_of, std::vector<Id>& order);
+
+/// Gives the leaves their triangles' corners.
+void fill_leaves(const PreparedScene::Data& data, LeafTree& tree);
 
 }  // namespace trilens

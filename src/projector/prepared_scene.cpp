@@ -67,12 +67,13 @@ PreparedScene::PreparedScene(const TriangleScene& scene) : data_(std::make_uniqu
     check_triangles(scene);
     Data& data = *data_;
     const std::size_t count = scene.size();
-    data.bvh = build_bvh(count, [&](Id i) {
-        const IdTriple& corner = scene.triangles[i];
-        return box_of_corners(scene.points[corner[0]], scene.points[corner[1]], scene.points[corner[2]]);
-    });
-    data.triangle = std::move(data.bvh.order);
-    data.bvh.order = {};
+    data.leaves = cut_leaf_tree(
+        count,
+        [&](Id i) {
+            const IdTriple& corner = scene.triangles[i];
+            return box_of_corners(scene.points[corner[0]], scene.points[corner[1]], scene.points[corner[2]]);
+        },
+        data.triangle);
     const std::vector<Id> rank = tie_ranks(scene);
     data.rank.resize(count);
     data.was_corner.resize(count);
@@ -83,12 +84,18 @@ PreparedScene::PreparedScene(const TriangleScene& scene) : data_(std::make_uniqu
             data.rank[i] = rank[data.triangle[i]];
         }
     });
-    fit_boxes(data.bvh, [&](Id i) {
-        const Vec3 origin(0);
-        return box_of_corners(data.corner(0, i, origin), data.corner(1, i, origin),
-                              data.corner(2, i, origin));
+    fill_leaves(data, data.leaves);
+}
+
+const Bvh& PreparedScene::Data::bvh() const {
+    return bvh_.get([this] {
+        const auto box_of = [this](Id i) {
+            return box_of_corners(corners[i][0], corners[i][1], corners[i][2]);
+        };
+        auto bvh = std::make_unique<Bvh>(build_bvh(size(), box_of));
+        fit_boxes(*bvh, [&](Id place) { return box_of(bvh->order[place]); });
+        return bvh;
     });
-    data.leaves = build_leaf_tree(data);
 }
 
 PreparedScene::~PreparedScene() = default;

@@ -1,4 +1,4 @@
-// A scene made ready for drawing: triangles in the order of a tree's leaves.
+// A scene made ready for drawing: triangles in the order of the leaves of the vector engine's tree.
 #pragma once
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/lazy.h"
 #include "projector/bvh.h"
 #include "projector/first_hits.h"
 #include "projector/leaf_tree.h"
@@ -17,7 +18,6 @@ namespace trilens {
 /// triangles with the same corners give the same bits whatever their winding: coincident triangles tie
 /// exactly.
 struct PreparedScene::Data {
-    Bvh bvh;                                   // `order` is emptied: leaves index the arrays below
     std::vector<std::array<Vec3, 3>> corners;  // sorted
     std::vector<std::array<std::uint8_t, 3>>
         was_corner;            // which corner of the scene's triangle a sorted one is
@@ -25,9 +25,15 @@ struct PreparedScene::Data {
     std::vector<Id> rank;      // its place in the order of (object, primitive, index)
     LeafTree leaves;           // over the arrays above, for the vector engine
 
+    /// A tree over the arrays above for the other engines, made when it is first asked for. Thread-safe.
+    const Bvh& bvh() const;
+
     std::size_t size() const { return triangle.size(); }
     /// The sorted corner k of triangle i, from `centre`.
     Vec3 corner(std::size_t k, std::size_t i, const Vec3& centre) const { return corners[i][k] - centre; }
+
+  private:
+    Lazy<Bvh> bvh_;
 };
 
 /// A line's hit of triangle `index` of the data, in the terms of the scene's own triangle.
