@@ -165,7 +165,7 @@ const char* scene_schema() {
       "role": { "enum": ["object", "optic"] },
       "material": { "type": "string", "minLength": 1, "description": "A name of 'materials'; 'inherit' (the default of an object from a file): the file's own." },
       "resolution": { "type": "integer", "minimum": 1, "maximum": 1024, "default": 8, "description": "optic: N x N facets per quad face." },
-      "rays": { "enum": ["fitted", "interpolated"], "default": "interpolated", "description": "optic: at the corners of its facets the exact rays, with straight interpolation between them, or rays fitted so that what lies between is nearest to exact in the mean." },
+      "rays": { "enum": ["fitted", "interpolated"], "default": "fitted", "description": "optic: at the corners of its facets the exact rays, with straight interpolation between them, or rays fitted so that what lies between is nearest to exact in the mean." },
       "grid": { "enum": ["surface", "screen"], "default": "surface", "description": "optic: its facets lie on the surface, N x N per face, or on the film, N x N over its bounds there." },
       "priority": { "type": "integer", "minimum": -1000, "maximum": 1000, "default": 0, "description": "optic of glass: where bodies overlap the one of higher priority is inside, as a glass around its liquid." },
       "transform": { "$ref": "#/definitions/transform" },
