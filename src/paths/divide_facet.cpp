@@ -101,7 +101,7 @@ Point Divider::between(std::initializer_list<const Point*> points, double least_
     divided_.looks.push_back(look_through(looking_, {middle.screen, middle.chord, reach_},
                                           {.side = side_, .least_weight = least_weight}));
     middle.look = &divided_.looks.back();
-    if (params_.max_error > 0) set_beside(looking_, *middle.look);
+    if (!params_.estimates) set_beside(looking_, *middle.look);
     note(middle.look->cut);
     return middle;
 }

@@ -46,7 +46,7 @@ void OpticPaths::set_film_corner(Id corner, const Vec2& pixel) {
     Chord chord{at, looking_.camera.point(at), 2 * window_.reach};
     auto look = std::make_unique<Look>(
         look_through(looking_, chord, {.side = LookSide::kNearest, .least_weight = kFainter * kLeastWeight}));
-    if (params_.max_error > 0) set_beside(looking_, *look);
+    if (!params_.estimates) set_beside(looking_, *look);
     if (look->state != LookState::kMissed) {
         chord.point = look->place.point;
         if (!looking_.camera.affine) chord.screen = look->screen = looking_.camera.screen(chord.point);
@@ -152,7 +152,7 @@ void OpticPaths::look_at_corners(std::span<const Id> facets) {
             auto look = std::make_unique<Look>(look_at(looking_, places_[wanted[i] / 2],
                                                        {.side = front ? LookSide::kFront : LookSide::kBack,
                                                         .least_weight = kFainter * kLeastWeight}));
-            if (params_.max_error > 0) set_beside(looking_, *look);
+            if (!params_.estimates) set_beside(looking_, *look);
             // The first reflection alone needs no kappa.
             if (look->segments.size() > 1 ||
                 (look->segments.size() == 1 && look->segments[0].step.event != Event::kReflect))
@@ -246,7 +246,7 @@ void OpticPaths::prepare(std::span<const Id> facets) {
     }
     complete_nodes();
     if (params_.fit) fit_nodes(whole, nodes_);
-    if (params_.max_error > 0) divide_by_error(std::move(open));
+    divide_by_error(std::move(open));
 }
 
 /// Cell 0 of `divided` becomes `cell`, the others stand at the end.

@@ -48,8 +48,8 @@ struct PathNode {
 struct DivideParams {
     double least_area = 8;  // square pixels: parts below this are traced
     int most_levels = 6;
-    double max_error = 0;             // pixels: parts whose predicted displacement is more are divided too;
-                                      // 0: whatever it is
+    double max_error = 0;             // pixels: parts whose predicted displacement is more are divided too
+    bool estimates = false;           // few are: predicted only where an estimate says that they may be
     const Tracer* objects = nullptr;  // for the prediction: what is seen
     bool fit = false;                 // corner rays of whole facets are fitted
 };

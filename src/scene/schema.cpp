@@ -260,7 +260,7 @@ const char* scene_schema() {
       "maxDepth": { "type": "integer", "minimum": 0, "maximum": 64, "default": 8, "description": "Optic hits after the first; 0: paths end after their first optic, as if there were no other." },
       "paths": { "type": "array", "minItems": 1, "uniqueItems": true, "items": { "enum": ["direct", "reflect", "refract"] }, "default": ["direct", "reflect", "refract"] },
       "fresnel": { "type": "boolean", "default": true },
-      "maxError": { "type": "number", "minimum": 0, "maximum": 1000, "default": 0, "description": "Pixels: facets whose predicted displacement against the exact paths is more are divided, and at last traced; 0: they are as 'resolution' says." }
+      "maxError": { "type": "number", "minimum": 0, "maximum": 1000, "default": 0, "description": "Pixels: facets whose predicted displacement against the exact paths is more are divided, and at last traced; 0: they are as 'resolution' says, but for those that are off by far more than facets of their size are: a pixel at 32 on a film 480 high, by the square of both." }
     }
   }
 }
