@@ -72,7 +72,7 @@ double OpticPaths::predicted(const FittedLeaf& open) const {
         };
         for (std::size_t i = 0; i < part.inside.size(); ++i)
             look_at_point(*part.inside[i].at.look, part.inside[i].segment, kInsideWeights[i]);
-        if (!params_.fit || part.level > 0) continue;
+        if (!params_.fit) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             Vec3 weights(0);
             weights[static_cast<int>(k)] = 1;
@@ -105,9 +105,11 @@ void OpticPaths::divide_by_error(std::vector<FittedLeaf> open) {
             --projected_count_;
             const Id first_leaf = static_cast<Id>(leaves_.size());
             append(leaves_[leaf.leaf].facet, leaf_cell_[leaf.leaf], divided[i]);
-            for (std::size_t p = 0; p < divided[i].parts.size(); ++p)
-                if (divided[i].parts[p].method == LeafMethod::kProjected)
-                    next.push_back({static_cast<Id>(first_leaf + p), &divided[i].parts[p]});
+            for (std::size_t p = 0; p < divided[i].parts.size(); ++p) {
+                if (divided[i].parts[p].method != LeafMethod::kProjected) continue;
+                next.push_back({static_cast<Id>(first_leaf + p), &divided[i].parts[p]});
+                if (params_.fit) fit_alone(next.back(), nodes_);
+            }
         }
         complete_nodes();
         open = std::move(next);

@@ -241,7 +241,10 @@ void OpticPaths::prepare(std::span<const Id> facets) {
             const FittedLeaf leaf{static_cast<Id>(first_leaf + p), &divided[i].parts[p]};
             if (leaf.part->method != LeafMethod::kProjected) continue;
             open.push_back(leaf);
-            if (leaf.part->level == 0) whole.push_back(leaf);
+            if (leaf.part->level == 0)
+                whole.push_back(leaf);
+            else if (params_.fit)
+                fit_alone(leaf, nodes_);
         }
     }
     complete_nodes();
@@ -296,8 +299,7 @@ Id OpticPaths::node_of(Id parent, const PathSegment& segment) {
 void OpticPaths::append_part(Id leaf, FacetPart& part) {
     std::vector<Id>& node_index = part.node;
     node_index.assign(part.histories.size(), kNone);
-    // Parts keep their exact rays at corners where whole facets have fitted ones.
-    const Id own = params_.fit && part.level > 0 ? 2 * static_cast<Id>(places_.size()) : 0;
+    const bool alone = params_.fit && part.level > 0;  // fitted by itself
     for (std::size_t h = 0; h < part.histories.size(); ++h) {
         const PathSegment& history = part.histories[h];
         node_index[h] = node_of(history.parent == kNone ? kNone : node_index[history.parent], history);
@@ -318,8 +320,7 @@ void OpticPaths::append_part(Id leaf, FacetPart& part) {
             const bool seen = !part.segment[k].empty();
             const PathSegment* segment = seen ? &look.segments[part.segment[k][h]] : nullptr;
             const bool guessed = !first && kappa[k] == 0;
-            const Id shared =
-                guessed || part.corners[k].shared == kNone ? kNone : own + part.corners[k].shared;
+            const Id shared = guessed || alone ? kNone : part.corners[k].shared;
             if (shared != kNone) {
                 const auto found = corner_of_node_[node_index[h]].find(shared);
                 if (found != corner_of_node_[node_index[h]].end()) {
