@@ -166,7 +166,10 @@ void Divider::end(Id cell, FacetPart part) {
     divided_.parts.push_back(std::move(part));
 }
 
+/// Infinite where the eye's plane passes through.
 double screen_area(const std::array<Point, 3>& corners) {
+    const auto behind = [](const Point& corner) { return !(corner.screen.z > 0); };
+    if (std::all_of(corners.begin(), corners.end(), behind)) return 0;
     std::array<Vec2, 3> at;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3& s = corners[k].screen;

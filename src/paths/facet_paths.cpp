@@ -168,12 +168,17 @@ bool OpticPaths::on_film(Id facet) const {
     constexpr double kMargin = 1;  // pixels
     const Vec2& film = looking_.camera.film;
     Vec2 low(kInfinity), high(-kInfinity);
+    int behind = 0;  // the eye: corners
     for (const Id corner : outline_.facets[facet]) {
         const Vec3& s = outline_.screen[corner];
-        if (!(s.z > 0)) return true;
+        if (!(s.z > 0)) {
+            ++behind;
+            continue;
+        }
         low = glm::min(low, Vec2(s.x, s.y) / s.z);
         high = glm::max(high, Vec2(s.x, s.y) / s.z);
     }
+    if (behind > 0) return behind < 3;
     return low.x < film.x + kMargin && low.y < film.y + kMargin && high.x > -kMargin && high.y > -kMargin;
 }
 
