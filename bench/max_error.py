@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Facets chosen for an error against uniform grids of the same error, over scenes at their full films.
 
-    bench/max_error.py [--error 0.5] [--most 64] [--trilens PROGRAM] FOLDER SCENE.json ...
+    bench/max_error.py [--error 0.5] [--most 64] [--patience 60] [--trilens PROGRAM] FOLDER SCENE.json[@CAMERA] ...
 
-For each scene: `render --rays fitted --max-error`, its displacement against `trace` (99th percentile over all layers' pixels that
+For each scene: `render --max-error`, its displacement against `trace` (99th percentile over all layers' pixels that
 could be measured), its facets and the processor's seconds for the whole program on one thread; then the smallest uniform
-n up to --most with the same 99th percentile or less, interpolated rays and no division by error, with its facets and seconds. FOLDER gets max-error.csv and
+n up to --most with the same 99th percentile or less, the same corner rays and no error asked for, with its facets and seconds; none beyond
+one that took longer than --patience is tried. FOLDER gets max-error.csv and
 max-error.md, rewritten after each scene; scenes that are in the CSV already are not done again.
 """
 import argparse
@@ -35,13 +36,16 @@ def run(words, allowed=(0,)):
 
 class Study:
     def __init__(self, options, scene, folder):
-        self.options, self.scene, self.folder = options, scene, folder
+        self.options, self.folder = options, folder
+        self.scene, _, camera = scene.partition("@")
+        self.name = pathlib.Path(self.scene).stem + (f", {camera}" if camera else "")
+        self.camera = ["--camera", camera] if camera else []
         self.truth = str(folder / "truth.exr")
-        run([options.trilens, "trace", scene, "-o", self.truth])
+        run([options.trilens, "trace", self.scene, "-o", self.truth, *self.camera])
 
     def draw(self, *settings):
         image = str(self.folder / "image.exr")
-        picture, seconds = run([self.options.trilens, "render", self.scene, "-o", image, "-t", "1", *settings])
+        picture, seconds = run([self.options.trilens, "render", self.scene, "-o", image, "-t", "1", *self.camera, *settings])
         # Exit 1: the pictures differ, which is what is measured.
         found, _ = run([self.options.trilens, "compare", self.truth, image], allowed=(0, 1))
         return picture, seconds, found["displacement_px"]
@@ -52,7 +56,7 @@ class Study:
 
         def measure(n):
             if n not in known:
-                known[n] = self.draw("-n", str(n), "--rays", "interpolated", "--max-error", "0")
+                known[n] = self.draw("-n", str(n), "--rays", "fitted", "--max-error", "0")
             return known[n]
 
         def good(n):
@@ -61,7 +65,7 @@ class Study:
 
         high = 1
         while not good(high):
-            if high >= self.options.most:
+            if high >= self.options.most or known[high][1] > self.options.patience:
                 return None
             high = min(2 * high, self.options.most)
         low = high // 2
@@ -73,7 +77,7 @@ class Study:
 
 def row_of(study):
     picture, seconds, found = study.draw("--rays", "fitted", "--max-error", str(study.options.error))
-    row = {"scene": pathlib.Path(study.scene).stem, "film": f"{picture['width']} x {picture['height']}", "p99": found["p99"], "mean": found["mean"],
+    row = {"scene": study.name, "film": f"{picture['width']} x {picture['height']}", "p99": found["p99"], "mean": found["mean"],
            "max": found["max"], "pixels": found["pixels"], "predicted": picture["predicted_error"], "facets": picture["projected_facets"],
            "traced_percent": 100 * picture["traced_pixels"] / max(picture["optic_pixels"], 1), "seconds": seconds}
     uniform = study.uniform(found["p99"]) if found["p99"] is not None else None
@@ -92,15 +96,15 @@ def write(path, text):
 def write_tables(folder, rows, options):
     lines = [",".join(FIELDS)] + [",".join(str(row.get(key, "")) for key in FIELDS) for row in rows]
     write(folder / "max-error.csv", "\n".join(lines) + "\n")
-    words = [f"`--rays fitted --max-error {options.error:g}`, each scene at its full film, against the smallest uniform grid (n at most {options.most}) with the same 99th percentile "
+    words = [f"`--max-error {options.error:g}`, each scene at its full film, against the smallest uniform grid (n at most {options.most}, and none finer than one that took {options.patience:g} s) with the same 99th percentile "
              "of the displacement. Seconds are the processor's, one thread, the whole program.", "",
              "| scene | film | p99 px | max px | traced % | facets | s | uniform n | p99 px | facets | s |", "|---|---|---|---|---|---|---|---|---|---|---|"]
     for row in rows:
         cells = [row.get(key) for key in ("scene", "film", "p99", "max", "traced_percent", "facets", "seconds", "uniform_n", "uniform_p99", "uniform_facets",
                                           "uniform_seconds")]
         if not row.get("uniform_n"):
-            cells[7] = f"> {options.most}"
-        words.append("| " + " | ".join(str(cell or "") for cell in cells) + " |")
+            cells[7] = "none"
+        words.append("| " + " | ".join("" if cell is None else str(cell) for cell in cells) + " |")
     write(folder / "max-error.md", "\n".join(words) + "\n")
 
 
@@ -108,6 +112,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--error", type=float, default=0.5, help="pixels")
     parser.add_argument("--most", type=int, default=64, help="the finest uniform grid that is tried")
+    parser.add_argument("--patience", type=float, default=60, help="seconds of the processor: a uniform grid is not refined beyond one that took longer")
     parser.add_argument("--trilens", default=str(pathlib.Path(__file__).resolve().parent.parent / "build" / "release" / "trilens"))
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("scenes", nargs="+")
@@ -117,7 +122,8 @@ def main():
     rows = list(csv.DictReader(table.open())) if table.exists() else []
     failed = 0
     for scene in options.scenes:
-        if any(row["scene"] == pathlib.Path(scene).stem for row in rows):
+        file, _, camera = scene.partition("@")
+        if any(row["scene"] == pathlib.Path(file).stem + (f", {camera}" if camera else "") for row in rows):
             continue
         print(scene, file=sys.stderr, flush=True)
         with tempfile.TemporaryDirectory() as folder:

@@ -68,7 +68,8 @@ std::vector<Option> facet_options(RenderOptions& options) {
         {.names = "--max-error",
          .target = &options.max_error,
          .help = "divide facets until they show things this many pixels from their place at most, as "
-                 "predicted, and trace where that does not help; 0: leave them as they are",
+                 "predicted, and trace where that does not help; 0: only those that are off by more than "
+                 "(32 / n)^2 pixels of a film 480 high, and by one",
          .value = "PX",
          .range = {0, 1000}}};
 }

@@ -1,5 +1,6 @@
 // Leaves divided until what they show is predicted to lie where the exact paths show it.
 #include <algorithm>
+#include <cmath>
 #include <deque>
 
 #include "base/parallel.h"
@@ -11,6 +12,7 @@ namespace trilens {
 namespace {
 
 constexpr std::size_t kLeavesPerTask = 16;
+constexpr double kSure = 4;  // an estimate this many times below the limit will do
 
 double largest(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
@@ -19,17 +21,27 @@ double largest(const Vec3& v) {
 /// One point of a leaf, seen along one of its histories.
 struct LeafPoint {
     const Looking& looking;
-    const Tracer& objects;
     const PathNode& node;
     Id leaf = kNone;
     const Look& look;
     std::size_t segment = 0;
+    const DivideParams& params;
+
+    double displacement(const Vec3& weights, const Ray& ray, const Hit& hit) const {
+        if (!params.estimates) return predicted_displacement({looking, look, segment, ray, hit});
+        const double estimate =
+            estimated_displacement({node.mesh, leaf, weights, look.segments[segment].ray, hit});
+        if (estimate <= params.max_error / kSure) return estimate;
+        Look closer = look;  // others may look at the same
+        set_beside(looking, closer);
+        return predicted_displacement({looking, closer, segment, ray, hit});
+    }
 
     double predicted(const Vec3& weights) const {
         const PathSegment& exact = look.segments[segment];
         const IdTriple& corner = node.mesh.facets[leaf];
         const Ray ray = interpolated_ray(node.mesh, leaf, weights);
-        const Hit hit = objects.first_hit(ray);
+        const Hit hit = params.objects->first_hit(ray);
         if (!node.ends[leaf]) {
             double next = 0;
             for (int k = 0; k < 3; ++k) next += weights[k] * node.next[corner[static_cast<std::size_t>(k)]];
@@ -37,7 +49,7 @@ struct LeafPoint {
         }
         // What little light a side path carries counts for little.
         const double light = exact.principal ? 1 : std::min(1.0, largest(exact.weight));
-        return light * predicted_displacement({looking, look, segment, ray, hit});
+        return light * displacement(weights, ray, hit);
     }
 };
 
@@ -55,12 +67,12 @@ double OpticPaths::predicted(const FittedLeaf& open) const {
             for (std::size_t k = 0; k < 3; ++k)
                 weights[static_cast<int>(k)] *=
                     part.corners[k].look->screen.z / node.mesh.screen[corners[k]].z;
-            const LeafPoint point{looking_, *params_.objects, node, open.leaf, look, segment[h]};
+            const LeafPoint point{looking_, node, open.leaf, look, segment[h], params_};
             most = std::max(most, point.predicted(weights / (weights.x + weights.y + weights.z)));
         };
         for (std::size_t i = 0; i < part.inside.size(); ++i)
             look_at_point(*part.inside[i].at.look, part.inside[i].segment, kInsideWeights[i]);
-        if (!params_.fit || part.level > 0) continue;
+        if (!params_.fit) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             Vec3 weights(0);
             weights[static_cast<int>(k)] = 1;
@@ -71,6 +83,7 @@ double OpticPaths::predicted(const FittedLeaf& open) const {
 }
 
 void OpticPaths::divide_by_error(std::vector<FittedLeaf> open) {
+    if (std::isinf(params_.max_error)) return;
     std::deque<std::vector<DividedFacet>> levels;  // what later parts point into
     while (!open.empty()) {
         std::vector<double> error(open.size());
@@ -85,16 +98,18 @@ void OpticPaths::divide_by_error(std::vector<FittedLeaf> open) {
         for (std::size_t i = 0; i < open.size(); ++i) {
             const FittedLeaf& leaf = open[i];
             if (!(error[i] > params_.max_error)) {
-                leaves_[leaf.leaf].predicted = error[i];
+                if (!params_.estimates) leaves_[leaf.leaf].predicted = error[i];
                 continue;
             }
             for (const Id node : leaf.part->node) nodes_[node].mesh.facets[leaf.leaf] = {kNone, kNone, kNone};
             --projected_count_;
             const Id first_leaf = static_cast<Id>(leaves_.size());
             append(leaves_[leaf.leaf].facet, leaf_cell_[leaf.leaf], divided[i]);
-            for (std::size_t p = 0; p < divided[i].parts.size(); ++p)
-                if (divided[i].parts[p].method == LeafMethod::kProjected)
-                    next.push_back({static_cast<Id>(first_leaf + p), &divided[i].parts[p]});
+            for (std::size_t p = 0; p < divided[i].parts.size(); ++p) {
+                if (divided[i].parts[p].method != LeafMethod::kProjected) continue;
+                next.push_back({static_cast<Id>(first_leaf + p), &divided[i].parts[p]});
+                if (params_.fit) fit_alone(next.back(), nodes_);
+            }
         }
         complete_nodes();
         open = std::move(next);

@@ -101,7 +101,7 @@ Point Divider::between(std::initializer_list<const Point*> points, double least_
     divided_.looks.push_back(look_through(looking_, {middle.screen, middle.chord, reach_},
                                           {.side = side_, .least_weight = least_weight}));
     middle.look = &divided_.looks.back();
-    if (params_.max_error > 0) set_beside(looking_, *middle.look);
+    if (!params_.estimates) set_beside(looking_, *middle.look);
     note(middle.look->cut);
     return middle;
 }
@@ -166,7 +166,10 @@ void Divider::end(Id cell, FacetPart part) {
     divided_.parts.push_back(std::move(part));
 }
 
+/// Infinite where the eye's plane passes through.
 double screen_area(const std::array<Point, 3>& corners) {
+    const auto behind = [](const Point& corner) { return !(corner.screen.z > 0); };
+    if (std::all_of(corners.begin(), corners.end(), behind)) return 0;
     std::array<Vec2, 3> at;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3& s = corners[k].screen;

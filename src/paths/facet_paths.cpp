@@ -46,7 +46,7 @@ void OpticPaths::set_film_corner(Id corner, const Vec2& pixel) {
     Chord chord{at, looking_.camera.point(at), 2 * window_.reach};
     auto look = std::make_unique<Look>(
         look_through(looking_, chord, {.side = LookSide::kNearest, .least_weight = kFainter * kLeastWeight}));
-    if (params_.max_error > 0) set_beside(looking_, *look);
+    if (!params_.estimates) set_beside(looking_, *look);
     if (look->state != LookState::kMissed) {
         chord.point = look->place.point;
         if (!looking_.camera.affine) chord.screen = look->screen = looking_.camera.screen(chord.point);
@@ -152,7 +152,7 @@ void OpticPaths::look_at_corners(std::span<const Id> facets) {
             auto look = std::make_unique<Look>(look_at(looking_, places_[wanted[i] / 2],
                                                        {.side = front ? LookSide::kFront : LookSide::kBack,
                                                         .least_weight = kFainter * kLeastWeight}));
-            if (params_.max_error > 0) set_beside(looking_, *look);
+            if (!params_.estimates) set_beside(looking_, *look);
             // The first reflection alone needs no kappa.
             if (look->segments.size() > 1 ||
                 (look->segments.size() == 1 && look->segments[0].step.event != Event::kReflect))
@@ -168,12 +168,17 @@ bool OpticPaths::on_film(Id facet) const {
     constexpr double kMargin = 1;  // pixels
     const Vec2& film = looking_.camera.film;
     Vec2 low(kInfinity), high(-kInfinity);
+    int behind = 0;  // the eye: corners
     for (const Id corner : outline_.facets[facet]) {
         const Vec3& s = outline_.screen[corner];
-        if (!(s.z > 0)) return true;
+        if (!(s.z > 0)) {
+            ++behind;
+            continue;
+        }
         low = glm::min(low, Vec2(s.x, s.y) / s.z);
         high = glm::max(high, Vec2(s.x, s.y) / s.z);
     }
+    if (behind > 0) return behind < 3;
     return low.x < film.x + kMargin && low.y < film.y + kMargin && high.x > -kMargin && high.y > -kMargin;
 }
 
@@ -241,12 +246,15 @@ void OpticPaths::prepare(std::span<const Id> facets) {
             const FittedLeaf leaf{static_cast<Id>(first_leaf + p), &divided[i].parts[p]};
             if (leaf.part->method != LeafMethod::kProjected) continue;
             open.push_back(leaf);
-            if (leaf.part->level == 0) whole.push_back(leaf);
+            if (leaf.part->level == 0)
+                whole.push_back(leaf);
+            else if (params_.fit)
+                fit_alone(leaf, nodes_);
         }
     }
     complete_nodes();
     if (params_.fit) fit_nodes(whole, nodes_);
-    if (params_.max_error > 0) divide_by_error(std::move(open));
+    divide_by_error(std::move(open));
 }
 
 /// Cell 0 of `divided` becomes `cell`, the others stand at the end.
@@ -296,8 +304,7 @@ Id OpticPaths::node_of(Id parent, const PathSegment& segment) {
 void OpticPaths::append_part(Id leaf, FacetPart& part) {
     std::vector<Id>& node_index = part.node;
     node_index.assign(part.histories.size(), kNone);
-    // Parts keep their exact rays at corners where whole facets have fitted ones.
-    const Id own = params_.fit && part.level > 0 ? 2 * static_cast<Id>(places_.size()) : 0;
+    const bool alone = params_.fit && part.level > 0;  // fitted by itself
     for (std::size_t h = 0; h < part.histories.size(); ++h) {
         const PathSegment& history = part.histories[h];
         node_index[h] = node_of(history.parent == kNone ? kNone : node_index[history.parent], history);
@@ -318,8 +325,7 @@ void OpticPaths::append_part(Id leaf, FacetPart& part) {
             const bool seen = !part.segment[k].empty();
             const PathSegment* segment = seen ? &look.segments[part.segment[k][h]] : nullptr;
             const bool guessed = !first && kappa[k] == 0;
-            const Id shared =
-                guessed || part.corners[k].shared == kNone ? kNone : own + part.corners[k].shared;
+            const Id shared = guessed || alone ? kNone : part.corners[k].shared;
             if (shared != kNone) {
                 const auto found = corner_of_node_[node_index[h]].find(shared);
                 if (found != corner_of_node_[node_index[h]].end()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -48,8 +49,9 @@ struct PathNode {
 struct DivideParams {
     double least_area = 8;  // square pixels: parts below this are traced
     int most_levels = 6;
-    double max_error = 0;             // pixels: parts whose predicted displacement is more are divided too;
-                                      // 0: whatever it is
+    // Pixels: parts whose predicted displacement is more are divided too; infinity: whatever it is.
+    double max_error = std::numeric_limits<double>::infinity();
+    bool estimates = true;            // few are: predicted only where an estimate says that they may be
     const Tracer* objects = nullptr;  // for the prediction: what is seen
     bool fit = false;                 // corner rays of whole facets are fitted
 };

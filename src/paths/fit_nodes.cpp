@@ -10,6 +10,7 @@
 namespace trilens {
 namespace {
 
+constexpr double kEdgeOn = 1e-9;  // a facet seen from the side: its samples' measures vanish
 constexpr double kAtCorner = 1.0 / 20, kAtMiddle = 2.0 / 15, kAtCentre = 9.0 / 20;
 
 FitValue value_of(const Ray& ray, double next) {
@@ -101,7 +102,40 @@ void fit_node(std::vector<FitSample>& samples, PathNode& node) {
     }
 }
 
+/// The same for one facet by itself: three corners, one system of three equations.
+void fit_facet(const std::vector<FitSample>& samples, PathNode& node) {
+    Mat3 mass(0);
+    std::array<Vec3, kFitParts> right{};
+    for (const FitSample& sample : samples) {
+        mass += sample.measure * glm::outerProduct(sample.weights, sample.weights);
+        for (std::size_t p = 0; p < kFitParts; ++p)
+            right[p] += sample.measure * sample.value[p] * sample.weights;
+    }
+    const double whole = mass[0][0] + mass[1][1] + mass[2][2];
+    if (!(glm::determinant(mass) > kEdgeOn * whole * whole * whole)) return;
+    const Mat3 inverse = glm::inverse(mass);
+    std::array<Vec3, kFitParts> fitted;
+    for (std::size_t p = 0; p < kFitParts; ++p) fitted[p] = inverse * right[p];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Id corner = samples.front().corners[k];
+        const auto part = [&](std::size_t p) { return fitted[p][static_cast<int>(k)]; };
+        node.mesh.rays[corner] = {{part(0), part(1), part(2)}, {part(3), part(4), part(5)}};
+        if (std::isfinite(node.next[corner])) node.next[corner] = part(6);
+    }
+}
+
 }  // namespace
+
+void fit_alone(const FittedLeaf& leaf, std::vector<PathNode>& nodes) {
+    if (!takes_part(*leaf.part)) return;
+    std::vector<FitSample> samples;
+    for (std::size_t h = 0; h < leaf.part->histories.size(); ++h) {
+        PathNode& node = nodes[leaf.part->node[h]];
+        samples.clear();
+        NodeFacet{node, *leaf.part, h, node.mesh.facets[leaf.leaf]}.append(samples);
+        fit_facet(samples, node);
+    }
+}
 
 void fit_nodes(std::span<const FittedLeaf> leaves, std::vector<PathNode>& nodes) {
     std::vector<std::vector<FitSample>> samples(nodes.size());

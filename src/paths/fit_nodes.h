@@ -9,7 +9,7 @@
 
 namespace trilens {
 
-/// A projected leaf that takes part in the fit: a whole facet.
+/// A projected leaf whose rays are fitted.
 struct FittedLeaf {
     Id leaf = kNone;
     const FacetPart* part = nullptr;
@@ -23,5 +23,9 @@ struct FittedLeaf {
 /// silhouettes; and it ends where corners are not shared: at creases and boundaries of the grid, at borders
 /// of histories.
 void fit_nodes(std::span<const FittedLeaf> leaves, std::vector<PathNode>& nodes);
+
+/// The same for a part of a facet by itself, whose corners are its own: what it shows does not pass over into
+/// what its neighbours show, by less than the error that it was divided for.
+void fit_alone(const FittedLeaf& leaf, std::vector<PathNode>& nodes);
 
 }  // namespace trilens

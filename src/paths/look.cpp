@@ -7,6 +7,9 @@ namespace trilens {
 namespace {
 
 constexpr double kStep = 1e-4;      // of a face's parameters, for differences
+constexpr double kFilmStep = 0.01;  // pixels, likewise
+/// Of the way from the eye: how much deeper the surface may lie a step away.
+constexpr double kFilmReach = 1e-3;
 constexpr double kSoftened = 0.15;  // 0.05 to 0.3 differ by 5 %
 /// A bundle that opens less than this, as a share of its patch seen head-on, is parallel but for rounding.
 constexpr double kNoSpread = 1e-9;
@@ -51,6 +54,61 @@ Place beside(const Surface& surface, const Place& place, int axis) {
     return {place.face, uv, at.position, at.normal};
 }
 
+/// Where the camera's ray through the film there meets the surface first within reach, on the side asked for.
+struct Arrival {
+    Place place;
+    Ray ray;  // of the camera, as PathCamera has it
+};
+std::optional<Arrival> arrival(const Looking& looking, const Chord& chord, LookSide side) {
+    const Ray to_chord = looking.camera.ray(chord.screen, chord.point);
+    const Vec3 along = normalize_or_zero(to_chord.direction);
+    const double back =
+        looking.camera.parallel ? chord.reach : std::min(chord.reach, length(to_chord.direction));
+    const Ray near{chord.point - back * along, along};
+    const LimitTracer& tracer = *looking.world->optics[looking.optic].tracer;
+    const double far = back + chord.reach;
+    for (double from = 0; from < far;) {
+        const std::optional<SurfaceHit> hit = tracer.first_hit(near, from);
+        if (!hit || hit->t > far) break;
+        from = hit->t + 1e-9 * chord.reach;
+        const bool front = dot(along, hit->point.normal) < 0;
+        if (side != LookSide::kNearest && front != (side == LookSide::kFront)) continue;
+        return Arrival{{hit->face, hit->uv, hit->point.position, hit->point.normal}, to_chord};
+    }
+    return std::nullopt;
+}
+
+Vec2 film_place(const Looking& looking, const Vec3& point) {
+    const Vec3 screen = looking.camera.screen(point);
+    return Vec2(screen) / screen.z;
+}
+
+/// Along u or v.
+Beside beside_on_surface(const Looking& looking, const Look& look, int axis) {
+    const Place place = beside(*looking.surface, look.place, axis);
+    const Vec3 incident = looking.camera.ray(looking.camera.screen(place.point), place.point).direction;
+    return {place, incident, film_place(looking, place.point) - film_place(looking, look.place.point),
+            repeat_paths(*looking.world, meeting_at(looking, place, incident, look.front), length(incident),
+                         look.segments)};
+}
+
+/// Along the film's x or y; none where the surface is not met there.
+std::optional<Beside> beside_on_film(const Looking& looking, const Look& look, int axis) {
+    const LookSide side = look.front ? LookSide::kFront : LookSide::kBack;
+    for (const double size : {kFilmStep, -kFilmStep}) {
+        Vec2 step(0);
+        step[axis] = size;
+        const Chord chord{look.screen + Vec3(step, 0), look.place.point, kFilmReach * length(look.incident)};
+        const std::optional<Arrival> there = arrival(looking, chord, side);
+        if (!there) continue;
+        const Vec3 incident = there->place.point - there->ray.origin;
+        return Beside{there->place, there->place.point - (look.place.point - look.incident), step,
+                      repeat_paths(*looking.world, meeting_at(looking, there->place, incident, look.front),
+                                   length(incident), look.segments)};
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 Look look_at(const Looking& looking, const Place& place, const LookParams& params) {
@@ -61,44 +119,26 @@ Look look_at(const Looking& looking, const Place& place, const LookParams& param
 }
 
 Look look_through(const Looking& looking, const Chord& chord, const LookParams& params) {
-    const Ray to_chord = looking.camera.ray(chord.screen, chord.point);
-    const Vec3 along = normalize_or_zero(to_chord.direction);
-    const double back =
-        looking.camera.parallel ? chord.reach : std::min(chord.reach, length(to_chord.direction));
-    const Ray near{chord.point - back * along, along};
+    const std::optional<Arrival> there = arrival(looking, chord, params.side);
     Look look;
-    look.screen = chord.screen;
-    look.incident = to_chord.direction;
-    const LimitTracer& tracer = *looking.world->optics[looking.optic].tracer;
-    const double far = back + chord.reach;
-    for (double from = 0; from < far;) {
-        const std::optional<SurfaceHit> hit = tracer.first_hit(near, from);
-        if (!hit || hit->t > far) break;
-        from = hit->t + 1e-9 * chord.reach;
-        const bool front = dot(along, hit->point.normal) < 0;
-        if (params.side != LookSide::kNearest && front != (params.side == LookSide::kFront)) continue;
+    if (there) {
         // As long as the way to the surface itself.
         const Vec3 incident =
-            looking.camera.parallel ? to_chord.direction : hit->point.position - to_chord.origin;
-        look =
-            arrive(looking, {hit->face, hit->uv, hit->point.position, hit->point.normal}, incident, params);
-        look.screen = chord.screen;
-        break;
+            looking.camera.parallel ? there->ray.direction : there->place.point - there->ray.origin;
+        look = arrive(looking, there->place, incident, params);
+    } else {
+        look.incident = looking.camera.ray(chord.screen, chord.point).direction;
     }
+    look.screen = chord.screen;
     return look;
 }
 
 void set_beside(const Looking& looking, Look& look) {
     if (look.state != LookState::kSeen || !look.beside.empty()) return;
     for (int axis = 0; axis < 2; ++axis) {
-        const Place place = beside(*looking.surface, look.place, axis);
-        const Vec3 incident =
-            looking.camera.affine
-                ? place.point - (look.place.point - look.incident)
-                : looking.camera.ray(looking.camera.screen(place.point), place.point).direction;
-        look.beside.push_back({place, incident,
-                               repeat_paths(*looking.world, meeting_at(looking, place, incident, look.front),
-                                            length(incident), look.segments)});
+        std::optional<Beside> one = looking.camera.affine ? beside_on_film(looking, look, axis)
+                                                          : beside_on_surface(looking, look, axis);
+        if (one) look.beside.push_back(std::move(*one));
     }
 }
 
@@ -108,6 +148,10 @@ void set_kappa(const Looking& looking, Look& look) {
     const bool kept = !look.beside.empty();
     set_beside(looking, look);
     const std::vector<Beside>& side = look.beside;
+    if (side.size() < 2) {
+        if (!kept) look.beside.clear();
+        return;
+    }
     // Solid angles over that of the same patch seen head-on. Those before and after are differences of the
     // same rays, so that flat mirrors and plates have 1 to rounding.
     const double eye = length(look.incident);

@@ -47,7 +47,9 @@ enum class LookState : std::uint8_t { kSeen, kTurned, kMissed };
 /// history there.
 struct Beside {
     Place place;
-    Vec3 incident{0};  // the camera's ray there, as Look has it
+    Vec3 incident{
+        0};        // the camera's ray there, as Look has it; where it is not linear, from the look's origin
+    Vec2 step{0};  // from the look's place on the film, pixels
     std::vector<std::optional<PathSegment>> segments;
 };
 
@@ -59,8 +61,10 @@ struct Look {
     Place place;
     std::vector<PathSegment> segments;  // of kSeen
     CutPaths cut;
-    std::vector<Beside> beside;  // two, along u and along v, where set_beside was asked; else none
-    std::vector<double> kappa;   // per segment; see set_kappa; 0: unknown
+    std::vector<Beside>
+        beside;  // two, where set_beside was asked: along u and along v, or where the camera is
+                 // not linear along the film's x and y; fewer where the surface ends; else none
+    std::vector<double> kappa;  // per segment; see set_kappa; 0: unknown
 };
 
 /// Which side of the surface is looked at. kNearest: the one that the ray meets first.

@@ -21,4 +21,17 @@ struct PredictedRay {
 /// (mathematics, section 6). Infinity where that cannot be told: at a fold, or a border of histories.
 double predicted_displacement(const PredictedRay& predicted);
 
+/// A facet's ray beside an exact one, without places beside that.
+struct EstimatedRay {
+    const RayMesh& mesh;
+    Id facet = kNone;
+    Vec3 weights{0};  // of the corners there
+    Ray exact;        // unit direction
+    Hit hit;          // what the facet's ray meets there first; unset: the environment
+};
+
+/// The same by how fast the facet's own rays move there: no further exact ray is followed. Infinity at a fold
+/// of the facet.
+double estimated_displacement(const EstimatedRay& estimated);
+
 }  // namespace trilens

@@ -12,6 +12,14 @@ namespace {
 /// Where an error is asked for, facets are divided down to DivideParams::least_area, whatever their size.
 constexpr int kMostLevelsForError = 12;
 
+/// Facets whose rays turn smoothly show things off by the square of their size. Those that are predicted to
+/// be off by more than this, in pixels, lie, and are divided whether an error is asked for or not.
+double believable_error(int resolution, int film_height) {
+    constexpr double kOnePixelAt = 32, kOnFilm = 480;
+    const double coarser = kOnePixelAt / resolution;
+    return std::max(1.0, coarser * coarser * film_height / kOnFilm);
+}
+
 FramedOptic frame_optic(const World& world, std::size_t index, const CameraRays& camera,
                         const FrameParams& params) {
     const Optic& optic = world.optics[index];
@@ -168,15 +176,18 @@ SeenGrid seen_grid(const Frame& frame, const FramedOptic& framed) {
 
 std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic) {
     const FramedOptic& framed = frame.optics[optic];
-    const bool whole = world.scene.render.max_depth > 0 || frame.max_error > 0;
+    const bool for_error = frame.max_error > 0 && frame.max_error != kAnyError;
+    const bool whole = world.scene.render.max_depth > 0 || for_error;
     const SeenGrid seen = seen_grid(frame, framed);
     Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
     const Vec2 film(world.scene.film.width, world.scene.film.height);
     DivideParams params;
     params.fit = framed.rays == CornerRays::kFitted;
-    params.max_error = frame.max_error;
     params.objects = &object_tracer(world);
-    if (frame.max_error > 0) params.most_levels = kMostLevelsForError;
+    params.estimates = !for_error;
+    params.max_error =
+        frame.max_error > 0 ? frame.max_error : believable_error(framed.resolution, world.scene.film.height);
+    if (for_error) params.most_levels = kMostLevelsForError;
     // A camera that is not linear has whole paths by facets on the film: there its rays are exact.
     if (framed.grid == GridKind::kScreen || (framed.model && whole)) {
         const FilmWindow window = film_window(world, framed, seen.views);

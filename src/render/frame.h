@@ -34,7 +34,7 @@ struct FramedOptic {
 struct Frame {
     CameraRays camera;
     std::vector<FramedOptic> optics;  // as World::optics
-    double max_error = 0;             // as RenderSettings
+    double max_error = 0;             // as RenderSettings, or kAnyError
 };
 
 /// Throws InputError where the optics together have too many facets to hold, or the camera cannot show them.

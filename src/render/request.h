@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,9 @@
 #include "projector/classic_params.h"
 
 namespace trilens {
+
+/// FrameParams::max_error where no facet is divided for what it is predicted to be off by.
+inline constexpr double kAnyError = std::numeric_limits<double>::infinity();
 
 /// What a picture's rays depend on.
 struct FrameParams {

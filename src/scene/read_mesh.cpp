@@ -154,7 +154,7 @@ Mesh read_mesh(const Node& node, std::size_t index, Reading& reading) {
     inherits(node);
     mesh.material = find_material(node, reading);
     mesh.resolution = int_or(node, "resolution", mesh.resolution);
-    if (string_or(node, "rays", "interpolated") == "fitted") mesh.rays = CornerRays::kFitted;
+    if (string_or(node, "rays", "fitted") == "interpolated") mesh.rays = CornerRays::kInterpolated;
     mesh.grid = string_or(node, "grid", "surface") == "screen" ? GridKind::kScreen : GridKind::kSurface;
     mesh.priority = int_or(node, "priority", mesh.priority);
     mesh.normals = read_normals(node);

@@ -63,10 +63,10 @@ struct Mesh {
     Role role = Role::kObject;
     Id material = kNone;  // index into Scene::materials; kNone where the triangles carry their own
     int resolution = 8;   // optic: N x N facets per quad face
-    GridKind grid = GridKind::kSurface;           // optic
-    CornerRays rays = CornerRays::kInterpolated;  // optic
-    std::size_t face_count = 0;                   // polygons of the file, holes among them; 0 for a primitive
-    NormalOverride normals;                       // optic
+    GridKind grid = GridKind::kSurface;     // optic
+    CornerRays rays = CornerRays::kFitted;  // optic
+    std::size_t face_count = 0;             // polygons of the file, holes among them; 0 for a primitive
+    NormalOverride normals;                 // optic
     int priority = 0;  // optic of glass: where bodies overlap the one of higher priority is inside
 
     // An object has `object`; an optic has either `primitive` or `cage` (world frame, transform applied).
@@ -79,7 +79,7 @@ struct RenderSettings {
     int max_depth = 8;  // optic hits after the first
     bool direct = true, reflect = true, refract = true;
     bool fresnel = true;
-    double max_error = 0;  // pixels of displacement that facets are divided for; 0: they are not
+    double max_error = 0;  // pixels of displacement that facets are divided for; 0: only where they lie
 };
 
 /// A file as it was when it was read.

@@ -165,7 +165,7 @@ const char* scene_schema() {
       "role": { "enum": ["object", "optic"] },
       "material": { "type": "string", "minLength": 1, "description": "A name of 'materials'; 'inherit' (the default of an object from a file): the file's own." },
       "resolution": { "type": "integer", "minimum": 1, "maximum": 1024, "default": 8, "description": "optic: N x N facets per quad face." },
-      "rays": { "enum": ["fitted", "interpolated"], "default": "interpolated", "description": "optic: at the corners of its facets the exact rays, with straight interpolation between them, or rays fitted so that what lies between is nearest to exact in the mean." },
+      "rays": { "enum": ["fitted", "interpolated"], "default": "fitted", "description": "optic: at the corners of its facets the exact rays, with straight interpolation between them, or rays fitted so that what lies between is nearest to exact in the mean." },
       "grid": { "enum": ["surface", "screen"], "default": "surface", "description": "optic: its facets lie on the surface, N x N per face, or on the film, N x N over its bounds there." },
       "priority": { "type": "integer", "minimum": -1000, "maximum": 1000, "default": 0, "description": "optic of glass: where bodies overlap the one of higher priority is inside, as a glass around its liquid." },
       "transform": { "$ref": "#/definitions/transform" },
@@ -260,7 +260,7 @@ const char* scene_schema() {
       "maxDepth": { "type": "integer", "minimum": 0, "maximum": 64, "default": 8, "description": "Optic hits after the first; 0: paths end after their first optic, as if there were no other." },
       "paths": { "type": "array", "minItems": 1, "uniqueItems": true, "items": { "enum": ["direct", "reflect", "refract"] }, "default": ["direct", "reflect", "refract"] },
       "fresnel": { "type": "boolean", "default": true },
-      "maxError": { "type": "number", "minimum": 0, "maximum": 1000, "default": 0, "description": "Pixels: facets whose predicted displacement against the exact paths is more are divided, and at last traced; 0: they are as 'resolution' says." }
+      "maxError": { "type": "number", "minimum": 0, "maximum": 1000, "default": 0, "description": "Pixels: facets whose predicted displacement against the exact paths is more are divided, and at last traced; 0: they are as 'resolution' says, but for those that are off by far more than facets of their size are: a pixel at 32 on a film 480 high, by the square of both." }
     }
   }
 }

@@ -89,7 +89,9 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     auto drawing = std::make_unique<Drawing>();
     drawing->width = world.scene.film.width, drawing->height = world.scene.film.height,
     drawing->lines = lines;
-    const Frame frame = make_frame(world, params, warn);
+    FrameParams undivided = params;
+    undivided.max_error = kAnyError;
+    const Frame frame = make_frame(world, undivided, warn);
     const SampleGrid grid{0, 0, drawing->width, drawing->height, kSide};
 
     // Everything that the camera may see, and the optics' grids.
