@@ -72,6 +72,8 @@ class Divider {
     bool is_least(const Triangle& corners, int level) const;
     bool project(const Triangle& corners, const Inside& inside, int level);
     bool mirror_alone(const Triangle& corners, const Inside& inside) const;
+    bool layered(const Triangle& corners, const Inside& inside, int level);
+    void project_mirror(const Triangle& corners);
     void note(const CutPaths& cut);
     void end(Id cell, FacetPart part);
     FacetPart part_of(const Triangle& corners, int level) const;
@@ -129,18 +131,49 @@ bool Divider::mirror_alone(const Triangle& corners, const Inside& inside) const 
            std::all_of(inside.begin(), inside.end(), [&](const Point& point) { return alone(*point.look); });
 }
 
+/// The optic that the path over a mirror goes on to; kNone: to none.
+Id next_of(const Look& look) {
+    for (const PathSegment& segment : look.segments)
+        if (segment.parent == 0) return segment.step.optic;
+    return kNone;
+}
+
+/// The first reflection alone, in projected_.
+void Divider::project_mirror(const Triangle& corners) {
+    PathSegment segment;
+    segment.step = {looking_.optic, Event::kReflect};
+    projected_.histories = {segment};
+    for (std::size_t k = 0; k < 3; ++k)
+        if (corners[k].look->state == LookState::kSeen) projected_.segment[k] = {0};
+    for (PartInside& point : projected_.inside)
+        if (point.at.look->state == LookState::kSeen) point.segment = {0};
+}
+
+/// Whether the layers over this mirror show what the exact paths meet next, wherever they were looked at.
+bool Divider::layered(const Triangle& corners, const Inside& inside, int level) {
+    if (!params_.layers_agree || level > 0 || !mirror_) return false;
+    const auto agrees = [&](const Point& point) {
+        const Look& look = *point.look;
+        if (look.state != LookState::kSeen) return true;
+        return !look.segments.empty() && look.screen.z > 0 &&
+               params_.layers_agree(Vec2(look.screen) / look.screen.z, next_of(look));
+    };
+    if (!std::all_of(corners.begin(), corners.end(), agrees) ||
+        !std::all_of(inside.begin(), inside.end(), agrees))
+        return false;
+    projected_ = part_of(corners, level);
+    projected_.layered = true;
+    for (const Point& point : inside) projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
+    project_mirror(corners);
+    return true;
+}
+
 bool Divider::project(const Triangle& corners, const Inside& inside, int level) {
     projected_ = part_of(corners, level);
     for (const Point& point : inside) projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
     if (!looking_.world->reflect && mirror_) return true;
     if (mirror_alone(corners, inside)) {
-        PathSegment segment;
-        segment.step = {looking_.optic, Event::kReflect};
-        projected_.histories = {segment};
-        for (std::size_t k = 0; k < 3; ++k)
-            if (corners[k].look->state == LookState::kSeen) projected_.segment[k] = {0};
-        for (PartInside& point : projected_.inside)
-            if (point.at.look->state == LookState::kSeen) point.segment = {0};
+        project_mirror(corners);
         return true;
     }
     const Look& centre = *inside.back().look;
@@ -187,7 +220,8 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
                         between({&corners[2], &corners[0]}, fainter),
                         between({&corners[0], &corners[1]}, fainter),
                         between({&corners[0], &corners[1], &corners[2]}, kLeastWeight)};
-    if (project(corners, inside, level)) return end(cell, std::move(projected_));
+    if (layered(corners, inside, level) || project(corners, inside, level))
+        return end(cell, std::move(projected_));
     split(cell, corners, inside, level);
 }
 

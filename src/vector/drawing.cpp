@@ -89,7 +89,9 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     auto drawing = std::make_unique<Drawing>();
     drawing->width = world.scene.film.width, drawing->height = world.scene.film.height,
     drawing->lines = lines;
-    const Frame frame = make_frame(world, params, warn);
+    FrameParams divided = params;
+    divided.layers = false;  // lines are made of the optic's own facets alone
+    const Frame frame = make_frame(world, divided, warn);
     const SampleGrid grid{0, 0, drawing->width, drawing->height, kSide};
 
     // Everything that the camera may see, and the optics' grids.
