@@ -8,13 +8,13 @@
 namespace trilens {
 namespace {
 
-constexpr double kLeastFacet = 1.5;  // pixels: smaller ones cost more than tracing their pixels
-constexpr double kLeastArea = 64;    // square pixels of an image's bounds
+constexpr double kLeastFacet = 0.25;  // pixels: images of smaller facets are left to tracing
+constexpr double kLeastArea = 64;     // square pixels of an image's bounds
 /// A curved mirror shows things smaller: what is seen in an image of smaller facets is no layer.
 constexpr double kLeastForDeeper = 2 * kLeastFacet;
 /// How far, in parts of a facet's size, an outline of chords may lie from the exact one.
 constexpr double kOutlineShare = 1.0 / 8;
-constexpr double kLeastOutline = 0.5;  // pixels
+constexpr double kLeastOutline = 0.02;  // pixels
 
 Vec2 pixel_of(const Vec3& screen) {
     return Vec2(screen.x, screen.y) / screen.z;

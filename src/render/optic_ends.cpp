@@ -111,8 +111,9 @@ struct Shown {
 /// How the samples of a layer came to it.
 struct LayerSamples {
     std::vector<Id> owner;           // per sample its facet; kNone: it does not see the layer
-    std::vector<PathEnd> before;     // per sample: the end that the layer takes the place of
-    std::vector<Incidence> arrival;  // per sample: at the layer's optic
+    std::vector<Id> entry;           // per sample, where it has a facet: of the next two
+    std::vector<PathEnd> before;     // the ends that the layer takes the place of
+    std::vector<Incidence> arrival;  // at the layer's optic
 };
 
 /// Draws an optic, and what is seen in it, and so on.
@@ -170,68 +171,73 @@ std::vector<LayerSamples> ShownDrawer::take_covered(const Shown& shown, const st
     std::vector<LayerSamples> taken(layers.size());
     for (LayerSamples& one : taken) {
         one.owner.assign(grid_.size(), kNone);
-        one.before.resize(grid_.size());
-        one.arrival.resize(grid_.size());
+        one.entry.resize(grid_.size());
     }
-    std::vector<char> covered(own.ends.size(), 0);
+    std::vector<std::optional<LayerThere>> covered(own.ends.size());
     parallel_for(own.ends.size(), kSamplesPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const Id s = own.sample[i];
             if (!shown.paths.leaves()[leaf[s]].layered) continue;
             const std::optional<LayerThere> there = shown.layers->at(grid_.position(s));
-            if (!there || !covers(*layers[there->layer], there->facet, own.ends[i])) continue;
-            LayerSamples& samples = taken[there->layer];
-            samples.owner[s] = there->facet.facet;
-            samples.before[s] = own.ends[i];
-            samples.arrival[s] = layers[there->layer]->arrival(there->facet);
-            covered[i] = 1;
+            if (there && covers(*layers[there->layer], there->facet, own.ends[i])) covered[i] = there;
         }
     });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < own.ends.size(); ++i) {
-        if (covered[i]) continue;
-        own.ends[kept] = own.ends[i];
-        own.sample[kept++] = own.sample[i];
+        if (!covered[i]) {
+            own.ends[kept] = own.ends[i];
+            own.sample[kept++] = own.sample[i];
+            continue;
+        }
+        const CoveringFacet& at = covered[i]->facet;
+        LayerSamples& samples = taken[covered[i]->layer];
+        samples.owner[own.sample[i]] = at.facet;
+        samples.entry[own.sample[i]] = static_cast<Id>(samples.before.size());
+        samples.before.push_back(own.ends[i]);
+        samples.arrival.push_back(layers[covered[i]->layer]->arrival(at));
     }
     own.ends.resize(kept);
     own.sample.resize(kept);
     return taken;
 }
 
-/// Makes ends over a layer's optic ends over the whole path.
+/// Makes ends over a layer's optic ends over the mirror that it is seen in.
 void ShownDrawer::put_behind(const SeenLayer& layer, const LayerSamples& samples, OpticEnds& ends) const {
     const Id optic = layer.optic();
     const Material& material = params_.world.scene.materials[params_.world.optics[optic].material];
-    std::vector<Step> before;
-    for (const Id mirror : layer.chain()) before.push_back({mirror, Event::kReflect});
     std::vector<Step> steps;
     std::map<std::size_t, std::size_t> moved;  // first step before and now
     for (std::size_t i = 0; i < ends.ends.size(); ++i) {
         PathEnd& end = ends.ends[i];
-        const Id s = ends.sample[i];
+        const Id entry = samples.entry[ends.sample[i]];
         const auto [found, added] = moved.insert({end.first_step, steps.size()});
         if (added) {
-            steps.insert(steps.end(), before.begin(), before.end());
+            steps.push_back({layer.chain().back(), Event::kReflect});
             const auto own = ends.steps.begin() + static_cast<std::ptrdiff_t>(end.first_step);
             steps.insert(steps.end(), own, own + end.step_count);
         }
         end.first_step = found->second;
-        end.step_count = static_cast<std::uint16_t>(end.step_count + before.size());
-        const Incidence& arrival = samples.arrival[s];
+        end.step_count = static_cast<std::uint16_t>(end.step_count + 1);
+        const Incidence& arrival = samples.arrival[entry];
+        const PathEnd& came = samples.before[entry];
         const OpticWeights weights = optic_weights(material, arrival, params_.world.scene.render.fresnel);
         const bool reflected = end.path == Path::kReflect;
-        end.weight *= samples.before[s].weight * (reflected ? weights.reflect : weights.refract);
+        end.weight *= came.weight * (reflected ? weights.reflect : weights.refract);
         // Through glass light goes on where it can.
         if (reflected && !layer.is_mirror())
             end.principal = end.principal && reflects_totally(material, arrival);
-        end.principal = end.principal && samples.before[s].principal;
-        end.path = samples.before[s].path;
+        end.principal = end.principal && came.principal;
+        end.path = came.path;
         end.node = kNone;
     }
     ends.steps = std::move(steps);
 }
 
-void append(const OpticEnds& from, OpticEnds& to) {
+void append(OpticEnds from, OpticEnds& to) {
+    if (to.ends.empty()) {
+        to = std::move(from);
+        return;
+    }
     for (PathEnd end : from.ends) {
         end.first_step += to.steps.size();
         to.ends.push_back(end);
@@ -260,10 +266,10 @@ void ShownDrawer::draw(const Shown& shown, OpticEnds& out) {
                   static_cast<std::uint8_t>(shown.depth + 1)},
                  behind);
             put_behind(layer, taken[l], behind);
-            append(behind, own);
+            append(std::move(behind), own);
         }
     }
-    append(own, out);
+    append(std::move(own), out);
 }
 
 }  // namespace
