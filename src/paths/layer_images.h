@@ -15,7 +15,8 @@ std::vector<ChainRay> rays_over(const MirrorChain& chain, std::span<const Vec3> 
 
 /// Per point of the grid one image, where the search finds one: first from the ray of `starts` that passes it
 /// at the smallest angle, then from point to point along facets. Where a point has several images, neighbours
-/// have those that belong together. The same for any number of threads.
+/// have those that belong together. Of a closed surface points all of whose facets are turned away, and that
+/// stand next to none that is not, have none. The same for any number of threads.
 std::vector<std::optional<ChainRay>> grid_images(const MirrorChain& chain, std::span<const ChainRay> starts,
                                                  const SurfaceGrid& grid);
 

@@ -1,5 +1,5 @@
 // A ray carries its derivatives from mirror to mirror. Source: Igehy, Tracing Ray Differentials, SIGGRAPH
-// 1999; the normal's derivatives are differences, so that overridden normals have them too.
+// 1999.
 #include "paths/mirror_chain.h"
 
 #include <algorithm>
@@ -22,8 +22,19 @@ Vec3 perpendicular(const Vec3& unit) {
     return normalize(cross(unit, std::fabs(unit.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
 }
 
-/// How the normal turns along u and along v at a hit.
-std::array<Vec3, 2> normal_along(const Surface& surface, const SurfaceHit& hit) {
+/// How the normal turns along u and along v at a hit: of n = (du x dv) / |du x dv|.
+std::array<Vec3, 2> own_normal_along(const SurfacePoint& at) {
+    const Vec3 across = cross(at.du, at.dv), &n = at.normal;
+    const double area = dot(across, n);  // signed: the normal may be turned
+    const Vec3 u = cross(at.duu, at.dv) + cross(at.du, at.duv),
+               v = cross(at.duv, at.dv) + cross(at.du, at.dvv);
+    return {(u - dot(u, n) * n) / area, (v - dot(v, n) * n) / area};
+}
+
+std::array<Vec3, 2> normal_along(const ChainMirror& mirror, const SurfaceHit& hit) {
+    if (mirror.own_normals && dot(cross(hit.point.du, hit.point.dv), hit.point.normal) != 0)
+        return own_normal_along(hit.point);
+    const Surface& surface = *mirror.surface;
     std::array<Vec3, 2> along{};
     for (int axis = 0; axis < 2; ++axis) {
         const double most = surface.domain(hit.face) == FaceDomain::kTriangle ? 1 - hit.uv[1 - axis] : 1.0;
@@ -45,10 +56,10 @@ Vec2 in_tangents(const SurfacePoint& at, const Vec3& along) {
 }
 
 /// Mirrors the ray where it meets the surface.
-void mirror_at(const Surface& surface, const SurfaceHit& hit, ChainRay& of) {
+void mirror_at(const ChainMirror& mirror, const SurfaceHit& hit, ChainRay& of) {
     const Vec3 u = of.ray.direction, &normal = hit.point.normal;
     const double facing = dot(u, normal);
-    const std::array<Vec3, 2> turning = normal_along(surface, hit);
+    const std::array<Vec3, 2> turning = normal_along(mirror, hit);
     for (std::size_t k = 0; k < 2; ++k) {
         const Vec3 carried = of.origin_along[k] + hit.t * of.direction_along[k];
         const Vec3 moved = carried - (dot(carried, normal) / facing) * u;
@@ -108,7 +119,7 @@ std::optional<ChainRay> chain_ray(const MirrorChain& chain, const Vec3& eye_dire
         const std::optional<SurfaceHit> hit = chain.mirrors[i].tracer->first_hit(of.ray);
         if (!hit || hit->point.normal == Vec3(0) || dot(of.ray.direction, hit->point.normal) == 0)
             return std::nullopt;
-        mirror_at(*chain.mirrors[i].surface, *hit, of);
+        mirror_at(chain.mirrors[i], *hit, of);
         if (i > 0) continue;
         of.first = of.ray.origin;
         of.first_way = of.way;

@@ -15,6 +15,7 @@ namespace trilens {
 struct ChainMirror {
     const LimitTracer* tracer = nullptr;
     const Surface* surface = nullptr;
+    bool own_normals = true;  // along du x dv; false where a normal field overrides them
 };
 
 /// Mirrors that an eye looks over, one after the other. Each is met as if it stood alone: nothing blocks the

@@ -25,7 +25,8 @@ Vec2 pixel_of(const Vec3& screen) {
 MirrorChain mirror_chain(const LayerStage& stage, std::span<const Id> chain) {
     MirrorChain mirrors{stage.eye, {}};
     for (const Id optic : chain)
-        mirrors.mirrors.push_back({stage.world.optics[optic].tracer, stage.optics[optic].surface});
+        mirrors.mirrors.push_back(
+            {stage.world.optics[optic].tracer, stage.optics[optic].surface, stage.optics[optic].own_normals});
     return mirrors;
 }
 

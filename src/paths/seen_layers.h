@@ -17,7 +17,8 @@ namespace trilens {
 struct LayerOptic {
     const Surface* surface = nullptr;
     const SurfaceGrid* grid = nullptr;
-    bool fit = false;  // its corner rays are fitted
+    bool fit = false;         // its corner rays are fitted
+    bool own_normals = true;  // see ChainMirror
 };
 
 /// What all layers of one camera have in common.

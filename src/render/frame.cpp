@@ -203,8 +203,10 @@ std::optional<LayerStage> make_layer_stage(const World& world, const Frame& fram
     LayerStage stage;
     stage.world = path_world(world);
     for (std::size_t i = 0; i < world.optics.size(); ++i)
-        stage.optics.push_back({world.optics[i].surface.get(), &frame.optics[i].facets->grid(),
-                                frame.optics[i].rays == CornerRays::kFitted});
+        stage.optics.push_back(
+            {world.optics[i].surface.get(), &frame.optics[i].facets->grid(),
+             frame.optics[i].rays == CornerRays::kFitted,
+             world.scene.meshes[world.optics[i].mesh].normals.type == NormalOverride::Type::kSmooth});
     stage.camera = path_camera(*frame.camera.linear);
     stage.camera.film = Vec2(world.scene.film.width, world.scene.film.height);
     stage.eye = frame.camera.linear->eye;
