@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace trilens {
 namespace {
@@ -70,9 +71,11 @@ class Divider {
     void divide(Id cell, const Triangle& corners, int level);
     void split(Id cell, const Triangle& corners, const Inside& inside, int level);
     bool is_least(const Triangle& corners, int level) const;
-    bool project(const Triangle& corners, const Inside& inside, int level);
-    bool mirror_alone(const Triangle& corners, const Inside& inside) const;
-    bool layered(const Triangle& corners, const Inside& inside, int level);
+    bool project(const Triangle& corners, std::span<const Point> inside, int level);
+    bool mirror_alone(const Triangle& corners, std::span<const Point> inside) const;
+    bool layered(const Triangle& corners, std::span<const Point> inside, int level);
+    bool divide_plain(Id cell, const Triangle& corners);
+    void trace(Id cell, const Triangle& corners, int level);
     void project_mirror(const Triangle& corners);
     void note(const CutPaths& cut);
     void end(Id cell, FacetPart part);
@@ -119,7 +122,7 @@ FacetPart Divider::part_of(const Triangle& corners, int level) const {
 }
 
 /// A mirror that shows no other optic there has rays beyond its silhouette too: the mirror law goes on.
-bool Divider::mirror_alone(const Triangle& corners, const Inside& inside) const {
+bool Divider::mirror_alone(const Triangle& corners, std::span<const Point> inside) const {
     if (!mirror_) return false;
     const auto alone = [](const Look& look) {
         return look.state != LookState::kSeen || (look.segments.size() == 1 && look.segments[0].ends);
@@ -150,7 +153,7 @@ void Divider::project_mirror(const Triangle& corners) {
 }
 
 /// Whether the layers over this mirror show what the exact paths meet next, wherever they were looked at.
-bool Divider::layered(const Triangle& corners, const Inside& inside, int level) {
+bool Divider::layered(const Triangle& corners, std::span<const Point> inside, int level) {
     if (!params_.layers_agree || level > 0 || !mirror_) return false;
     const auto agrees = [&](const Point& point) {
         const Look& look = *point.look;
@@ -168,7 +171,7 @@ bool Divider::layered(const Triangle& corners, const Inside& inside, int level) 
     return true;
 }
 
-bool Divider::project(const Triangle& corners, const Inside& inside, int level) {
+bool Divider::project(const Triangle& corners, std::span<const Point> inside, int level) {
     projected_ = part_of(corners, level);
     for (const Point& point : inside) projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
     if (!looking_.world->reflect && mirror_) return true;
@@ -176,7 +179,7 @@ bool Divider::project(const Triangle& corners, const Inside& inside, int level) 
         project_mirror(corners);
         return true;
     }
-    const Look& centre = *inside.back().look;
+    const Look& centre = inside.empty() ? *corners[0].look : *inside.back().look;
     if (centre.state != LookState::kSeen) return false;
     const auto agrees = [&](const Look& look, std::vector<std::size_t>& match) {
         if (look.state != LookState::kSeen || look.front != centre.front) return false;
@@ -225,13 +228,26 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
     split(cell, corners, inside, level);
 }
 
+void Divider::trace(Id cell, const Triangle& corners, int level) {
+    FacetPart part = part_of(corners, level);
+    part.method = LeafMethod::kTraced;
+    part.centre = (corners[0].screen + corners[1].screen + corners[2].screen) / 3.0;
+    end(cell, std::move(part));
+}
+
+/// A facet so small that what lies between its corners is less than a pixel away from them; false where it is
+/// none.
+bool Divider::divide_plain(Id cell, const Triangle& corners) {
+    if (!(screen_area(corners) < params_.plain_area)) return false;
+    if (layered(corners, {}, 0) || project(corners, {}, 0))
+        end(cell, std::move(projected_));
+    else
+        trace(cell, corners, 0);
+    return true;
+}
+
 void Divider::split(Id cell, const Triangle& corners, const Inside& inside, int level) {
-    if (is_least(corners, level)) {
-        FacetPart part = part_of(corners, level);
-        part.method = LeafMethod::kTraced;
-        part.centre = inside[3].screen;
-        return end(cell, std::move(part));
-    }
+    if (is_least(corners, level)) return trace(cell, corners, level);
     const Id first = static_cast<Id>(divided_.cells.size());
     divided_.cells[cell].children = first;
     divided_.cells.resize(divided_.cells.size() + 4);
@@ -251,10 +267,10 @@ DividedFacet Divider::divide(const std::array<PartCorner, 3>& from) {
         note(from[k].look->cut);
     }
     divided_.cells.resize(1);
-    if (has_normals)
-        divide(0, corners, 0);
-    else
+    if (!has_normals)
         end(0, part_of(corners, 0));
+    else if (!divide_plain(0, corners))
+        divide(0, corners, 0);
     return std::move(divided_);
 }
 

@@ -49,6 +49,7 @@ struct PathNode {
 /// How finely facets are divided whose corners do not tell the truth about the rays between them.
 struct DivideParams {
     double least_area = 8;  // square pixels: parts below this are traced
+    double plain_area = 0;  // square pixels: of facets below this the corners alone are looked at
     int most_levels = 6;
     double max_error = 0;             // pixels: parts whose predicted displacement is more are divided too;
                                       // 0: whatever it is

@@ -16,7 +16,7 @@ constexpr double kMostKappa = 50;  // as corner rays have it elsewhere
 constexpr double kDone = 1e-11;    // of the way to the point: a miss below this is none
 constexpr double kMostTurn = 0.2;  // radians that one step may go
 constexpr double kBehind = -1e-9;  // of the way: a point on the last mirror itself counts as before it
-constexpr int kMostSteps = 24, kMostHalvings = 6;
+constexpr int kMostSteps = 16, kMostHalvings = 4;
 
 Vec3 perpendicular(const Vec3& unit) {
     return normalize(cross(unit, std::fabs(unit.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));

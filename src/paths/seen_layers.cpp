@@ -10,8 +10,7 @@ namespace {
 
 constexpr double kLeastFacet = 0.25;  // pixels: images of smaller facets are left to tracing
 constexpr double kLeastArea = 64;     // square pixels of an image's bounds
-/// A curved mirror shows things smaller: what is seen in an image of smaller facets is no layer.
-constexpr double kLeastForDeeper = 2 * kLeastFacet;
+constexpr double kPlainArea = 2;      // square pixels: see DivideParams
 /// How far, in parts of a facet's size, an outline of chords may lie from the exact one.
 constexpr double kOutlineShare = 1.0 / 8;
 constexpr double kLeastOutline = 0.02;  // pixels
@@ -39,10 +38,15 @@ void SeenLayers::build() {
     if (built_) return;
     built_ = true;
     const MirrorChain mirrors = mirror_chain(stage_, chain_);
+    if (std::none_of(stage_.optics.begin(), stage_.optics.end(), [&](const LayerOptic& one) {
+            return static_cast<double>(one.grid->points.size()) <= room_;
+        }))
+        return;
     const std::vector<ChainRay> starts = rays_over(mirrors, towards_);
     for (Id optic = 0; optic < stage_.optics.size(); ++optic) {
-        if (optic == chain_.back()) continue;
-        auto images = grid_images(mirrors, starts, *stage_.optics[optic].grid);
+        const SurfaceGrid& grid = *stage_.optics[optic].grid;
+        if (optic == chain_.back() || static_cast<double>(grid.points.size()) > room_) continue;
+        auto images = grid_images(mirrors, starts, grid);
         if (std::none_of(images.begin(), images.end(), [](const auto& one) { return one.has_value(); }))
             continue;
         auto layer = std::make_unique<SeenLayer>(stage_, chain_, optic, std::move(images));
@@ -95,6 +99,7 @@ SeenLayer::SeenLayer(const LayerStage& stage, std::vector<Id> chain, Id optic,
 
     DivideParams divide = stage.divide;
     divide.fit = stage.optics[optic].fit;
+    divide.plain_area = kPlainArea;
     if (world_.optics[optic].mirror && world_.max_depth > 0) {
         std::vector<Id> longer = chain_;
         longer.push_back(optic);
@@ -109,7 +114,7 @@ SeenLayer::SeenLayer(const LayerStage& stage, std::vector<Id> chain, Id optic,
     paths_ = std::make_unique<OpticPaths>(Looking{&world_, optic, stage.optics[optic].surface, make_camera()},
                                           own, views_, divide);
     cover_ = LayerCover(paths_->outline(), unfolded_facets());
-    if (deeper_ && cover_.facet_size() < kLeastForDeeper) deeper_->leave_out();
+    if (deeper_) deeper_->set_room(cover_.area());
 }
 
 SeenLayer::~SeenLayer() = default;

@@ -1,6 +1,7 @@
 // Optics seen in mirrors as layers by history: each one's own grid, imaged over the mirrors before it.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -47,11 +48,12 @@ class SeenLayers {
     SeenLayers(const LayerStage& stage, std::vector<Id> chain, std::vector<Vec3> towards);
     ~SeenLayers();
 
-    /// Works out which optics are layers; once. An optic is none where it has no image over the chain, or one
-    /// so small that its facets are smaller than pixels.
+    /// Works out which optics are layers; once. An optic is none where it has no image over the chain, or a
+    /// very small one.
     void build();
-    /// From now on no optic is a layer.
-    void leave_out() { built_ = true; }
+    /// How many pixels there are for them, before they are worked out: an optic whose grid has more points is
+    /// no layer, since to follow the pixels' own rays is less work.
+    void set_room(double pixels) { room_ = pixels; }
 
     std::optional<LayerThere> at(const Vec2& pixel) const;
 
@@ -65,6 +67,7 @@ class SeenLayers {
     const LayerStage& stage_;
     std::vector<Id> chain_;
     std::vector<Vec3> towards_;
+    double room_ = std::numeric_limits<double>::infinity();
     bool built_ = false;
     std::vector<std::unique_ptr<SeenLayer>> layers_;
 };

@@ -223,7 +223,10 @@ std::unique_ptr<SeenLayers> make_seen_layers(const World& world, const Frame& fr
         return nullptr;
     std::vector<Vec3> towards;
     for (const Vec3& point : framed.facets->grid().points) towards.push_back(point - stage.eye);
-    return std::make_unique<SeenLayers>(stage, std::vector<Id>{static_cast<Id>(optic)}, std::move(towards));
+    auto layers =
+        std::make_unique<SeenLayers>(stage, std::vector<Id>{static_cast<Id>(optic)}, std::move(towards));
+    layers->set_room(stage.camera.film.x * stage.camera.film.y);
+    return layers;
 }
 
 std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,
