@@ -20,7 +20,7 @@ FramedOptic frame_optic(const World& world, std::size_t index, const CameraRays&
     framed.rays = optic_rays(world, index, params);
     framed.resolution = grid_resolution(optic, params.resolution);
     framed.grid = params.grid.value_or(world.scene.meshes[optic.mesh].grid);
-    framed.layers = params.layers.value_or(world.scene.meshes[optic.mesh].layers);
+    framed.layered = params.layered.value_or(world.scene.meshes[optic.mesh].layered);
     framed.facets = optic_facets(world, index, framed.resolution);
     if (camera.model) {
         framed.model = camera.model;
@@ -218,7 +218,7 @@ std::unique_ptr<SeenLayers> make_seen_layers(const World& world, const Frame& fr
                                              std::size_t optic) {
     const FramedOptic& framed = frame.optics[optic];
     const RenderSettings& settings = world.scene.render;
-    if (!framed.layers || !world.optics[optic].mirror || !settings.reflect || settings.max_depth < 1 ||
+    if (!framed.layered || !world.optics[optic].mirror || !settings.reflect || settings.max_depth < 1 ||
         frame.max_error > 0 || framed.grid == GridKind::kScreen || world.optics.size() < 2)
         return nullptr;
     std::vector<Vec3> towards;

@@ -30,7 +30,7 @@ struct FramedOptic {
     /// The grid's facet that a facet of the RayMeshes is.
     Id grid_facet(Id f) const { return film_grid ? film_grid->original[f] : f; }
     CornerRays rays = CornerRays::kInterpolated;
-    bool layers = false;  // optics seen in it are layers where they can be
+    bool layered = false;  // optics seen in it are layers where they can be
 };
 
 struct Frame {

@@ -90,7 +90,7 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     drawing->width = world.scene.film.width, drawing->height = world.scene.film.height,
     drawing->lines = lines;
     FrameParams divided = params;
-    divided.layers = false;  // lines are made of the optic's own facets alone
+    divided.layered = false;  // lines are made of the optic's own facets alone
     const Frame frame = make_frame(world, divided, warn);
     const SampleGrid grid{0, 0, drawing->width, drawing->height, kSide};
 

@@ -55,7 +55,7 @@ std::unique_ptr<World> two_balls(int n, int film) {
 
 FrameParams layered(bool layers) {
     FrameParams frame;
-    frame.layers = layers;
+    frame.layered = layers;
     return frame;
 }
 
@@ -289,6 +289,31 @@ TEST_CASE("projector and Embree see the same layers", "[laws][layers]") {
     INFO(a.first_off_edge);
     CHECK(a.off_edge == 0);
     CHECK(a.seen + a.coverage <= 3);
+}
+
+TEST_CASE("a scene says whether optics seen in an optic are layers", "[laws][layers]") {
+    for (const Mesh& mesh : two_balls(8, 200)->scene.meshes) CHECK(mesh.layered);
+    const std::string ball =
+        R"({"name":"%","role":"optic","material":"chrome","seenOptics":"divided","primitive":{"type":"sphere","center":[%],"radius":0.6}})";
+    const auto at = [&](const std::string& name, const std::string& center) {
+        std::string text = ball;
+        text.replace(text.find('%'), 1, name);
+        return text.replace(text.find('%'), 1, center);
+    };
+    const auto divided = world_from("divided",
+                                    scene_of(200, R"({"eye":[0.7,0.9,4.4],"at":[0.05,0,0]})",
+                                             at("a", "-0.75,0.1,0") + "," + at("b", "1,-0.2,0.3") + room()),
+                                    8);
+    PictureRequest request;
+    request.layers.layers = layer_names();
+    const Picture as_said = draw_picture(*divided, request, {}, ignore);
+    CHECK(as_said.statistics.layered_pixels == 0);
+    request.frame.layered = false;
+    check_same(as_said.image, draw_picture(*divided, request, {}, ignore).image);
+    request.frame.layered = true;
+    const Picture layers = draw_picture(*divided, request, {}, ignore);
+    CHECK(layers.statistics.layered_pixels > 100);
+    CHECK(layers.statistics.traced_pixels < as_said.statistics.traced_pixels);
 }
 
 TEST_CASE("crops and threads do not change layers", "[laws][layers]") {
