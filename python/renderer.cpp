@@ -94,6 +94,7 @@ HeldImage draw(const Renderer& renderer, const PictureRequest& request, const st
     statistics["pixels_without_ray"] = picture.statistics.pixels_without_ray;
     statistics["subdivided_pixels"] = picture.statistics.subdivided_pixels;
     statistics["traced_pixels"] = picture.statistics.traced_pixels;
+    statistics["layered_pixels"] = picture.statistics.layered_pixels;
     statistics["projected_facets"] = picture.statistics.projected_facets;
     statistics["predicted_error"] = picture.statistics.predicted_error;
     statistics["prepare_seconds"] = picture.prepare_seconds;

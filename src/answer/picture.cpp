@@ -14,6 +14,7 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
         {"pixels_without_ray", picture.statistics.pixels_without_ray},
         {"subdivided_pixels", picture.statistics.subdivided_pixels},
         {"traced_pixels", picture.statistics.traced_pixels},
+        {"layered_pixels", picture.statistics.layered_pixels},
         {"projected_facets", picture.statistics.projected_facets},
         {"predicted_error", picture.statistics.predicted_error},
         {"left_out", {{"faint", picture.statistics.faint_light}, {"deep", picture.statistics.deep_light}}},
@@ -23,11 +24,12 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
 
 std::string picture_note(const Picture& picture) {
     return fmt::format(
-        "drew {} x {} pixels, {} of them of optics ({} subdivided, {} traced): prepared in {:.3f} s, "
+        "drew {} x {} pixels, {} of them of optics ({} in layers, {} subdivided, {} traced): prepared in "
+        "{:.3f} s, "
         "drawn in {:.3f} s",
         picture.image.width, picture.image.height, picture.statistics.optic_pixels,
-        picture.statistics.subdivided_pixels, picture.statistics.traced_pixels, picture.prepare_seconds,
-        picture.draw_seconds);
+        picture.statistics.layered_pixels, picture.statistics.subdivided_pixels,
+        picture.statistics.traced_pixels, picture.prepare_seconds, picture.draw_seconds);
 }
 
 }  // namespace trilens

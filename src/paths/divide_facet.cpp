@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace trilens {
 namespace {
@@ -70,8 +71,12 @@ class Divider {
     void divide(Id cell, const Triangle& corners, int level);
     void split(Id cell, const Triangle& corners, const Inside& inside, int level);
     bool is_least(const Triangle& corners, int level) const;
-    bool project(const Triangle& corners, const Inside& inside, int level);
-    bool mirror_alone(const Triangle& corners, const Inside& inside) const;
+    bool project(const Triangle& corners, std::span<const Point> inside, int level);
+    bool mirror_alone(const Triangle& corners, std::span<const Point> inside) const;
+    bool layered(const Triangle& corners, std::span<const Point> inside, int level);
+    bool divide_plain(Id cell, const Triangle& corners);
+    void trace(Id cell, const Triangle& corners, int level);
+    void project_mirror(const Triangle& corners);
     void note(const CutPaths& cut);
     void end(Id cell, FacetPart part);
     FacetPart part_of(const Triangle& corners, int level) const;
@@ -117,7 +122,7 @@ FacetPart Divider::part_of(const Triangle& corners, int level) const {
 }
 
 /// A mirror that shows no other optic there has rays beyond its silhouette too: the mirror law goes on.
-bool Divider::mirror_alone(const Triangle& corners, const Inside& inside) const {
+bool Divider::mirror_alone(const Triangle& corners, std::span<const Point> inside) const {
     if (!mirror_) return false;
     const auto alone = [](const Look& look) {
         return look.state != LookState::kSeen || (look.segments.size() == 1 && look.segments[0].ends);
@@ -129,21 +134,52 @@ bool Divider::mirror_alone(const Triangle& corners, const Inside& inside) const 
            std::all_of(inside.begin(), inside.end(), [&](const Point& point) { return alone(*point.look); });
 }
 
-bool Divider::project(const Triangle& corners, const Inside& inside, int level) {
+/// The optic that the path over a mirror goes on to; kNone: to none.
+Id next_of(const Look& look) {
+    for (const PathSegment& segment : look.segments)
+        if (segment.parent == 0) return segment.step.optic;
+    return kNone;
+}
+
+/// The first reflection alone, in projected_.
+void Divider::project_mirror(const Triangle& corners) {
+    PathSegment segment;
+    segment.step = {looking_.optic, Event::kReflect};
+    projected_.histories = {segment};
+    for (std::size_t k = 0; k < 3; ++k)
+        if (corners[k].look->state == LookState::kSeen) projected_.segment[k] = {0};
+    for (PartInside& point : projected_.inside)
+        if (point.at.look->state == LookState::kSeen) point.segment = {0};
+}
+
+/// Whether the layers over this mirror show what the exact paths meet next, wherever they were looked at.
+bool Divider::layered(const Triangle& corners, std::span<const Point> inside, int level) {
+    if (!params_.layers_agree || level > 0 || !mirror_) return false;
+    const auto agrees = [&](const Point& point) {
+        const Look& look = *point.look;
+        if (look.state != LookState::kSeen) return true;
+        return !look.segments.empty() && look.screen.z > 0 &&
+               params_.layers_agree(Vec2(look.screen) / look.screen.z, next_of(look));
+    };
+    if (!std::all_of(corners.begin(), corners.end(), agrees) ||
+        !std::all_of(inside.begin(), inside.end(), agrees))
+        return false;
+    projected_ = part_of(corners, level);
+    projected_.layered = true;
+    for (const Point& point : inside) projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
+    project_mirror(corners);
+    return true;
+}
+
+bool Divider::project(const Triangle& corners, std::span<const Point> inside, int level) {
     projected_ = part_of(corners, level);
     for (const Point& point : inside) projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
     if (!looking_.world->reflect && mirror_) return true;
     if (mirror_alone(corners, inside)) {
-        PathSegment segment;
-        segment.step = {looking_.optic, Event::kReflect};
-        projected_.histories = {segment};
-        for (std::size_t k = 0; k < 3; ++k)
-            if (corners[k].look->state == LookState::kSeen) projected_.segment[k] = {0};
-        for (PartInside& point : projected_.inside)
-            if (point.at.look->state == LookState::kSeen) point.segment = {0};
+        project_mirror(corners);
         return true;
     }
-    const Look& centre = *inside.back().look;
+    const Look& centre = inside.empty() ? *corners[0].look : *inside.back().look;
     if (centre.state != LookState::kSeen) return false;
     const auto agrees = [&](const Look& look, std::vector<std::size_t>& match) {
         if (look.state != LookState::kSeen || look.front != centre.front) return false;
@@ -190,17 +226,31 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
                         between({&corners[2], &corners[0]}, fainter),
                         between({&corners[0], &corners[1]}, fainter),
                         between({&corners[0], &corners[1], &corners[2]}, kLeastWeight)};
-    if (project(corners, inside, level)) return end(cell, std::move(projected_));
+    if (layered(corners, inside, level) || project(corners, inside, level))
+        return end(cell, std::move(projected_));
     split(cell, corners, inside, level);
 }
 
+void Divider::trace(Id cell, const Triangle& corners, int level) {
+    FacetPart part = part_of(corners, level);
+    part.method = LeafMethod::kTraced;
+    part.centre = (corners[0].screen + corners[1].screen + corners[2].screen) / 3.0;
+    end(cell, std::move(part));
+}
+
+/// A facet so small that what lies between its corners is less than a pixel away from them; false where it is
+/// none.
+bool Divider::divide_plain(Id cell, const Triangle& corners) {
+    if (!(screen_area(corners) < params_.plain_area)) return false;
+    if (layered(corners, {}, 0) || project(corners, {}, 0))
+        end(cell, std::move(projected_));
+    else
+        trace(cell, corners, 0);
+    return true;
+}
+
 void Divider::split(Id cell, const Triangle& corners, const Inside& inside, int level) {
-    if (is_least(corners, level)) {
-        FacetPart part = part_of(corners, level);
-        part.method = LeafMethod::kTraced;
-        part.centre = inside[3].screen;
-        return end(cell, std::move(part));
-    }
+    if (is_least(corners, level)) return trace(cell, corners, level);
     const Id first = static_cast<Id>(divided_.cells.size());
     divided_.cells[cell].children = first;
     divided_.cells.resize(divided_.cells.size() + 4);
@@ -220,10 +270,10 @@ DividedFacet Divider::divide(const std::array<PartCorner, 3>& from) {
         note(from[k].look->cut);
     }
     divided_.cells.resize(1);
-    if (has_normals)
-        divide(0, corners, 0);
-    else
+    if (!has_normals)
         end(0, part_of(corners, 0));
+    else if (!divide_plain(0, corners))
+        divide(0, corners, 0);
     return std::move(divided_);
 }
 

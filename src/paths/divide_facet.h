@@ -26,6 +26,7 @@ struct PartInside {
 struct FacetPart {
     std::uint8_t level = 0;
     LeafMethod method = LeafMethod::kProjected;
+    bool layered = false;                // see PathLeaf
     Vec3 centre{0};                      // of kTraced: homogeneous screen position
     std::vector<PathSegment> histories;  // of kProjected: parents before children; empty: no rays
     std::vector<Id> node;                // per history: of OpticPaths::nodes, once it has one

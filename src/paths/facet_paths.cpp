@@ -20,7 +20,26 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
 OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams params)
-    : looking_(std::move(looking)), grid_(&grid), params_(params) {
+    : looking_(std::move(looking)), grid_(&grid), params_(std::move(params)) {
+    set_places(grid);
+    outline_.screen.reserve(places_.size());
+    for (const Place& place : places_) {
+        outline_.screen.push_back(looking_.camera.screen(place.point));
+        incident_.push_back(looking_.camera.ray(outline_.screen.back(), place.point).direction);
+    }
+}
+
+OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, std::span<const CornerView> views,
+                       DivideParams params)
+    : looking_(std::move(looking)), grid_(&grid), params_(std::move(params)) {
+    set_places(grid);
+    for (const CornerView& view : views) {
+        outline_.screen.push_back(view.screen);
+        incident_.push_back(view.incident);
+    }
+}
+
+void OpticPaths::set_places(const SurfaceGrid& grid) {
     places_.resize(grid.corner_point.size());
     for (std::size_t f = 0; f < grid.facets.size(); ++f)
         for (std::size_t k = 0; k < 3; ++k) {
@@ -30,11 +49,6 @@ OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams pa
         }
     outline_.rays.resize(places_.size());
     outline_.facets = grid.facets;
-    outline_.screen.reserve(places_.size());
-    for (const Place& place : places_) {
-        outline_.screen.push_back(looking_.camera.screen(place.point));
-        incident_.push_back(looking_.camera.ray(outline_.screen.back(), place.point).direction);
-    }
     corner_looks_.resize(2 * places_.size());
     cells_.resize(grid.facets.size());
     prepared_.resize(grid.facets.size());
@@ -62,7 +76,7 @@ void OpticPaths::set_film_corner(Id corner, const Vec2& pixel) {
 }
 
 OpticPaths::OpticPaths(Looking looking, const FilmWindow& window, DivideParams params)
-    : looking_(std::move(looking)), window_(window), params_(params) {
+    : looking_(std::move(looking)), window_(window), params_(std::move(params)) {
     const Id n = static_cast<Id>(window.n), side = n + 1;
     const std::size_t corners = static_cast<std::size_t>(side) * side;
     places_.resize(corners);
@@ -149,7 +163,9 @@ void OpticPaths::look_at_corners(std::span<const Id> facets) {
     parallel_for(wanted.size(), kCornersPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const bool front = wanted[i] % 2 == 1;
-            auto look = std::make_unique<Look>(look_at(looking_, places_[wanted[i] / 2],
+            const Id corner = wanted[i] / 2;
+            auto look = std::make_unique<Look>(look_at(looking_, places_[corner],
+                                                       {outline_.screen[corner], incident_[corner]},
                                                        {.side = front ? LookSide::kFront : LookSide::kBack,
                                                         .least_weight = kFainter * kLeastWeight}));
             if (!params_.estimates) set_beside(looking_, *look);
@@ -171,6 +187,7 @@ bool OpticPaths::on_film(Id facet) const {
     int behind = 0;  // the eye: corners
     for (const Id corner : outline_.facets[facet]) {
         const Vec3& s = outline_.screen[corner];
+        if (s.z == 0) return false;  // it has no image
         if (!(s.z > 0)) {
             ++behind;
             continue;
@@ -270,7 +287,7 @@ void OpticPaths::append(Id facet, Id cell, DividedFacet& divided) {
         if (from.part != kNone) leaf_cell_[first_leaf + from.part] = number(c);
     }
     for (FacetPart& part : divided.parts) {
-        leaves_.push_back({facet, part.level, part.method, part.centre});
+        leaves_.push_back({facet, part.level, part.method, part.centre, 0, part.layered});
         if (part.method != LeafMethod::kProjected) continue;
         ++projected_count_;
         append_part(static_cast<Id>(leaves_.size() - 1), part);

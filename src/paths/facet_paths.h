@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -27,6 +28,7 @@ struct PathLeaf {
     LeafMethod method = LeafMethod::kProjected;
     Vec3 centre{0};        // of kTraced: homogeneous screen position
     double predicted = 0;  // of kProjected: displacement in pixels, where an error is asked for
+    bool layered = false;  // of kProjected: optics seen in this one are layers that lie over it
 };
 
 /// All rays of one history: its last step starts them.
@@ -48,12 +50,16 @@ struct PathNode {
 /// How finely facets are divided whose corners do not tell the truth about the rays between them.
 struct DivideParams {
     double least_area = 8;  // square pixels: parts below this are traced
+    double plain_area = 0;  // square pixels: of facets below this the corners alone are looked at
     int most_levels = 6;
     // Pixels: parts whose predicted displacement is more are divided too; infinity: whatever it is.
     double max_error = std::numeric_limits<double>::infinity();
     bool estimates = true;            // few are: predicted only where an estimate says that they may be
     const Tracer* objects = nullptr;  // for the prediction: what is seen
     bool fit = false;                 // corner rays of whole facets are fitted
+    // Of a mirror: whether a pixel from which the exact path goes on to optic `next` (kNone: to none) shows
+    // that optic's layer. Facets on which it does are not divided. Unset: there are no layers.
+    std::function<bool(const Vec2& pixel, Id next)> layers_agree = {};
 };
 
 struct DividedFacet;
@@ -91,6 +97,11 @@ class OpticPaths {
   public:
     /// `grid` must live longer.
     OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams params);
+
+    /// The same where it is known how the camera sees each corner of the grid. Facets with a corner of w = 0
+    /// have no image and may not be asked for.
+    OpticPaths(Looking looking, const SurfaceGrid& grid, std::span<const CornerView> views,
+               DivideParams params);
 
     /// Facets on the film instead (thesis 7.2.2): n x n squares of two facets each over a window, whose
     /// corner rays are the camera's exact ones, whatever the surface. A sample's facet is then the one that
@@ -130,6 +141,7 @@ class OpticPaths {
         Id children = kNone;  // the first of four
         Id leaf = kNone;
     };
+    void set_places(const SurfaceGrid& grid);
     bool shows_front(Id facet) const;
     bool on_film(Id facet) const;
     std::vector<Id> wanted_facets(std::span<const Id> facets);

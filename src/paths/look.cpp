@@ -111,11 +111,15 @@ std::optional<Beside> beside_on_film(const Looking& looking, const Look& look, i
 
 }  // namespace
 
+Look look_at(const Looking& looking, const Place& place, const CornerView& view, const LookParams& params) {
+    Look look = arrive(looking, place, view.incident, params);
+    look.screen = view.screen;
+    return look;
+}
+
 Look look_at(const Looking& looking, const Place& place, const LookParams& params) {
     const Vec3 screen = looking.camera.screen(place.point);
-    Look look = arrive(looking, place, looking.camera.ray(screen, place.point).direction, params);
-    look.screen = screen;
-    return look;
+    return look_at(looking, place, {screen, looking.camera.ray(screen, place.point).direction}, params);
 }
 
 Look look_through(const Looking& looking, const Chord& chord, const LookParams& params) {

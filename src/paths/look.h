@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/corner_view.h"
 #include "paths/follow.h"
 
 namespace trilens {
@@ -76,7 +77,10 @@ struct LookParams {
     double least_weight = kLeastWeight;
 };
 
-/// The paths from a place that is known to lie on the surface. Not for kNearest.
+/// The paths from a place that is known to lie on the surface, and which the camera sees so. Not for
+/// kNearest.
+Look look_at(const Looking& looking, const Place& place, const CornerView& view, const LookParams& params);
+/// The same where the camera is to be asked how it sees the place.
 Look look_at(const Looking& looking, const Place& place, const LookParams& params);
 
 /// The paths of the camera's ray through a facet's point `chord` (world) on the screen at `screen`: where it

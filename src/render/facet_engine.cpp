@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/parallel.h"
 #include "base/rasterize.h"
@@ -38,12 +39,14 @@ DrawMesh watched(const WatchMesh& watch, const DrawMesh& draw_mesh) {
 struct FacetViewer {
     const World* world = nullptr;
     Frame frame;
-    DrawMesh draw_first;                             // objects, for what lies before what
-    DrawMesh draw_objects;                           // objects, as the engine shows them
-    DrawMesh draw_paths;                             // the same, for the rays that leave optics
-    std::vector<DrawMesh> draw_optics;               // each optic's facets
-    bool redraws_direct = false;                     // draw_objects is another engine than draw_first
-    std::vector<std::unique_ptr<OpticPaths>> paths;  // per optic
+    DrawMesh draw_first;                // objects, for what lies before what
+    DrawMesh draw_objects;              // objects, as the engine shows them
+    DrawMesh draw_paths;                // the same, for the rays that leave optics
+    std::vector<DrawMesh> draw_optics;  // each optic's facets
+    bool redraws_direct = false;        // draw_objects is another engine than draw_first
+    std::optional<LayerStage> stage;
+    std::vector<std::unique_ptr<SeenLayers>> layers;  // per optic; null: it has none
+    std::vector<std::unique_ptr<OpticPaths>> paths;   // per optic
 
     void operator()(const SampleGrid& grid, SampleViews& views) const;
 
@@ -135,8 +138,9 @@ void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     count_from_eye(frame.camera, views.samples);
     std::vector<OpticEnds> ends;
     for (std::size_t i = 0; i < frame.optics.size(); ++i)
-        ends.push_back(draw_optic_paths({*world, static_cast<Id>(i), draw_paths, frame.optics[i]}, *paths[i],
-                                        grid, views));
+        ends.push_back(
+            draw_optic_paths({*world, static_cast<Id>(i), draw_paths, frame.optics[i], layers[i].get()},
+                             *paths[i], grid, views));
     collect_ends(ends, views);
 }
 
@@ -151,10 +155,14 @@ FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice&
     auto viewer = std::make_shared<FacetViewer>();
     viewer->world = &world;
     viewer->frame = std::move(frame);
-    for (std::size_t i = 0; i < viewer->frame.optics.size(); ++i)
+    if (follows_paths(engine.engine)) viewer->stage = make_layer_stage(world, viewer->frame);
+    for (std::size_t i = 0; i < viewer->frame.optics.size(); ++i) {
+        viewer->layers.push_back(viewer->stage ? make_seen_layers(world, viewer->frame, *viewer->stage, i)
+                                               : nullptr);
         viewer->paths.push_back(follows_paths(engine.engine)
-                                    ? make_optic_paths(world, viewer->frame, i)
+                                    ? make_optic_paths(world, viewer->frame, i, viewer->layers[i].get())
                                     : make_approximate_paths(world, viewer->frame, i, engine.engine));
+    }
     const bool traces = engine.engine == Engine::kFacetsTruth;
     viewer->draw_first =
         traces ? trace_through(object_tracer(world)) : project_through(prepared_objects(world));

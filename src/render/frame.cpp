@@ -28,6 +28,7 @@ FramedOptic frame_optic(const World& world, std::size_t index, const CameraRays&
     framed.rays = optic_rays(world, index, params);
     framed.resolution = grid_resolution(optic, params.resolution);
     framed.grid = params.grid.value_or(world.scene.meshes[optic.mesh].grid);
+    framed.layered = params.layered.value_or(world.scene.meshes[optic.mesh].layered);
     framed.facets = optic_facets(world, index, framed.resolution);
     if (camera.model) {
         framed.model = camera.model;
@@ -174,7 +175,8 @@ SeenGrid seen_grid(const Frame& frame, const FramedOptic& framed) {
 
 }  // namespace
 
-std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic) {
+std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
+                                             const SeenLayers* layers) {
     const FramedOptic& framed = frame.optics[optic];
     const bool for_error = frame.max_error > 0 && frame.max_error != kAnyError;
     const bool whole = world.scene.render.max_depth > 0 || for_error;
@@ -188,6 +190,8 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
     params.max_error =
         frame.max_error > 0 ? frame.max_error : believable_error(framed.resolution, world.scene.film.height);
     if (for_error) params.most_levels = kMostLevelsForError;
+    if (layers)
+        params.layers_agree = [layers](const Vec2& pixel, Id next) { return layers->agree(pixel, next); };
     // A camera that is not linear has whole paths by facets on the film: there its rays are exact.
     if (framed.grid == GridKind::kScreen || (framed.model && whole)) {
         const FilmWindow window = film_window(world, framed, seen.views);
@@ -203,6 +207,37 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
     return std::make_unique<OpticPaths>(looking,
                                         FirstPaths{seen.grid, seen.views, find_path(framed, Path::kReflect),
                                                    find_path(framed, Path::kRefract)});
+}
+
+std::optional<LayerStage> make_layer_stage(const World& world, const Frame& frame) {
+    if (!frame.camera.linear || frame.camera.linear->parallel) return std::nullopt;
+    LayerStage stage;
+    stage.world = path_world(world);
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        stage.optics.push_back(
+            {world.optics[i].surface.get(), &frame.optics[i].facets->grid(),
+             frame.optics[i].rays == CornerRays::kFitted,
+             world.scene.meshes[world.optics[i].mesh].normals.type == NormalOverride::Type::kSmooth});
+    stage.camera = path_camera(*frame.camera.linear);
+    stage.camera.film = Vec2(world.scene.film.width, world.scene.film.height);
+    stage.eye = frame.camera.linear->eye;
+    stage.divide.objects = &object_tracer(world);
+    return stage;
+}
+
+std::unique_ptr<SeenLayers> make_seen_layers(const World& world, const Frame& frame, const LayerStage& stage,
+                                             std::size_t optic) {
+    const FramedOptic& framed = frame.optics[optic];
+    const RenderSettings& settings = world.scene.render;
+    if (!framed.layered || !world.optics[optic].mirror || !settings.reflect || settings.max_depth < 1 ||
+        frame.max_error > 0 || framed.grid == GridKind::kScreen || world.optics.size() < 2)
+        return nullptr;
+    std::vector<Vec3> towards;
+    for (const Vec3& point : framed.facets->grid().points) towards.push_back(point - stage.eye);
+    auto layers =
+        std::make_unique<SeenLayers>(stage, std::vector<Id>{static_cast<Id>(optic)}, std::move(towards));
+    layers->set_room(stage.camera.film.x * stage.camera.film.y);
+    return layers;
 }
 
 std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,

@@ -7,6 +7,7 @@
 
 #include "paths/corner_rays.h"
 #include "paths/facet_paths.h"
+#include "paths/seen_layers.h"
 #include "render/camera_rays.h"
 #include "render/film_grid.h"
 #include "render/geometry.h"
@@ -29,6 +30,7 @@ struct FramedOptic {
     /// The grid's facet that a facet of the RayMeshes is.
     Id grid_facet(Id f) const { return film_grid ? film_grid->original[f] : f; }
     CornerRays rays = CornerRays::kInterpolated;
+    bool layered = false;  // optics seen in it are layers where they can be
 };
 
 struct Frame {
@@ -51,8 +53,18 @@ CornerRays optic_rays(const World& world, std::size_t optic, const FrameParams& 
 PathCamera path_camera(const LinearCamera& camera);
 PathCamera path_camera(const CameraRays& camera, double depth);
 
-/// The paths over an optic's facets, as far as the scene has them followed. The frame must live longer.
-std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic);
+/// The paths over an optic's facets, as far as the scene has them followed. The frame must live longer, and
+/// `layers`: what is seen in the optic as layers by history; null: nothing.
+std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
+                                             const SeenLayers* layers = nullptr);
+
+/// What all layers of this camera have in common; none where it has no eye.
+std::optional<LayerStage> make_layer_stage(const World& world, const Frame& frame);
+
+/// What is seen in an optic, as layers; null where it has none: it is glass, or alone, its facets lie on the
+/// film, an error is asked for, or it is not to have them. `stage` must live longer.
+std::unique_ptr<SeenLayers> make_seen_layers(const World& world, const Frame& frame, const LayerStage& stage,
+                                             std::size_t optic);
 
 /// The paths as one of the usual approximations has them: kEnvironment or kPlanar.
 std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,

@@ -156,6 +156,7 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
             counts.optic_pixels += view.optic != kNone;
             counts.pixels_without_ray += lacks_ray(world, middle, view);
             counts.traced_pixels += view.traced;
+            counts.layered_pixels += !view.traced && view.layers > 0;
             counts.subdivided_pixels += !view.traced && view.level > 0;
             counts.faint_light = std::max(counts.faint_light, view.cut.faint);
             counts.predicted_error = std::max(counts.predicted_error, view.predicted);

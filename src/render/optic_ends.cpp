@@ -1,7 +1,7 @@
 #include "render/optic_ends.h"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 
 #include "base/parallel.h"
 #include "render/follow_sample.h"
@@ -58,128 +58,6 @@ std::vector<Id> leaves_of_samples(const OpticPaths& paths, const FacetSamples& o
     return leaf;
 }
 
-Vec3 share_of(const FacetWeights& weights, const Vec2& at) {
-    const Vec3 e = weights.unnormalised(at.x, at.y);
-    return e / (e.x + e.y + e.z);
-}
-
-/// One history drawn: for each sample of it what it sees, and whether its path goes on.
-class NodeDrawer {
-  public:
-    NodeDrawer(const OpticEndsParams& params, const OpticPaths& paths, const SampleGrid& grid,
-               const std::vector<Id>& leaf)
-        : params_(params), paths_(paths), grid_(grid), leaf_(leaf), goes_on_(paths.nodes().size()) {}
-
-    /// Parents first.
-    void draw(Id node, OpticEnds& out);
-
-  private:
-    std::vector<Id> owners(const PathNode& node) const;
-    void finish(const PathNode& node, Id sample, const FacetWeights& weights, PathEnd& end) const;
-
-    const OpticEndsParams& params_;
-    const OpticPaths& paths_;
-    const SampleGrid& grid_;
-    const std::vector<Id>& leaf_;
-    std::vector<std::vector<char>> goes_on_;  // per node and sample
-};
-
-/// Samples whose path came as far as this node, with their leaves.
-std::vector<Id> NodeDrawer::owners(const PathNode& node) const {
-    std::vector<Id> owner(grid_.size(), kNone);
-    const std::vector<char>* parent = node.parent == kNone ? nullptr : &goes_on_[node.parent];
-    if (parent && parent->empty()) return owner;  // no sample came as far as the node before
-    for (std::size_t s = 0; s < owner.size(); ++s) {
-        const Id leaf = leaf_[s];
-        if (leaf == kNone || leaf >= node.mesh.facets.size() || !node.mesh.has_rays(leaf)) continue;
-        if (!parent || (*parent)[s]) owner[s] = leaf;
-    }
-    return owner;
-}
-
-void NodeDrawer::finish(const PathNode& node, Id sample, const FacetWeights& weights, PathEnd& end) const {
-    const Id leaf = leaf_[sample];
-    const Vec3 share = share_of(weights, grid_.position(sample));
-    const IdTriple& corner = node.mesh.facets[leaf];
-    end.path = node.path;
-    end.principal = node.principal[leaf];
-    end.colours = node.colours;
-    end.medium = node.medium;
-    end.ray = interpolated_ray(node.mesh, leaf, share);
-    end.weight = Vec3(0);
-    for (int k = 0; k < 3; ++k) end.weight += share[k] * node.weight[corner[static_cast<std::size_t>(k)]];
-    end.weight = glm::max(end.weight, Vec3(0));
-}
-
-/// By the derivatives of origin(w) + t direction(w) and of the film position with respect to the weights.
-double magnification(const RayMesh& mesh, Id facet, const Vec3& weights, double t) {
-    const IdTriple& corner = mesh.facets[facet];
-    const Ray &a = mesh.rays[corner[0]], &b = mesh.rays[corner[1]], &c = mesh.rays[corner[2]];
-    const Vec3 &sa = mesh.screen[corner[0]], &sb = mesh.screen[corner[1]], &sc = mesh.screen[corner[2]];
-    const Vec3 along_b = b.origin - a.origin + t * (b.direction - a.direction);
-    const Vec3 along_c = c.origin - a.origin + t * (c.direction - a.direction);
-    const Vec3 ray = weights.x * a.direction + weights.y * b.direction + weights.z * c.direction;
-    const double area = triple(normalize_or_zero(ray), along_b, along_c);
-
-    const Vec3 screen = weights.x * sa + weights.y * sb + weights.z * sc;
-    const Vec2 pixel = Vec2(screen) / screen.z;
-    const Vec2 film_b = (Vec2(sb - sa) - pixel * (sb.z - sa.z)) / screen.z;
-    const Vec2 film_c = (Vec2(sc - sa) - pixel * (sc.z - sa.z)) / screen.z;
-    const double film = film_b.x * film_c.y - film_b.y * film_c.x;
-    return area != 0 && std::isfinite(film / area) ? film / area : 0;
-}
-
-void NodeDrawer::draw(Id index, OpticEnds& out) {
-    const PathNode& node = paths_.nodes()[index];
-    const FacetSamples owned = group_by_facet(owners(node), node.mesh.facets.size());
-    if (owned.sample.empty()) return;
-    std::vector<Hit> hits(grid_.size());
-    params_.draw(node.mesh, owned, grid_, hits);
-
-    // The history, once for all its ends.
-    const std::size_t first_step = out.steps.size();
-    for (Id n = index; n != kNone; n = paths_.nodes()[n].parent) out.steps.push_back(paths_.nodes()[n].step);
-    std::reverse(out.steps.begin() + static_cast<std::ptrdiff_t>(first_step), out.steps.end());
-
-    std::vector<char>& goes_on = goes_on_[index];
-    goes_on.resize(grid_.size(), 0);
-    std::vector<PathEnd> ends(owned.sample.size());
-    std::vector<char> is_end(owned.sample.size(), 0);
-    parallel_for(node.mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
-        for (std::size_t l = from; l < to; ++l) {
-            if (owned.of(l).empty()) continue;
-            const FacetWeights weights = facet_weights(node.mesh, l);
-            if (weights.edge_on) continue;
-            const IdTriple& corner = node.mesh.facets[l];
-            for (std::size_t i = owned.first[l]; i < owned.first[l + 1]; ++i) {
-                const Id s = owned.sample[i];
-                if (!node.ends[l]) {
-                    const Vec3 share = share_of(weights, grid_.position(s));
-                    double next = 0;
-                    for (int k = 0; k < 3; ++k)
-                        next += share[k] * node.next[corner[static_cast<std::size_t>(k)]];
-                    goes_on[s] = !(hits[s].seen() && hits[s].t <= next * (1 + kTouch));
-                    if (goes_on[s]) continue;
-                }
-                finish(node, s, weights, ends[i]);
-                ends[i].node = index;
-                ends[i].first_step = first_step;
-                ends[i].step_count = node.step_count;
-                ends[i].hit = hits[s];
-                if (hits[s].seen())
-                    ends[i].magnification = magnification(node.mesh, static_cast<Id>(l),
-                                                          share_of(weights, grid_.position(s)), hits[s].t);
-                is_end[i] = 1;
-            }
-        }
-    });
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        if (!is_end[i]) continue;
-        out.ends.push_back(ends[i]);
-        out.sample.push_back(owned.sample[i]);
-    }
-}
-
 /// The camera's ray where it passes the exact surface by, at the rim of a facet: it goes straight on.
 void pass_by(const World& world, SampleView& view, OpticEnds& out) {
     PathEnd end;
@@ -222,32 +100,186 @@ void follow_samples(const OpticEndsParams& params, const std::vector<Id>& sample
     }
 }
 
+/// What is drawn: an optic that the camera sees itself, or a layer.
+struct Shown {
+    OpticPaths& paths;
+    SeenLayers* layers = nullptr;  // what is seen in it; null: none is a layer
+    FacetSamples owned;            // by facet of its paths
+    std::uint8_t depth = 0;        // layers that it lies over
+};
+
+/// How the samples of a layer came to it.
+struct LayerSamples {
+    std::vector<Id> owner;           // per sample its facet; kNone: it does not see the layer
+    std::vector<Id> entry;           // per sample, where it has a facet: of the next two
+    std::vector<PathEnd> before;     // the ends that the layer takes the place of
+    std::vector<Incidence> arrival;  // at the layer's optic
+};
+
+/// Draws an optic, and what is seen in it, and so on.
+class ShownDrawer {
+  public:
+    ShownDrawer(const OpticEndsParams& params, const SampleGrid& grid, SampleViews& views)
+        : params_(params), grid_(grid), views_(views) {}
+
+    /// Appends the ends of all its samples, but for those to be traced.
+    void draw(const Shown& shown, OpticEnds& out);
+
+    const std::vector<Id>& traced() const { return traced_; }
+
+  private:
+    void note(const Shown& shown, const std::vector<Id>& leaf);
+    std::vector<LayerSamples> take_covered(const Shown& shown, const std::vector<Id>& leaf,
+                                           OpticEnds& own) const;
+    bool covers(const SeenLayer& layer, const CoveringFacet& at, const PathEnd& end) const;
+    void put_behind(const SeenLayer& layer, const LayerSamples& samples, OpticEnds& ends) const;
+
+    const OpticEndsParams& params_;
+    const SampleGrid& grid_;
+    SampleViews& views_;
+    std::vector<Id> traced_;
+};
+
+void ShownDrawer::note(const Shown& shown, const std::vector<Id>& leaf) {
+    for (std::size_t s = 0; s < leaf.size(); ++s) {
+        if (leaf[s] == kNone) continue;
+        const PathLeaf& of_sample = shown.paths.leaves()[leaf[s]];
+        SampleView& view = views_.samples[s];
+        if (shown.depth == 0) view.leaf = leaf[s];
+        view.layers = shown.depth;
+        view.level = of_sample.level;
+        view.predicted = of_sample.predicted;
+        view.cut.faint = std::max(view.cut.faint, shown.paths.cut().faint);
+        view.cut.too_deep = std::max(view.cut.too_deep, shown.paths.cut().too_deep);
+        view.cut.lost = std::max(view.cut.lost, shown.paths.cut().lost);
+        if (of_sample.method == LeafMethod::kTraced) traced_.push_back(static_cast<Id>(s));
+    }
+    views_.projected_facets += shown.paths.projected_count();
+}
+
+/// Whether what the ray meets lies no nearer than the layer's point there.
+bool ShownDrawer::covers(const SeenLayer& layer, const CoveringFacet& at, const PathEnd& end) const {
+    const Vec3& d = end.ray.direction;
+    const double t = dot(layer.point(at) - end.ray.origin, d) / dot(d, d);
+    return !(end.hit.seen() && end.hit.t <= t * (1 + kTouch));
+}
+
+/// Takes the ends out that layers cover.
+std::vector<LayerSamples> ShownDrawer::take_covered(const Shown& shown, const std::vector<Id>& leaf,
+                                                    OpticEnds& own) const {
+    const auto& layers = shown.layers->all();
+    std::vector<LayerSamples> taken(layers.size());
+    for (LayerSamples& one : taken) {
+        one.owner.assign(grid_.size(), kNone);
+        one.entry.resize(grid_.size());
+    }
+    std::vector<std::optional<LayerThere>> covered(own.ends.size());
+    parallel_for(own.ends.size(), kSamplesPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const Id s = own.sample[i];
+            if (!shown.paths.leaves()[leaf[s]].layered) continue;
+            const std::optional<LayerThere> there = shown.layers->at(grid_.position(s));
+            if (there && covers(*layers[there->layer], there->facet, own.ends[i])) covered[i] = there;
+        }
+    });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < own.ends.size(); ++i) {
+        if (!covered[i]) {
+            own.ends[kept] = own.ends[i];
+            own.sample[kept++] = own.sample[i];
+            continue;
+        }
+        const CoveringFacet& at = covered[i]->facet;
+        LayerSamples& samples = taken[covered[i]->layer];
+        samples.owner[own.sample[i]] = at.facet;
+        samples.entry[own.sample[i]] = static_cast<Id>(samples.before.size());
+        samples.before.push_back(own.ends[i]);
+        samples.arrival.push_back(layers[covered[i]->layer]->arrival(at));
+    }
+    own.ends.resize(kept);
+    own.sample.resize(kept);
+    return taken;
+}
+
+/// Makes ends over a layer's optic ends over the mirror that it is seen in.
+void ShownDrawer::put_behind(const SeenLayer& layer, const LayerSamples& samples, OpticEnds& ends) const {
+    const Id optic = layer.optic();
+    const Material& material = params_.world.scene.materials[params_.world.optics[optic].material];
+    std::vector<Step> steps;
+    std::map<std::size_t, std::size_t> moved;  // first step before and now
+    for (std::size_t i = 0; i < ends.ends.size(); ++i) {
+        PathEnd& end = ends.ends[i];
+        const Id entry = samples.entry[ends.sample[i]];
+        const auto [found, added] = moved.insert({end.first_step, steps.size()});
+        if (added) {
+            steps.push_back({layer.chain().back(), Event::kReflect});
+            const auto own = ends.steps.begin() + static_cast<std::ptrdiff_t>(end.first_step);
+            steps.insert(steps.end(), own, own + end.step_count);
+        }
+        end.first_step = found->second;
+        end.step_count = static_cast<std::uint16_t>(end.step_count + 1);
+        const Incidence& arrival = samples.arrival[entry];
+        const PathEnd& came = samples.before[entry];
+        const OpticWeights weights = optic_weights(material, arrival, params_.world.scene.render.fresnel);
+        const bool reflected = end.path == Path::kReflect;
+        end.weight *= came.weight * (reflected ? weights.reflect : weights.refract);
+        // Through glass light goes on where it can.
+        if (reflected && !layer.is_mirror())
+            end.principal = end.principal && reflects_totally(material, arrival);
+        end.principal = end.principal && came.principal;
+        end.path = came.path;
+        end.node = kNone;
+    }
+    ends.steps = std::move(steps);
+}
+
+void append(OpticEnds from, OpticEnds& to) {
+    if (to.ends.empty()) {
+        to = std::move(from);
+        return;
+    }
+    for (PathEnd end : from.ends) {
+        end.first_step += to.steps.size();
+        to.ends.push_back(end);
+    }
+    to.sample.insert(to.sample.end(), from.sample.begin(), from.sample.end());
+    to.steps.insert(to.steps.end(), from.steps.begin(), from.steps.end());
+}
+
+void ShownDrawer::draw(const Shown& shown, OpticEnds& out) {
+    const std::vector<Id> seen = seen_facets(shown.owned);
+    if (seen.empty()) return;
+    if (shown.layers) shown.layers->build();
+    shown.paths.prepare(seen);
+    const std::vector<Id> leaf = leaves_of_samples(shown.paths, shown.owned, grid_);
+    OpticEnds own;
+    NodeDrawer drawer(params_.draw, shown.paths, grid_, leaf);
+    for (const Id node : shown.paths.nodes_in_order()) drawer.draw(node, own);
+    note(shown, leaf);
+    if (shown.layers && !shown.layers->all().empty()) {
+        const std::vector<LayerSamples> taken = take_covered(shown, leaf, own);
+        for (std::size_t l = 0; l < taken.size(); ++l) {
+            SeenLayer& layer = *shown.layers->all()[l];
+            OpticEnds behind;
+            draw({layer.paths(), layer.deeper(),
+                  group_by_facet(taken[l].owner, layer.paths().outline().facets.size()),
+                  static_cast<std::uint8_t>(shown.depth + 1)},
+                 behind);
+            put_behind(layer, taken[l], behind);
+            append(std::move(behind), own);
+        }
+    }
+    append(std::move(own), out);
+}
+
 }  // namespace
 
 OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, const SampleGrid& grid,
                            SampleViews& views) {
     OpticEnds out;
-    const FacetSamples owned = samples_by_facet(params, paths, grid, views);
-    const std::vector<Id> seen = seen_facets(owned);
-    if (seen.empty()) return out;
-    paths.prepare(seen);
-    const std::vector<Id> leaf = leaves_of_samples(paths, owned, grid);
-
-    NodeDrawer drawer(params, paths, grid, leaf);
-    for (const Id node : paths.nodes_in_order()) drawer.draw(node, out);
-
-    std::vector<Id> traced;
-    for (std::size_t s = 0; s < leaf.size(); ++s) {
-        if (leaf[s] == kNone) continue;
-        const PathLeaf& of_sample = paths.leaves()[leaf[s]];
-        views.samples[s].leaf = leaf[s];
-        views.samples[s].level = of_sample.level;
-        views.samples[s].predicted = of_sample.predicted;
-        views.samples[s].cut = paths.cut();
-        if (of_sample.method == LeafMethod::kTraced) traced.push_back(static_cast<Id>(s));
-    }
-    follow_samples(params, traced, views, out);
-    views.projected_facets += paths.projected_count();
+    ShownDrawer drawer(params, grid, views);
+    drawer.draw({paths, params.layers, samples_by_facet(params, paths, grid, views)}, out);
+    follow_samples(params, drawer.traced(), views, out);
     return out;
 }
 

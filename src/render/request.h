@@ -24,6 +24,7 @@ struct FrameParams {
     std::optional<GridKind> grid = std::nullopt;     // of every optic; none: each optic's own
     std::optional<CornerRays> rays = std::nullopt;   // of every optic; none: each optic's own
     std::optional<double> max_error = std::nullopt;  // RenderSettings::max_error; none: the scene's
+    std::optional<bool> layered = std::nullopt;  // of every optic, as Mesh::layered; none: each optic's own
 };
 
 /// kExact: the projector. kClassic: the thesis' engine. kFacetsTruth: Embree on the rays of the same facets.
@@ -84,6 +85,7 @@ struct LayerStatistics {
     std::size_t pixels_without_ray = 0;  // pixels on an optic that lack a ray a path asked for
     std::size_t subdivided_pixels = 0;   // of the optics' pixels, those of a part of a facet
     std::size_t traced_pixels = 0;       // and those whose own rays were followed
+    std::size_t layered_pixels = 0;      // and those that show an optic in an optic as a layer
     std::size_t projected_facets = 0;    // facets and parts of facets that were drawn through
     double predicted_error = 0;  // pixels: the most that was left of those seen; 0 where none was asked for
     // The most that was left out of any pixel, as a share of its light: paths that carry too little, and

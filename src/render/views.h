@@ -20,10 +20,11 @@ struct SampleView {
     Vec2 uv{0};           // in the facet's face
     Incidence incidence;  // of `ray` at the optic
 
-    Id leaf = kNone;         // of its optic's OpticPaths; limit truth: none
-    bool traced = false;     // its own paths were followed, those of no facet
-    std::uint8_t level = 0;  // how often its facet was divided
-    double predicted = 0;    // displacement that its facet may have, pixels, where an error was asked for
+    Id leaf = kNone;          // of its optic's OpticPaths; limit truth: none
+    bool traced = false;      // its own paths were followed, those of no facet
+    std::uint8_t level = 0;   // how often its facet was divided
+    std::uint8_t layers = 0;  // layers of optics seen in optics that lie over its facet
+    double predicted = 0;     // displacement that its facet may have, pixels, where an error was asked for
 
     CutPaths cut;  // what was not followed
 

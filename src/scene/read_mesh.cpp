@@ -156,6 +156,7 @@ Mesh read_mesh(const Node& node, std::size_t index, Reading& reading) {
     mesh.resolution = int_or(node, "resolution", mesh.resolution);
     if (string_or(node, "rays", "fitted") == "interpolated") mesh.rays = CornerRays::kInterpolated;
     mesh.grid = string_or(node, "grid", "surface") == "screen" ? GridKind::kScreen : GridKind::kSurface;
+    mesh.layered = string_or(node, "seenOptics", "layers") == "layers";
     mesh.priority = int_or(node, "priority", mesh.priority);
     mesh.normals = read_normals(node);
     mesh.role == Role::kOptic ? read_optic(node, mesh, reading) : read_object(node, mesh, reading);

@@ -65,6 +65,7 @@ struct Mesh {
     int resolution = 8;   // optic: N x N facets per quad face
     GridKind grid = GridKind::kSurface;     // optic
     CornerRays rays = CornerRays::kFitted;  // optic
+    bool layered = true;                    // optic: those seen in it are layers by history
     std::size_t face_count = 0;             // polygons of the file, holes among them; 0 for a primitive
     NormalOverride normals;                 // optic
     int priority = 0;  // optic of glass: where bodies overlap the one of higher priority is inside

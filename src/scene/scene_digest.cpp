@@ -71,9 +71,9 @@ void add(const Cage& cage, Digest& digest) {
 }
 
 void add(const Mesh& mesh, Digest& digest) {
-    const auto& [name, role, material, resolution, grid, rays, face_count, normals, priority, object,
+    const auto& [name, role, material, resolution, grid, rays, layered, face_count, normals, priority, object,
                  primitive, cage] = mesh;
-    digest.add_all(name, role, material, resolution, grid, rays, face_count, priority);
+    digest.add_all(name, role, material, resolution, grid, rays, layered, face_count, priority);
     const auto& [type, center, seed, amplitude, scale] = normals;
     digest.add_all(type, center, seed, amplitude, scale);
     const auto& [points, triangles, uvs, corner_normals, materials] = object;

@@ -167,6 +167,7 @@ const char* scene_schema() {
       "resolution": { "type": "integer", "minimum": 1, "maximum": 1024, "default": 8, "description": "optic: N x N facets per quad face." },
       "rays": { "enum": ["fitted", "interpolated"], "default": "fitted", "description": "optic: at the corners of its facets the exact rays, with straight interpolation between them, or rays fitted so that what lies between is nearest to exact in the mean." },
       "grid": { "enum": ["surface", "screen"], "default": "surface", "description": "optic: its facets lie on the surface, N x N per face, or on the film, N x N over its bounds there." },
+      "seenOptics": { "enum": ["layers", "divided"], "default": "layers", "description": "optic that mirrors: an optic seen in it is drawn as a layer, its own grid as this one shows it, where that can be; or this optic's facets are divided along its outline, and at last traced." },
       "priority": { "type": "integer", "minimum": -1000, "maximum": 1000, "default": 0, "description": "optic of glass: where bodies overlap the one of higher priority is inside, as a glass around its liquid." },
       "transform": { "$ref": "#/definitions/transform" },
       "file": { "type": "string", "minLength": 1, "description": "OBJ; for objects glTF and GLB too." },

@@ -89,9 +89,11 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     auto drawing = std::make_unique<Drawing>();
     drawing->width = world.scene.film.width, drawing->height = world.scene.film.height,
     drawing->lines = lines;
-    FrameParams undivided = params;
-    undivided.max_error = kAnyError;
-    const Frame frame = make_frame(world, undivided, warn);
+    // Lines are made of the optic's own facets alone, undivided.
+    FrameParams plain = params;
+    plain.max_error = kAnyError;
+    plain.layered = false;
+    const Frame frame = make_frame(world, plain, warn);
     const SampleGrid grid{0, 0, drawing->width, drawing->height, kSide};
 
     // Everything that the camera may see, and the optics' grids.

@@ -5,8 +5,8 @@
 
 #include "intersect/limit_tracer.h"
 #include "intersect/random_scene.h"
-#include "support/test.h"
 #include "intersect/test_surfaces.h"
+#include "support/test.h"
 
 using namespace trilens;
 using namespace trilens_test;
