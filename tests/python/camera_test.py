@@ -41,6 +41,17 @@ def test_types_are_the_scene_files(scene):
     assert not trilens.FilmCamera(scene, "fisheye").is_linear
 
 
+def test_facets_are_named_after_the_general_linear_cameras(scene, command):
+    kinds = {camera.name: trilens.FilmCamera(scene, camera.name).facet_kinds for camera in scene.cameras}
+    assert kinds["main"] == {"pinhole": 2} and kinds["oblique"] == {"orthographic": 2}
+    assert kinds["strip"] == {"pushbroom": 8192} and kinds["slits"] == {"crossedSlits": 8192}
+    assert kinds["panorama"] == {"pinhole": 8064, "none": 128}
+    _, answer = command("scene", "info", SCENE)
+    assert answer["camera_kinds"][answer["cameras"].index("several")] == kinds["several"]
+    pixel = trilens.Renderer(scene).explain(48, 36, camera="strip")
+    assert pixel["camera"]["facet_kind"] == "pushbroom"
+
+
 def test_a_lens_that_folds_the_film_is_refused(scene):
     index = [camera.name for camera in scene.cameras].index("lens")
     broken = scene.with_overrides({f"/cameras/{index}/distortion": [-2, 0, 0, 0]})
