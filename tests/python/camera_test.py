@@ -57,3 +57,22 @@ def test_a_lens_that_folds_the_film_is_refused(scene):
     broken = scene.with_overrides({f"/cameras/{index}/distortion": [-2, 0, 0, 0]})
     with pytest.raises(trilens.InputError, match=f"/cameras/{index}/distortion: .*not one-to-one"):
         trilens.FilmCamera(broken, "lens")
+
+
+def test_the_caustic_of_a_ring_is_a_nephroid():
+    renderer = trilens.Renderer(trilens.load_scene(SCENE.parent / "cameras/cup.json"))
+    drawing = renderer.draw_lines(16, "source", folds=True, caustics=True)
+    (sheet,) = drawing.caustics
+    assert (sheet["path"], sheet["optic"], sheet["sheet"], sheet["virtual"]) == ("reflect", 0, 0, False)
+    assert sheet["triangles"].max() < len(sheet["points"]) and sheet["segments"].shape == (0, 2)
+    assert drawing.obj.count("\nf ") == len(sheet["triangles"])
+
+    def nephroid(places):
+        x, z = places[:, 0], places[:, 2]
+        return (x**2 + z**2 - 0.25) ** 3 - 27 / 64 * x**2
+
+    assert np.abs(nephroid(sheet["points"])).max() < 2e-3
+    curves = [curve for curve in drawing.fold_curves if curve["object"] == 1]
+    assert curves and all(len(curve["points"]) == len(curve["places"]) for curve in curves)
+    assert max(np.abs(nephroid(curve["places"])).max() for curve in curves) < 2e-3
+    assert renderer.draw_lines(2, "source").caustics == [] and renderer.draw_lines(2, "source").obj == ""
