@@ -76,3 +76,10 @@ def test_the_caustic_of_a_ring_is_a_nephroid():
     assert curves and all(len(curve["points"]) == len(curve["places"]) for curve in curves)
     assert max(np.abs(nephroid(curve["places"])).max() for curve in curves) < 2e-3
     assert renderer.draw_lines(2, "source").caustics == [] and renderer.draw_lines(2, "source").obj == ""
+
+
+def test_a_cameras_own_facets_are_an_axis_of_sweeps(tmp_path):
+    summary = trilens.sweep(SCENE, tmp_path, "camera-facets=8..32:x2", camera="cylinder",
+                            overrides={"/film/width": 96, "/film/height": 72, "/film/spp": 1})
+    fit = next(fit for fit in summary.fits if (fit.layer, fit.metric) == ("direct", "disp_mean_px"))
+    assert fit.axis == "camera-facets" and fit.order > 1.9
