@@ -83,3 +83,32 @@ def test_a_cameras_own_facets_are_an_axis_of_sweeps(tmp_path):
                             overrides={"/film/width": 96, "/film/height": 72, "/film/spp": 1})
     fit = next(fit for fit in summary.fits if (fit.layer, fit.metric) == ("direct", "disp_mean_px"))
     assert fit.axis == "camera-facets" and fit.order > 1.9
+
+
+def test_a_cube_map_cross_is_six_faces_every_id_the_same():
+    file, side = SCENE.parent / "cameras/cross.json", 80
+    ids = ["directID.object", "directID.primitive", "optic.object", "optic.facet"]
+
+    def drawn(width, height):
+        film = {"/film/width": width, "/film/height": height, "/film/spp": 1}
+        return trilens.Renderer(trilens.load_scene(file, film, warn=lambda text: None))
+
+    cross, face = drawn(4 * side, 3 * side), drawn(side, side)
+    layers = ["Z", "optic", "direct", "position"]
+    whole = cross.render(camera="cross", layers=layers, warn=lambda text: None)
+    described = {camera["name"]: camera for camera in cross.scene.to_dict()["cameras"]}
+    compared, objects = 0, set()
+    for name, camera in described.items():
+        if name == "cross":
+            continue
+        (view,) = [one for one in described["cross"]["views"] if one["lookAt"]["at"] == camera["lookAt"]["at"]]
+        x, y = round(view["window"][0] * 4 * side), round(view["window"][1] * 3 * side)
+        one = face.render(camera=name, layers=layers, warn=lambda text: None)
+        part = {channel: np.asarray(whole[channel])[y : y + side, x : x + side] for channel in [*ids, "Z"]}
+        for channel in ids:
+            assert part[channel].tobytes() == np.ascontiguousarray(one[channel]).tobytes(), (name, channel)
+        # The cross interpolates its rays between corners: the last bit of a depth may be another.
+        assert np.allclose(part["Z"], one["Z"], rtol=3e-7)
+        objects |= set(np.unique(part["directID.object"]))
+        compared += 1
+    assert compared == 6 and len(objects) > 3
