@@ -28,6 +28,16 @@ py::dict rays_at(const Camera& camera, const Doubles& places) {
     return arrays;
 }
 
+py::dict kinds_of(const Camera& camera) {
+    const FacetKinds kinds = facet_kinds(camera);
+    py::dict counts;
+    for (std::size_t k = 0; k < kGeneralLinearKindCount; ++k)
+        if (kinds.of_kind[k] > 0)
+            counts[general_linear_kind_name(static_cast<GeneralLinearKind>(k))] = kinds.of_kind[k];
+    if (kinds.without > 0) counts["none"] = kinds.without;
+    return counts;
+}
+
 py::dict images_of(const Camera& camera, const Doubles& points) {
     const std::vector<Vec3> given = points_of(points, "points");
     std::vector<std::int64_t> point;
@@ -58,6 +68,14 @@ void bind_film_camera(py::module_& module) {
         .def_property_readonly(
             "mesh", [](const Camera& camera) { return camera.mesh; },
             "The RayMesh through which the camera draws; of a linear camera it is exact.")
+        .def_property_readonly(
+            "facet_kinds", &kinds_of,
+            "What the mesh's facets are among the general linear cameras of Yu and McMillan (2004), across\n"
+            "the view axis: a dict of counts by \"pinhole\", \"orthographic\", \"pushbroom\", "
+            "\"crossedSlits\",\n"
+            "\"pencil\", \"twistedOrthographic\", \"bilinear\", \"plane\", where there are any, and \"none\" "
+            "for\n"
+            "facets that are none of them.")
         .def("rays", &rays_at, py::arg("places"),
              "Exact rays of film places (N, 2), in pixels from the top left: a dict of origin and direction "
              "(N, 3);\nNaN where the camera has no ray.")

@@ -27,8 +27,13 @@ py::object hit_dict(const Renderer& renderer, const Hit& hit) {
     return dict;
 }
 
-py::object end_dict(const Renderer& renderer, const SampleViews& views, const PathEnd* end) {
+py::object kind_name(const std::optional<GeneralLinearKind>& kind) {
+    return kind ? py::object(py::str(general_linear_kind_name(*kind))) : py::none();
+}
+
+py::object end_dict(const Renderer& renderer, const PixelExplanation& pixel, const PathEnd* end) {
     if (!end) return py::none();
+    const SampleViews& views = pixel.views;
     py::dict dict;
     py::list steps;
     for (const Step& step : views.steps_of(*end)) {
@@ -40,6 +45,7 @@ py::object end_dict(const Renderer& renderer, const SampleViews& views, const Pa
     dict["path"] = steps;
     dict["weight"] = tuple_of(end->weight);
     dict["ray"] = ray_dict(end->ray);
+    dict["facet_kind"] = kind_name(pixel.end_kinds[static_cast<std::size_t>(end - views.ends.data())]);
     dict["sees"] = hit_dict(renderer, end->hit);
     return dict;
 }
@@ -49,6 +55,12 @@ py::dict explanation_dict(const Renderer& renderer, Engine engine, const PixelEx
     py::dict dict;
     dict["pixel"] = py::make_tuple(pixel.x, pixel.y);
     dict["engine"] = engine_name(engine);
+    if (pixel.camera_facet != kNone) {
+        py::dict camera;
+        camera["facet"] = pixel.camera_facet;
+        camera["facet_kind"] = kind_name(pixel.camera_kind);
+        dict["camera"] = camera;
+    }
     dict["ray"] = ray_dict(view.ray);
     dict["depth"] = view.depth;
     dict["sees"] = hit_dict(renderer, view.hit);
@@ -63,10 +75,9 @@ py::dict explanation_dict(const Renderer& renderer, Engine engine, const PixelEx
         shown["front"] = view.incidence.front;
         dict["optic"] = shown;
         for (const Path path : {Path::kReflect, Path::kRefract})
-            dict[path_name(path)] = end_dict(renderer, pixel.views, pixel.views.find(view, path));
+            dict[path_name(path)] = end_dict(renderer, pixel, pixel.views.find(view, path));
         py::list ends;
-        for (const PathEnd& end : pixel.views.ends_of(view))
-            ends.append(end_dict(renderer, pixel.views, &end));
+        for (const PathEnd& end : pixel.views.ends_of(view)) ends.append(end_dict(renderer, pixel, &end));
         dict["ends"] = ends;
         dict["method"] = view.traced ? "traced" : view.level > 0 ? "subdivided" : "projected";
         dict["level"] = view.level;
@@ -95,6 +106,9 @@ void bind_explain(RendererClass& renderer) {
         "How the centre of the pixel (x, y) of the film comes about: every ray, hit and colour behind it, "
         "as\n"
         "`trilens render --pixel` says it. World frame; t in units of the ray's direction.\n"
+        "facet_kind: what the corner rays of the camera's or an optic's facet make among the general linear\n"
+        "cameras (Yu and McMillan 2004), as FilmCamera.facet_kinds names them; None where no facet was "
+        "used.\n"
         "engine: \"exact\", \"classic\", \"limit\" or \"facets\". Raises UsageError outside of the film.");
 }
 

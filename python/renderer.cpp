@@ -5,6 +5,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "image.h"
+#include "line_arrays.h"
 #include "talk.h"
 
 namespace trilens::python {
@@ -176,6 +177,19 @@ void bind_line_drawing(py::module_& module, RendererClass& renderer) {
         .def_readonly("curves", &LineDrawing::curves, "How many curves it has.")
         .def_readonly("arcs", &LineDrawing::arcs, "How many arcs the curves have.")
         .def_readonly("folds", &LineDrawing::folds, "How many fold curves it has.")
+        .def_readonly("obj", &LineDrawing::obj,
+                      "Caustics and fold curves in the world as a Wavefront OBJ; \"\" where not asked for.")
+        .def_property_readonly("caustics", &caustic_list,
+                               "The sheets of the caustics, where asked for: a list of dicts of path "
+                               "(\"reflect\", \"refract\",\n"
+                               "\"direct\": of the camera's own rays), optic (object id; None: the camera), "
+                               "sheet (0, 1), virtual\n"
+                               "(behind the optic), points (N, 3), triangles (M, 3), segments (K, 2).")
+        .def_property_readonly(
+            "fold_curves", &fold_list,
+            "A list of dicts of object (id on which the curve lies; None: the environment), points (N, 2) "
+            "in\n"
+            "pixels, places (N, 3): the world points seen there, in the environment unit directions.")
         .def("_repr_svg_", [](const LineDrawing& drawing) { return drawing.svg; })
         .def(
             "save",
@@ -186,20 +200,21 @@ void bind_line_drawing(py::module_& module, RendererClass& renderer) {
     renderer.def(
         "draw_lines",
         [](const Renderer& self, int resolution, const std::optional<std::string>& camera, bool wire,
-           bool folds, const std::optional<std::string>& rays, const std::optional<std::string>& grid,
-           const py::object& warn) {
+           bool folds, bool caustics, const std::optional<std::string>& rays,
+           const std::optional<std::string>& grid, const py::object& warn) {
             Talk talk(py::none(), warn);
             const FrameParams frame =
                 FacetArguments{rays, std::nullopt, grid}.of(frame_params(self, resolution, camera));
-            return talk.run([&] { return self.draw_lines(frame, {wire, folds}, talk.warner()); });
+            return talk.run([&] { return self.draw_lines(frame, {wire, folds, caustics}, talk.warner()); });
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(), py::arg("wire") = false,
-        py::arg("folds") = false, py::arg("rays") = py::none(), py::arg("grid") = py::none(),
-        py::arg("warn") = py::none(),
+        py::arg("folds") = false, py::arg("caustics") = false, py::arg("rays") = py::none(),
+        py::arg("grid") = py::none(), py::arg("warn") = py::none(),
         "The outlines of what the camera and the optics show, every curved edge an exact conic.\n"
         "wire: hidden edges too. folds: the curves too where what an optic shows turns over on the film "
         "(the\n"
-        "eye's caustics). The other arguments are those of render.");
+        "eye's caustics). caustics: the surfaces too where neighbouring rays that leave an optic meet. The\n"
+        "other arguments are those of render.");
 }
 
 void bind_facts(RendererClass& renderer) {

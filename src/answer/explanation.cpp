@@ -20,11 +20,17 @@ Json hit_json(const Renderer& renderer, const Hit& hit) {
             {"position", vector_json(seen.position)}};
 }
 
-Json end_json(const Renderer& renderer, const SampleViews& views, const PathEnd* end) {
+Json kind_json(const std::optional<GeneralLinearKind>& kind) {
+    return kind ? Json(general_linear_kind_name(*kind)) : Json(nullptr);
+}
+
+Json end_json(const Renderer& renderer, const PixelExplanation& pixel, const PathEnd* end) {
     if (!end) return nullptr;
+    const SampleViews& views = pixel.views;
     return {{"path", steps_json(renderer, views.steps_of(*end))},
             {"weight", vector_json(end->weight)},
             {"ray", ray_json(end->ray)},
+            {"facet_kind", kind_json(pixel.end_kinds[static_cast<std::size_t>(end - views.ends.data())])},
             {"sees", hit_json(renderer, end->hit)}};
 }
 
@@ -35,6 +41,8 @@ Json explanation_json(const Renderer& renderer, const EngineChoice& engine, cons
     Json fields;
     fields["pixel"] = {pixel.x, pixel.y};
     fields["engine"] = engine_name(engine.engine);
+    if (pixel.camera_facet != kNone)
+        fields["camera"] = {{"facet", pixel.camera_facet}, {"facet_kind", kind_json(pixel.camera_kind)}};
     fields["ray"] = ray_json(view.ray);
     fields["depth"] = json_number(view.depth);
     fields["sees"] = hit_json(renderer, view.hit);
@@ -47,10 +55,10 @@ Json explanation_json(const Renderer& renderer, const EngineChoice& engine, cons
                            {"cos_incident", json_number(view.incidence.cosine)},
                            {"front", view.incidence.front}};
         for (const Path path : {Path::kReflect, Path::kRefract})
-            fields[path_name(path)] = end_json(renderer, pixel.views, pixel.views.find(view, path));
+            fields[path_name(path)] = end_json(renderer, pixel, pixel.views.find(view, path));
         fields["ends"] = Json::array();
         for (const PathEnd& end : pixel.views.ends_of(view))
-            fields["ends"].push_back(end_json(renderer, pixel.views, &end));
+            fields["ends"].push_back(end_json(renderer, pixel, &end));
         fields["method"] = view.traced ? "traced" : view.level > 0 ? "subdivided" : "projected";
         fields["level"] = view.level;
     }

@@ -22,6 +22,20 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
         {"draw_seconds", picture.draw_seconds}};
 }
 
+Json drawing_fields(const Film& film, const LineChoice& choice, const LineDrawing& drawing) {
+    Json fields{{"engine", "exact"}, {"width", film.width}, {"height", film.height}};
+    if (!choice.caustics)
+        fields.update(Json{{"wire", choice.wire}, {"curves", drawing.curves}, {"arcs", drawing.arcs}});
+    fields["folds"] = drawing.folds;
+    if (!choice.caustics) return fields;
+    std::size_t triangles = 0, segments = 0;
+    for (const LineDrawing::Caustic& one : drawing.caustics)
+        triangles += one.sheet.triangles.size(), segments += one.sheet.segments.size();
+    fields["caustics"] = {
+        {"sheets", drawing.caustics.size()}, {"triangles", triangles}, {"segments", segments}};
+    return fields;
+}
+
 std::string picture_note(const Picture& picture) {
     return fmt::format(
         "drew {} x {} pixels, {} of them of optics ({} in layers, {} subdivided, {} traced): prepared in "

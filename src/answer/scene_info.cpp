@@ -1,5 +1,7 @@
 #include "answer/scene_info.h"
 
+#include <trilens/camera.h>
+
 namespace trilens {
 namespace {
 
@@ -25,6 +27,33 @@ Json mesh_json(const MeshInfo& mesh) {
     return json;
 }
 
+/// Counts by the kinds' names, of those that there are.
+Json kinds_json(const FacetKinds& kinds) {
+    Json json = Json::object();
+    for (std::size_t k = 0; k < kGeneralLinearKindCount; ++k)
+        if (kinds.of_kind[k] > 0)
+            json[general_linear_kind_name(static_cast<GeneralLinearKind>(k))] = kinds.of_kind[k];
+    if (kinds.without > 0) json["none"] = kinds.without;
+    return json;
+}
+
+Json camera_kinds(const Scene& scene, std::size_t index) {
+    const FilmSize film{static_cast<double>(scene.film.width), static_cast<double>(scene.film.height)};
+    const CameraSite site{scene.file, "/cameras/" + std::to_string(index)};
+    return kinds_json(facet_kinds(make_camera(scene.cameras[index], film, site)));
+}
+
+/// "  camera  NAME: TYPE, 2 facets: pinhole", or with a count for each of several kinds.
+std::string camera_line(const std::string& name, const std::string& type, const Json& kinds) {
+    std::size_t facets = 0;
+    std::string words;
+    for (const auto& [kind, count] : kinds.items()) {
+        facets += count.get<std::size_t>();
+        words += (words.empty() ? "" : ", ") + (kinds.size() > 1 ? count.dump() + " " : "") + kind;
+    }
+    return "  camera  " + name + ": " + type + ", " + std::to_string(facets) + " facets: " + words + "\n";
+}
+
 std::string mesh_line(const MeshInfo& mesh) {
     std::string line = mesh.role == Role::kOptic ? "  optic   " : "  object  ";
     line += mesh.name + ": " + mesh.shape;
@@ -43,6 +72,9 @@ Answer info_answer(const Scene& scene) {
     fields["film"] = {{"width", scene.film.width}, {"height", scene.film.height}, {"spp", scene.film.spp}};
     fields["cameras"] = found.cameras;
     fields["camera_types"] = found.camera_types;
+    fields["camera_kinds"] = Json::array();
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i)
+        fields["camera_kinds"].push_back(camera_kinds(scene, i));
     fields["objects"] = found.objects;
     fields["optics"] = found.optics;
     fields["triangles"] = found.triangles;
@@ -58,12 +90,12 @@ Answer info_answer(const Scene& scene) {
 
     answer.text = "film " + std::to_string(scene.film.width) + " x " + std::to_string(scene.film.height) +
                   ", " + std::to_string(scene.film.spp) + " x " + std::to_string(scene.film.spp) +
-                  " samples\ncameras:";
+                  " samples\n";
     for (std::size_t i = 0; i < found.cameras.size(); ++i)
-        answer.text += (i == 0 ? " " : ", ") + found.cameras[i] + " (" + found.camera_types[i] + ")";
-    answer.text += "\n" + std::to_string(found.optics) + " optics, " + std::to_string(found.objects) +
-                   " objects, " + std::to_string(found.triangles) + " triangles, " +
-                   std::to_string(found.lights) + " lights\n";
+        answer.text += camera_line(found.cameras[i], found.camera_types[i], fields["camera_kinds"][i]);
+    answer.text += std::to_string(found.optics) + " optics, " + std::to_string(found.objects) + " objects, " +
+                   std::to_string(found.triangles) + " triangles, " + std::to_string(found.lights) +
+                   " lights\n";
     for (const MeshInfo& mesh : found.meshes) {
         fields["meshes"].push_back(mesh_json(mesh));
         answer.text += mesh_line(mesh);

@@ -7,7 +7,8 @@
 
 namespace trilens {
 
-/// The film, cameras, counts and a line for each mesh; the fields of `trilens.scene/1`.
+/// The film, counts and a line for each camera and mesh; the fields of `trilens.scene/1`. A camera's facets
+/// are named after the general linear cameras of Yu and McMillan (2004). Throws as make_camera does.
 Answer info_answer(const Scene& scene);
 
 }  // namespace trilens

@@ -78,6 +78,7 @@ Camera make_camera(const CameraDescription& from, const FilmSize& film, const Ca
     if (is_linear(from.type)) {
         const LinearView view = make_linear_view(from, film, site);
         camera.linear = view.camera;
+        camera.axis = view.camera.view_axis != Vec3(0) ? view.camera.view_axis : view.camera.view_direction;
         camera.near_depth = view.near_depth;
         camera.far_depth = view.far_depth;
         camera.mesh = make_camera_mesh(view.camera, film.width, film.height, view.near_depth);
@@ -87,6 +88,7 @@ Camera make_camera(const CameraDescription& from, const FilmSize& film, const Ca
         site.reject("facets", fmt::format("is not in 1..{}", kMostCameraFacets));
     const ModelSource source{from, film, site};
     camera.model = make_model(source);
+    camera.axis = normalize(from.at - from.eye);
     camera.mesh = fine_mesh(source, *camera.model);
     return camera;
 }

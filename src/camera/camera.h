@@ -21,6 +21,7 @@ struct Camera {
     std::shared_ptr<const CameraModel> model;
     RayMesh mesh;
     FilmSize film;
+    Vec3 axis{0};  // the view axis, world frame, unit; zero where it has none (rayMesh)
     // Clipping: rays of the mesh begin at near_depth, and what lies beyond t = far_depth - near_depth along
     // them is not seen.
     double near_depth = 0, far_depth = std::numeric_limits<double>::infinity();

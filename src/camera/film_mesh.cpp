@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "camera/ray_spread.h"
 
 namespace trilens {
 namespace {
@@ -13,6 +14,12 @@ constexpr double kNudge = 1e-9;   // share of the film by which corners on a bre
 constexpr double kFarAway = 1e4;  // times the focus
 constexpr int kFirst = 4;         // N at which a search begins
 constexpr double kMargin = 1.1;   // more than the error's order asks for
+constexpr double kSure = 0.05;    // pixels: a displacement of that or less is that of the image looked for
+constexpr double kStep = 0.01;    // pixels, of differences between rays
+constexpr double kFound = 1e-6;   // pixels
+constexpr double kFarStep = 1e3;  // pixels
+constexpr double kFoldReach = 8;  // pixels
+constexpr int kRounds = 12;
 
 /// Lines along one axis between two breaks.
 struct Span {
@@ -80,19 +87,70 @@ void append_block(RayMesh& mesh, const CameraModel& model, const FilmSize& film,
         }
 }
 
-/// How far from `at` the exact camera shows what the mesh's ray passes at t; none where it cannot be told.
-std::optional<double> displacement(const CameraModel& model, const Vec2& at, const Vec3& point) {
+Vec2 offset(const CameraModel& model, const Vec2& at, const Vec2& place) {
+    Vec2 off = place - at;
+    if (model.period() > 0) off.x = std::remainder(off.x, model.period());
+    off.x /= model.stretch(at);
+    return off;
+}
+
+/// Where near `at` an exact ray passes the point, by Newton's method; `t`: about where along it. None where
+/// it does not converge within the film's neighbourhood.
+std::optional<Vec2> place_near(const CameraModel& model, const Vec2& at, const Vec3& point, double t) {
+    Vec2 place = at;
+    for (int round = 0; round < kRounds; ++round) {
+        const auto here = model.ray(place), right = model.ray(place + Vec2(kStep, 0)),
+                   below = model.ray(place + Vec2(0, kStep));
+        if (!here || !right || !below) return std::nullopt;
+        const auto along = [&](const Ray& ray) {
+            return (ray.origin - here->origin + t * (ray.direction - here->direction)) / kStep;
+        };
+        const Mat3 slopes(along(*right), along(*below), here->direction);
+        const Vec3 left = point - here->origin - t * here->direction, step = inverse(slopes) * left;
+        if (!(length(Vec2(step)) < kFarStep)) return std::nullopt;
+        place += Vec2(step);
+        t += step.z;
+        if (length(Vec2(step)) < kFound) return place;
+    }
+    return std::nullopt;
+}
+
+/// Whether the picture of what lies at t turns over near that place: there displacements have no bound.
+bool folds_near(const CameraModel& model, const Vec2& at, double t) {
+    bool positive = false, negative = false;
+    for (int k = 0; k < 8; ++k)
+        for (const double reach : {0.5 * kFoldReach, kFoldReach}) {
+            const double angle = 0.25 * 3.14159265358979323846 * k;
+            const auto spread =
+                film_spread(model, at + reach * Vec2(std::cos(angle), std::sin(angle)), kStep);
+            if (!spread) continue;
+            for (const double depth : {0.9 * t, t, 1.1 * t})
+                (spread->at(depth) > 0 ? positive : negative) = true;
+        }
+    return positive && negative;
+}
+
+/// A point that the mesh's ray passes.
+struct Passed {
+    Vec3 point{0};
+    double t = 0;
+};
+
+/// How far from `at` the exact camera shows it; none where it cannot be told.
+std::optional<double> displacement(const CameraModel& model, const Vec2& at, const Passed& passed) {
     std::optional<double> nearest;
     for (std::size_t branch = 0; branch < model.branch_count(); ++branch) {
         if (!model.shows(branch, at)) continue;
-        const std::optional<FilmImage> found = model.place(point, branch);
+        const std::optional<FilmImage> found = model.place(passed.point, branch);
         if (!found) continue;
-        Vec2 off = found->pixel - at;
-        if (model.period() > 0) off.x = std::remainder(off.x, model.period());
-        off.x /= model.stretch(at);
-        const double pixels = length(off);
+        const double pixels = length(offset(model, at, found->pixel));
         if (!nearest || pixels < *nearest) nearest = pixels;
     }
+    if (!nearest || *nearest <= kSure) return nearest;
+    // Of several images the place that was found may be another.
+    if (const auto local = place_near(model, at, passed.point, passed.t))
+        nearest = std::min(*nearest, length(offset(model, at, *local)));
+    if (*nearest > kSure && folds_near(model, at, passed.t)) return std::nullopt;
     return nearest;
 }
 
@@ -119,7 +177,7 @@ FilmError film_error(const CameraModel& model, const FilmSize& film, const RayMe
                 if (at.x < 0 || at.y < 0 || at.x > film.width || at.y > film.height) continue;
                 const Ray ray = interpolated_ray(mesh, f, weights);
                 for (const double t : {model.focus(), kFarAway * model.focus()}) {
-                    const auto pixels = displacement(model, at, ray.origin + t * ray.direction);
+                    const auto pixels = displacement(model, at, {ray.origin + t * ray.direction, t});
                     if (pixels && *pixels > of_facet[f].pixels) of_facet[f] = {*pixels, at};
                 }
             }

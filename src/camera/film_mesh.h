@@ -15,7 +15,8 @@ RayMesh make_film_mesh(const CameraModel& model, const FilmSize& film, int n);
 
 /// How far the mesh is from the exact rays: for the middles of every facet and of its edges, the points that
 /// the mesh's ray passes at the camera's focus and far away, and where the exact camera shows them. In x a
-/// pixel counts as CameraModel::stretch says.
+/// pixel counts as CameraModel::stretch says. Places within 8 pixels of a fold of the camera's own picture,
+/// where a displacement has no bound, are not judged.
 struct FilmError {
     double pixels = 0;  // the largest
     Vec2 at{0};         // where on the film

@@ -8,6 +8,8 @@
 namespace trilens {
 namespace {
 
+constexpr double kRounding = 1e-13;  // of the origins' size: they are one place
+
 /// The rays between two planes: from = on the first, to_second - its way to the second; lengths along the
 /// planes are shares of the triangle's own size.
 struct TwoPlanes {
@@ -47,8 +49,12 @@ std::optional<TwoPlanes> between_planes(const std::array<Ray, 3>& rays, const Ve
     }
     // The second plane stands where the rays have spread by as much as they are apart on the first; where
     // they meet on the first, a unit of their own depth away.
+    double largest = 0;
+    for (const Ray& ray : rays) largest = std::max(largest, length(ray.origin));
     const double apart = longest(planes.on_first), spread = longest(planes.way);
-    const double scale = std::max(apart, length(from[0] - origin));
+    const double reach = std::max(apart, length(from[0] - origin));
+    const double scale = reach > kRounding * largest ? reach : 0;
+    if (scale == 0) planes.on_first = {};
     const double between = spread > tolerance && scale > 0 ? scale / spread : scale > 0 ? scale : 1;
     const double size = std::max(apart, spread * between);
     if (!(size > 0)) return std::nullopt;
@@ -69,8 +75,9 @@ std::optional<TwoPlanes> between_planes(const std::array<Ray, 3>& rays, const Ve
 }  // namespace
 
 const char* general_linear_kind_name(GeneralLinearKind kind) {
-    constexpr std::array kNames{"pinhole", "orthographic",        "pushbroom", "crossedSlits",
-                                "pencil",  "twistedOrthographic", "bilinear",  "plane"};
+    constexpr std::array<const char*, kGeneralLinearKindCount> kNames{
+        "pinhole", "orthographic",        "pushbroom", "crossedSlits",
+        "pencil",  "twistedOrthographic", "bilinear",  "plane"};
     return kNames[static_cast<std::size_t>(kind)];
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,8 @@ enum class GeneralLinearKind {
     kBilinear,             // A != 0, no root: no two rays meet
     kPlane                 // A = B = C = 0: all rays in one plane (an epipolar plane image)
 };
+
+inline constexpr std::size_t kGeneralLinearKindCount = 8;
 
 /// "pinhole", "orthographic", "pushbroom", "crossedSlits", "pencil", "twistedOrthographic", "bilinear",
 /// "plane".

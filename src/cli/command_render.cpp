@@ -11,22 +11,20 @@
 namespace trilens {
 namespace {
 
-/// Outlines instead of pixels.
-Answer run_vector(const RenderOptions& options, const Renderer& renderer, Console& console) {
+/// Outlines, or caustics, instead of pixels.
+Answer run_vector(const RenderOptions& options, const std::string& format, const Renderer& renderer,
+                  Console& console) {
     if (!options.scene.crop.empty())
-        throw UsageError("--crop is for pictures of pixels; an .svg shows the whole film");
+        throw UsageError("--crop is for pictures of pixels; an ." + format + " shows the whole film");
     const std::size_t camera = find_camera(renderer.scene(), options.scene.camera);
     FrameParams frame = picture_request(options, {}).frame;
     frame.camera = camera;
-    const LineDrawing drawing = renderer.draw_lines(frame, {options.wire, options.folds}, console.warner());
-    Answer answer = write_output(options.output, drawing.svg, console);
-    answer.fields.update(Json{{"engine", "exact"},
-                              {"width", renderer.scene().film.width},
-                              {"height", renderer.scene().film.height},
-                              {"wire", options.wire},
-                              {"folds", drawing.folds},
-                              {"curves", drawing.curves},
-                              {"arcs", drawing.arcs}});
+    const bool is_obj = format == "obj";
+    const LineDrawing drawing =
+        renderer.draw_lines(frame, {options.wire, options.folds || is_obj, is_obj}, console.warner());
+    Answer answer = write_output(options.output, is_obj ? drawing.obj : drawing.svg, console);
+    answer.fields.update(
+        drawing_fields(renderer.scene().film, {options.wire, options.folds, is_obj}, drawing));
     return answer;
 }
 
@@ -77,16 +75,16 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
     check_on_film(options, request.layers, renderer.scene().film);
     if (options.pixel.empty())
-        return format == "svg" ? run_vector(options, renderer, console)
-                               : draw(options, format, request, renderer, console, command);
+        return is_vector(format) ? run_vector(options, format, renderer, console)
+                                 : draw(options, format, request, renderer, console, command);
 
     const std::vector<int> pixel = parse_integers(options.pixel, ',', 2, "--pixel");
     Answer answer;
     answer.fields = explanation_json(renderer, engine, renderer.explain(request, pixel[0], pixel[1]));
     answer.text = answer.fields.dump(2);
     if (options.output.empty()) return answer;
-    const Answer drawn = format == "svg" ? run_vector(options, renderer, console)
-                                         : draw(options, format, request, renderer, console, command);
+    const Answer drawn = is_vector(format) ? run_vector(options, format, renderer, console)
+                                           : draw(options, format, request, renderer, console, command);
     answer.fields.update(drawn.fields);
     return answer;
 }
@@ -97,18 +95,21 @@ std::vector<Command> render_commands() {
     auto render = std::make_shared<RenderOptions>(), trace = std::make_shared<RenderOptions>();
     Command by_projection{.name = "render", .summary = "draw the scene by projection", .schema = "render"};
     by_projection.options = joined(
-        {picture_options(*render, ".exr (all layers), .png (beauty), .svg (outlines) or, of frames, .apng"),
+        {picture_options(*render,
+                         ".exr (all layers), .png (beauty), .svg (outlines), .obj (caustics) or, of frames, "
+                         ".apng"),
          frame_options(render->frames),
          engine_options(*render),
          facet_options(*render),
          {{.names = "--format",
            .target = &render->format,
            .help = "what to write, whatever the output is called",
-           .choices = {"exr", "png", "svg"}},
+           .choices = {"exr", "png", "svg", "obj"}},
           {.names = "--wire", .target = &render->wire, .help = "svg: hidden edges too"},
           {.names = "--folds",
            .target = &render->folds,
-           .help = "svg: also the curves where what an optic shows turns over (the eye's caustics)"}}});
+           .help = "svg: also the curves where what an optic shows turns over (the eye's caustics); an .obj "
+                   "has them and the caustics' surfaces, in the world"}}});
     by_projection.body = [render](Console& console) {
         return run(*render, "render", chosen_engine(*render), console);
     };

@@ -18,6 +18,7 @@ std::vector<Example> examples_of(const std::string& called) {
            "the beauty, through another lens"},
           {"trilens render - --format png -o - < scene.json > mine.png", "from one pipe into another"},
           {"trilens render scene.json --pixel 320,240", "how one pixel comes about"},
+          {"trilens render scene.json -o caustics.obj", "where rays that leave its optics meet, as surfaces"},
           {"trilens render mine.exr -n 32 -o finer.exr", "again, from the scene that the image carries"}}},
         {"trilens trace",
          {{"trilens trace scene.json -o truth.exr", "the truth: the exact surface, every ray exact"},

@@ -104,10 +104,11 @@ std::string output_format(const RenderOptions& options, const std::string& comma
     if (is_standard_stream(options.output)) return "exr";
     const std::string ending = std::filesystem::path(options.output).extension().string();
     if (options.frames.asks() && ending == ".apng") return "apng";
-    if (ending == ".exr" || ending == ".png" || (ending == ".svg" && command == "render"))
+    if (ending == ".exr" || ending == ".png" ||
+        (command == "render" && (ending == ".svg" || ending == ".obj")))
         return ending.substr(1);
     throw UsageError("the output \"" + options.output + "\" must end in .exr (all layers)" +
-                     (command == "render" ? ", .png (the beauty, sRGB) or .svg (outlines)"
+                     (command == "render" ? ", .png (the beauty, sRGB), .svg (outlines) or .obj (caustics)"
                                           : " or .png (the beauty, sRGB)"));
 }
 
@@ -144,11 +145,12 @@ PictureRequest picture_request(const RenderOptions& options, const EngineChoice&
 }
 
 void check_options(const RenderOptions& options, const std::string& format, const EngineChoice& engine) {
-    if (format == "svg" && engine.engine == Engine::kClassic)
-        throw UsageError("an .svg is drawn by the exact engine; leave out --engine classic");
-    if (format == "svg" && options.max_error >= 0)
-        throw UsageError("--max-error is for pictures of pixels; an .svg shows the facets undivided");
-    if (options.frames.asks() && (format == "svg" || !options.pixel.empty()))
+    if (is_vector(format) && engine.engine == Engine::kClassic)
+        throw UsageError("an ." + format + " is drawn by the exact engine; leave out --engine classic");
+    if (is_vector(format) && options.max_error >= 0)
+        throw UsageError("--max-error is for pictures of pixels; an ." + format +
+                         " shows the facets undivided");
+    if (options.frames.asks() && (is_vector(format) || !options.pixel.empty()))
         throw UsageError("--frames and --turntable are for .exr, .png and .apng outputs");
     if (options.maps_tones() && format != "png" && format != "apng")
         throw UsageError(

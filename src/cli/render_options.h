@@ -50,9 +50,14 @@ std::vector<Option> facet_options(RenderOptions& options);
 /// --engine and the classic engine's own.
 std::vector<Option> engine_options(RenderOptions& options);
 
-/// What an output is, by --format or its name's ending: "exr", "png", "svg" or, of frames, "apng". Standard
-/// output gets OpenEXR where nothing else is asked for. Throws UsageError.
+/// What an output is, by --format or its name's ending: "exr", "png", "svg", "obj" or, of frames, "apng".
+/// Standard output gets OpenEXR where nothing else is asked for. Throws UsageError.
 std::string output_format(const RenderOptions& options, const std::string& command);
+
+/// Whether a format has lines or surfaces instead of pixels.
+inline bool is_vector(const std::string& format) {
+    return format == "svg" || format == "obj";
+}
 
 /// The engine that the options name. Throws UsageError for the classic engine's options without it.
 EngineChoice chosen_engine(const RenderOptions& options);

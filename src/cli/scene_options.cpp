@@ -128,8 +128,8 @@ std::vector<Option> window_options(SceneOptions& options) {
         {.names = "--aov",
          .target = &options.aov,
          .help =
-             "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract,path,stat,magnification; "
-             "without it, all but the last three",
+             "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract,path,stat,magnification,"
+             "position; without it, all but the last four",
          .value = "LIST"}};
 }
 

@@ -27,9 +27,10 @@ std::string window_of(const Image& image) {
 /// "reflectID.object" of "reflect.object", "reflectP.X" of "reflect.X"; other names as they are.
 std::string newer_name(const std::string& name) {
     const std::size_t dot = name.find('.');
-    if (dot == std::string::npos || (name.substr(0, dot) != "reflect" && name.substr(0, dot) != "refract"))
+    const std::string layer = name.substr(0, dot);
+    if (dot == std::string::npos || (layer != "reflect" && layer != "refract" && layer != "direct"))
         return name;
-    const std::string layer = name.substr(0, dot), channel = name.substr(dot + 1);
+    const std::string channel = name.substr(dot + 1);
     for (const char* id : {"object", "primitive"})
         if (channel == id) return layer + "ID." + channel;
     for (const char* place : {"X", "Y", "Z", "length"})

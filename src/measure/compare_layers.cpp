@@ -9,7 +9,7 @@ namespace trilens {
 std::vector<LayerComparison> compare_layers(const Image& reference, const Image& test,
                                             const DisplacementOptions& options) {
     std::vector<LayerComparison> layers;
-    for (const char* name : {"reflect", "refract"}) {
+    for (const char* name : {"reflect", "refract", "direct"}) {
         LayerComparison layer{name, compare_seen(reference, test, name, options.mask_object),
                               measure_displacement(reference, test, name, options)};
         if (layer.seen) layers.push_back(std::move(layer));

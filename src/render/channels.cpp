@@ -27,6 +27,15 @@ Id count_steps(const SampleViews& views, const SampleView& view) {
                                          [](const Step& step) { return step.event != Event::kPass; }));
 }
 
+/// What the camera sees itself.
+PathEnd direct_end(const SampleView& view) {
+    PathEnd end;
+    end.path = Path::kDirect;
+    end.ray = view.ray;
+    end.hit = view.hit;
+    return end;
+}
+
 }  // namespace
 
 const std::vector<std::string>& layer_names() {
@@ -36,6 +45,7 @@ const std::vector<std::string>& layer_names() {
         all.push_back("path");
         all.push_back("stat");
         all.push_back("magnification");
+        all.push_back("position");
         return all;
     }();
     return names;
@@ -53,7 +63,8 @@ std::size_t Canvas::add_ids(const std::string& name) {
 
 Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std::move(image)) {
     const auto wanted = [&](const std::string& layer) {
-        if (layers.empty()) return layer != "path" && layer != "stat" && layer != "magnification";
+        if (layers.empty())
+            return layer != "path" && layer != "stat" && layer != "magnification" && layer != "position";
         return std::find(layers.begin(), layers.end(), layer) != layers.end();
     };
     for (std::size_t c = 0; c < 4; ++c) rgba_[c] = add_floats(kColours[c]);
@@ -72,7 +83,7 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
     }
     for (const Path path : kPaths) {
         const std::string layer = path_name(path);
-        if (path == Path::kDirect || !wanted(layer)) continue;
+        if (!wanted(path == Path::kDirect ? "position" : layer)) continue;
         EndChannels end{path};
         end.object = add_ids(layer + "ID.object");
         end.primitive = add_ids(layer + "ID.primitive");
@@ -80,7 +91,7 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
         end.y = add_floats(layer + "P.Y");
         end.z = add_floats(layer + "P.Z");
         end.length = add_floats(layer + "P.length");
-        if (wanted("magnification")) end.area = add_floats(layer + "M.area");
+        if (path != Path::kDirect && wanted("magnification")) end.area = add_floats(layer + "M.area");
         ends_.push_back(end);
     }
     if (wanted("path")) path_count_ = add_ids("path.count");
@@ -151,8 +162,14 @@ void Canvas::put_centre(const World& world, const SampleViews& views, const Samp
         ids(method_)[pixel] = view.traced ? 2 : view.level > 0 ? 1 : 0;
         ids(level_)[pixel] = view.level;
     }
-    for (const EndChannels& channels : ends_)
-        put_end(world, views.find(view, channels.path), channels, pixel);
+    for (const EndChannels& channels : ends_) {
+        const PathEnd own = direct_end(view);
+        put_end(world,
+                channels.path != Path::kDirect ? views.find(view, channels.path)
+                : optic                        ? nullptr
+                                               : &own,
+                channels, pixel);
+    }
 }
 
 }  // namespace trilens

@@ -9,15 +9,20 @@
 
 namespace trilens {
 
-Viewer make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
-                   const Warn& warn) {
+FacetViews make_views(const World& world, const FrameParams& frame, const EngineChoice& engine,
+                      const Warn& warn) {
     prepare_shadows(world);
     if (engine.engine == Engine::kLimitTruth)
-        return make_limit_viewer(world, make_camera_rays(world.scene, frame.camera));
+        return {make_limit_viewer(world, make_camera_rays(world.scene, frame.camera)), {}};
     FrameParams params = frame;
     if (engine.engine == Engine::kEnvironment || engine.engine == Engine::kPlanar)
         params.rays = CornerRays::kInterpolated;
-    return make_facet_viewer(world, make_frame(world, params, warn), engine);
+    return make_facet_views(world, make_frame(world, params, warn), engine);
+}
+
+Viewer make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
+                   const Warn& warn) {
+    return make_views(world, frame, engine, warn).viewer;
 }
 
 namespace {

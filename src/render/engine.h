@@ -13,8 +13,19 @@ namespace trilens {
 /// Replaces `views` by what each sample of the grid shows.
 using Viewer = std::function<void(const SampleGrid& grid, SampleViews& views)>;
 
-/// A viewer of `world`, which must outlive it. Throws InputError where the camera cannot show what the scene
+/// A viewer, and the paths over each optic that it has worked out so far: SampleView::leaf and PathEnd::node
+/// count in them. The limit truth has no facets, and no `paths`.
+struct FacetViews {
+    Viewer viewer;
+    std::function<const OpticPaths&(std::size_t optic)> paths;
+};
+
+/// Views of `world`, which must outlive them. Throws InputError where the camera cannot show what the scene
 /// has, or the optics have too many facets to hold.
+FacetViews make_views(const World& world, const FrameParams& frame, const EngineChoice& engine,
+                      const Warn& warn);
+
+/// Its viewer alone.
 Viewer make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
                    const Warn& warn);
 

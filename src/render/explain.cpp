@@ -2,10 +2,35 @@
 
 #include "base/error.h"
 #include "base/format.h"
+#include "base/rasterize.h"
+#include "camera/facet_kinds.h"
 #include "render/engine.h"
 #include "render/sample_colour.h"
 
 namespace trilens {
+namespace {
+
+void name_camera_facet(const World& world, std::size_t index, const SampleGrid& grid,
+                       PixelExplanation& explained) {
+    const CameraRays camera = make_camera_rays(world.scene, index);
+    const FacetSamples owned = rasterize_facets(camera.mesh, grid);
+    for (std::size_t f = 0; f < camera.mesh.facets.size(); ++f) {
+        if (owned.of(f).empty()) continue;
+        explained.camera_facet = static_cast<Id>(f);
+        explained.camera_kind = facet_kind(camera.mesh, f, camera.axis);
+    }
+}
+
+void name_end_facets(const FacetViews& views, PixelExplanation& explained) {
+    const SampleView& view = explained.view();
+    for (const PathEnd& end : explained.views.ends) {
+        explained.end_kinds.emplace_back();
+        if (end.node == kNone || view.leaf == kNone || !views.paths) continue;
+        explained.end_kinds.back() = facet_kind(views.paths(view.optic).nodes()[end.node].mesh, view.leaf);
+    }
+}
+
+}  // namespace
 
 PixelExplanation explain_pixel(const World& world, const PictureRequest& request, int x, int y) {
     const Film& film = world.scene.film;
@@ -15,7 +40,11 @@ PixelExplanation explain_pixel(const World& world, const PictureRequest& request
     PixelExplanation explained;
     explained.x = x;
     explained.y = y;
-    make_viewer(world, request.frame, request.engine, {})({x, y, x + 1, y + 1, 1}, explained.views);
+    const SampleGrid grid{x, y, x + 1, y + 1, 1};
+    const FacetViews views = make_views(world, request.frame, request.engine, {});
+    views.viewer(grid, explained.views);
+    name_end_facets(views, explained);
+    if (views.paths) name_camera_facet(world, request.frame.camera, grid, explained);
     explained.colour = sample_colour(world, explained.views, explained.view());
     return explained;
 }

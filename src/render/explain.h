@@ -1,6 +1,10 @@
 // One pixel explained: every ray, hit and weight behind it.
 #pragma once
 
+#include <optional>
+#include <vector>
+
+#include "camera/general_linear.h"
 #include "render/request.h"
 #include "render/views.h"
 
@@ -8,11 +12,15 @@ namespace trilens {
 
 struct World;
 
-/// What the centre of a pixel shows, and how.
+/// What the centre of a pixel shows, and how. Facets are named after the general linear cameras (Yu and
+/// McMillan 2004): the camera's across its view axis, those of the ends across the mean of their corner rays.
 struct PixelExplanation {
     int x = 0, y = 0;
     SampleViews views;  // of the one sample
     SampleColour colour;
+    Id camera_facet = kNone;  // of Camera::mesh; kNone: the limit truth's exact ray, or no ray
+    std::optional<GeneralLinearKind> camera_kind;
+    std::vector<std::optional<GeneralLinearKind>> end_kinds;  // as views.ends; none where no facet was used
 
     const SampleView& view() const { return views.samples.front(); }
 };

@@ -10,14 +10,8 @@ namespace trilens {
 /// there, and those that the camera sees itself.
 Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine);
 
-/// The same, with the paths over each optic that it has worked out so far: SampleView::leaf and PathEnd::node
-/// count in them.
-struct FacetViews {
-    Viewer viewer;
-    std::function<const OpticPaths&(std::size_t optic)> paths;
-};
-/// `watch`: told every RayMesh that leaves an optic and is drawn through, with the samples that it is drawn
-/// at; both only live for the call.
+/// The same with its paths. `watch`: told every RayMesh that leaves an optic and is drawn through, with the
+/// samples that it is drawn at; both only live for the call.
 using WatchMesh = std::function<void(const RayMesh&, const FacetSamples&)>;
 FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine,
                             const WatchMesh& watch = {});

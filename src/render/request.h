@@ -68,8 +68,8 @@ std::string classic_name(const ClassicParams& params);
 /// The window of the film that is drawn, in pixels [x0, x1) x [y0, y1), and its layers.
 struct LayerRequest {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
-    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat" and
-    // "magnification".
+    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat", "magnification" and
+    // "position".
     std::vector<std::string> layers;
 };
 
@@ -104,7 +104,8 @@ struct Picture {
 };
 
 /// The layers that may be asked for beside R G B A: "Z", "optic", "direct", the paths' names, "path",
-/// "stat" and "magnification" (which goes with a path's own layer).
+/// "stat", "magnification" (which goes with a path's own layer) and "position" (directID and directP: what
+/// the camera sees itself, where no optic is first).
 const std::vector<std::string>& layer_names();
 
 }  // namespace trilens

@@ -1,6 +1,8 @@
 // The example scenes, each for one capability.
 #include "scene/examples.h"
 
+#include "scene/camera_examples.h"
+
 namespace trilens {
 namespace {
 
@@ -251,13 +253,16 @@ constexpr const char* kCrystalBall = R"json({
 }
 )json";
 
-constexpr SceneExample kExamples[] = {
+const SceneExample kExamples[] = {
     {"mirror-sphere", "an exact mirror sphere in a painted room", kMirrorSphere},
     {"creased-cage", "a gold Catmull-Clark cage with semi-sharp edges and sharp corners", kCreasedCage},
     {"water-patch", "a pool: refraction through a wavy interface of water", kWaterPatch},
     {"mirror-cylinder", "anamorphic art: a mirror cylinder folds a stretched shape into a heart",
      kMirrorCylinder},
     {"crystal-ball", "light into glass and out of it again, and what is behind upside down", kCrystalBall},
+    {"cameras", "a mirror ball in a room, seen by fifteen cameras: fisheye, panorama, strip, slits, ...",
+     kCamerasExample},
+    {"caustic", "a mirrored ring lit by parallel rays, whose caustic is a nephroid", kCausticExample},
 };
 
 }  // namespace

@@ -17,7 +17,7 @@
 namespace trilens {
 namespace {
 
-constexpr std::array<const char*, 2> kLayers = {"reflect", "refract"};
+constexpr std::array<const char*, 3> kLayers = {"reflect", "refract", "direct"};
 
 MetricValues colour_values(const Comparison& comparison) {
     const Metrics& rgb = comparison.metrics;
@@ -108,6 +108,7 @@ MeasuredRun measure_run(const Image& test, const Image& truth, const std::vector
         take_worse(values, run.metrics);
         run.displacement.push_back({layer, "all", values});
         add_shift(layer, *displacement, run.diff);
+        if (layer == kLayers[2]) continue;  // seen over no optic
         // A single optic is all optics.
         if (optics.size() == 1)
             run.displacement.push_back({layer, optics[0].name, values});

@@ -7,7 +7,10 @@
 //     const std::optional<trilens::Ray> ray = trilens::exact_ray(camera, {320.5, 240.5});
 //     for (const trilens::FilmImage& image : trilens::film_positions(camera, {0, 1, -4}))
 //         std::printf("%g, %g\n", image.pixel.x, image.pixel.y);
+//     if (trilens::facet_kinds(camera).count(trilens::GeneralLinearKind::kPinhole) > 0)
+//         std::puts("its rays meet in a point");
 #pragma once
 
 #include "camera/camera.h"
+#include "camera/facet_kinds.h"
 #include "camera/view_volume.h"

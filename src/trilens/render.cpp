@@ -125,7 +125,11 @@ LineDrawing Renderer::draw_lines(const FrameParams& frame, const LineChoice& cho
         lines.curves += layer->curves.size();
         lines.folds += layer->folds.size();
         for (const EdgeCurve& curve : layer->curves) lines.arcs += curve.arcs.size();
+        for (const CausticSheet& sheet : layer->caustic)
+            lines.caustics.push_back({layer->path, layer->optic, sheet});
+        lines.fold_curves.insert(lines.fold_curves.end(), layer->folds.begin(), layer->folds.end());
     }
+    if (choice.caustics) lines.obj = drawing_obj(*drawing, *world_);
     return lines;
 }
 

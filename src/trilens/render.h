@@ -21,6 +21,8 @@
 #include "render/project.h"
 #include "render/request.h"
 #include "scene/scene.h"
+#include "vector/caustic.h"
+#include "vector/fold_curves.h"
 #include "vector/line_choice.h"
 
 namespace trilens {
@@ -52,7 +54,16 @@ struct EncodedPicture {
 struct LineDrawing {
     std::string svg;                   // one document; see the command's help for its attributes
     std::size_t curves = 0, arcs = 0;  // of it
-    std::size_t folds = 0;             // curves where what an optic shows turns over
+    std::size_t folds = 0;             // curves where what an optic or the camera shows turns over
+    // Where caustics were chosen: they and the fold curves in the world, as a Wavefront OBJ, and by layer.
+    std::string obj;
+    struct Caustic {
+        std::string path;  // "reflect", "refract"; "direct": of the camera's own rays
+        Id optic = kNone;  // object id; kNone: the camera
+        CausticSheet sheet;
+    };
+    std::vector<Caustic> caustics;
+    std::vector<FoldCurve> fold_curves;
 };
 
 /// A scene with what is built from it, each part once: surfaces, trees, grids. Pictures of one renderer may

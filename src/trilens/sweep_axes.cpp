@@ -57,6 +57,14 @@ void set_scene(const AxisValue& value, PointRequest& request) {
         file.is_absolute() ? value.text : (std::filesystem::path(request.paths_start_here) / file).string();
 }
 
+/// With what the camera sees itself, so that its displacement is measured.
+void set_camera_facets(const AxisValue& value, PointRequest& request) {
+    request.camera_facets = whole(value);
+    std::vector<std::string>& layers = request.picture.layers.layers;
+    if (layers.empty()) layers = {"Z", "optic", "direct", "reflect", "refract"};
+    layers.push_back("position");
+}
+
 constexpr auto kWhole = ValueKind::kWhole;
 
 /// One line per axis. A setting that scenes have for every optic is an axis by pushing its key and value to
@@ -70,6 +78,8 @@ const std::vector<AxisEntry>& axis_entries() {
          [](const auto& v, auto& r) { r.picture.engine.engine = find_engine(v.text); }},
         {{"resolution", "n", "resolution n [n × n facets per cage face]", kWhole, 1, kMaxResolution, true},
          [](const auto& v, auto& r) { r.picture.frame.resolution = whole(v); }},
+        {{"camera-facets", "f", "N [N × N facets of the camera]", kWhole, 1, kMostCameraFacets, true},
+         set_camera_facets},
         {{"tessellate", "tessellate", "K [K × K smaller triangles]", kWhole, 1, 1024, true},
          [](const auto& v, auto& r) { set_pieces(Curves::kTessellate, v, r); }},
         {{"slices", "slices", "K [pieces of a curved edge]", kWhole, 1, 1024, true},
@@ -109,6 +119,37 @@ std::vector<SceneOverride> without_other_optics(const Scene& scene, const std::s
     return removals;
 }
 
+/// The camera's facets in the place of its facets or tolerance.
+std::vector<SceneOverride> with_camera_facets(const PointRequest& request, const Scene& scene) {
+    const std::size_t index = find_camera(scene, request.camera);
+    const CameraDescription& camera = scene.cameras[index];
+    const std::string place = "/cameras/" + std::to_string(index);
+    if (is_linear(camera.type) || camera.type == CameraType::kRayMesh)
+        throw InputError(scene.file, place,
+                         "\"" + camera.name + "\" is " + camera_type_name(camera.type) +
+                             ": the axis camera-facets is for cameras that choose their own");
+    std::vector<SceneOverride> changes;
+    if (camera.tolerance > 0) changes.push_back({place + "/tolerance", "", true});
+    changes.push_back({place + "/facets", std::to_string(request.camera_facets)});
+    return changes;
+}
+
+/// The scene with the changes that have to know it first.
+Scene load_changed(const PointRequest& request, const std::vector<SceneOverride>& removals) {
+    SceneRequest changed = request.scene;
+    changed.overrides.insert(changed.overrides.end(), removals.begin(), removals.end());
+    Scene scene = load_scene(changed);
+    std::vector<SceneOverride> changes;
+    if (request.camera_facets > 0) changes = with_camera_facets(request, scene);
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+        for (const auto& [key, value] : request.of_optics)
+            if (scene.meshes[m].role == Role::kOptic)
+                changes.push_back({"/meshes/" + std::to_string(m) + "/" + key, value});
+    if (changes.empty()) return scene;
+    changed.overrides.insert(changed.overrides.end(), changes.begin(), changes.end());
+    return load_scene(changed);
+}
+
 }  // namespace
 
 std::vector<AxisKind> axis_kinds() {
@@ -143,24 +184,15 @@ PointRequest request_at(PointRequest request, const Coordinates& point) {
 }
 
 Scene load_scene(const PointRequest& request) {
+    const bool changes = !request.optic.empty() || !request.of_optics.empty() || request.camera_facets > 0;
     if (request.loaded && request.scene.file.empty()) {
-        if (!request.scene.overrides.empty() || !request.optic.empty() || !request.of_optics.empty())
+        if (!request.scene.overrides.empty() || changes)
             throw UsageError("an axis that changes the scene's text needs a scene file");
         return *request.loaded;
     }
-    if (request.optic.empty() && request.of_optics.empty()) return load_scene(request.scene);
-    SceneRequest changed = request.scene;
-    if (!request.optic.empty()) {
-        const std::vector<SceneOverride> removals =
-            without_other_optics(load_scene(request.scene), request.optic);
-        changed.overrides.insert(changed.overrides.end(), removals.begin(), removals.end());
-    }
-    const Scene scene = load_scene(changed);
-    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-        for (const auto& [key, value] : request.of_optics)
-            if (scene.meshes[m].role == Role::kOptic)
-                changed.overrides.push_back({"/meshes/" + std::to_string(m) + "/" + key, value});
-    return request.of_optics.empty() ? scene : load_scene(changed);
+    if (!changes) return load_scene(request.scene);
+    if (request.optic.empty()) return load_changed(request, {});
+    return load_changed(request, without_other_optics(load_scene(request.scene), request.optic));
 }
 
 }  // namespace trilens

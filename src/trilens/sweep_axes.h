@@ -22,6 +22,7 @@ struct PointRequest {
     std::string optic;                         // empty: all; else the one that the scene keeps
     // A value of a key of every optic: "normals" and its JSON text.
     std::vector<std::pair<std::string, std::string>> of_optics = {};
+    int camera_facets = 0;  // of the camera's own mesh, N x N; 0: as the scene says
     PictureRequest picture = {};
     std::string paths_start_here =
         {};  // folder of scene files that an axis names; empty: where the program runs
@@ -38,7 +39,7 @@ AxisKind find_axis_kind(const std::string& name, const std::string& where);
 PointRequest request_at(PointRequest base, const Coordinates& point);
 
 /// The point's scene. Throws as load_scene does; UsageError where a point would change the text of a scene in
-/// memory; InputError where no optic has the point's name.
+/// memory; InputError where no optic has the point's name, or where the camera has no facets to choose.
 Scene load_scene(const PointRequest& request);
 
 }  // namespace trilens

@@ -13,14 +13,16 @@ namespace {
 /// Everything of a request that decides its scene and camera.
 std::string key_of(const PointRequest& request) {
     std::string key = request.scene.file + "\n" + std::to_string(request.scene.resolution) + "\n" +
-                      request.camera + "\n" + request.optic + "\n";
+                      request.camera + "\n" + request.optic + "\n" + std::to_string(request.camera_facets) +
+                      "\n";
     for (const SceneOverride& change : request.scene.overrides)
         key += change.pointer + "\n" + change.value + "\n" + (change.removes ? "-" : "+");
     for (const auto& [name, value] : request.of_optics) key += name + "\n" + value + "\n";
     return key;
 }
 
-SubjectFacts facts_of(const Scene& scene, const std::string& camera) {
+SubjectFacts facts_of(const Scene& scene, const PointRequest& request) {
+    const std::string& camera = request.camera;
     SubjectFacts facts;
     facts.camera = scene.cameras[find_camera(scene, camera)].name;
     facts.digest = hash_text(scene.resolved + "\n" + scene_digest(scene));
@@ -30,7 +32,7 @@ SubjectFacts facts_of(const Scene& scene, const std::string& camera) {
         facts.optics.push_back({static_cast<Id>(m), scene.meshes[m].name});
         facts.faces += std::max<std::size_t>(6, scene.meshes[m].face_count);
     }
-    if (facts.optics.empty())
+    if (facts.optics.empty() && request.camera_facets == 0)
         throw InputError(scene_title(scene), "/meshes",
                          "a sweep needs an optic whose resolution it can vary");
     return facts;
@@ -52,7 +54,7 @@ const SubjectFacts& Subjects::facts(const PointRequest& request) {
         if (known != facts_.end()) return known->second;
     }
     const Scene scene = load_scene(request);
-    SubjectFacts facts = facts_of(scene, request.camera);
+    SubjectFacts facts = facts_of(scene, request);
     const std::lock_guard guard(mutex_);
     warn_once(scene);
     return facts_.emplace(key, std::move(facts)).first->second;

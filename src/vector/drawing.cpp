@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/box.h"
 #include "base/facet_scene.h"
 #include "base/format.h"
 #include "base/rasterize.h"
@@ -64,12 +65,35 @@ SampleIds look(const Viewer& viewer, const SampleGrid& grid, const std::vector<I
     return ids;
 }
 
+/// Which facets have samples.
+std::vector<char> seen_facets(const RayMesh& mesh, const std::vector<Id>& facet_of_sample) {
+    std::vector<char> seen(mesh.facets.size(), 0);
+    for (const Id f : facet_of_sample)
+        if (f != kNone && f < seen.size()) seen[f] = 1;
+    return seen;
+}
+
+/// Diagonal of the box around all that there is to see.
+double scene_size(const TriangleScene& visible) {
+    Box box;
+    for (const Vec3& point : visible.points) box.include(point);
+    return box.empty() ? 1 : std::max(length(box.size()), 1e-300);
+}
+
 /// The leaves of the samples whose path over this optic ends at that node.
 std::vector<Id> leaves_at(const SampleIds& ids, Id optic, std::size_t path, Id node) {
     std::vector<Id> leaf(ids.optic.size(), kNone);
     for (std::size_t s = 0; s < leaf.size(); ++s)
         if (ids.optic[s] == optic && ids.node[path][s] == node) leaf[s] = ids.leaf[s];
     return leaf;
+}
+
+/// The camera's facets of the samples that see no optic.
+std::vector<Id> without_optics(const SampleIds& ids) {
+    std::vector<Id> facet = ids.camera_facet;
+    for (std::size_t s = 0; s < facet.size(); ++s)
+        if (ids.optic[s] != kNone) facet[s] = kNone;
+    return facet;
 }
 
 /// The nodes at which the samples' paths over this optic end, ascending.
@@ -112,6 +136,14 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
                          100.0 * static_cast<double>(ids.traced) / static_cast<double>(grid.size())));
     ids.camera_facet = camera_facets(frame.camera.mesh, grid);
 
+    const double size = lines.caustics ? scene_size(drawing->visible) : 0;
+    const auto object_of = [&](Id triangle) { return world.objects.object[triangle]; };
+    const auto first_hit = [&](const Ray& ray) { return object_tracer(world).first_hit(ray); };
+    const auto add_folds = [&](const RayMesh& mesh, const std::vector<Id>& facets) {
+        DrawingLayer& layer = *drawing->layers.back();
+        if (lines.folds) layer.folds = fold_curves({mesh, grid, facets, first_hit, object_of});
+        if (lines.caustics) layer.caustic = caustic_sheets({mesh, seen_facets(mesh, facets), size});
+    };
     const auto add = [&](Path path, Id optic, const VectorView& view) {
         auto layer = std::make_unique<DrawingLayer>();
         layer->path = path_name(path), layer->optic = optic, layer->scene = &view.scene;
@@ -122,6 +154,10 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
         const DrawnEdges edges = drawn_edges(drawing->visible, {material, world.objects.size()});
         add(Path::kDirect, kNone,
             {drawing->visible, edges, frame.camera.mesh, grid, ids.camera_facet, ids.visible, lines.wire});
+        // Rays through one eye, or all alike, have no folds and no caustic but the eye.
+        const auto& model = frame.camera.model;
+        if (!frame.camera.linear && !(model && model->eye()))
+            add_folds(frame.camera.mesh, without_optics(ids));
     }
     const DrawnEdges edges = drawn_edges(world.objects, {material, world.objects.size()});
     for (Id i = 0; i < world.optics.size(); ++i)
@@ -132,11 +168,7 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
                 const std::vector<Id> leaves = leaves_at(ids, i, p, node);
                 add(kOpticPaths[p], world.optics[i].mesh,
                     {world.objects, edges, mesh, grid, leaves, ids.seen[p], lines.wire});
-                if (lines.folds)
-                    drawing->layers.back()->folds =
-                        fold_curves({mesh, grid, leaves,
-                                     [&](const Ray& ray) { return object_tracer(world).first_hit(ray); },
-                                     [&](Id triangle) { return world.objects.object[triangle]; }});
+                add_folds(mesh, leaves);
                 for (EdgeCurve& curve : drawing->layers.back()->curves)
                     curve.facet = frame.optics[i].grid_facet(paths.leaves()[curve.facet].facet);
             }

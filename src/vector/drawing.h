@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/frame.h"
+#include "vector/caustic.h"
 #include "vector/fold_curves.h"
 #include "vector/line_choice.h"
 #include "vector/view.h"
@@ -19,6 +20,7 @@ struct DrawingLayer {
     const TriangleScene* scene = nullptr;  // of the curves' triangles
     std::vector<EdgeCurve> curves;
     std::vector<FoldCurve> folds;
+    std::vector<CausticSheet> caustic;
 };
 
 struct Drawing {
@@ -40,5 +42,10 @@ inline constexpr double kSvgTolerance = 0.01;
 /// conics. The exact arcs stand in its attribute data-conic: "x0 y0 x1 y1 x2 y2 w" for each, a rational
 /// quadratic Bezier curve with Bezier weights 1, w, 1.
 std::string drawing_svg(const Drawing& drawing, const World& world);
+
+/// The caustics as triangles, and the fold curves where they lie on objects as lines, in a Wavefront OBJ,
+/// world frame: an object for each sheet and each curve, "OPTIC-PATH-first", "-second", with "-virtual"
+/// behind the optic, "OPTIC-PATH-fold-on-OBJECT"; the camera's own begin with "camera".
+std::string drawing_obj(const Drawing& drawing, const World& world);
 
 }  // namespace trilens

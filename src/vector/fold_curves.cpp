@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "vector/ray_slopes.h"
 #include "vector/sample_lattice.h"
 
 namespace trilens {
@@ -25,57 +26,6 @@ struct Shown {
     Vec3 point{0};      // in the environment the unit direction
     double way = 1;     // from the ray's origin
 };
-
-/// How a mesh's rays change with the film's x and y.
-struct RaySlope {
-    Vec3 origin_x{0}, origin_y{0}, direction_x{0}, direction_y{0};
-
-    void add(const RaySlope& other, double share) {
-        origin_x += share * other.origin_x, origin_y += share * other.origin_y;
-        direction_x += share * other.direction_x, direction_y += share * other.direction_y;
-    }
-};
-
-/// Inside a facet, where its unnormalised weights are e.
-RaySlope slope_in_facet(const RayMesh& mesh, std::size_t facet, const FacetWeights& weights, const Vec3& e) {
-    const double whole = e.x + e.y + e.z;
-    const auto change = [&](int axis) {  // of the weights
-        const Vec3& column = weights.weights_from_screen[axis];
-        return (column - e / whole * (column.x + column.y + column.z)) / whole;
-    };
-    const Vec3 x = change(0), y = change(1);
-    RaySlope slope;
-    for (int k = 0; k < 3; ++k) {
-        const Ray& ray = mesh.rays[mesh.facets[facet][static_cast<std::size_t>(k)]];
-        slope.add({ray.origin, Vec3(0), ray.direction, Vec3(0)}, x[k]);
-        slope.add({Vec3(0), ray.origin, Vec3(0), ray.direction}, y[k]);
-    }
-    return slope;
-}
-
-/// Per corner the mean over the facets around it.
-std::vector<RaySlope> corner_slopes(const RayMesh& mesh) {
-    std::vector<RaySlope> slopes(mesh.rays.size());
-    std::vector<double> count(mesh.rays.size(), 0);
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-        if (!mesh.has_rays(f)) continue;
-        const FacetWeights weights = facet_weights(mesh, f);
-        if (weights.edge_on) continue;
-        for (const Id corner : mesh.facets[f]) {
-            const Vec3& at = mesh.screen[corner];
-            if (!(at.z > 0)) continue;
-            const Vec3 e = weights.unnormalised(at.x / at.z, at.y / at.z);
-            slopes[corner].add(slope_in_facet(mesh, f, weights, e), 1);
-            ++count[corner];
-        }
-    }
-    for (std::size_t c = 0; c < slopes.size(); ++c) {
-        RaySlope mean;
-        if (count[c] > 0) mean.add(slopes[c], 1 / count[c]);
-        slopes[c] = mean;
-    }
-    return slopes;
-}
 
 /// The sign of the determinant of the film's map to the points at t, or for no t to the directions.
 int orientation(const Vec3& direction, const RaySlope& slope, std::optional<double> t) {
@@ -101,6 +51,7 @@ class FoldFinder {
     struct Found {
         Id object = kNone;
         Vec2 at{0};
+        Vec3 place{0};  // what is seen there
     };
 
     Shown shown(Id facet, const Vec2& at) const;
@@ -164,7 +115,7 @@ std::optional<FoldFinder::Found> FoldFinder::cross(std::size_t from, std::size_t
         const Shown there = shown_near(facets, middle);
         if (there.side == 0) {
             if (there.object != near.object) return std::nullopt;
-            a = b = middle;
+            a = b = middle, near = far = there;
         } else if (there.side == near.side) {
             a = middle, near = there;
         } else {
@@ -173,7 +124,7 @@ std::optional<FoldFinder::Found> FoldFinder::cross(std::size_t from, std::size_t
     }
     const bool jumps = length(near.point - far.point) > kJump * std::max(near.way, far.way);
     if (near.object != far.object || jumps) return std::nullopt;
-    return Found{near.object, 0.5 * (a + b)};
+    return Found{near.object, 0.5 * (a + b), near.point};
 }
 
 void FoldFinder::look_at_samples() {
@@ -220,16 +171,21 @@ void FoldFinder::join_crossings() {
 std::vector<FoldCurve> FoldFinder::walk() {
     std::vector<FoldCurve> curves;
     const auto follow = [&](Crossing at) {
-        FoldCurve curve{crossings_.at(at).object, {crossings_.at(at).at}};
+        const Found& start = crossings_.at(at);
+        FoldCurve curve{start.object, {start.at}, {start.place}};
         while (!joined_[at].empty()) {
             const Crossing next = joined_[at].front();
             joined_[at].erase(joined_[at].begin());
             std::vector<Crossing>& back = joined_[next];
             back.erase(std::find(back.begin(), back.end(), at));
-            curve.points.push_back(crossings_.at(next).at);
-            if (crossings_.at(next).object != curve.object) {  // it passes on to another object
+            const Found& here = crossings_.at(next);
+            curve.points.push_back(here.at);
+            // Where it passes on to another object, each part keeps to its own.
+            if (here.object == curve.object) curve.places.push_back(here.place);
+            if (here.object != curve.object) {
+                curve.places.push_back(curve.places.back());
                 curves.push_back(std::move(curve));
-                curve = {crossings_.at(next).object, {crossings_.at(next).at}};
+                curve = {here.object, {here.at}, {here.place}};
             }
             at = next;
         }

@@ -15,6 +15,7 @@ namespace trilens {
 struct FoldCurve {
     Id object = kNone;  // on which it lies; kNone: the environment
     std::vector<Vec2> points;
+    std::vector<Vec3> places;  // what is seen there: the world point, in the environment the unit direction
 };
 
 /// One RayMesh, and the samples that end in it.

@@ -143,7 +143,8 @@ std::string description(const Drawing& drawing) {
         "quadratic Bezier curve of weights 1 w 1 for each arc.";
     if (drawing.lines.folds)
         text +=
-            " Dashed, of class fold: where what an optic shows turns over on the film, the images of "
+            " Dashed, of class fold: where what an optic or the camera shows turns over on the film, the "
+            "images of "
             "caustics as the eye has them, as polygonal lines; none where paths are traced.";
     return text;
 }
@@ -165,10 +166,10 @@ std::string group(const DrawingLayer& layer, Id object, const std::vector<const 
 
 std::string fold_group(const DrawingLayer& layer, const World& world) {
     if (layer.folds.empty()) return "";
-    std::string svg = "<g class=\"fold\" data-path=\"" + layer.path + "\" data-optic=\"" +
-                      std::to_string(layer.optic) + "\" stroke=\"" + kFoldColour +
-                      "\" stroke-dasharray=\"3 2\">\n<title>" + escaped(world.names[layer.optic]) +
-                      "</title>\n";
+    std::string svg = "<g class=\"fold\" data-path=\"" + layer.path + "\"";
+    if (layer.optic != kNone) svg += " data-optic=\"" + std::to_string(layer.optic) + "\"";
+    svg += " stroke=\"" + std::string(kFoldColour) + "\" stroke-dasharray=\"3 2\">\n<title>" +
+           escaped(layer.optic == kNone ? "camera" : world.names[layer.optic]) + "</title>\n";
     for (const FoldCurve& fold : layer.folds) {
         std::string path = "M" + place(fold.points[0]);
         for (std::size_t i = 1; i < fold.points.size(); ++i) path += "L" + place(fold.points[i]);

@@ -2,9 +2,12 @@
 // McMillan in their own coordinates as a second answer.
 #include "camera/general_linear.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "camera/facet_kinds.h"
 #include "draw.h"
+#include "every_camera.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -120,6 +123,129 @@ TEST_CASE("rays of each general linear camera are named as what they are") {
         for (Ray& ray : plane) ray = {Vec3(draw.uniform(-1, 1), 0, 0), Vec3(draw.uniform(-1, 1), 0, 2)};
         CHECK(kind_of(shaken(plane, draw)) == GeneralLinearKind::kPlane);
     }
+}
+
+TEST_CASE("an eye that every ray leaves but for rounding is a pinhole") {
+    Draw draw(23);
+    for (int round = 0; round < 2000; ++round) {
+        const Vec3 eye = draw.in_cube(20), mean = draw.unit();
+        Rays rays;
+        for (Ray& ray : rays) {
+            ray = {eye, mean + draw.in_cube(0.02)};
+            for (int k = 0; k < 3; ++k) ray.origin[k] *= 1 + draw.uniform(-2e-16, 2e-16);
+        }
+        const auto camera = general_linear_camera(rays, mean);
+        REQUIRE(camera);
+        CHECK(camera->kind == GeneralLinearKind::kPinhole);
+        REQUIRE(camera->meets.size() == 1);
+        CHECK(length(camera->meets[0] - eye) < 1e-9);
+    }
+}
+
+TEST_CASE("near rays mirrored in a sphere meet at Coddington's two foci") {
+    // Convex, radius 1; object at `away`, the middle ray at angle i to the normal: 1/s + 1/t = -2 / cos i in
+    // the plane of incidence, -2 cos i across it (Coddington 1829).
+    Draw draw(24);
+    for (int round = 0; round < 300; ++round) {
+        const double i = draw.uniform(0.1, 1.2), away = draw.uniform(0.5, 5);
+        const Vec3 normal(0, 0, 1), eye = normal + away * Vec3(std::sin(i), 0, std::cos(i));
+        const auto mirrored = [&](const Vec3& on) {
+            const Vec3 n = normalize(on), in = n - eye;
+            return Ray{n, normalize(in - 2 * dot(in, n) * n)};
+        };
+        const double small = 1e-4, turn = draw.uniform(0, 6);
+        const auto at = [&](double angle) {
+            return mirrored(normal + small * Vec3(std::cos(angle + turn), std::sin(angle + turn), 0));
+        };
+        const Ray middle = mirrored(normal);
+        const auto camera = general_linear_camera({at(0), at(2), at(4.3)}, middle.direction);
+        REQUIRE(camera);
+        REQUIRE(camera->kind == GeneralLinearKind::kCrossedSlits);
+        std::vector<double> found;
+        for (const Vec3& meet : camera->meets) found.push_back(dot(meet - middle.origin, middle.direction));
+        std::sort(found.begin(), found.end());
+        const double across = -1 / (2 * std::cos(i) + 1 / away), along = -1 / (2 / std::cos(i) + 1 / away);
+        CHECK(found[0] == Approx(across).epsilon(2e-3));
+        CHECK(found[1] == Approx(along).epsilon(2e-3));
+    }
+}
+
+TEST_CASE("the facets of every camera are of the kind that the camera is") {
+    const FilmSize film{320, 240};
+    for (CameraDescription from : every_camera()) {
+        INFO(from.name);
+        from.facets = 12;
+        const Camera camera = make_camera(from, film);
+        const FacetKinds kinds = facet_kinds(camera);
+        const std::size_t all = camera.mesh.facets.size();
+        const auto are_all = [&](GeneralLinearKind kind) {
+            // At a pole two corners of a facet have one ray.
+            const std::size_t poles =
+                from.type == CameraType::kSpherical || from.type == CameraType::kInwardSphere ? 24 : 0;
+            return kinds.count(kind) + kinds.without == all && kinds.without == poles;
+        };
+        if (from.type == CameraType::kPushbroom)
+            CHECK(are_all(GeneralLinearKind::kPushbroom));
+        else if (from.type == CameraType::kCrossedSlits || from.type == CameraType::kGeneralLinear)
+            CHECK(are_all(from.type == CameraType::kCrossedSlits ? GeneralLinearKind::kCrossedSlits
+                                                                 : *facet_kind(camera.mesh, 0, camera.axis)));
+        else if (camera.model->eye())
+            CHECK(are_all(GeneralLinearKind::kPinhole));
+        else if (from.type == CameraType::kMultiPerspective)
+            CHECK(kinds.count(GeneralLinearKind::kPinhole) > all / 2);
+    }
+    CameraDescription linear;
+    CHECK(facet_kinds(make_camera(linear, film)).count(GeneralLinearKind::kPinhole) == 2);
+    linear.type = CameraType::kOblique;
+    CHECK(facet_kinds(make_camera(linear, film)).count(GeneralLinearKind::kOrthographic) == 2);
+    linear.type = CameraType::kOrthographic;
+    CHECK(facet_kinds(make_camera(linear, film)).count(GeneralLinearKind::kOrthographic) == 2);
+}
+
+TEST_CASE("a general linear camera of three rays of a kind has facets of that kind") {
+    // Between the planes z = 0 and z = -1, as the camera looks along -z.
+    const double k = 0.7;
+    const auto kind_with = [&](auto way) {
+        CameraDescription from;
+        from.type = CameraType::kGeneralLinear;
+        from.facets = 6;
+        from.eye = {0, 0, 0}, from.at = {0, 0, -1};
+        const std::array<Vec2, 3> places{Vec2(-1, 1), Vec2(1, 1), Vec2(-1, -1)},
+            screens{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)};
+        for (std::size_t i = 0; i < 3; ++i)
+            from.placed_rays[i] = {Vec3(places[i], 0), Vec3(way(places[i]), -1), screens[i]};
+        const Camera camera = make_camera(from, {40, 40});
+        const FacetKinds kinds = facet_kinds(camera);
+        for (std::size_t kind = 0; kind < kGeneralLinearKindCount; ++kind)
+            if (kinds.of_kind[kind] == camera.mesh.facets.size())
+                return std::string(general_linear_kind_name(static_cast<GeneralLinearKind>(kind)));
+        return std::string("mixed");
+    };
+    CHECK(kind_with([&](const Vec2& at) { return k * at; }) == "pinhole");
+    CHECK(kind_with([&](const Vec2&) { return Vec2(0.1, 0.2); }) == "orthographic");
+    CHECK(kind_with([&](const Vec2& at) { return Vec2(0.1, k * at.y); }) == "pushbroom");
+    CHECK(kind_with([&](const Vec2& at) { return Vec2(2 * k * at.x, -k * at.y); }) == "crossedSlits");
+    CHECK(kind_with([&](const Vec2& at) { return Vec2(k * at.x + at.y, k * at.y); }) == "pencil");
+    CHECK(kind_with([&](const Vec2& at) { return Vec2(k * at.y, 0); }) == "twistedOrthographic");
+    CHECK(kind_with([&](const Vec2& at) { return Vec2(-k * at.y, k * at.x); }) == "bilinear");
+}
+
+TEST_CASE("facets without rays, with two rays in one or opposite ones have no kind") {
+    RayMesh mesh;
+    mesh.rays = {{Vec3(0), Vec3(0, 0, 1)},
+                 {Vec3(1, 0, 0), Vec3(0, 0, 1)},
+                 {Vec3(0, 1, 0), Vec3(0, 0, 2)},
+                 {Vec3(1, 1, 0), Vec3(0, 0, -1)}};
+    mesh.screen = {Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(0, 1, 1), Vec3(1, 1, 1)};
+    mesh.facets = {{kNone, kNone, kNone}, {0, 1, 2}, {0, 0, 2}, {1, 3, 2}};
+    CHECK_FALSE(facet_kind(mesh, 0));
+    CHECK(facet_kind(mesh, 1) == GeneralLinearKind::kOrthographic);
+    CHECK(facet_kind(mesh, 1, Vec3(0, 0, -1)) == GeneralLinearKind::kOrthographic);
+    CHECK_FALSE(facet_kind(mesh, 2));
+    CHECK_FALSE(facet_kind(mesh, 3));
+    const FacetKinds kinds = facet_kinds(mesh);
+    CHECK(kinds.without == 3);
+    CHECK(kinds.count(GeneralLinearKind::kOrthographic) == 1);
 }
 
 TEST_CASE("random rays have as many roots as the paper's characteristic equation") {

@@ -1,4 +1,5 @@
 // `trilens sweep` on real scenes: which truth each run has, and whose folder it is.
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -114,4 +115,43 @@ TEST_CASE("a sweep's folder takes no other scene, and the same one from anywhere
     CHECK(sweep(folder + "/room.json", "--over resolution=1,2").exit_code == 2);
     // Several scenes make a gallery, which is no sweep.
     CHECK(sweep(folder + "/room.json " + folder + "/other.json", "--over resolution=1").exit_code == 2);
+}
+
+TEST_CASE("a camera's own facets are an axis: what it sees itself comes nearer with order 2",
+          "[cli][sweep]") {
+    const std::string folder = scratch_dir("cli_sweep_camera_facets");
+    const auto scene_with = [&](const std::string& name, const std::string& camera) {
+        return write_file(folder, name + ".json",
+                          R"({ "version": 1, "film": { "width": 120, "height": 90 },
+            "cameras": [ { "name": ")" +
+                              name + "\", " + camera +
+                              R"(, "lookAt": { "eye": [0.1, 0.2, 3], "at": [0, 0, 0] } } ],
+            "materials": [ { "name": "red", "unlit": true } ],
+            "meshes": [ { "name": "wall", "role": "object", "material": "red",
+                "points": [[-90,-90,-1],[90,-90,-3],[90,90,-1],[-90,90,-1]],
+                "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3] } ] })");
+    };
+    const std::vector<std::pair<std::string, std::string>> cameras{
+        {"fisheye", R"("type": "fisheye", "mapping": "equisolid", "fov": 150, "tolerance": 0.5)"},
+        {"cylinder", R"("type": "cylindrical", "hfov": 160, "yfov": 75, "facets": 3)"},
+        {"lens", R"("type": "opencv", "model": "pinhole", "fx": 110, "fy": 110, "cx": 60, "cy": 45,
+                    "distortion": [-0.1, 0.02, 0, 0])"}};
+    for (const auto& [name, camera] : cameras) {
+        INFO(name);
+        const std::string out = folder + "/" + name;
+        const CommandRun run = run_trilens("sweep run " + scene_with(name, camera) +
+                                           " --over camera-facets=6..48:x2 --json -o " + out);
+        REQUIRE(run.exit_code == 0);
+        const std::vector<double> error = column(out, "disp_mean_px");
+        REQUIRE(error.size() == 4);
+        REQUIRE(error.back() > 0);
+        for (const double covered : column(out, "disp_coverage")) CHECK(covered > 0.9);
+        CHECK(std::log2(error.front() / error.back()) / 3 >= 1.9);
+        CHECK(run.out.find("\"layer\": \"direct\"") != std::string::npos);
+    }
+    const CommandRun linear = run_trilens("sweep run " + scene_with("plain", "\"yfov\": 40") +
+                                          " --over camera-facets=4,8 -o " + folder + "/none");
+    CHECK(linear.exit_code == 3);
+    CHECK(linear.err.find("plain.json") != std::string::npos);
+    CHECK(linear.err.find("/cameras/0: \"plain\" is perspective") != std::string::npos);
 }

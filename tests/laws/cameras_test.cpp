@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "cli/command_line.h"
 #include "laws/worlds.h"
 #include "paths/optic_ray.h"
 #include "render/camera_rays.h"
@@ -13,6 +14,7 @@
 #include "render/geometry.h"
 #include "render/picture.h"
 #include "render/project.h"
+#include "scene/examples.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -138,6 +140,37 @@ TEST_CASE("through every camera the picture comes to the exact surface's and the
         // is left.
         CHECK(off[1] < off[0] / 6);
     }
+}
+
+TEST_CASE("every example is drawn by projection as its facets' rays have it, through each of its cameras") {
+    std::size_t drawn = 0;
+    for (const SceneExample& example : scene_examples()) {
+        std::string text = example.json;
+        const std::size_t film = text.find("\"film\":"), end = text.find('}', film);
+        text.replace(film, end + 1 - film, R"("film": { "width": 72, "height": 54 })");
+        const auto world = world_from(example.name, text, 4);
+        for (std::size_t c = 0; c < world->scene.cameras.size(); ++c) {
+            INFO(example.name << ", " << world->scene.cameras[c].name);
+            const SampleViews exact = look(*world, c, Engine::kExact),
+                              traced = look(*world, c, Engine::kFacetsTruth);
+            std::size_t differing = 0, shown = 0;
+            for (std::size_t s = 0; s < exact.samples.size(); ++s) {
+                differing += seen(exact, s) != seen(traced, s);
+                shown += exact.samples[s].hit.seen() || exact.samples[s].optic != kNone;
+            }
+            CHECK(differing <= 4);
+            CHECK(shown > exact.samples.size() / 3);
+            ++drawn;
+        }
+    }
+    CHECK(drawn >= 20);
+}
+
+TEST_CASE("the examples of cameras are the shipped scenes") {
+    for (const auto& [name, file] : {std::pair("cameras", "cameras.json"), {"caustic", "cameras/cup.json"}})
+        for (const SceneExample& example : scene_examples())
+            if (example.name == std::string(name))
+                CHECK(example.json == trilens_test::bytes_of(source_dir() + "/scenes/" + file));
 }
 
 TEST_CASE("the tiles of a shifted camera join to the whole picture, every id the same") {

@@ -41,8 +41,74 @@ def test_types_are_the_scene_files(scene):
     assert not trilens.FilmCamera(scene, "fisheye").is_linear
 
 
+def test_facets_are_named_after_the_general_linear_cameras(scene, command):
+    kinds = {camera.name: trilens.FilmCamera(scene, camera.name).facet_kinds for camera in scene.cameras}
+    assert kinds["main"] == {"pinhole": 2} and kinds["oblique"] == {"orthographic": 2}
+    assert kinds["strip"] == {"pushbroom": 8192} and kinds["slits"] == {"crossedSlits": 8192}
+    assert kinds["panorama"] == {"pinhole": 8064, "none": 128}
+    _, answer = command("scene", "info", SCENE)
+    assert answer["camera_kinds"][answer["cameras"].index("several")] == kinds["several"]
+    pixel = trilens.Renderer(scene).explain(48, 36, camera="strip")
+    assert pixel["camera"]["facet_kind"] == "pushbroom"
+
+
 def test_a_lens_that_folds_the_film_is_refused(scene):
     index = [camera.name for camera in scene.cameras].index("lens")
     broken = scene.with_overrides({f"/cameras/{index}/distortion": [-2, 0, 0, 0]})
     with pytest.raises(trilens.InputError, match=f"/cameras/{index}/distortion: .*not one-to-one"):
         trilens.FilmCamera(broken, "lens")
+
+
+def test_the_caustic_of_a_ring_is_a_nephroid():
+    renderer = trilens.Renderer(trilens.load_scene(SCENE.parent / "cameras/cup.json"))
+    drawing = renderer.draw_lines(16, "source", folds=True, caustics=True)
+    (sheet,) = drawing.caustics
+    assert (sheet["path"], sheet["optic"], sheet["sheet"], sheet["virtual"]) == ("reflect", 0, 0, False)
+    assert sheet["triangles"].max() < len(sheet["points"]) and sheet["segments"].shape == (0, 2)
+    assert drawing.obj.count("\nf ") == len(sheet["triangles"])
+
+    def nephroid(places):
+        x, z = places[:, 0], places[:, 2]
+        return (x**2 + z**2 - 0.25) ** 3 - 27 / 64 * x**2
+
+    assert np.abs(nephroid(sheet["points"])).max() < 2e-3
+    curves = [curve for curve in drawing.fold_curves if curve["object"] == 1]
+    assert curves and all(len(curve["points"]) == len(curve["places"]) for curve in curves)
+    assert max(np.abs(nephroid(curve["places"])).max() for curve in curves) < 2e-3
+    assert renderer.draw_lines(2, "source").caustics == [] and renderer.draw_lines(2, "source").obj == ""
+
+
+def test_a_cameras_own_facets_are_an_axis_of_sweeps(tmp_path):
+    summary = trilens.sweep(SCENE, tmp_path, "camera-facets=8..32:x2", camera="cylinder",
+                            overrides={"/film/width": 96, "/film/height": 72, "/film/spp": 1})
+    fit = next(fit for fit in summary.fits if (fit.layer, fit.metric) == ("direct", "disp_mean_px"))
+    assert fit.axis == "camera-facets" and fit.order > 1.9
+
+
+def test_a_cube_map_cross_is_six_faces_every_id_the_same():
+    file, side = SCENE.parent / "cameras/cross.json", 80
+    ids = ["directID.object", "directID.primitive", "optic.object", "optic.facet"]
+
+    def drawn(width, height):
+        film = {"/film/width": width, "/film/height": height, "/film/spp": 1}
+        return trilens.Renderer(trilens.load_scene(file, film, warn=lambda text: None))
+
+    cross, face = drawn(4 * side, 3 * side), drawn(side, side)
+    layers = ["Z", "optic", "direct", "position"]
+    whole = cross.render(camera="cross", layers=layers, warn=lambda text: None)
+    described = {camera["name"]: camera for camera in cross.scene.to_dict()["cameras"]}
+    compared, objects = 0, set()
+    for name, camera in described.items():
+        if name == "cross":
+            continue
+        (view,) = [one for one in described["cross"]["views"] if one["lookAt"]["at"] == camera["lookAt"]["at"]]
+        x, y = round(view["window"][0] * 4 * side), round(view["window"][1] * 3 * side)
+        one = face.render(camera=name, layers=layers, warn=lambda text: None)
+        part = {channel: np.asarray(whole[channel])[y : y + side, x : x + side] for channel in [*ids, "Z"]}
+        for channel in ids:
+            assert part[channel].tobytes() == np.ascontiguousarray(one[channel]).tobytes(), (name, channel)
+        # The cross interpolates its rays between corners: the last bit of a depth may be another.
+        assert np.allclose(part["Z"], one["Z"], rtol=3e-7)
+        objects |= set(np.unique(part["directID.object"]))
+        compared += 1
+    assert compared == 6 and len(objects) > 3
