@@ -21,8 +21,8 @@ def test_the_ratchet_turns_neither_way_by_itself(metric, kept, now, word):
 
 
 def test_rows_that_appear_or_vanish_are_named():
-    row = {"scene": "a", "layer": "reflect", "n": 1, **{metric: 1.0 for metric in reference.TOLERANCES}}
-    kept = {("a", "reflect", "1"): {metric: "1" for metric in reference.TOLERANCES}}
+    row = {"scene": "a", "rays": "fitted", "layer": "reflect", "n": 1, **{metric: 1.0 for metric in reference.TOLERANCES}}
+    kept = {("a", "fitted", "reflect", "1"): {metric: "1" for metric in reference.TOLERANCES}}
     assert reference.complaints([row], kept) == []
     assert "not written down" in reference.complaints([row], {})[0]
     assert "was not measured" in reference.complaints([], kept)[0]
@@ -34,5 +34,5 @@ def test_the_kept_tables_hold():
     if not reference.TABLE.exists():
         pytest.skip("no table is kept yet: scripts/reference-results --update makes it")
     rows = [row for file in reference.scenes() for row in reference.rows_of(trilens, file)]
-    assert len(rows) >= 5 * len(reference.RESOLUTIONS)
+    assert len(rows) >= 5 * len(reference.RESOLUTIONS) * len(reference.RAYS)
     assert reference.complaints(rows, reference.read_table()) == []
