@@ -99,7 +99,7 @@ SeenLayer::SeenLayer(const LayerStage& stage, std::vector<Id> chain, Id optic,
 
     DivideParams divide = stage.divide;
     divide.fit = stage.optics[optic].fit;
-    divide.plain_area = kPlainArea;
+    divide.plain_area = divide.fit ? 0 : kPlainArea;  // a fit looks inside all facets
     if (world_.optics[optic].mirror && world_.max_depth > 0) {
         std::vector<Id> longer = chain_;
         longer.push_back(optic);

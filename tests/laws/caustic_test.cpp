@@ -203,7 +203,8 @@ TEST_CASE("the command writes caustics as an OBJ, and the shipped one is what it
     const std::string folder = ".";
     const std::string file = folder + "/caustic_of_cup.obj";
     const CommandRun run =
-        run_trilens("render " + cup() + " --camera source --set /meshes/0/resolution=12 --json -o " + file);
+        run_trilens("render " + cup() +
+                    " --camera source --rays interpolated --set /meshes/0/resolution=12 --json -o " + file);
     REQUIRE(run.exit_code == 0);
     const std::string fresh = bytes_of(file),
                       shipped = bytes_of(source_dir() + "/scenes/models/catacaustic.obj");

@@ -53,9 +53,10 @@ std::unique_ptr<World> two_balls(int n, int film) {
         n);
 }
 
-FrameParams layered(bool layers) {
+FrameParams layered(bool layers, CornerRays rays = CornerRays::kInterpolated) {
     FrameParams frame;
     frame.layered = layers;
+    frame.rays = rays;
     return frame;
 }
 
@@ -192,8 +193,8 @@ void check_flat_layer(const std::string& material, int n) {
     const CameraRays camera =
         mirrored_camera(make_camera_rays(alone->scene, 0), both->optics[1].surface->eval(0, Vec2(0.5)));
     SampleViews direct;
-    make_facet_viewer(*alone, make_frame(*alone, camera, {}, ignore), Engine::kExact)({0, 0, 240, 240, 1},
-                                                                                      direct);
+    make_facet_viewer(*alone, make_frame(*alone, camera, layered(true), ignore), Engine::kExact)(
+        {0, 0, 240, 240, 1}, direct);
 
     std::size_t compared = 0, other = 0, ball_only_there = 0;
     for (std::size_t s = 0; s < in_mirror.samples.size(); ++s) {
@@ -263,8 +264,7 @@ TEST_CASE("layers at full size beside dividing, with a table", "[.long][layers-t
         const SampleViews truth = views_of(*world, {}, Engine::kLimitTruth);
         for (const bool layers : {true, false})
             for (const CornerRays rays : {CornerRays::kInterpolated, CornerRays::kFitted}) {
-                FrameParams frame = layered(layers);
-                frame.rays = rays;
+                const FrameParams frame = layered(layers, rays);
                 print((std::string(layers ? "lay " : "div ") + corner_rays_name(rays)).substr(0, 8).c_str(),
                       n, errors_of(*world, frame, truth));
             }
