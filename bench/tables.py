@@ -4,6 +4,7 @@
 Writes FOLDER/table.md (today beside the aim) and plots of the ratio over triangles, over n, and over the film,
 one line per combination of the others.
 """
+import collections
 import csv
 import pathlib
 import sys
@@ -52,14 +53,21 @@ def number(row, axis):
     return int(row[axis])
 
 
+COMMON = ("film", "threads", "isa")
+
+
 def plot(rows, axis, column, file):
-    """Lines with three values of the axis or more; nothing, and no file, where there is none."""
+    """Of the rows with the film, threads and instruction set that most have (but for the axis) the longest lines, if
+    they have three values or more; nothing, and no file, where there is none."""
+    common = {name: collections.Counter(r[name] for r in rows).most_common(1)[0][0] for name in COMMON if name != axis}
     lines = {}
     for r in rows:
-        key = ", ".join(text.format(r[name]) for name, text in OTHERS.items() if name != axis)
-        lines.setdefault(key, {})[number(r, axis)] = float(r[column])
-    lines = {key: points for key, points in lines.items() if len(points) >= 3}
-    if not lines:
+        if all(r[name] == value for name, value in common.items()):
+            key = ", ".join(text.format(r[name]) for name, text in OTHERS.items() if name != axis and name not in COMMON)
+            lines.setdefault(key, {})[number(r, axis)] = float(r[column])
+    most = max((len(points) for points in lines.values()), default=0)
+    lines = {key: points for key, points in lines.items() if len(points) == most}
+    if most < 3:
         return
     figure, axes = plt.subplots(figsize=(8, 5))
     for key, points in sorted(lines.items()):
@@ -69,8 +77,8 @@ def plot(rows, axis, column, file):
     axes.set_yscale("log")
     axes.set_xlabel(AXES[axis])
     axes.set_ylabel("Embree's time / projector's time")
-    axes.set_title(TITLES[column])
-    axes.legend(fontsize=6)
+    axes.set_title(f"{TITLES[column]}\n" + ", ".join(OTHERS[name].format(common[name]) for name in common))
+    axes.legend(fontsize=7)
     axes.grid(True, which="both", alpha=0.3)
     figure.tight_layout()
     figure.savefig(file)
