@@ -296,6 +296,15 @@ DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, co
     return Divider(looking, facet.side, reach, params).divide(facet.corners);
 }
 
+DividedFacet traced_facet(const std::array<Vec3, 3>& screen) {
+    DividedFacet divided;
+    divided.cells.push_back({kNone, 0});
+    FacetPart& part = divided.parts.emplace_back();
+    part.method = LeafMethod::kTraced;
+    part.centre = (screen[0] + screen[1] + screen[2]) / 3.0;
+    return divided;
+}
+
 DividedFacet divide_part(const Looking& looking, const FacetPart& part, const DivideParams& params) {
     return Divider(looking, part.side, part.reach, params).divide_on(part);
 }

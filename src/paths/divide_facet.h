@@ -78,6 +78,9 @@ inline Vec3 child_weights(const Vec3& weights, int child) {
 
 DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, const DivideParams& params);
 
+/// A facet that is traced, no part of it looked at; by its corners' homogeneous screen positions.
+DividedFacet traced_facet(const std::array<Vec3, 3>& screen);
+
 /// A projected part divided in four, and on where their histories differ: cells[0] is the part, and has
 /// children. One that is too small is a traced part instead. What the part's corners point to must live as
 /// long as the result.

@@ -228,6 +228,31 @@ void OpticPaths::complete_nodes() {
     }
 }
 
+/// Which facets' paths there is room for, by what the looks at some corners take: the same whatever is asked
+/// for first. A facet has four looks of its own and half a corner.
+void OpticPaths::keep_room() {
+    constexpr std::size_t kFew = 2048, kSample = 64;
+    if (!has_room_.empty()) return;
+    has_room_.assign(outline_.facets.size(), 1);
+    std::vector<Id> shown, sample;
+    for (Id f = 0; f < outline_.facets.size(); ++f)
+        if (on_film(f)) shown.push_back(f);
+    if (shown.size() <= kFew && params_.most_bytes >= DivideParams().most_bytes) return;
+    for (std::size_t i = 0; i < shown.size(); i += std::max<std::size_t>(1, shown.size() / kSample))
+        sample.push_back(shown[i]);
+    look_at_corners(sample);
+    double bytes = 0, looks = 0;
+    for (const Id f : sample)
+        for (const Id corner : outline_.facets[f]) {
+            const Look& look = *corner_looks_[2 * corner + (shows_front(f) ? 1 : 0)];
+            bytes += static_cast<double>(sizeof(Look) + look.segments.size() * sizeof(PathSegment));
+            looks += 1;
+        }
+    const double room = static_cast<double>(params_.most_bytes) * looks / std::max(1.0, 4.5 * bytes);
+    for (std::size_t i = 0; i < shown.size(); ++i) has_room_[shown[i]] = static_cast<double>(i) < room;
+    crowded_out_ = static_cast<std::size_t>(std::count(has_room_.begin(), has_room_.end(), 0));
+}
+
 void OpticPaths::prepare(std::span<const Id> facets) {
     if (ends_first_) {
         for (const Id f : facets) {
@@ -236,14 +261,23 @@ void OpticPaths::prepare(std::span<const Id> facets) {
         }
         return;
     }
+    keep_room();
     const std::vector<Id> fresh = wanted_facets(facets);
-    look_at_corners(fresh);
+    std::vector<Id> projected;
+    std::copy_if(fresh.begin(), fresh.end(), std::back_inserter(projected),
+                 [&](Id f) { return has_room_[f]; });
+    look_at_corners(projected);
 
     std::vector<DividedFacet> divided(fresh.size());
     parallel_for(fresh.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             FacetToDivide facet;
             const IdTriple& corners = outline_.facets[fresh[i]];
+            if (!has_room_[fresh[i]]) {
+                divided[i] = traced_facet(
+                    {outline_.screen[corners[0]], outline_.screen[corners[1]], outline_.screen[corners[2]]});
+                continue;
+            }
             const bool front = shows_front(fresh[i]);
             facet.side = !grid_ ? LookSide::kNearest : front ? LookSide::kFront : LookSide::kBack;
             facet.reach = grid_ ? 0 : 2 * window_.reach;

@@ -54,7 +54,10 @@ struct DivideParams {
     int most_levels = 6;
     // Pixels: parts whose predicted displacement is more are divided too; infinity: whatever it is.
     double max_error = std::numeric_limits<double>::infinity();
-    bool estimates = true;            // few are: predicted only where an estimate says that they may be
+    bool estimates = true;  // few are: predicted only where an estimate says that they may be
+    // About what the paths over one optic's facets may take: where all would take more, the last of them are
+    // traced.
+    std::size_t most_bytes = std::size_t{4} << 30;
     const Tracer* objects = nullptr;  // for the prediction: what is seen
     bool fit = false;                 // corner rays of whole facets are fitted
     // Of a mirror: whether a pixel from which the exact path goes on to optic `next` (kNone: to none) shows
@@ -134,6 +137,8 @@ class OpticPaths {
     const CutPaths& cut() const { return cut_; }
     /// Leaves that are projected, of the facets worked out.
     std::size_t projected_count() const { return projected_count_; }
+    /// Facets that are traced for want of room (DivideParams::most_bytes).
+    std::size_t crowded_out() const { return crowded_out_; }
     const Looking& looking() const { return looking_; }
 
   private:
@@ -150,6 +155,7 @@ class OpticPaths {
     void append(Id facet, Id cell, DividedFacet& divided);
     void append_part(Id leaf, FacetPart& part);
     void complete_nodes();
+    void keep_room();
     void divide_by_error(std::vector<FittedLeaf> open);
     double predicted(const FittedLeaf& open) const;
     Id node_of(Id parent, const PathSegment& segment);
@@ -163,6 +169,8 @@ class OpticPaths {
     std::vector<Place> places_;                        // per corner; on the film the point alone: the facet's
     std::vector<std::unique_ptr<Look>> corner_looks_;  // per grid corner and side, where asked for
     std::vector<Cell> cells_;                          // one per facet, then parts
+    std::vector<char> has_room_;                       // one per facet, once they are counted
+    std::size_t crowded_out_ = 0;
     std::vector<char> prepared_;
     std::vector<PathLeaf> leaves_;
     std::vector<PathNode> nodes_;

@@ -6,18 +6,24 @@
 #include "base/nearest.h"
 #include "render/facet_engine.h"
 #include "render/limit_engine.h"
+#include "render/surroundings.h"
 
 namespace trilens {
 
 FacetViews make_views(const World& world, const FrameParams& frame, const EngineChoice& engine,
                       const Warn& warn) {
     prepare_shadows(world);
-    if (engine.engine == Engine::kLimitTruth)
-        return {make_limit_viewer(world, make_camera_rays(world.scene, frame.camera)), {}};
+    if (engine.engine == Engine::kLimitTruth) {
+        CameraRays camera = make_camera_rays(world.scene, frame.camera);
+        if (camera.linear) warn_of_surroundings(world, *camera.linear, warn);
+        return {make_limit_viewer(world, std::move(camera)), {}};
+    }
     FrameParams params = frame;
     if (engine.engine == Engine::kEnvironment || engine.engine == Engine::kPlanar)
         params.rays = CornerRays::kInterpolated;
-    return make_facet_views(world, make_frame(world, params, warn), engine);
+    Frame placed = make_frame(world, params, warn);
+    if (placed.camera.linear) warn_of_surroundings(world, *placed.camera.linear, warn);
+    return make_facet_views(world, std::move(placed), engine);
 }
 
 Viewer make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,

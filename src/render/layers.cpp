@@ -164,6 +164,7 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
         }
         if (sink) sink->add(canvas.image().channels, grid.height());
         counts.projected_facets = std::max(counts.projected_facets, middle.projected_facets);
+        counts.crowded_out = std::max(counts.crowded_out, middle.crowded_out);
         progress(static_cast<double>(grid.y1 - request.y0) / height);
     }
     if (statistics) *statistics = counts;

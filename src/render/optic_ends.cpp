@@ -155,6 +155,7 @@ void ShownDrawer::note(const Shown& shown, const std::vector<Id>& leaf) {
         if (of_sample.method == LeafMethod::kTraced) traced_.push_back(static_cast<Id>(s));
     }
     views_.projected_facets += shown.paths.projected_count();
+    views_.crowded_out += shown.paths.crowded_out();
 }
 
 /// Whether what the ray meets lies no nearer than the layer's point there.

@@ -48,6 +48,15 @@ void tell(const World& world, const LayerRequest& window, const LayerStatistics&
                         statistics.pixels_without_ray));
 }
 
+/// What is drawn by another way than was asked for.
+void tell_crowded_out(const LayerStatistics& statistics, const Warn& warn) {
+    if (statistics.crowded_out > 0)
+        warn(fmt::format(
+            "{} facets are traced, not projected: the paths over all would take more than {} MiB; "
+            "fewer facets or a smaller maxDepth need less",
+            statistics.crowded_out, DivideParams().most_bytes >> 20));
+}
+
 /// What a picture leaves out of the scene.
 void tell_omissions(const World& world, Engine engine, const LayerStatistics& statistics, const Warn& warn) {
     const RenderSettings& settings = world.scene.render;
@@ -150,6 +159,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     if (warn) {
         tell(world, layers, picture.statistics, warn);
         tell_omissions(world, request.engine.engine, picture.statistics, warn);
+        tell_crowded_out(picture.statistics, warn);
     }
     return picture;
 }

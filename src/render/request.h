@@ -86,6 +86,7 @@ struct LayerStatistics {
     std::size_t subdivided_pixels = 0;   // of the optics' pixels, those of a part of a facet
     std::size_t traced_pixels = 0;       // and those whose own rays were followed
     std::size_t layered_pixels = 0;      // and those that show an optic in an optic as a layer
+    std::size_t crowded_out = 0;         // facets whose paths need more memory than is kept for them: traced
     std::size_t projected_facets = 0;    // facets and parts of facets that were drawn through
     double predicted_error = 0;  // pixels: the most that was left of those seen; 0 where none was asked for
     // The most that was left out of any pixel, as a share of its light: paths that carry too little, and

@@ -13,6 +13,7 @@ void SampleViews::reset(std::size_t count) {
     ends.clear();
     steps.clear();
     projected_facets = 0;
+    crowded_out = 0;
 }
 
 }  // namespace trilens

@@ -44,6 +44,7 @@ struct SampleViews {
     std::vector<PathEnd> ends;         // of all samples, those of one side by side
     std::vector<Step> steps;           // of all ends; ends with one history may share theirs
     std::size_t projected_facets = 0;  // facets and parts of facets that the optics have by now
+    std::size_t crowded_out = 0;       // facets that are traced for want of room
 
     std::span<const PathEnd> ends_of(const SampleView& sample) const {
         return {ends.data() + sample.first_end, sample.end_count};

@@ -245,6 +245,40 @@ TEST_CASE("a facet's rays do not depend on what was asked for before") {
         }
 }
 
+TEST_CASE("facets whose paths there is no room for are traced, the same ones whatever is asked for first") {
+    Stage stage;
+    put_up(stage);
+    const SurfaceGrid grid = make_grid(stage.surface(0), 6);
+    Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})};
+    looking.camera.film = Vec2(1000);
+    DivideParams tight;
+    tight.most_bytes = 1u << 18;
+    OpticPaths roomy(looking, grid, DivideParams{}), at_once(looking, grid, tight),
+        one_by_one(looking, grid, tight);
+    std::vector<Id> facets = all_facets(at_once);
+    roomy.prepare(facets);
+    at_once.prepare(facets);
+    std::reverse(facets.begin(), facets.end());
+    for (const Id f : facets) one_by_one.prepare(std::vector<Id>{f});
+    CHECK(roomy.crowded_out() == 0);
+    CHECK(at_once.crowded_out() > facets.size() / 10);
+    CHECK(at_once.crowded_out() < facets.size());
+    CHECK(one_by_one.crowded_out() == at_once.crowded_out());
+
+    Random random(54);
+    std::size_t traced = 0;
+    for (const Id f : facets) {
+        const Vec3 weights = random_weights(random);
+        const bool is_traced =
+            at_once.is_whole(f) &&
+            at_once.leaves()[at_once.leaf_at(f, Vec3(1.0 / 3))].method == LeafMethod::kTraced;
+        traced += is_traced;
+        CHECK(rays_at(at_once, grid, f, weights) == rays_at(one_by_one, grid, f, weights));
+        if (!is_traced) CHECK(rays_at(at_once, grid, f, weights) == rays_at(roomy, grid, f, weights));
+    }
+    CHECK(traced >= at_once.crowded_out());
+}
+
 TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times kappa") {
     Stage stage;
     put_up(stage);
