@@ -94,8 +94,16 @@ class PointProjector {
     std::vector<std::unique_ptr<SeveralOpticsImages>> several_;  // per optic, where paths go on
 };
 
+/// Exact images need facets as places to start from alone: those that are seen, with the rays at their
+/// corners.
+FrameParams frame_of_seeds(const ProjectRequest& request) {
+    FrameParams frame = request.frame;
+    if (request.refine && !frame.rays) frame.rays = CornerRays::kInterpolated;
+    return frame;
+}
+
 PointProjector::PointProjector(const World& world, const ProjectRequest& request)
-    : world_(world), request_(request), frame_(make_frame(world, request.frame, {})) {
+    : world_(world), request_(request), frame_(make_frame(world, frame_of_seeds(request), {})) {
     object_tracer(world);
     if (!camera_.linear && !camera_.model) {
         camera_mesh_ = std::make_unique<MeshPointImages>(camera_.mesh);
