@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
 #include <memory>
@@ -36,6 +37,28 @@ void parallel_for(std::size_t count, std::size_t grain,
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, grain > 0 ? grain : 1),
         [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
+}
+
+void run_pipeline(std::size_t count, std::size_t slots, const PipelineStages& stages) {
+    // Items end in order, and at most `slots` are on the way: the one that had this slot before has ended.
+    std::size_t next = 0;
+    const auto begin = tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
+                                                           [&](tbb::flow_control& flow) -> std::size_t {
+                                                               if (next == count) {
+                                                                   flow.stop();
+                                                                   return 0;
+                                                               }
+                                                               stages.begin(next, next % slots);
+                                                               return next++;
+                                                           });
+    const auto work =
+        tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, [&](std::size_t item) {
+            stages.work(item, item % slots);
+            return item;
+        });
+    const auto end = tbb::make_filter<std::size_t, void>(
+        tbb::filter_mode::serial_in_order, [&](std::size_t item) { stages.end(item, item % slots); });
+    tbb::parallel_pipeline(slots, begin & work & end);
 }
 
 void run_isolated(const std::function<void()>& work) {

@@ -18,6 +18,19 @@ int thread_count();
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t first, std::size_t last)>& body);
 
+/// A row of items that go through three stages, each in a slot that is its own on the way.
+struct PipelineStages {
+    std::function<void(std::size_t item, std::size_t slot)> begin;  // one item after the other
+    std::function<void(std::size_t item, std::size_t slot)> work;   // of several items at once
+    std::function<void(std::size_t item, std::size_t slot)> end;    // one item after the other
+};
+
+/// Takes the items 0 .. count-1 through all stages, at most `slots` of them at the same time, each with a
+/// slot below `slots` that no other uses meanwhile. The first and the last stage see them in order; stages
+/// of different items run side by side. An exception of a stage is rethrown here, after the stages that run
+/// have ended.
+void run_pipeline(std::size_t count, std::size_t slots, const PipelineStages& stages);
+
 /// Calls work() so that its own loops, while they wait, take up no part of the loops around them: for work
 /// that others wait for, such as a value made once.
 void run_isolated(const std::function<void()>& work);

@@ -1,8 +1,8 @@
 #include "image/exr_chunk.h"
 
-#include <libdeflate.h>
+#include <isa-l/igzip_lib.h>
 
-#include <cstring>
+#include <cstdint>
 #include <memory>
 
 #include "base/check.h"
@@ -10,18 +10,32 @@
 namespace trilens {
 namespace {
 
-/// Of libdeflate's levels: the fastest that still finds the repetitions of ids and flat colours.
-constexpr int kLevel = 2;
+/// Of ISA-L's levels: the densest that costs no more than the one below it.
+constexpr std::uint32_t kLevel = 2;
+constexpr std::uint32_t kLevelBytes = ISAL_DEF_LVL2_DEFAULT;
 
-struct FreeCompressor {
-    void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
+/// What one thread deflates with, far too large for its stack.
+struct Deflater {
+    isal_zstream stream;
+    std::vector<unsigned char> tables = std::vector<unsigned char>(kLevelBytes);
 };
 
-libdeflate_compressor& compressor_of_thread() {
-    thread_local const std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor(
-        libdeflate_alloc_compressor(kLevel));
-    TRILENS_CHECK(compressor, "a compressor needs a little memory");
-    return *compressor;
+/// How many bytes of `to` the zlib stream of `from` takes; 0 when it does not fit.
+std::size_t deflate(std::vector<unsigned char>& from, std::vector<unsigned char>& to) {
+    thread_local const auto deflater = std::make_unique<Deflater>();
+    isal_zstream& stream = deflater->stream;
+    isal_deflate_init(&stream);
+    stream.level = kLevel;
+    stream.level_buf = deflater->tables.data();
+    stream.level_buf_size = kLevelBytes;
+    stream.gzip_flag = IGZIP_ZLIB;
+    stream.end_of_stream = 1;
+    stream.next_in = from.data();
+    stream.avail_in = static_cast<std::uint32_t>(from.size());
+    stream.next_out = to.data();
+    stream.avail_out = static_cast<std::uint32_t>(to.size());
+    TRILENS_CHECK(isal_deflate(&stream) == COMP_OK, "the stream is set up as the library asks");
+    return stream.internal_state.state == ZSTATE_END ? stream.total_out : 0;
 }
 
 /// One half of the sorted bytes under work: every second byte, each as its difference from the one before.
@@ -64,9 +78,8 @@ std::vector<unsigned char> zip_block(std::span<const BlockValues> channels, int 
     // The very first byte stands as it is.
     sorted[0] = channels[0][0];
 
-    std::vector<unsigned char> packed(size);
-    packed.resize(
-        libdeflate_zlib_compress(&compressor_of_thread(), sorted.data(), size, packed.data(), size - 1));
+    std::vector<unsigned char> packed(size - 1);
+    packed.resize(deflate(sorted, packed));
     if (!packed.empty()) return packed;
     for_each_piece(channels, rows, row_bytes, [&](const unsigned char* bytes, std::size_t count) {
         packed.insert(packed.end(), bytes, bytes + count);

@@ -24,6 +24,9 @@ constexpr const char* kPrefix = "trilens:";
 /// Blocks that are deflated before they are written: enough for many threads, small beside a picture.
 constexpr std::size_t kBlocksTogether = 32;
 
+/// Of a file's bytes before they are known, as many as its values have.
+constexpr std::size_t kMostRoom = std::size_t{1} << 30;
+
 /// SOURCE_DATE_EPOCH (reproducible-builds.org), or 1970, as EXIF writes dates.
 std::string fixed_date_time(const std::string& name) {
     const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
@@ -208,6 +211,8 @@ ExrStrips::ExrStrips(const std::string& name, const Image& layout) : state_(std:
     std::sort(state_->order.begin(), state_->order.end(), [&](std::size_t a, std::size_t b) {
         return layout.channels[a].name < layout.channels[b].name;
     });
+    // Room that is not used costs nothing; a file that moves as it grows is copied, and its pages cleared.
+    state_->sink.file.reserve(std::min(kMostRoom, 4 * layout.pixels() * layout.channels.size()));
     state_->open(layout);
 }
 

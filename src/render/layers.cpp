@@ -12,8 +12,9 @@ namespace trilens {
 namespace {
 
 // Samples that are held at once: what stays in cache (measured), and what bounds the memory of a frame.
-constexpr std::size_t kBandSamples = 1u << 16, kMostBandSamples = 1u << 18;
-constexpr std::size_t kBlockRows = 16;  // of a block of the file, one thread's work
+constexpr std::size_t kBandSamples = 1u << 15, kMostBandSamples = 1u << 18;
+constexpr std::size_t kBandsAtOnce = 3;  // on their way: seen, shaded, taken
+constexpr std::size_t kBlockRows = 16;   // of a block of the file, one thread's work
 
 /// Whether a path that the scene asks for has no ray at this sample, and not because all light is reflected.
 bool lacks_ray(const World& world, const SampleViews& views, const SampleView& view) {
@@ -111,64 +112,97 @@ Image empty_image(const World& world, const LayerRequest& request) {
     return image;
 }
 
+/// A band of rows on its way from what its samples see to the pixels of the image.
+struct Band {
+    SampleGrid grid{};
+    SampleViews views, centres;  // centres: only where a pixel has several samples
+    std::optional<FilteredSamples> filtered;
+
+    /// What the pixels' centres see: with one sample a pixel that sample, otherwise looked at once more.
+    const SampleViews& middle() const { return grid.side > 1 ? centres : views; }
+};
+
+void view_band(const World& world, const Viewer& viewer, const PixelFilter& filter, Band& band) {
+    const SampleGrid& grid = band.grid;
+    band.filtered.reset();
+    if (filter.reach > 0) band.filtered.emplace(world, viewer, grid, filter);
+    if (!band.filtered || grid.side == 1) viewer(grid, band.views);
+    if (grid.side > 1) viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
+}
+
+/// Its pixels, from that `first` of the canvas on.
+void put_band(const World& world, const Band& band, std::size_t first, Canvas& canvas) {
+    const SampleGrid& grid = band.grid;
+    const std::size_t per_pixel = static_cast<std::size_t>(grid.side * grid.side);
+    parallel_for(grid.pixels(), 256, [&](std::size_t from, std::size_t to) {
+        for (std::size_t p = from; p < to; ++p) {
+            const int across = static_cast<int>(p % static_cast<std::size_t>(grid.width())),
+                      down = static_cast<int>(p / static_cast<std::size_t>(grid.width()));
+            canvas.put_colour(band.filtered ? band.filtered->colour(grid.x0 + across, grid.y0 + down)
+                                            : mean_colour(world, band.views, p * per_pixel, per_pixel),
+                              first + p);
+            canvas.put_centre(world, band.middle(), band.middle().samples[p], first + p);
+        }
+    });
+}
+
+void count_band(const World& world, const SampleViews& middle, LayerStatistics& counts) {
+    for (const SampleView& view : middle.samples) {
+        counts.optic_pixels += view.optic != kNone;
+        counts.pixels_without_ray += lacks_ray(world, middle, view);
+        counts.traced_pixels += view.traced;
+        counts.layered_pixels += !view.traced && view.layers > 0;
+        counts.subdivided_pixels += !view.traced && view.level > 0;
+        counts.faint_light = std::max(counts.faint_light, view.cut.faint);
+        counts.predicted_error = std::max(counts.predicted_error, view.predicted);
+        counts.deep_light = std::max(counts.deep_light, view.cut.too_deep);
+    }
+    counts.projected_facets = std::max(counts.projected_facets, middle.projected_facets);
+    counts.crowded_out = std::max(counts.crowded_out, middle.crowded_out);
+}
+
 }  // namespace
 
 Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& request,
                   const Progress& progress, LayerStatistics* statistics, const StripSink* sink) {
-    const int side = world.scene.film.spp, height = request.y1 - request.y0;
-    const std::size_t per_pixel = static_cast<std::size_t>(side * side);
-    const std::size_t samples_per_row = static_cast<std::size_t>(request.x1 - request.x0) * per_pixel;
-    const int rows = band_rows(samples_per_row);
+    const int side = world.scene.film.spp, width = request.x1 - request.x0, height = request.y1 - request.y0;
+    const int rows = band_rows(static_cast<std::size_t>(width * side * side));
+    const std::size_t bands = static_cast<std::size_t>((height + rows - 1) / rows);
+    const std::size_t slots = std::min(bands, kBandsAtOnce);
+
+    // Where pixels go to a sink each band on its way has a canvas of its own, otherwise all share the
+    // image's.
     Image image = empty_image(world, request);
     if (sink) image.data_height = std::min(height, rows);
-    Canvas canvas(std::move(image), request.layers);
+    std::vector<Canvas> canvases(sink ? slots : 1, Canvas(image, request.layers));
     if (sink) {
-        Image layout = canvas.layout();
+        Image layout = canvases[0].layout();
         layout.data_height = height;
         sink->begin(layout);
     }
+
     LayerStatistics counts;
     const PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
-    SampleViews views, centres;
-    for (int y = request.y0; y < request.y1; y += rows) {
+    std::vector<Band> band(slots);
+    PipelineStages stages;
+    stages.begin = [&](std::size_t item, std::size_t slot) {
         if (progress.cancelled()) throw Interrupted();
-        const SampleGrid grid{request.x0, y, request.x1, std::min(y + rows, request.y1), side};
-        std::optional<FilteredSamples> filtered;
-        if (filter.reach > 0) filtered.emplace(world, viewer, grid, filter);
-        if (!filtered || side == 1) viewer(grid, views);
-
-        // With one sample a pixel its centre is that sample; otherwise the centres are looked at once more.
-        if (side > 1) viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, centres);
-        const SampleViews& middle = side > 1 ? centres : views;
-        const std::size_t first =
-            sink ? 0 : static_cast<std::size_t>(y - request.y0) * static_cast<std::size_t>(grid.width());
-        parallel_for(grid.pixels(), 256, [&](std::size_t from, std::size_t to) {
-            for (std::size_t p = from; p < to; ++p) {
-                const int across = static_cast<int>(p % static_cast<std::size_t>(grid.width())),
-                          down = static_cast<int>(p / static_cast<std::size_t>(grid.width()));
-                canvas.put_colour(filtered ? filtered->colour(grid.x0 + across, grid.y0 + down)
-                                           : mean_colour(world, views, p * per_pixel, per_pixel),
-                                  first + p);
-                canvas.put_centre(world, middle, middle.samples[p], first + p);
-            }
-        });
-        for (const SampleView& view : middle.samples) {
-            counts.optic_pixels += view.optic != kNone;
-            counts.pixels_without_ray += lacks_ray(world, middle, view);
-            counts.traced_pixels += view.traced;
-            counts.layered_pixels += !view.traced && view.layers > 0;
-            counts.subdivided_pixels += !view.traced && view.level > 0;
-            counts.faint_light = std::max(counts.faint_light, view.cut.faint);
-            counts.predicted_error = std::max(counts.predicted_error, view.predicted);
-            counts.deep_light = std::max(counts.deep_light, view.cut.too_deep);
-        }
-        if (sink) sink->add(canvas.image().channels, grid.height());
-        counts.projected_facets = std::max(counts.projected_facets, middle.projected_facets);
-        counts.crowded_out = std::max(counts.crowded_out, middle.crowded_out);
-        progress(static_cast<double>(grid.y1 - request.y0) / height);
-    }
+        const int y = request.y0 + static_cast<int>(item) * rows;
+        band[slot].grid = {request.x0, y, request.x1, std::min(y + rows, request.y1), side};
+        view_band(world, viewer, filter, band[slot]);
+    };
+    stages.work = [&](std::size_t item, std::size_t slot) {
+        const std::size_t above = sink ? 0 : item * static_cast<std::size_t>(rows);
+        put_band(world, band[slot], above * static_cast<std::size_t>(width), canvases[sink ? slot : 0]);
+    };
+    stages.end = [&](std::size_t, std::size_t slot) {
+        count_band(world, band[slot].middle(), counts);
+        if (sink) sink->add(canvases[slot].image().channels, band[slot].grid.height());
+        progress(static_cast<double>(band[slot].grid.y1 - request.y0) / height);
+    };
+    run_pipeline(bands, slots, stages);
     if (statistics) *statistics = counts;
-    return sink ? empty_image(world, request) : canvas.take();
+    return sink ? empty_image(world, request) : canvases[0].take();
 }
 
 }  // namespace trilens

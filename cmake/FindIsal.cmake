@@ -1,0 +1,11 @@
+# Target trilens_isal: Debian's package has no CMake config of its own.
+find_path(Isal_INCLUDE_DIR isa-l/igzip_lib.h)
+find_library(Isal_LIBRARY isal)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(Isal DEFAULT_MSG Isal_LIBRARY Isal_INCLUDE_DIR)
+if(Isal_FOUND AND NOT TARGET trilens_isal)
+  add_library(trilens_isal INTERFACE)
+  target_link_libraries(trilens_isal INTERFACE ${Isal_LIBRARY})
+  target_include_directories(trilens_isal SYSTEM INTERFACE ${Isal_INCLUDE_DIR})
+endif()
+mark_as_advanced(Isal_INCLUDE_DIR Isal_LIBRARY)
