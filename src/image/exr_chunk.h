@@ -17,4 +17,9 @@ using BlockValues = const unsigned char*;
 /// Source: Kainz and others, Technical Introduction to OpenEXR; zlib streams as RFC 1950 has them.
 std::vector<unsigned char> zip_block(std::span<const BlockValues> channels, int rows, int columns);
 
+/// The way back, for zip_block and for other programs' blocks: fills `channels`, each with room for the
+/// block's values. False where `packed` is damaged; what the channels hold is then undefined.
+bool unzip_block(std::span<unsigned char> packed, std::span<unsigned char* const> channels, int rows,
+                 int columns);
+
 }  // namespace trilens

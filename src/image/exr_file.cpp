@@ -22,6 +22,7 @@
 #include "base/file_bytes.h"
 #include "base/parallel.h"
 #include "image/exr_channels.h"
+#include "image/exr_unzip.h"
 #include "image/library_reason.h"
 
 namespace trilens {
@@ -72,6 +73,7 @@ int library_threads() {
 struct ExrFile::State {
     std::string name;
     std::size_t size = 0;  // of the file
+    bool on_disk = false;
     std::ifstream in;
     std::unique_ptr<Imf::IStream> stream;
     std::unique_ptr<Imf::MultiPartInputFile> file;
@@ -96,6 +98,7 @@ void ExrFile::State::open() {
 ExrFile::ExrFile(const std::string& file) : state_(std::make_unique<State>()) {
     state_->name = file;
     state_->size = readable_size(file);
+    state_->on_disk = true;
     state_->in.open(file, std::ios::binary);
     state_->stream = std::make_unique<Imf::StdIFStream>(state_->in, file.c_str());
     state_->open();
@@ -205,6 +208,7 @@ Image ExrFile::read(int part) {
     state_->check_readable(part, shape, is_deep(part));
     try {
         Image image = empty_image(state_->header(part), shape);
+        if (state_->on_disk && read_zipped(state_->name, image)) return image;
         Imf::InputPart input(*state_->file, part);
         input.setFrameBuffer(frame_buffer(image));
         for (int row = 0; row < image.data_height; row += kBandRows)

@@ -30,14 +30,13 @@ constexpr double kSurelyNearest = 0.25;
 double distance_to(const SeenPoint& from, double x0, double y0, double x1, double y1) {
     const double dx = std::max({x0 - from.column, from.column - x1, 0.0});
     const double dy = std::max({y0 - from.row, from.row - y1, 0.0});
-    return std::hypot(dx, dy);
+    return std::sqrt(dx * dx + dy * dy);
 }
 
 template <typename Box>
 bool contains(const Box& box, const Vec3& point) {
-    return point.x >= static_cast<double>(box.low[0]) && point.x <= static_cast<double>(box.high[0]) &&
-           point.y >= static_cast<double>(box.low[1]) && point.y <= static_cast<double>(box.high[1]) &&
-           point.z >= static_cast<double>(box.low[2]) && point.z <= static_cast<double>(box.high[2]);
+    return point.x >= double(box.low[0]) && point.x <= double(box.high[0]) && point.y >= double(box.low[1]) &&
+           point.y <= double(box.high[1]) && point.z >= double(box.low[2]) && point.z <= double(box.high[2]);
 }
 
 template <typename Box>
@@ -84,6 +83,7 @@ ImageFinder::ImageFinder(SeenField reference, SeenField test)
     link_neighbours(field_);
     link_neighbours(test_);
     build_pyramid();
+    number_ends();
 }
 
 ImageFinder::Box ImageFinder::cell_box(int column, int row) const {
@@ -137,6 +137,30 @@ void ImageFinder::build_pyramid() {
     }
 }
 
+void ImageFinder::number_ends() {
+    const Level& cells = levels_.front();
+    Id count = 0;
+    end_of_cell_.assign(cells.boxes.size(), kNone);
+    for (int row = 0; row < cells.rows; ++row)
+        for (int column = 0; column < cells.columns; ++column)
+            if (!is_whole(field_, column - 1, row - 1))
+                end_of_cell_[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells.columns) +
+                             static_cast<std::size_t>(column)] = count++;
+    end_reach_ = LazyBoxes(count);
+}
+
+/// Whether the patches of a cell may show the point, as far as it costs little to say.
+bool ImageFinder::may_show(const Vec3& point, int column, int row) const {
+    const std::size_t cell =
+        static_cast<std::size_t>(row + 1) * static_cast<std::size_t>(levels_.front().columns) +
+        static_cast<std::size_t>(column + 1);
+    if (!contains(levels_.front().boxes[cell], point)) return false;
+    if (end_of_cell_[cell] == kNone) return true;
+    const trilens::Box* reach =
+        end_reach_.get(end_of_cell_[cell], [&] { return reach_of_cell(field_, test_, column, row); });
+    return !reach || contains(*reach, point);
+}
+
 /// Tries every piece of the wanted object and optic that has a pixel among the cell's corners. Says whether
 /// one was solid enough to be tried.
 bool ImageFinder::try_pieces(const SeenPoint& wanted, int column, int row, bool same_primitive,
@@ -173,7 +197,7 @@ const ImageFinder::Box& ImageFinder::box_at(int level, int column, int row) cons
 }
 
 void ImageFinder::try_cell(const SeenPoint& wanted, int column, int row, Best& best) const {
-    if (!contains(box_at(0, column + 1, row + 1), wanted.point)) return;
+    if (!may_show(wanted.point, column, row)) return;
     if (!try_pieces(wanted, column, row, true, best)) try_pieces(wanted, column, row, false, best);
 }
 
@@ -185,7 +209,7 @@ void ImageFinder::search(const SeenPoint& wanted, Best& best) const {
         double distance;
     };
     const auto node_at = [&](int level, int column, int row) {
-        const double size = std::ldexp(1.0, level);
+        const double size = static_cast<double>(1 << level);
         return Node{level, column, row,
                     distance_to(wanted, column * size - 1, row * size - 1, (column + 1) * size - 1,
                                 (row + 1) * size - 1)};
@@ -200,13 +224,14 @@ void ImageFinder::search(const SeenPoint& wanted, Best& best) const {
             try_cell(wanted, node.column - 1, node.row - 1, best);
             continue;
         }
-        if (!contains(box_at(node.level, node.column, node.row), wanted.point)) continue;
         const Level& finer = levels_[static_cast<std::size_t>(node.level - 1)];
         const std::size_t first = size;
         for (int child = 0; child < 4; ++child) {
             const int column = 2 * node.column + child % 2, row = 2 * node.row + child / 2;
-            if (column < finer.columns && row < finer.rows)
-                stack[size++] = node_at(node.level - 1, column, row);
+            if (column >= finer.columns || row >= finer.rows) continue;
+            if (!contains(box_at(node.level - 1, column, row), wanted.point)) continue;
+            stack[size] = node_at(node.level - 1, column, row);
+            if (stack[size].distance < best.score) ++size;
         }
         std::sort(stack.begin() + static_cast<std::ptrdiff_t>(first),
                   stack.begin() + static_cast<std::ptrdiff_t>(size),

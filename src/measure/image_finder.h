@@ -6,7 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/ids.h"
 #include "base/vec.h"
+#include "measure/cell_reach.h"
 #include "measure/patch.h"
 #include "measure/seen_field.h"
 
@@ -47,6 +49,8 @@ class ImageFinder {
 
     Box cell_box(int column, int row) const;
     void build_pyramid();
+    void number_ends();
+    bool may_show(const Vec3& point, int column, int row) const;
     const Box& box_at(int level, int column, int row) const;
     std::array<int, 2> likely_side(const SeenPoint& wanted) const;
     void try_cell(const SeenPoint& wanted, int column, int row, Best& best) const;
@@ -58,6 +62,9 @@ class ImageFinder {
     SeenField field_, test_;
     std::vector<Level>
         levels_;  // the first has one box per cell; cell (column, row) is entry (column + 1, row + 1)
+    // Cells where a piece ends have wide boxes there; what their patches show is asked for cell by cell.
+    std::vector<Id> end_of_cell_;  // per cell its index into end_reach_, or kNone
+    mutable LazyBoxes end_reach_;
 };
 
 }  // namespace trilens

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/box.h"
 #include "base/vec.h"
 #include "measure/seen_field.h"
 
@@ -47,5 +48,8 @@ inline constexpr double kOvershoot = 0.25;
 /// is smooth, on the tensor cubic through all its nodes. Nothing where no uv comes close: the point is seen
 /// elsewhere; nor where the answer would rest on extrapolating a patch that is not smooth.
 std::optional<PatchHit> invert_patch(const Patch& patch, const Vec3& point, const Vec2& start);
+
+/// A box, world frame: for a point outside of it invert_patch has no answer, wherever it starts.
+Box reach_of(const Patch& patch);
 
 }  // namespace trilens

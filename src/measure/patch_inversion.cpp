@@ -1,4 +1,4 @@
-// Finds where a patch shows a point.
+// Finds where a patch shows a point, and which points it may show.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -88,12 +88,15 @@ constexpr double kMostExtrapolated = 0.25;
 constexpr int kMostSteps = 12;
 constexpr double kArrived = 1e-4;  // pixels
 
-/// Whether steps along the lines change so little that a cubic through them means something: a third
-/// difference is at most a quarter of the longest step. A jump at a patch's end gives 1, a crease of 25 %
-/// gives a quarter.
-bool is_smooth(const Nodes& n) {
+/// Of the lines of nodes in one direction, squared: their longest step and their largest third difference.
+struct LineSteps {
+    double step = 0, third = 0;
+};
+
+std::array<LineSteps, 2> line_steps(const Nodes& n) {
+    std::array<LineSteps, 2> result;
     for (const std::size_t along : {std::size_t{1}, std::size_t{4}}) {
-        double step = 0, third = 0;
+        auto& [step, third] = result[along / 4];
         for (std::size_t line = 0; line < 4; ++line) {
             const std::size_t i = line * (5 - along);
             const Vec3 a = n[i + along] - n[i], b = n[i + 2 * along] - n[i + along];
@@ -101,14 +104,26 @@ bool is_smooth(const Nodes& n) {
             step = std::max({step, dot(a, a), dot(b, b), dot(c, c)});
             third = std::max(third, dot(d3, d3));
         }
-        if (third > step / 16) return false;
     }
-    return true;
+    return result;
+}
+
+/// Whether steps along the lines change so little that a cubic through them means something: a third
+/// difference is at most a quarter of the longest step. A jump at a patch's end gives 1, a crease of 25 %
+/// gives a quarter.
+constexpr double kSmoothThird = 1.0 / 16;  // squared
+
+bool is_smooth(const Nodes& n) {
+    const auto lines = line_steps(n);
+    return lines[0].third <= kSmoothThird * lines[0].step && lines[1].third <= kSmoothThird * lines[1].step;
 }
 
 double outside_of(const Vec2& uv) {
     return std::max({-uv.x, uv.x - 1, -uv.y, uv.y - 1, 0.0});
 }
+
+constexpr double kBendShare = 0.5, kTangentShare = 0.05;                   // of what is left over
+constexpr double kRounding = 4.0 * std::numeric_limits<float>::epsilon();  // of the point's distance
 
 /// Whether the origin lies on the surface at uv, where the surface comes closest to it. What is left is along
 /// the normal; it may be as large as the surface's own bends between pixels (a crease, facets as small as
@@ -126,10 +141,119 @@ bool lies_on(const Nodes& n, const Tangents& at, double rounding) {
         }
     }
     const double tangent = std::sqrt(std::min(dot(at.du, at.du), dot(at.dv, at.dv)));
-    return length(at.value) <= 0.5 * bend + 0.05 * tangent + rounding;
+    return length(at.value) <= kBendShare * bend + kTangentShare * tangent + rounding;
+}
+
+// --- Which points a patch may show
+// -------------------------------------------------------------------------------------
+
+constexpr double kFrom = -kOvershoot, kTo = 1 + kOvershoot;  // of u and v
+
+/// Row i: the i-th Bernstein coefficient on kFrom .. kTo of the cubic through values at -1, 0, 1, 2, which is
+/// its polar form (blossom) at i times kTo and 3 - i times kFrom: the mean over all orders of the roots.
+constexpr std::array<std::array<double, 4>, 4> bernstein_of_nodes() {
+    std::array<std::array<double, 4>, 4> weights{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const double x = i > 2 ? kTo : kFrom, y = i > 1 ? kTo : kFrom, z = i > 0 ? kTo : kFrom;
+        for (std::size_t a = 0; a < 4; ++a) {
+            std::array<double, 3> root{};
+            double scale = 1;
+            for (std::size_t b = 0, k = 0; b < 4; ++b) {
+                if (b == a) continue;
+                root[k++] = static_cast<double>(b) - 1;
+                scale *= static_cast<double>(a) - static_cast<double>(b);
+            }
+            const auto [p, q, r] = root;
+            weights[i][a] =
+                ((x - p) * (y - q) * (z - r) + (x - p) * (y - r) * (z - q) + (x - q) * (y - p) * (z - r) +
+                 (x - q) * (y - r) * (z - p) + (x - r) * (y - p) * (z - q) + (x - r) * (y - q) * (z - p)) /
+                (6 * scale);
+        }
+    }
+    return weights;
+}
+
+/// Points whose hull holds a surface over the cell and kOvershoot around it, and a bound of the shorter of
+/// its tangents there.
+struct Hull {
+    std::array<Vec3, 16> points{};
+    std::size_t count = 0;
+    double tangent = 0;
+};
+
+Hull cubic_hull(const Nodes& n) {
+    static constexpr auto kWeights = bernstein_of_nodes();
+    std::array<Vec3, 16> along_u{};
+    Hull hull;
+    hull.count = 16;
+    for (std::size_t line = 0; line < 4; ++line)
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t a = 0; a < 4; ++a) along_u[i + 4 * line] += kWeights[i][a] * n[a + 4 * line];
+    for (std::size_t line = 0; line < 4; ++line)
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t a = 0; a < 4; ++a)
+                hull.points[line + 4 * i] += kWeights[i][a] * along_u[line + 4 * a];
+
+    Vec2 tangent(0);
+    for (std::size_t k = 0; k < 16; ++k) {
+        if (k % 4 < 3) tangent.x = std::max(tangent.x, length(hull.points[k + 1] - hull.points[k]));
+        if (k < 12) tangent.y = std::max(tangent.y, length(hull.points[k + 4] - hull.points[k]));
+    }
+    hull.tangent = 3 / (kTo - kFrom) * std::min(tangent.x, tangent.y);
+    return hull;
+}
+
+Hull cell_hull(const Nodes& n) {
+    Hull hull;
+    Vec2 tangent(0);
+    for (const double u : {kFrom, kTo})
+        for (const double v : {kFrom, kTo}) {
+            const Tangents corner = bilinear(n, {u, v});
+            hull.points[hull.count++] = corner.value;
+            tangent = glm::max(tangent, Vec2(length(corner.du), length(corner.dv)));
+        }
+    hull.tangent = std::min(tangent.x, tangent.y);
+    return hull;
+}
+
+/// What lies_on may take for the bend of a surface, whatever its normal.
+double largest_bend(const Nodes& n) {
+    double bend = 0;
+    for (const std::size_t along : {std::size_t{1}, std::size_t{4}})
+        for (std::size_t line = 0; line < 4; ++line)
+            for (const std::size_t i : {line * (5 - along), line * (5 - along) + along})
+                bend = std::max(bend, length(n[i] - 2.0 * n[i + along] + n[i + 2 * along]));
+    return bend;
+}
+
+void include(Box& box, const Hull& hull, double margin) {
+    const Vec3 around(margin + kTangentShare * hull.tangent);
+    for (std::size_t i = 0; i < hull.count; ++i) {
+        box.include(hull.points[i] - around);
+        box.include(hull.points[i] + around);
+    }
 }
 
 }  // namespace
+
+Box reach_of(const Patch& patch) {
+    double size = 0;
+    for (const Vec3& node : patch.nodes) size = std::max(size, length(node));
+    // What a patch shows lies within a few times its own distance from the origin.
+    const double margin = kBendShare * largest_bend(patch.nodes) + 8 * kRounding * size;
+
+    // Relative to a point, nodes round differently: where that could decide whether they are smooth, both.
+    bool may_be_smooth = true, may_be_rough = false;
+    for (const auto& [step, third] : line_steps(patch.nodes)) {
+        const double doubt = 1e-6 * step + 1e-20 * size * size;
+        may_be_smooth = may_be_smooth && third <= kSmoothThird * step + doubt;
+        may_be_rough = may_be_rough || third >= kSmoothThird * step - doubt;
+    }
+    Box box;
+    if (may_be_smooth) include(box, cubic_hull(patch.nodes), margin);
+    if (may_be_rough) include(box, cell_hull(patch.nodes), margin);
+    return box;
+}
 
 std::optional<PatchHit> invert_patch(const Patch& patch, const Vec3& point, const Vec2& start) {
     Nodes nodes;
@@ -148,7 +272,7 @@ std::optional<PatchHit> invert_patch(const Patch& patch, const Vec3& point, cons
     if (hit.overshoot > kOvershoot || !(last_move <= kArrived)) return std::nullopt;
     if (!smooth && extrapolated_share(patch, uv) > kMostExtrapolated) return std::nullopt;
     const Tangents there = smooth ? cubic(uv) : cell(uv);
-    const double rounding = 4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * length(point);
+    const double rounding = kRounding * length(point);
     if (!lies_on(nodes, there, rounding)) return std::nullopt;
     return hit;
 }
