@@ -12,7 +12,7 @@ namespace trilens {
 namespace {
 
 // Samples that are held at once: what stays in cache (measured), and what bounds the memory of a frame.
-constexpr std::size_t kBandSamples = 1u << 15, kMostBandSamples = 1u << 18;
+constexpr std::size_t kBandSamples = 1u << 15, kMostBandSamples = 1u << 17;
 constexpr std::size_t kBandsAtOnce = 3;  // on their way: seen, shaded, taken
 constexpr std::size_t kBlockRows = 16;   // of a block of the file, one thread's work
 
