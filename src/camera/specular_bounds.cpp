@@ -16,7 +16,9 @@ struct Sight {
     double turn = 0;         // no direction differs by more
     double sine = 0;         // of the largest angle
     double by_distance = 0;  // 1 / distance of the middle
-    double stretch = 0;      // no 1 / distance differs by more
+
+    /// No 1 / distance differs by more.
+    double stretch() const { return by_distance * sine / (1 - sine); }
 };
 
 /// False where the ball holds the place itself.
@@ -29,7 +31,6 @@ bool sight_from(const Vec3& from, const PlaceBounds& place, Sight& sight) {
     sight.sine = place.position_radius * sight.by_distance;
     // The chord 2 sin(angle / 2) is at most this for all sines up to 1.
     sight.turn = sight.sine * (1 + 0.4143 * sight.sine * sight.sine);
-    sight.stretch = sight.by_distance * sight.sine / (1 - sight.sine);
     return true;
 }
 
@@ -71,7 +72,7 @@ struct Size {
 /// The most that (a . Q b) / d changes, Q the projection across a sight of distance d.
 double turning_radius(const Sight& sight, const Size& a, const Size& b) {
     const double all_a = a.length + a.radius, all_b = b.length + b.radius;
-    return sight.stretch * all_a * all_b +
+    return sight.stretch() * all_a * all_b +
            sight.by_distance * (a.radius * all_b + a.length * (sight.sine * all_b + b.radius));
 }
 
@@ -111,14 +112,17 @@ bool holds_no_image(const SpecularQuery& query, const PlaceBounds& place) {
         const double depth = screen_from_world(query.camera, place.position).z;
         if (depth + length(Vec3(w)) * place.position_radius < 0) return true;
     }
+    // Where every direction may be a normal no light is excluded.
+    if (place.normal_radius >= 1) return false;
     Light light;
     if (!light_over(query, place, light)) return false;
     if (wrong_side(query, light, place)) return true;
 
     // Where h is parallel to a normal N, |h x n| = |(h - h') x n + h' x (n - N)| for the middle's h and n.
     const Vec3& n = place.normal;
-    const double across = length(light.bend - dot(light.bend, n) * n);
-    return across > light.bend_turn + (length(light.bend) + light.bend_turn) * place.normal_radius;
+    const Vec3 across = light.bend - dot(light.bend, n) * n;
+    const double most = light.bend_turn + (length(light.bend) + light.bend_turn) * place.normal_radius;
+    return dot(across, across) > most * most;
 }
 
 NewtonBounds newton_bounds(const SpecularQuery& query, const SurfaceBounds& bounds, const Vec2& half) {

@@ -21,6 +21,8 @@ constexpr double kContraction = 0.5;
 /// A refined image this far from the zero of the law that it began at is another one.
 constexpr double kSameZero = 1e-6;
 constexpr int kNewtonSteps = 30;
+/// Over a cell whose normals turn by more than this the Newton operator decides nothing, and is not asked.
+constexpr double kHopelessTurn = 0.25;
 /// Undecided cells from which images are refined, evenly among them all.
 constexpr std::size_t kUndecidedStarts = 64;
 
@@ -128,6 +130,8 @@ Verdict Walk::settle(const CellBox& box, const SurfacePoint& middle, const Newto
 
 Verdict Walk::judge(const CellBox& box, const SurfaceBounds& bounds) {
     if (holds_no_image(query_, place_of(bounds))) return Verdict::kEmpty;
+    const bool is_last = bounds.is_finest || largest(box.high - box.low) <= limits_.smallest_cell;
+    if (bounds.normal_radius > kHopelessTurn && !is_last) return Verdict::kSplit;
     const Vec2 half = box.half();
     const NewtonBounds newton = newton_bounds(query_, bounds, half);
     if (!newton.known) return Verdict::kSplit;
