@@ -1,7 +1,7 @@
 #include "render/layers.h"
 
 #include <algorithm>
-#include <optional>
+#include <memory>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -116,7 +116,7 @@ Image empty_image(const World& world, const LayerRequest& request) {
 struct Band {
     SampleGrid grid{};
     SampleViews views, centres;  // centres: only where a pixel has several samples
-    std::optional<FilteredSamples> filtered;
+    std::unique_ptr<FilteredSamples> filtered;
 
     /// What the pixels' centres see: with one sample a pixel that sample, otherwise looked at once more.
     const SampleViews& middle() const { return grid.side > 1 ? centres : views; }
@@ -125,7 +125,7 @@ struct Band {
 void view_band(const World& world, const Viewer& viewer, const PixelFilter& filter, Band& band) {
     const SampleGrid& grid = band.grid;
     band.filtered.reset();
-    if (filter.reach > 0) band.filtered.emplace(world, viewer, grid, filter);
+    if (filter.reach > 0) band.filtered = std::make_unique<FilteredSamples>(world, viewer, grid, filter);
     if (!band.filtered || grid.side == 1) viewer(grid, band.views);
     if (grid.side > 1) viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
 }
