@@ -62,42 +62,31 @@ HWY_INLINE std::array<Vec3, 3> corners_of(const PreparedScene::Data& data, Id tr
 
 /// Where one sure hit lies, by the scalar decision, which must agree that it is one.
 HWY_NOINLINE Hit decide_sure(const KernelScene& scene, const FacetRays& facet, Id sample, Id triangle) {
-    const std::optional<LineHit> hit = decide(facet, facet.at(scene.grid->position(sample)),
-                                              corners_of(*scene.data, triangle, facet.centre));
+    const std::optional<LineHit> hit =
+        decide(facet.at(scene.grid->position(sample)), corners_of(*scene.data, triangle, facet.centre));
     TRILENS_CHECK(hit.has_value(), "a sure hit must be one for the exact decision too");
     return scene_hit(*scene.data, triangle, *hit);
 }
 
-HWY_NOINLINE void fill_forms(const KernelScene& scene, const Vec3& centre, Id triangle,
-                             const FacetCoefficients& facet, CachedForms& to) {
-    const std::array<Vec3, 3> corner = corners_of(*scene.data, triangle, centre);
-    make_forms(facet, corner.data(), to);
-    to.triangle = scene.data->triangle[triangle];
-    const std::array<std::uint8_t, 3>& was = scene.data->was_corner[triangle];
-    to.second_corner = was[0] == 1 ? 0 : was[1] == 1 ? 1 : 2;
-    to.third_corner = was[0] == 2 ? 0 : was[1] == 2 ? 1 : 2;
+HWY_NOINLINE void fill_frame(const PreparedTriangle& triangle, const Vec3& centre, CachedFrame& to) {
+    to.frame = triangle_frame(
+        {triangle.corner[0] - centre, triangle.corner[1] - centre, triangle.corner[2] - centre});
+    to.triangle = triangle.triangle();
+    to.second = static_cast<std::uint8_t>(triangle.second());
+    to.third = static_cast<std::uint8_t>(triangle.third());
 }
 
-HWY_INLINE bool has_forms(const FormCache& cache, const SampleTile& tile, Id triangle) {
-    return cache.rays == tile.rays && cache.triangle[triangle % kCachedForms] == triangle;
-}
-
-HWY_INLINE const CachedForms& cached_forms(const KernelScene& scene, const SampleTile& tile, Id triangle,
-                                           FormCache& cache) {
-    if (cache.rays != tile.rays) {
-        cache.triangle.fill(kNone);
-        cache.rays = tile.rays;
-        set_facet(scene.tiles->rays[tile.rays], cache.facet);
-    }
-    const std::size_t at = triangle % kCachedForms;
+HWY_INLINE const CachedFrame& cached_frame(const KernelScene& scene, const Vec3& centre, Id triangle,
+                                           FrameCache& cache) {
+    const std::size_t at = triangle % kCachedFrames;
     if (cache.triangle[at] != triangle) {
-        fill_forms(scene, scene.tiles->rays[tile.rays].centre, triangle, cache.facet, cache.forms[at]);
+        fill_frame(scene.data->triangles[triangle], centre, cache.frame[at]);
         cache.triangle[at] = triangle;
     }
-    return cache.forms[at];
+    return cache.frame[at];
 }
 
-HWY_INLINE const Double& weight_of(const PlacedLanes& p, std::uint8_t sorted_corner) {
+HWY_INLINE const Double& weight_of(const PlacedLanes& p, std::size_t sorted_corner) {
     return sorted_corner == 0 ? p.first : sorted_corner == 1 ? p.second : p.third;
 }
 
@@ -112,101 +101,94 @@ HWY_INLINE hn::Mask<DoubleTag> mask_of_doubles(std::uint32_t lanes) {
     return hn::LoadMaskBits(kDouble, bytes);
 }
 
-/// Lanes of a vector that see one triangle. Returns those where place() says nothing.
-HWY_INLINE std::uint32_t place_on_one(const CachedForms& cached, const SampleLanes* samples,
-                                      std::uint32_t lanes, const TileTrust& trust, Placed& placed) {
-    const FormLanes forms = broadcast(cached);
-    std::uint32_t bad = 0;
-    for (std::size_t at = 0, i = 0; at < kLanes; at += kDoubles, ++i) {
-        const std::uint32_t own = lanes >> at & first_lanes(kDoubles);
-        if (!own) continue;
-        const PlacedLanes p = place_lanes(forms, samples[i], trust);
-        const auto mask = mask_of_doubles(own);
-        hn::BlendedStore(p.t, mask, kDouble, placed.t + at);
-        hn::BlendedStore(weight_of(p, cached.second_corner), mask, kDouble, placed.second + at);
-        hn::BlendedStore(weight_of(p, cached.third_corner), mask, kDouble, placed.third + at);
-        bad |= (own & ~bits(p.good)) << at;
-    }
-    return bad;
+/// Lanes that see one triangle. Returns those where place() says nothing. `to`: the first lane's.
+HWY_INLINE std::uint32_t place_on_one(const CachedFrame& cached, const RayLanes& rays, std::uint32_t lanes,
+                                      std::size_t to, Placed& placed) {
+    const PlacedLanes p = place_lanes(broadcast(cached.frame), rays);
+    const auto mask = mask_of_doubles(lanes);
+    hn::BlendedStore(p.t, mask, kDouble, placed.t + to);
+    hn::BlendedStore(weight_of(p, cached.second), mask, kDouble, placed.second + to);
+    hn::BlendedStore(weight_of(p, cached.third), mask, kDouble, placed.third + to);
+    return lanes & ~bits(p.good);
 }
 
-/// Lanes that see many triangles: each its own forms.
-HWY_NOINLINE std::uint32_t place_on_many(const KernelScene& scene, const FacetRays& facet,
-                                         const SampleLanes* samples, const Id* triangle, std::uint32_t lanes,
-                                         const TileTrust& trust, Placed& placed) {
-    const PreparedScene::Data& data = *scene.data;
-    std::uint32_t bad = 0;
-    for (std::size_t at = 0, i = 0; at < kLanes; at += kDoubles, ++i) {
-        const std::uint32_t own = lanes >> at & first_lanes(kDoubles);
-        if (!own) continue;
-        HWY_ALIGN double at_corner[3][3][kDoubles] = {};
-        for (Each lane(own); lane; ++lane) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Vec3 c = data.corner(k, triangle[at + *lane], facet.centre);
-                at_corner[k][0][*lane] = c.x;
-                at_corner[k][1][*lane] = c.y;
-                at_corner[k][2][*lane] = c.z;
-            }
+/// Each lane its own triangle.
+HWY_INLINE std::uint32_t place_on_many(const KernelScene& scene, const Vec3& centre, const RayLanes& rays,
+                                       const Id* triangle, std::uint32_t lanes, std::size_t to,
+                                       Placed& placed) {
+    using NameTag = hn::Rebind<std::uint64_t, DoubleTag>;
+    constexpr NameTag name_tag;
+    HWY_ALIGN double at_corner[9][kDoubles];
+    HWY_ALIGN std::uint64_t names[kDoubles];
+    const std::size_t some = static_cast<std::size_t>(std::countr_zero(lanes));
+    for (std::size_t k = 0; k < kDoubles; ++k) {
+        const PreparedTriangle& own = scene.data->triangles[triangle[lanes >> k & 1 ? k : some]];
+        for (int c = 0; c < 3; ++c) {
+            for (int a = 0; a < 3; ++a) at_corner[3 * c + a][k] = own.corner[static_cast<std::size_t>(c)][a];
         }
-        Vector3 corner[3];
-        for (int k = 0; k < 3; ++k)
-            corner[k] = {hn::Load(kDouble, at_corner[k][0]), hn::Load(kDouble, at_corner[k][1]),
-                         hn::Load(kDouble, at_corner[k][2])};
-        const PlacedLanes p = place_lanes(forms_in_lanes(facet, corner), samples[i], trust);
-        HWY_ALIGN double weight[3][kDoubles], t[kDoubles];
-        hn::Store(p.t, kDouble, t);
-        hn::Store(p.first, kDouble, weight[0]);
-        hn::Store(p.second, kDouble, weight[1]);
-        hn::Store(p.third, kDouble, weight[2]);
-        for (Each lane(own); lane; ++lane) {
-            const std::size_t k = at + *lane;
-            const std::array<std::uint8_t, 3>& was = data.was_corner[triangle[k]];
-            double of[3];
-            for (std::size_t c = 0; c < 3; ++c) of[was[c]] = weight[c][*lane];
-            placed.t[k] = t[*lane];
-            placed.second[k] = of[1];
-            placed.third[k] = of[2];
-            placed.triangle[k] = data.triangle[triangle[k]];
-        }
-        bad |= (own & ~bits(p.good)) << at;
+        names[k] = own.name;
     }
-    return bad;
+    Vector3 corner[3];
+    for (std::size_t c = 0; c < 3; ++c)
+        corner[c] = minus({hn::Load(kDouble, at_corner[3 * c]), hn::Load(kDouble, at_corner[3 * c + 1]),
+                           hn::Load(kDouble, at_corner[3 * c + 2])},
+                          set3(centre));
+    const PlacedLanes p = place_lanes(frame_lanes(corner), rays);
+    const auto name = hn::Load(name_tag, names);
+    const auto weight = [&](int bit) HWY_ATTR {
+        const auto is_second = hn::TestBit(name, hn::Set(name_tag, std::uint64_t{1} << bit));
+        const auto is_third = hn::TestBit(name, hn::Set(name_tag, std::uint64_t{2} << bit));
+        return hn::IfThenElse(hn::RebindMask(kDouble, is_second), p.second,
+                              hn::IfThenElse(hn::RebindMask(kDouble, is_third), p.third, p.first));
+    };
+    const auto mask = mask_of_doubles(lanes);
+    hn::BlendedStore(p.t, mask, kDouble, placed.t + to);
+    hn::BlendedStore(weight(PreparedTriangle::kSecondBit), mask, kDouble, placed.second + to);
+    hn::BlendedStore(weight(PreparedTriangle::kThirdBit), mask, kDouble, placed.third + to);
+    for (Each lane(lanes); lane; ++lane) placed.triangle[to + *lane] = static_cast<Id>(names[*lane]);
+    return lanes & ~bits(p.good);
+}
+
+/// What some samples of a vector surely see: `lanes` of kDoubles, from lane `at` on.
+HWY_INLINE std::uint32_t place_part(const KernelScene& scene, const Vec3& centre, const RayLanes& rays,
+                                    const Nearest& nearest, std::uint32_t lanes, std::size_t at,
+                                    FrameCache& cache, Placed& placed) {
+    const Words triangles = load_words(nearest.triangle);
+    const auto lanes_of = [&](std::uint32_t lane, Id& triangle) HWY_ATTR {
+        triangle = nearest.triangle[at + lane];
+        return bits(same(triangles, set_word(triangle))) >> at & lanes;
+    };
+    const auto place = [&](std::uint32_t own, Id triangle) HWY_ATTR {
+        const CachedFrame& cached = cached_frame(scene, centre, triangle, cache);
+        const Mask here = mask_of(own << at);
+        store_words(choose(here, set_word(cached.triangle), load_words(placed.triangle)), placed.triangle);
+        return place_on_one(cached, rays, own, at, placed) << at;
+    };
+    Id first = kNone, second = kNone;
+    const std::uint32_t see_first = lanes_of(static_cast<std::uint32_t>(std::countr_zero(lanes)), first);
+    std::uint32_t left = lanes & ~see_first;
+    if (!left) return place(see_first, first);
+    const std::uint32_t see_second = lanes_of(static_cast<std::uint32_t>(std::countr_zero(left)), second);
+    left &= ~see_second;
+    if (!left) return place(see_first, first) | place(see_second, second);
+    return place_on_many(scene, centre, rays, nearest.triangle + at, lanes, at, placed) << at;
 }
 
 /// What the samples of a vector surely see.
 HWY_NOINLINE void place_sure_hits(const KernelScene& scene, const SampleTile& tile, std::uint32_t vector,
-                                  const Nearest& nearest, const TileTrust& trust, FormCache& cache,
-                                  Placed& placed) {
-    constexpr int kSeveral = 4;  // measured: so many lanes that see one triangle are worth its own forms
+                                  const Nearest& nearest, FrameCache& cache, Placed& placed) {
     const FacetRays& facet = scene.tiles->rays[tile.rays];
-    SampleLanes samples[kLanes / kDoubles];
-    for (std::size_t at = 0, i = 0; at < kLanes; at += kDoubles, ++i)
-        samples[i] = samples_of(*scene.grid, facet, tile, scene.tiles->vectors[vector], at);
-
-    const Words triangles = load_words(nearest.triangle);
-    const std::uint32_t see = kAllLanes & ~bits(same(triangles, set_word(kNone)));
-    std::uint32_t left = see, bad = 0;
+    const std::uint32_t see = kAllLanes & ~bits(same(load_words(nearest.triangle), set_word(kNone)));
     if (see != kAllLanes) {
         for (std::size_t k = 0; k < kLanes; ++k) set_lane(placed, k, Hit{});
     }
-    std::uint32_t alone = 0;
-    for (; left; left &= left - 1) {
-        const std::uint32_t first = static_cast<std::uint32_t>(std::countr_zero(left));
-        const Id triangle = nearest.triangle[first];
-        const Mask see_it = same(triangles, set_word(triangle));
-        const std::uint32_t own = bits(see_it);
-        if (std::popcount(own) < kSeveral && !has_forms(cache, tile, triangle)) {
-            alone |= own;
-        } else {
-            const CachedForms& forms = cached_forms(scene, tile, triangle, cache);
-            store_words(choose(see_it, set_word(forms.triangle), load_words(placed.triangle)),
-                        placed.triangle);
-            bad |= place_on_one(forms, samples, own, trust, placed);
-        }
-        left &= ~own | 1u << first;
+    std::uint32_t bad = 0;
+    for (std::size_t at = 0; at < kLanes; at += kDoubles) {
+        const std::uint32_t own = see >> at & first_lanes(kDoubles);
+        if (!own) continue;
+        const RayLanes rays = rays_of(*scene.grid, facet, tile, scene.tiles->vectors[vector], at);
+        bad |= place_part(scene, facet.centre, rays, nearest, own, at, cache, placed);
     }
-    if (alone) bad |= place_on_many(scene, facet, samples, nearest.triangle, alone, trust, placed);
-    if (!trust.weight) bad = see;
     for (Each lane(bad); lane; ++lane)
         set_lane(
             placed, *lane,
@@ -222,8 +204,7 @@ HWY_NOINLINE Hit resolve_sample(const KernelScene& scene, const FacetRays& facet
     const auto offer_all = [&] {
         Id last = kNone;
         const auto offer = [&](Id triangle) {
-            const std::optional<LineHit> hit =
-                decide(facet, ray, corners_of(*scene.data, triangle, facet.centre));
+            const std::optional<LineHit> hit = decide(ray, corners_of(*scene.data, triangle, facet.centre));
             if (hit) hits.offer(0, *hit, triangle, scene.data->rank[triangle]);
         };
         if (sure != kNone) offer(sure);
@@ -249,12 +230,15 @@ HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
     for (std::uint32_t j = state.first_lane; j < state.first_lane + state.tiles; ++j) {
         const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
         const FacetRays& facet = scene.tiles->rays[tile.rays];
-        const TileTrust trust = trust_of(facet, tile, *scene.grid);
+        if (state.cache.rays != tile.rays) {
+            state.cache.triangle.fill(kNone);
+            state.cache.rays = tile.rays;
+        }
         Placed placed;
         for (std::uint32_t i = 0; i < tile.vectors; ++i) {
             const std::uint32_t vector = tile.first_vector + i, in_group = vector - state.first_vector;
             const Nearest& nearest = state.nearest[in_group];
-            place_sure_hits(scene, tile, vector, nearest, trust, state.cache, placed);
+            place_sure_hits(scene, tile, vector, nearest, state.cache, placed);
             while (next < doubts.size() && doubts[next].vector == in_group) {
                 std::size_t end = next;
                 while (end < doubts.size() && doubts[end].vector == in_group &&

@@ -116,28 +116,20 @@ struct alignas(64) VectorBeams {
     float farthest[kLanes];                        // no farther hit can matter to the vector
 };
 
-/// A triangle's PlaceForms through one facet, with room for whole vectors, and which sorted corners are the
-/// second and the third of the scene's own triangle.
-struct alignas(64) CachedForms {
-    double above[8], along[8], second[8], third[8];
-    double size = 0;
-    Id triangle = kNone;  // index into the scene
-    std::uint8_t second_corner = 1, third_corner = 2;
+/// A triangle's frame for one facet.
+struct CachedFrame {
+    TriangleFrame frame;
+    Id triangle = kNone;                 // index into the scene
+    std::uint8_t second = 1, third = 2;  // which sorted corners are the scene's second and third
 };
 
-/// What forms are made of, lanes are coefficients: FacetRays' own.
-struct alignas(64) FacetCoefficients {
-    double origin[3][8], direction[3][8], weight[8], line[3][8], moment[3][8];
-};
-
-/// The forms of some triangles that one facet sees, by the index into PreparedScene::Data modulo
-/// kCachedForms.
-inline constexpr std::size_t kCachedForms = 64;
-struct FormCache {
+/// The frames of some triangles that one facet sees, by the index into PreparedScene::Data modulo
+/// kCachedFrames.
+inline constexpr std::size_t kCachedFrames = 16;
+struct FrameCache {
     Id rays = kNone;  // of the facet
-    FacetCoefficients facet;
-    std::array<Id, kCachedForms> triangle{};
-    std::array<CachedForms, kCachedForms> forms;
+    std::array<Id, kCachedFrames> triangle{};
+    std::array<CachedFrame, kCachedFrames> frame;
 };
 
 /// Everything that one thread needs for one batch.
@@ -159,7 +151,7 @@ struct KernelState {
     std::uint32_t first_lane = 0, tiles = 0;  // the group's lanes
     std::uint32_t first_vector = 0, vectors = 0;
     std::size_t most_doubts = 0;
-    FormCache cache;
+    FrameCache cache;
 };
 
 }  // namespace trilens
