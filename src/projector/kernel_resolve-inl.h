@@ -219,6 +219,19 @@ HWY_NOINLINE Hit resolve_sample(const KernelScene& scene, const FacetRays& facet
     return winner == kNone ? Hit{} : scene_hit(*scene.data, winner, hits.hit(0));
 }
 
+/// What place_sure_hits() reads of the scene.
+HWY_INLINE void prefetch_triangles(const KernelScene& scene, const Nearest& nearest) {
+    const PreparedTriangle* triangles = scene.data->triangles.data();
+    Id last = kNone;
+    for (const Id triangle : nearest.triangle) {
+        if (triangle == last || triangle == kNone) continue;
+        last = triangle;
+        const char* from = reinterpret_cast<const char*>(triangles + triangle);
+        hwy::Prefetch(from);
+        hwy::Prefetch(from + 64);
+    }
+}
+
 /// Writes the hits of all of the group's samples.
 HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
     std::vector<Doubt>& doubts = state.doubts;
@@ -226,6 +239,7 @@ HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
         if (a.vector != b.vector) return a.vector < b.vector;
         return a.lane != b.lane ? a.lane < b.lane : a.triangle < b.triangle;
     });
+    constexpr std::uint32_t kAhead = 3;
     std::size_t next = 0;
     for (std::uint32_t j = state.first_lane; j < state.first_lane + state.tiles; ++j) {
         const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
@@ -238,6 +252,8 @@ HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
         for (std::uint32_t i = 0; i < tile.vectors; ++i) {
             const std::uint32_t vector = tile.first_vector + i, in_group = vector - state.first_vector;
             const Nearest& nearest = state.nearest[in_group];
+            if (in_group + kAhead < state.vectors)
+                prefetch_triangles(scene, state.nearest[in_group + kAhead]);
             place_sure_hits(scene, tile, vector, nearest, state.cache, placed);
             while (next < doubts.size() && doubts[next].vector == in_group) {
                 std::size_t end = next;
