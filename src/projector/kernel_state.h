@@ -63,11 +63,11 @@ struct alignas(64) TileLanes {
     double decision_doubt[kLanes];  // times (weight_terms reach + origin_terms)^2: the decision's own doubt
 
     HullLanes hull;
-    float pitch[4][kLanes];  // how far apart neighbouring samples' rays are: u at t = 0, per t; v likewise
 
     // The same by tile, so that the coefficients of one are together: line 0..2, moment 3..5, origin 6..8,
-    // direction 9..11, weight 12.
+    // direction 9..11, weight 12. Made for the tiles of `transposed`.
     double tile[kLanes][13][8];
+    std::uint32_t transposed;
     std::uint32_t broken;  // bit j: the vector engine cannot bound this tile
 };
 
@@ -77,6 +77,8 @@ struct GroupBeam {
     int planes = 0;
     float axis[3] = {0, 0, 0};
     float start = 0, speed_inverse = 0;  // t >= (axis . x - start) * speed_inverse for every x on a ray
+    // Of the middle tile: how far apart neighbouring samples' rays are: u at t = 0, per t; v likewise.
+    float pitch[4];
 };
 
 /// The nearest sure hit of each sample of a vector so far: its t lies in [low, high].
