@@ -110,24 +110,43 @@ HWY_INLINE Double position_of_line(const Double& line, int start, int side) {
     return hn::Add(hn::Add(from, pixel), hn::Div(hn::Add(inside, half), n));
 }
 
-/// Some lines of the window from 16 local coordinates: `at` and the kDoubles - 1 after it.
-HWY_INLINE Double lines_of(const float* local, float half, float middle, int first) {
+/// From a tile's local coordinates to offsets from its facet's screen.
+struct TileSpots {
+    float half[2], middle[2];  // of the rectangle, in lines of samples
+    int first[2];              // line of the window
+    int start[2];              // of the window, in pixels
+    int side;                  // samples along a pixel's edge
+    double screen[2];          // of the facet
+};
+
+HWY_INLINE TileSpots spots_of(const SampleGrid& grid, const FacetRays& facet, const SampleTile& tile) {
+    const float x = static_cast<float>(tile.width - 1) / 2, y = static_cast<float>(tile.height - 1) / 2;
+    return {{std::max(0.5f, x), std::max(0.5f, y)},
+            {x, y},
+            {tile.column, tile.row},
+            {grid.x0, grid.y0},
+            grid.side,
+            {facet.screen.x, facet.screen.y}};
+}
+
+/// Offsets along axis a from `local` and the kDoubles - 1 after it.
+HWY_INLINE Double offsets_of(const TileSpots& spots, int a, const float* local) {
     const hn::Rebind<float, DoubleTag> some;
-    const auto line =
-        hn::Round(hn::MulAdd(hn::Load(some, local), hn::Set(some, half), hn::Set(some, middle)));
-    return hn::Add(hn::PromoteTo(kDouble, line), hn::Set(kDouble, static_cast<double>(first)));
+    const auto line = hn::Round(
+        hn::MulAdd(hn::Load(some, local), hn::Set(some, spots.half[a]), hn::Set(some, spots.middle[a])));
+    const Double own = hn::PromoteTo(kDouble, line);
+    const Double screen = hn::Set(kDouble, spots.screen[a]);
+    // Whole numbers and halves: their sums are exact in any order.
+    if (spots.side == 1)
+        return hn::Sub(hn::Add(own, hn::Set(kDouble, spots.start[a] + spots.first[a] + 0.5)), screen);
+    const Double in_window = hn::Add(own, hn::Set(kDouble, static_cast<double>(spots.first[a])));
+    return hn::Sub(position_of_line(in_window, spots.start[a], spots.side), screen);
 }
 
 /// The rays of a vector's samples, from `at` on.
-HWY_INLINE RayLanes rays_of(const SampleGrid& grid, const FacetRays& facet, const SampleTile& tile,
-                            const SampleVector& vector, std::size_t at) {
-    const float middle_x = static_cast<float>(tile.width - 1) / 2, half_x = std::max(0.5f, middle_x);
-    const float middle_y = static_cast<float>(tile.height - 1) / 2, half_y = std::max(0.5f, middle_y);
-    const Double column = lines_of(vector.u + at, half_x, middle_x, tile.column),
-                 row = lines_of(vector.v + at, half_y, middle_y, tile.row);
-    return ray_lanes(facet.rays,
-                     hn::Sub(position_of_line(column, grid.x0, grid.side), hn::Set(kDouble, facet.screen.x)),
-                     hn::Sub(position_of_line(row, grid.y0, grid.side), hn::Set(kDouble, facet.screen.y)));
+HWY_INLINE RayLanes rays_of(const TileSpots& spots, const FacetRays& facet, const SampleVector& vector,
+                            std::size_t at) {
+    return ray_lanes(facet.rays, offsets_of(spots, 0, vector.u + at), offsets_of(spots, 1, vector.v + at));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -101,40 +101,66 @@ HWY_INLINE hn::Mask<DoubleTag> mask_of_doubles(std::uint32_t lanes) {
     return hn::LoadMaskBits(kDouble, bytes);
 }
 
-/// Lanes that see one triangle. Returns those where place() says nothing. `to`: the first lane's.
-HWY_INLINE std::uint32_t place_on_one(const CachedFrame& cached, const RayLanes& rays, std::uint32_t lanes,
-                                      std::size_t to, Placed& placed) {
-    const PlacedLanes p = place_lanes(broadcast(cached.frame), rays);
-    const auto mask = mask_of_doubles(lanes);
-    hn::BlendedStore(p.t, mask, kDouble, placed.t + to);
-    hn::BlendedStore(weight_of(p, cached.second), mask, kDouble, placed.second + to);
-    hn::BlendedStore(weight_of(p, cached.third), mask, kDouble, placed.third + to);
-    return lanes & ~bits(p.good);
+using PairTag = hn::FixedTag<double, 2>;
+using Pair = hn::Vec<PairTag>;
+inline constexpr std::size_t kPairs = kDoubles / 2;
+
+/// Pairs side by side.
+template <typename Tag>
+HWY_INLINE hn::Vec<Tag> join(Tag tag, const Pair* pair) {
+    if constexpr (hn::MaxLanes(Tag()) == 2) {
+        return pair[0];
+    } else {
+        const hn::Half<Tag> half;
+        return hn::Combine(tag, join(half, pair + hn::MaxLanes(half) / 2), join(half, pair));
+    }
 }
 
-/// Each lane its own triangle.
-HWY_INLINE std::uint32_t place_on_many(const KernelScene& scene, const Vec3& centre, const RayLanes& rays,
-                                       const Id* triangle, std::uint32_t lanes, std::size_t to,
-                                       Placed& placed) {
-    using NameTag = hn::Rebind<std::uint64_t, DoubleTag>;
-    constexpr NameTag name_tag;
-    HWY_ALIGN double at_corner[9][kDoubles];
-    HWY_ALIGN std::uint64_t names[kDoubles];
-    const std::size_t some = static_cast<std::size_t>(std::countr_zero(lanes));
-    for (std::size_t k = 0; k < kDoubles; ++k) {
-        const PreparedTriangle& own = scene.data->triangles[triangle[lanes >> k & 1 ? k : some]];
-        for (int c = 0; c < 3; ++c) {
-            for (int a = 0; a < 3; ++a) at_corner[3 * c + a][k] = own.corner[static_cast<std::size_t>(c)][a];
+/// PreparedTriangles, one per lane: as numbers, 9 of corners and the name.
+struct TriangleLanes {
+    Double number[10];
+};
+
+HWY_INLINE TriangleLanes gather_triangles(const PreparedTriangle* const (&from)[kDoubles]) {
+    static_assert(sizeof(PreparedTriangle) == 10 * sizeof(double));
+    const PairTag pair_tag;
+    TriangleLanes triangles;
+    for (std::size_t n = 0; n < 10; n += 2) {
+        Pair even[kPairs], odd[kPairs];
+        for (std::size_t i = 0; i < kPairs; ++i) {
+            const Pair a = hn::LoadU(pair_tag, reinterpret_cast<const double*>(from[2 * i]) + n),
+                       b = hn::LoadU(pair_tag, reinterpret_cast<const double*>(from[2 * i + 1]) + n);
+            even[i] = hn::InterleaveLower(pair_tag, a, b);
+            odd[i] = hn::InterleaveUpper(pair_tag, a, b);
         }
-        names[k] = own.name;
+        triangles.number[n] = join(kDouble, even);
+        triangles.number[n + 1] = join(kDouble, odd);
     }
+    return triangles;
+}
+
+/// Where the sure hits of a tile are placed.
+struct TilePlacing {
+    const KernelScene& scene;
+    const FacetRays& facet;
+    TileSpots spots;
+};
+
+/// Each of `lanes` its own triangle. Returns those where place() says nothing. `to`: the first lane's.
+HWY_INLINE std::uint32_t place_each(const TilePlacing& tile, const RayLanes& rays, const Id* triangle,
+                                    std::uint32_t lanes, std::size_t to, Placed& placed) {
+    constexpr hn::Rebind<std::uint64_t, DoubleTag> name_tag;
+    const PreparedTriangle* from[kDoubles];
+    const PreparedTriangle* all = tile.scene.data->triangles.data();
+    const Id some = triangle[std::countr_zero(lanes)];
+    for (std::size_t k = 0; k < kDoubles; ++k) from[k] = all + (lanes >> k & 1 ? triangle[k] : some);
+    const TriangleLanes own = gather_triangles(from);
     Vector3 corner[3];
     for (std::size_t c = 0; c < 3; ++c)
-        corner[c] = minus({hn::Load(kDouble, at_corner[3 * c]), hn::Load(kDouble, at_corner[3 * c + 1]),
-                           hn::Load(kDouble, at_corner[3 * c + 2])},
-                          set3(centre));
+        corner[c] =
+            minus({own.number[3 * c], own.number[3 * c + 1], own.number[3 * c + 2]}, set3(tile.facet.centre));
     const PlacedLanes p = place_lanes(frame_lanes(corner), rays);
-    const auto name = hn::Load(name_tag, names);
+    const auto name = hn::BitCast(name_tag, own.number[9]);
     const auto weight = [&](int bit) HWY_ATTR {
         const auto is_second = hn::TestBit(name, hn::Set(name_tag, std::uint64_t{1} << bit));
         const auto is_third = hn::TestBit(name, hn::Set(name_tag, std::uint64_t{2} << bit));
@@ -145,54 +171,53 @@ HWY_INLINE std::uint32_t place_on_many(const KernelScene& scene, const Vec3& cen
     hn::BlendedStore(p.t, mask, kDouble, placed.t + to);
     hn::BlendedStore(weight(PreparedTriangle::kSecondBit), mask, kDouble, placed.second + to);
     hn::BlendedStore(weight(PreparedTriangle::kThirdBit), mask, kDouble, placed.third + to);
-    for (Each lane(lanes); lane; ++lane) placed.triangle[to + *lane] = static_cast<Id>(names[*lane]);
+    for (Each lane(lanes); lane; ++lane) placed.triangle[to + *lane] = from[*lane]->triangle();
     return lanes & ~bits(p.good);
 }
 
-/// What some samples of a vector surely see: `lanes` of kDoubles, from lane `at` on.
-HWY_INLINE std::uint32_t place_part(const KernelScene& scene, const Vec3& centre, const RayLanes& rays,
-                                    const Nearest& nearest, std::uint32_t lanes, std::size_t at,
-                                    FrameCache& cache, Placed& placed) {
-    const Words triangles = load_words(nearest.triangle);
-    const auto lanes_of = [&](std::uint32_t lane, Id& triangle) HWY_ATTR {
-        triangle = nearest.triangle[at + lane];
-        return bits(same(triangles, set_word(triangle))) >> at & lanes;
-    };
-    const auto place = [&](std::uint32_t own, Id triangle) HWY_ATTR {
-        const CachedFrame& cached = cached_frame(scene, centre, triangle, cache);
-        const Mask here = mask_of(own << at);
-        store_words(choose(here, set_word(cached.triangle), load_words(placed.triangle)), placed.triangle);
-        return place_on_one(cached, rays, own, at, placed) << at;
-    };
-    Id first = kNone, second = kNone;
-    const std::uint32_t see_first = lanes_of(static_cast<std::uint32_t>(std::countr_zero(lanes)), first);
-    std::uint32_t left = lanes & ~see_first;
-    if (!left) return place(see_first, first);
-    const std::uint32_t see_second = lanes_of(static_cast<std::uint32_t>(std::countr_zero(left)), second);
-    left &= ~see_second;
-    if (!left) return place(see_first, first) | place(see_second, second);
-    return place_on_many(scene, centre, rays, nearest.triangle + at, lanes, at, placed) << at;
+/// All samples of a vector their one triangle. Returns as place_each().
+HWY_INLINE std::uint32_t place_whole(const TilePlacing& tile, const SampleVector& vector, Id triangle,
+                                     FrameCache& cache, Placed& placed) {
+    const CachedFrame& cached = cached_frame(tile.scene, tile.facet.centre, triangle, cache);
+    store_words(set_word(cached.triangle), placed.triangle);
+    std::uint32_t bad = 0;
+    for (std::size_t at = 0; at < kLanes; at += kDoubles) {
+        const PlacedLanes p =
+            place_lanes(broadcast(cached.frame), rays_of(tile.spots, tile.facet, vector, at));
+        hn::Store(p.t, kDouble, placed.t + at);
+        hn::Store(weight_of(p, cached.second), kDouble, placed.second + at);
+        hn::Store(weight_of(p, cached.third), kDouble, placed.third + at);
+        bad |= (first_lanes(kDoubles) & ~bits(p.good)) << at;
+    }
+    return bad;
 }
 
 /// What the samples of a vector surely see.
-HWY_NOINLINE void place_sure_hits(const KernelScene& scene, const SampleTile& tile, std::uint32_t vector,
-                                  const Nearest& nearest, FrameCache& cache, Placed& placed) {
-    const FacetRays& facet = scene.tiles->rays[tile.rays];
-    const std::uint32_t see = kAllLanes & ~bits(same(load_words(nearest.triangle), set_word(kNone)));
-    if (see != kAllLanes) {
-        for (std::size_t k = 0; k < kLanes; ++k) set_lane(placed, k, Hit{});
-    }
+HWY_NOINLINE void place_sure_hits(const TilePlacing& tile, std::uint32_t vector, const Nearest& nearest,
+                                  FrameCache& cache, Placed& placed) {
+    const SampleVector& samples = tile.scene.tiles->vectors[vector];
+    const Words triangles = load_words(nearest.triangle);
+    const Id first = nearest.triangle[0];
     std::uint32_t bad = 0;
-    for (std::size_t at = 0; at < kLanes; at += kDoubles) {
-        const std::uint32_t own = see >> at & first_lanes(kDoubles);
-        if (!own) continue;
-        const RayLanes rays = rays_of(*scene.grid, facet, tile, scene.tiles->vectors[vector], at);
-        bad |= place_part(scene, facet.centre, rays, nearest, own, at, cache, placed);
+    if (first != kNone && bits(same(triangles, set_word(first))) == kAllLanes) {
+        bad = place_whole(tile, samples, first, cache, placed);
+    } else {
+        const std::uint32_t see = kAllLanes & ~bits(same(triangles, set_word(kNone)));
+        if (see != kAllLanes) {
+            for (std::size_t k = 0; k < kLanes; ++k) set_lane(placed, k, Hit{});
+        }
+        for (std::size_t at = 0; at < kLanes; at += kDoubles) {
+            const std::uint32_t own = see >> at & first_lanes(kDoubles);
+            if (own)
+                bad |= place_each(tile, rays_of(tile.spots, tile.facet, samples, at), nearest.triangle + at,
+                                  own, at, placed)
+                       << at;
+        }
     }
     for (Each lane(bad); lane; ++lane)
-        set_lane(
-            placed, *lane,
-            decide_sure(scene, facet, scene.tiles->samples[vector].sample[*lane], nearest.triangle[*lane]));
+        set_lane(placed, *lane,
+                 decide_sure(tile.scene, tile.facet, tile.scene.tiles->samples[vector].sample[*lane],
+                             nearest.triangle[*lane]));
 }
 
 /// One sample among its sure hit, if any, and its doubtful triangles, all decided exactly, by FirstHits'
@@ -248,13 +273,14 @@ HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
             state.cache.triangle.fill(kNone);
             state.cache.rays = tile.rays;
         }
+        const TilePlacing placing{scene, facet, spots_of(*scene.grid, facet, tile)};
         Placed placed;
         for (std::uint32_t i = 0; i < tile.vectors; ++i) {
             const std::uint32_t vector = tile.first_vector + i, in_group = vector - state.first_vector;
             const Nearest& nearest = state.nearest[in_group];
             if (in_group + kAhead < state.vectors)
                 prefetch_triangles(scene, state.nearest[in_group + kAhead]);
-            place_sure_hits(scene, tile, vector, nearest, state.cache, placed);
+            place_sure_hits(placing, vector, nearest, state.cache, placed);
             while (next < doubts.size() && doubts[next].vector == in_group) {
                 std::size_t end = next;
                 while (end < doubts.size() && doubts[end].vector == in_group &&
