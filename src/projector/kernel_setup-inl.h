@@ -51,6 +51,26 @@ HWY_INLINE Vector3 unit(const Vector3& a) {
     return times(hn::Div(hn::Set(kDouble, 1.0), hn::Sqrt(square)), a);
 }
 
+/// 16 doubles.
+struct DoubleLanes {
+    Double part[kLanes / kDoubles];
+};
+
+HWY_INLINE DoubleLanes load_doubles(const double* from) {
+    DoubleLanes r;
+    for (std::size_t i = 0; i < kLanes / kDoubles; ++i) r.part[i] = hn::Load(kDouble, from + i * kDoubles);
+    return r;
+}
+HWY_INLINE Floats narrow(const DoubleLanes& v) {
+    const hn::Rebind<float, DoubleTag> some;
+    static_assert(kPart == 2 * kDoubles);
+    Floats r;
+    for (std::size_t i = 0; i < kParts; ++i)
+        r.part[i] =
+            hn::Combine(kFloat, hn::DemoteTo(some, v.part[2 * i + 1]), hn::DemoteTo(some, v.part[2 * i]));
+    return r;
+}
+
 /// Copies what one tile brings into its lane: the facet's rays, moved to the tile's rectangle.
 HWY_NOINLINE void gather_tile(const KernelScene& scene, const SampleTile& tile, std::size_t j,
                               TileLanes& lanes) {

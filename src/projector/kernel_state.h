@@ -106,10 +106,11 @@ struct Waiting {
     float middle[3], half[3];
 };
 
-/// The rays of a vector's samples, weight divided out, from their facet's centre; and 1 / direction.
+/// The rays of a vector's samples, weight divided out, from their facet's centre; 1 / direction, and origin /
+/// direction.
 struct alignas(64) VectorRays {
     double origin[3][kLanes], direction[3][kLanes];
-    float inverse[3][kLanes];
+    float inverse[3][kLanes], start[3][kLanes];
 };
 
 /// Beams around 16 vectors.
