@@ -97,10 +97,11 @@ HWY_INLINE void facet_forms(const TilesInLeaf& tiles, const LeafEdges& edges, st
 /// The triangle of forms' lane against the vectors of its tile that it may touch.
 HWY_NOINLINE void meet_tile(const TileDrawing& drawing, const Forms& forms, const float (&bound)[3][kLanes],
                             std::size_t lane, Id triangle, bool whole) {
+    constexpr std::uint32_t kFewVectors = 4;  // measured: no box is worth asking
     const SampleTile& tile = drawing.tile;
     for (std::uint32_t g = 0; g * kLanes < tile.vectors; ++g) {
         std::uint32_t near = first_lanes(tile.vectors - g * static_cast<std::uint32_t>(kLanes));
-        if (!whole && tile.vectors > 1) {
+        if (!whole && tile.vectors > kFewVectors) {
             const VectorBoxes& box = drawing.scene.tiles->boxes[tile.first_boxes + g];
             const Floats cu = load(box.centre_u), cv = load(box.centre_v), hu = load(box.half_u),
                          hv = load(box.half_v);
