@@ -148,7 +148,8 @@ HWY_INLINE void store3(const Vector3& v, double (*to)[6][kLanes], int q, std::si
     hn::Store(v.y, kDouble, to[1][q] + at);
     hn::Store(v.z, kDouble, to[2][q] + at);
 }
-HWY_INLINE Vector3 load_part(const double (*from)[3][kLanes], int part, std::size_t at) {
+template <std::size_t kCoefficients>
+HWY_INLINE Vector3 load_part(const double (*from)[kCoefficients][kLanes], int part, std::size_t at) {
     return {hn::Load(kDouble, from[0][part] + at), hn::Load(kDouble, from[1][part] + at),
             hn::Load(kDouble, from[2][part] + at)};
 }
@@ -269,6 +270,16 @@ HWY_NOINLINE void gather_hull(const KernelScene& scene, const SampleTile& tile, 
     }
 }
 
+/// As floats. Returns those.
+HWY_INLINE Vector3 store_floats(const Vector3& v, float (*to)[kLanes], std::size_t at) {
+    const hn::Rebind<float, DoubleTag> some;
+    const auto x = hn::DemoteTo(some, v.x), y = hn::DemoteTo(some, v.y), z = hn::DemoteTo(some, v.z);
+    hn::Store(x, some, to[0] + at);
+    hn::Store(y, some, to[1] + at);
+    hn::Store(z, some, to[2] + at);
+    return {hn::PromoteTo(kDouble, x), hn::PromoteTo(kDouble, y), hn::PromoteTo(kDouble, z)};
+}
+
 /// Planes around each tile's hull. A plane holds only if, as floats, its normal points along all four corner
 /// directions; it is turned towards the axis by more than it rounds, then checked.
 HWY_NOINLINE void make_planes(const KernelScene& scene, HullLanes& lanes) {
@@ -305,18 +316,7 @@ HWY_NOINLINE void make_planes(const KernelScene& scene, HullLanes& lanes) {
                 hn::IfThenElse(hn::Lt(inside, zero), hn::Set(kDouble, -1.0), hn::Set(kDouble, 1.0));
             normal = plus(times(sign, unit(normal)), times(turn, axis));
 
-            HWY_ALIGN double n[3][kDoubles];
-            hn::Store(normal.x, kDouble, n[0]);
-            hn::Store(normal.y, kDouble, n[1]);
-            hn::Store(normal.z, kDouble, n[2]);
-            for (int a = 0; a < 3; ++a) {
-                for (std::size_t i = 0; i < kDoubles; ++i) {
-                    lanes.plane[k][a][at + i] = static_cast<float>(n[a][i]);
-                    n[a][i] = lanes.plane[k][a][at + i];
-                }
-            }
-            const Vector3 rounded = {hn::Load(kDouble, n[0]), hn::Load(kDouble, n[1]),
-                                     hn::Load(kDouble, n[2])};
+            const Vector3 rounded = store_floats(normal, lanes.plane[k], at);
             Double along = inner(rounded, d[0]), offset = inner(rounded, o[0]), size = zero;
             for (int m = 0; m < 4; ++m) {
                 along = hn::Min(along, inner(rounded, d[m]));
@@ -331,10 +331,8 @@ HWY_NOINLINE void make_planes(const KernelScene& scene, HullLanes& lanes) {
             offset = hn::Sub(offset, hn::Mul(hn::Set(kDouble, kPlaneDoubt), size));
             const auto holds = hn::Gt(along, hn::Set(kDouble, 1e-12));
             offset = hn::IfThenElse(holds, offset, hn::Set(kDouble, -1e300));
-            HWY_ALIGN double stored[kDoubles];
-            hn::Store(offset, kDouble, stored);
-            for (std::size_t i = 0; i < kDoubles; ++i)
-                lanes.offset[k][at + i] = static_cast<float>(stored[i]);
+            const hn::Rebind<float, DoubleTag> some;
+            hn::Store(hn::DemoteTo(some, offset), some, lanes.offset[k] + at);
         }
     }
 }
