@@ -268,6 +268,7 @@ HWY_INLINE bool reaches_some_vector(const KernelState& state, const Waiting& nod
 /// Finds the nearest sure hit of every sample of the group, and lists the doubtful triangles.
 HWY_NOINLINE void walk_group(const KernelScene& scene, LeafMode mode, KernelState& state) {
     constexpr int kLeavesBetweenLooks = 8, kLooksBeforeBeams = 3;  // measured
+    constexpr std::size_t kFetchedAhead = 2;                       // likewise
     const LeafTree& tree = *scene.tree;
     int leaves = 0, looks = 0;
     state.stack.clear();
@@ -276,7 +277,8 @@ HWY_NOINLINE void walk_group(const KernelScene& scene, LeafMode mode, KernelStat
         const Waiting next = state.stack.back();
         state.stack.pop_back();
         if (next.nearest > state.group_farthest) continue;
-        if (!state.stack.empty()) prefetch_child(tree, state.stack.back().child);
+        if (state.stack.size() >= kFetchedAhead)
+            prefetch_child(tree, state.stack[state.stack.size() - kFetchedAhead].child);
         if (next.child < 0) {
             draw_leaf(scene, tree.leaves[static_cast<std::size_t>(~next.child)], next.nearest, mode, state);
             if (++leaves % kLeavesBetweenLooks != 0) continue;
@@ -293,6 +295,9 @@ HWY_NOINLINE void walk_group(const KernelScene& scene, LeafMode mode, KernelStat
             if (!(nearest[*lane] > state.group_farthest))
                 push_child(state.stack, base, waiting_child(node, *lane, nearest[*lane]));
         }
+        const std::size_t waiting = state.stack.size();
+        for (std::size_t i = waiting; i > base && i + kFetchedAhead > waiting; --i)
+            prefetch_child(tree, state.stack[i - 1].child);
     }
 }
 
