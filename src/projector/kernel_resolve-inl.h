@@ -16,42 +16,49 @@ HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
 
+using NameTag = hn::Rebind<std::uint64_t, DoubleTag>;
+using IdTag = hn::Rebind<std::uint32_t, DoubleTag>;
+inline constexpr NameTag kName;
+inline constexpr IdTag kId;
+
 /// What a vector's samples see, in the terms of the scene's triangles.
 struct alignas(64) Placed {
     double t[kLanes], second[kLanes], third[kLanes];
-    Id triangle[kLanes];
+    std::uint64_t name[kLanes];  // the lower half: index into the scene, or kNone
 };
 
 HWY_INLINE void set_lane(Placed& placed, std::size_t lane, const Hit& hit) {
-    placed.triangle[lane] = hit.triangle;
+    placed.name[lane] = hit.triangle;
     placed.t[lane] = hit.t;
     placed.second[lane] = hit.barycentric.x;
     placed.third[lane] = hit.barycentric.y;
 }
 
-/// Past the caches: nobody here reads it again.
-HWY_INLINE void stream_floats(const double* from, float* to) {
-    const hn::Rebind<float, DoubleTag> some;
-    alignas(64) float floats[kLanes];
-    for (std::size_t at = 0; at < kLanes; at += kDoubles)
-        hn::Store(hn::DemoteTo(some, hn::Load(kDouble, from + at)), some, floats + at);
-    stream(load(floats), to);
+HWY_INLINE Words triangles_of(const Placed& placed) {
+    Words r;
+    for (std::size_t i = 0; i < kParts; ++i) {
+        const auto low = hn::Load(kName, placed.name + i * kPart),
+                   high = hn::Load(kName, placed.name + i * kPart + kDoubles);
+        r.part[i] = hn::Combine(kWord, hn::TruncateTo(kId, high), hn::TruncateTo(kId, low));
+    }
+    return r;
 }
 
 HWY_NOINLINE void write_hits(const KernelScene& scene, std::uint32_t vector, const Placed& placed) {
     if (!scene.vector_hits.empty()) {
+        // Past the caches: nobody here reads it again.
         VectorHits& out = scene.vector_hits[vector];
-        stream_words(load_words(placed.triangle), out.triangle);
-        stream_floats(placed.t, out.t);
-        stream_floats(placed.second, out.u);
-        stream_floats(placed.third, out.v);
+        stream_words(triangles_of(placed), out.triangle);
+        stream(narrow(load_doubles(placed.t)), out.t);
+        stream(narrow(load_doubles(placed.second)), out.u);
+        stream(narrow(load_doubles(placed.third)), out.v);
     }
     if (scene.hits.empty()) return;
     const VectorSamples& samples = scene.tiles->samples[vector];
     for (Each lane(samples.valid); lane; ++lane) {
         const std::size_t k = *lane;
         scene.hits[samples.sample[k]] = {
-            placed.triangle[k], placed.t[k], {placed.second[k], placed.third[k]}};
+            static_cast<Id>(placed.name[k]), placed.t[k], {placed.second[k], placed.third[k]}};
     }
 }
 
@@ -146,10 +153,10 @@ struct TilePlacing {
     TileSpots spots;
 };
 
-/// Each of `lanes` its own triangle. Returns those where place() says nothing. `to`: the first lane's.
+/// From lane `at` on: each of `lanes` its own triangle, the others nothing. Returns those where place() says
+/// nothing.
 HWY_INLINE std::uint32_t place_each(const TilePlacing& tile, const RayLanes& rays, const Id* triangle,
-                                    std::uint32_t lanes, std::size_t to, Placed& placed) {
-    constexpr hn::Rebind<std::uint64_t, DoubleTag> name_tag;
+                                    std::uint32_t lanes, std::size_t at, Placed& placed) {
     const PreparedTriangle* from[kDoubles];
     const PreparedTriangle* all = tile.scene.data->triangles.data();
     const Id some = triangle[std::countr_zero(lanes)];
@@ -160,63 +167,61 @@ HWY_INLINE std::uint32_t place_each(const TilePlacing& tile, const RayLanes& ray
         corner[c] =
             minus({own.number[3 * c], own.number[3 * c + 1], own.number[3 * c + 2]}, set3(tile.facet.centre));
     const PlacedLanes p = place_lanes(frame_lanes(corner), rays);
-    const auto name = hn::BitCast(name_tag, own.number[9]);
+    const auto name = hn::BitCast(kName, own.number[9]);
     const auto weight = [&](int bit) HWY_ATTR {
-        const auto is_second = hn::TestBit(name, hn::Set(name_tag, std::uint64_t{1} << bit));
-        const auto is_third = hn::TestBit(name, hn::Set(name_tag, std::uint64_t{2} << bit));
+        const auto is_second = hn::TestBit(name, hn::Set(kName, std::uint64_t{1} << bit));
+        const auto is_third = hn::TestBit(name, hn::Set(kName, std::uint64_t{2} << bit));
         return hn::IfThenElse(hn::RebindMask(kDouble, is_second), p.second,
                               hn::IfThenElse(hn::RebindMask(kDouble, is_third), p.third, p.first));
     };
     const auto mask = mask_of_doubles(lanes);
-    hn::BlendedStore(p.t, mask, kDouble, placed.t + to);
-    hn::BlendedStore(weight(PreparedTriangle::kSecondBit), mask, kDouble, placed.second + to);
-    hn::BlendedStore(weight(PreparedTriangle::kThirdBit), mask, kDouble, placed.third + to);
-    for (Each lane(lanes); lane; ++lane) placed.triangle[to + *lane] = from[*lane]->triangle();
+    hn::Store(hn::IfThenElseZero(mask, p.t), kDouble, placed.t + at);
+    hn::Store(hn::IfThenElseZero(mask, weight(PreparedTriangle::kSecondBit)), kDouble, placed.second + at);
+    hn::Store(hn::IfThenElseZero(mask, weight(PreparedTriangle::kThirdBit)), kDouble, placed.third + at);
+    hn::Store(hn::IfThenElse(hn::RebindMask(kName, mask), name, hn::Set(kName, std::uint64_t{kNone})), kName,
+              placed.name + at);
     return lanes & ~bits(p.good);
 }
 
-/// All samples of a vector their one triangle. Returns as place_each().
-HWY_INLINE std::uint32_t place_whole(const TilePlacing& tile, const SampleVector& vector, Id triangle,
-                                     FrameCache& cache, Placed& placed) {
-    const CachedFrame& cached = cached_frame(tile.scene, tile.facet.centre, triangle, cache);
-    store_words(set_word(cached.triangle), placed.triangle);
-    std::uint32_t bad = 0;
-    for (std::size_t at = 0; at < kLanes; at += kDoubles) {
-        const PlacedLanes p =
-            place_lanes(broadcast(cached.frame), rays_of(tile.spots, tile.facet, vector, at));
-        hn::Store(p.t, kDouble, placed.t + at);
-        hn::Store(weight_of(p, cached.second), kDouble, placed.second + at);
-        hn::Store(weight_of(p, cached.third), kDouble, placed.third + at);
-        bad |= (first_lanes(kDoubles) & ~bits(p.good)) << at;
-    }
-    return bad;
+/// From lane `at` on: all see one triangle. Returns as place_each().
+HWY_INLINE std::uint32_t place_all(const CachedFrame& cached, const RayLanes& rays, std::size_t at,
+                                   Placed& placed) {
+    const PlacedLanes p = place_lanes(broadcast(cached.frame), rays);
+    hn::Store(p.t, kDouble, placed.t + at);
+    hn::Store(weight_of(p, cached.second), kDouble, placed.second + at);
+    hn::Store(weight_of(p, cached.third), kDouble, placed.third + at);
+    hn::Store(hn::Set(kName, std::uint64_t{cached.triangle}), kName, placed.name + at);
+    return first_lanes(kDoubles) & ~bits(p.good);
 }
 
 /// What the samples of a vector surely see.
 HWY_NOINLINE void place_sure_hits(const TilePlacing& tile, std::uint32_t vector, const Nearest& nearest,
                                   FrameCache& cache, Placed& placed) {
-    const SampleVector& samples = tile.scene.tiles->vectors[vector];
+    const KernelScene& scene = tile.scene;
+    const SampleVector& samples = scene.tiles->vectors[vector];
     const Words triangles = load_words(nearest.triangle);
     const Id first = nearest.triangle[0];
     std::uint32_t bad = 0;
     if (first != kNone && bits(same(triangles, set_word(first))) == kAllLanes) {
-        bad = place_whole(tile, samples, first, cache, placed);
+        const CachedFrame& cached = cached_frame(scene, tile.facet.centre, first, cache);
+        for (std::size_t at = 0; at < kLanes; at += kDoubles)
+            bad |= place_all(cached, rays_of(tile.spots, tile.facet, samples, at), at, placed) << at;
     } else {
         const std::uint32_t see = kAllLanes & ~bits(same(triangles, set_word(kNone)));
-        if (see != kAllLanes) {
-            for (std::size_t k = 0; k < kLanes; ++k) set_lane(placed, k, Hit{});
-        }
         for (std::size_t at = 0; at < kLanes; at += kDoubles) {
             const std::uint32_t own = see >> at & first_lanes(kDoubles);
-            if (own)
+            if (own) {
                 bad |= place_each(tile, rays_of(tile.spots, tile.facet, samples, at), nearest.triangle + at,
                                   own, at, placed)
                        << at;
+            } else {
+                for (std::size_t k = at; k < at + kDoubles; ++k) set_lane(placed, k, Hit{});
+            }
         }
     }
     for (Each lane(bad); lane; ++lane)
         set_lane(placed, *lane,
-                 decide_sure(tile.scene, tile.facet, tile.scene.tiles->samples[vector].sample[*lane],
+                 decide_sure(scene, tile.facet, scene.tiles->samples[vector].sample[*lane],
                              nearest.triangle[*lane]));
 }
 
@@ -246,14 +251,14 @@ HWY_NOINLINE Hit resolve_sample(const KernelScene& scene, const FacetRays& facet
 
 /// What place_sure_hits() reads of the scene.
 HWY_INLINE void prefetch_triangles(const KernelScene& scene, const Nearest& nearest) {
-    const PreparedTriangle* triangles = scene.data->triangles.data();
-    Id last = kNone;
-    for (const Id triangle : nearest.triangle) {
-        if (triangle == last || triangle == kNone) continue;
-        last = triangle;
-        const char* from = reinterpret_cast<const char*>(triangles + triangle);
+    const Words triangles = load_words(nearest.triangle);
+    std::uint32_t left = kAllLanes & ~bits(same(triangles, set_word(kNone)));
+    while (left) {
+        const Id triangle = nearest.triangle[std::countr_zero(left)];
+        const char* from = reinterpret_cast<const char*>(&scene.data->triangles[triangle]);
         hwy::Prefetch(from);
-        hwy::Prefetch(from + 64);
+        hwy::Prefetch(from + sizeof(PreparedTriangle) - 1);
+        left &= ~bits(same(triangles, set_word(triangle)));
     }
 }
 
