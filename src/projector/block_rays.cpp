@@ -44,7 +44,6 @@ double move_to(const std::array<T, 3>& c, const Vec2& from, const Vec2& half, st
 
 BlockRays make_block_rays(const FacetRays& facet, const SampleGrid& grid, std::span<const Id> samples) {
     BlockRays block;
-    block.facet = &facet;
     block.centre = facet.centre;
     block.count = samples.size();
     std::array<Vec2, kBlockSamples> position{};

@@ -14,8 +14,7 @@ namespace trilens {
 /// Local coordinates u, v run over [-1, 1]^2 of the rectangle that the block's samples span; positions are
 /// measured from the facet's centre.
 struct BlockRays {
-    const FacetRays* facet = nullptr;  // lives longer
-    Vec3 centre{0};                    // world frame
+    Vec3 centre{0};  // world frame
     AffineRays rays;
     LineQuadratic line;
     // Sums of the absolute terms of origin, direction and weight over the block, in the 1-norm.

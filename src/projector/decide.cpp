@@ -4,8 +4,8 @@
 #include "base/side_of_edge.h"
 
 namespace trilens {
-std::optional<LineHit> decide(const FacetRays& facet, const SampleRay& ray,
-                              const std::array<Vec3, 3>& corner) {
+
+std::optional<LineHit> decide(const SampleRay& ray, const std::array<Vec3, 3>& corner) {
     const Vec3 speed = glm::abs(ray.direction);
     const int z = speed.x > speed.y ? (speed.x > speed.z ? 0 : 2) : (speed.y > speed.z ? 1 : 2);
     const int x = (z + 1) % 3, y = (z + 2) % 3;
@@ -22,7 +22,7 @@ std::optional<LineHit> decide(const FacetRays& facet, const SampleRay& ray,
     const int side = side_of_edge(flat[0], flat[1]);
     if (side == 0 || side_of_edge(flat[1], flat[2]) != side || side_of_edge(flat[2], flat[0]) != side)
         return std::nullopt;
-    if (const std::optional<LineHit> hit = place(facet, place_forms(facet, corner), ray.from)) return hit;
+    if (const std::optional<LineHit> hit = place(ray, triangle_frame(corner))) return hit;
 
     const auto area = [&](std::size_t a, std::size_t b) {
         return difference_of_products(flat[a].x, flat[b].y, flat[a].y, flat[b].x);

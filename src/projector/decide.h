@@ -19,8 +19,7 @@ inline constexpr double kDecisionDoubt = 128 * 2.220446049250313e-16;
 /// it, so the rounded picture is still a mesh without gaps (Woop, Benthin, Wald, Watertight Ray/Triangle
 /// Intersection, JCGT 2(1), 2013). `corner`: from the facet's centre. Where it lies: as place() says; where
 /// that says nothing, from the projection, as convex combinations: never outside the triangle, however thin
-/// it is. `ray`: of the facet.
-std::optional<LineHit> decide(const FacetRays& facet, const SampleRay& ray,
-                              const std::array<Vec3, 3>& corner);
+/// it is.
+std::optional<LineHit> decide(const SampleRay& ray, const std::array<Vec3, 3>& corner);
 
 }  // namespace trilens

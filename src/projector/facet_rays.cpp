@@ -25,9 +25,6 @@ FacetRays make_facet_rays(const FacetOnScreen& facet) {
             result.rays.weight[part] += e[part][k];
         }
     }
-    result.line = line_quadratic(result.rays);
-    for (std::size_t part = 0; part < 3; ++part)
-        result.speed[part] = largest_part(result.rays.direction[part]);
     return result;
 }
 

@@ -22,7 +22,6 @@ struct FacetOnScreen {
 struct SampleRay {
     Vec3 origin{0}, direction{0};
     double weight = 1;
-    Vec2 from{0};  // FacetRays::screen, to the sample
 };
 
 inline double largest_part(const Vec3& v) {
@@ -36,15 +35,12 @@ struct FacetRays {
     Vec2 screen{0};   // pixels from the film's top left
     Vec3 centre{0};   // world frame
     AffineRays rays;  // over the offset from `screen`, in pixels
-    // What place() needs of them.
-    LineQuadratic line;
-    std::array<double, 3> speed{};  // the largest coordinate of each part of the direction
 
     /// The ray through a position of the screen. Its bits decide what a sample sees.
     SampleRay at(const Vec2& position) const {
         const Vec2 from = position - screen;
         return {rays.origin_at(from.x, from.y), rays.direction_at(from.x, from.y),
-                rays.weight_at(from.x, from.y), from};
+                rays.weight_at(from.x, from.y)};
     }
 };
 

@@ -59,6 +59,7 @@ HWY_INLINE void prefetch_rays(const KernelScene& scene, std::uint32_t tiles, std
         const char* from =
             reinterpret_cast<const char*>(&scene.tiles->rays[scene.tiles->tiles[first_tile + j].rays]);
         for (std::size_t at = 0; at < sizeof(FacetRays); at += 64) hwy::Prefetch(from + at);
+        hwy::Prefetch(&scene.mesh->facets[scene.tiles->tiles[first_tile + j].facet]);
     }
 }
 
@@ -82,6 +83,8 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
         }
         begin_group(scene, group[g], state);
         make_group_beam(scene, state, state.beam);
+        const std::uint32_t middle = state.first_lane + state.tiles / 2;
+        measure_pitch(state.lanes, middle, scene.tiles->tiles[state.first_tile + middle], state.beam.pitch);
         walk_group(scene, options.leaf_mode, state);
         if (state.doubts.size() > state.most_doubts) {
             left |= lanes;

@@ -17,50 +17,105 @@ namespace HWY_NAMESPACE {
 /// All tiles' rays as floats around a leaf's centre, lanes are tiles.
 struct alignas(64) TilesInLeaf {
     float line[3][6][kLanes], moment[3][6][kLanes], origin[3][3][kLanes], direction[3][3][kLanes];
-    float weight[3][kLanes], edge_doubt[kLanes];
-    TileDoubts doubts[kLanes];
+    float weight[3][kLanes];
+    float edge_doubt[kLanes], above_doubt[kLanes], along_doubt[kLanes];  // TileDoubts
 };
 
-HWY_NOINLINE void move_tiles_to_leaf(const TileLanes& lanes, std::uint32_t tiles, const Leaf& leaf,
-                                     TilesInLeaf& in_leaf) {
-    alignas(64) double d[3][kLanes], moment_sum[3][kLanes] = {}, origin_sum[3][kLanes] = {};
-    for (int a = 0; a < 3; ++a)
-        for (std::size_t j = 0; j < kLanes; ++j) d[a][j] = leaf.centre[a] - lanes.centre[a][j];
-    for (int a = 0; a < 3; ++a) {
-        const int b = (a + 1) % 3, c = (a + 2) % 3;
-        for (int q = 0; q < 6; ++q) {
-            for (std::size_t j = 0; j < kLanes; ++j) {
-                const double m =
-                    lanes.moment[a][q][j] - (d[b][j] * lanes.line[c][q][j] - d[c][j] * lanes.line[b][q][j]);
-                in_leaf.line[a][q][j] = static_cast<float>(lanes.line[a][q][j]);
-                in_leaf.moment[a][q][j] = static_cast<float>(m);
-                moment_sum[a][j] += std::fabs(m);
-            }
-        }
-        for (int p = 0; p < 3; ++p) {
-            for (std::size_t j = 0; j < kLanes; ++j) {
-                const double o = lanes.origin[a][p][j] - lanes.weight[p][j] * d[a][j];
-                in_leaf.origin[a][p][j] = static_cast<float>(o);
-                in_leaf.direction[a][p][j] = static_cast<float>(lanes.direction[a][p][j]);
-                origin_sum[a][j] += std::fabs(o);
-            }
-        }
+/// Three axes of 16 doubles.
+struct DoubleLanes3 {
+    DoubleLanes axis[3];
+
+    HWY_INLINE Vector3 at(std::size_t i) const { return {axis[0].part[i], axis[1].part[i], axis[2].part[i]}; }
+    HWY_INLINE void set(std::size_t i, const Vector3& v) {
+        axis[0].part[i] = v.x;
+        axis[1].part[i] = v.y;
+        axis[2].part[i] = v.z;
     }
-    for (int p = 0; p < 3; ++p)
-        for (std::size_t j = 0; j < kLanes; ++j)
-            in_leaf.weight[p][j] = static_cast<float>(lanes.weight[p][j]);
-    for (Each lane(tiles); lane; ++lane) {
-        const std::size_t j = *lane;
-        TileSums sums;
-        sums.reach = leaf.half[0] + leaf.half[1] + leaf.half[2];
+};
+
+inline constexpr std::size_t kHalves = kLanes / kDoubles;
+
+/// doubts_of() in lanes. The sums are over the coefficients of moments and origins.
+HWY_INLINE void put_doubts(const TileLanes& lanes, const Leaf& leaf, const DoubleLanes3& d,
+                           const DoubleLanes3& moment_sum, const DoubleLanes3& origin_sum,
+                           TilesInLeaf& in_leaf) {
+    const double h[3] = {leaf.half[0], leaf.half[1], leaf.half[2]};
+    const double hh[3] = {h[1] * h[2], h[2] * h[0], h[0] * h[1]};
+    const auto number = [](double v) HWY_ATTR { return hn::Set(kDouble, v); };
+    DoubleLanes edge_doubt, above_doubt, along_doubt;
+    for (std::size_t i = 0; i < kHalves; ++i) {
+        const std::size_t at = i * kDoubles;
+        const auto lane = [at](const double* from) HWY_ATTR { return hn::Load(kDouble, from + at); };
+        Double edge = number(0), along = edge, above = edge, all = edge, reach = number(h[0] + h[1] + h[2]);
         for (int a = 0; a < 3; ++a) {
-            sums.moment[a] = moment_sum[a][j];
-            sums.origin[a] = origin_sum[a][j];
-            sums.reach += std::fabs(d[a][j]);
+            const Double moment = moment_sum.axis[a].part[i], origin = origin_sum.axis[a].part[i],
+                         line = lane(lanes.line_sum[a]);
+            edge = hn::MulAdd(line, number(hh[a]), hn::MulAdd(moment, number(h[a]), edge));
+            along = hn::MulAdd(lane(lanes.direction_sum[a]), number(hh[a]), along);
+            above =
+                hn::MulAdd(number(hh[a]), hn::MulAdd(lane(lanes.weight_sum), number(h[a]), origin), above);
+            all = hn::Add(all, hn::Add(line, hn::Add(moment, origin)));
+            reach = hn::Add(reach, hn::Abs(d.axis[a].part[i]));
         }
-        in_leaf.doubts[j] = doubts_of(lanes, j, leaf, sums);
-        in_leaf.edge_doubt[j] = in_leaf.doubts[j].edge;
+        const Double far = hn::MulAdd(lane(lanes.weight_terms), reach, lane(lanes.origin_terms));
+        const Double tiny = hn::Mul(number(static_cast<double>(kUnderflow)), hn::Add(number(1), all));
+        const Double decision =
+            hn::Mul(number(1.0001), hn::Mul(lane(lanes.decision_doubt), hn::Mul(far, far)));
+        edge_doubt.part[i] =
+            hn::MulAdd(number(static_cast<double>(kEdgeDoubt)), edge, hn::Add(decision, tiny));
+        along_doubt.part[i] =
+            hn::Mul(number(2), hn::MulAdd(number(static_cast<double>(kDepthDoubt)), along, tiny));
+        above_doubt.part[i] =
+            hn::Mul(number(2),
+                    hn::MulAdd(number(static_cast<double>(kDepthDoubt)), above,
+                               hn::MulAdd(number(8 * kDecisionDoubt * (hh[0] + hh[1] + hh[2])), far, tiny)));
     }
+    store(narrow(edge_doubt), in_leaf.edge_doubt);
+    store(narrow(along_doubt), in_leaf.along_doubt);
+    store(narrow(above_doubt), in_leaf.above_doubt);
+}
+
+/// All lanes; those that hold no tile of the group are of no use.
+HWY_NOINLINE void move_tiles_to_leaf(const TileLanes& lanes, const Leaf& leaf, TilesInLeaf& in_leaf) {
+    DoubleLanes3 d, moment_sum, origin_sum;
+    const Vector3 centre = {hn::Set(kDouble, leaf.centre[0]), hn::Set(kDouble, leaf.centre[1]),
+                            hn::Set(kDouble, leaf.centre[2])};
+    const Vector3 zero = {hn::Zero(kDouble), hn::Zero(kDouble), hn::Zero(kDouble)};
+    for (std::size_t i = 0; i < kHalves; ++i) {
+        d.set(i, minus(centre, load3(lanes.centre, i * kDoubles)));
+        moment_sum.set(i, zero);
+        origin_sum.set(i, zero);
+    }
+    for (int q = 0; q < 6; ++q) {
+        DoubleLanes3 line, moment;
+        for (std::size_t i = 0; i < kHalves; ++i) {
+            const std::size_t at = i * kDoubles;
+            line.set(i, load_part(lanes.line, q, at));
+            moment.set(i, minus(load_part(lanes.moment, q, at), outer(d.at(i), line.at(i))));
+            moment_sum.set(i, plus(moment_sum.at(i), absolute(moment.at(i))));
+        }
+        for (int a = 0; a < 3; ++a) {
+            store(narrow(line.axis[a]), in_leaf.line[a][q]);
+            store(narrow(moment.axis[a]), in_leaf.moment[a][q]);
+        }
+    }
+    for (int p = 0; p < 3; ++p) {
+        DoubleLanes3 origin, direction;
+        DoubleLanes weight;
+        for (std::size_t i = 0; i < kHalves; ++i) {
+            const std::size_t at = i * kDoubles;
+            weight.part[i] = hn::Load(kDouble, lanes.weight[p] + at);
+            origin.set(i, minus(load_part(lanes.origin, p, at), times(weight.part[i], d.at(i))));
+            direction.set(i, load_part(lanes.direction, p, at));
+            origin_sum.set(i, plus(origin_sum.at(i), absolute(origin.at(i))));
+        }
+        for (int a = 0; a < 3; ++a) {
+            store(narrow(origin.axis[a]), in_leaf.origin[a][p]);
+            store(narrow(direction.axis[a]), in_leaf.direction[a][p]);
+        }
+        store(narrow(weight), in_leaf.weight[p]);
+    }
+    put_doubts(lanes, leaf, d, moment_sum, origin_sum, in_leaf);
 }
 
 /// One triangle's conics and depth through 16 tiles.
@@ -97,10 +152,11 @@ HWY_INLINE void facet_forms(const TilesInLeaf& tiles, const LeafEdges& edges, st
 /// The triangle of forms' lane against the vectors of its tile that it may touch.
 HWY_NOINLINE void meet_tile(const TileDrawing& drawing, const Forms& forms, const float (&bound)[3][kLanes],
                             std::size_t lane, Id triangle, bool whole) {
+    constexpr std::uint32_t kFewVectors = 4;  // measured: no box is worth asking
     const SampleTile& tile = drawing.tile;
     for (std::uint32_t g = 0; g * kLanes < tile.vectors; ++g) {
         std::uint32_t near = first_lanes(tile.vectors - g * static_cast<std::uint32_t>(kLanes));
-        if (!whole && tile.vectors > 1) {
+        if (!whole && tile.vectors > kFewVectors) {
             const VectorBoxes& box = drawing.scene.tiles->boxes[tile.first_boxes + g];
             const Floats cu = load(box.centre_u), cv = load(box.centre_v), hu = load(box.half_u),
                          hv = load(box.half_v);
@@ -124,8 +180,7 @@ HWY_NOINLINE void meet_tile(const TileDrawing& drawing, const Forms& forms, cons
 HWY_NOINLINE void draw_facet_lanes(const KernelScene& scene, const Leaf& leaf, std::uint32_t triangles,
                                    std::uint32_t tiles, KernelState& state) {
     TilesInLeaf in_leaf;
-    std::fill_n(in_leaf.edge_doubt, kLanes, 0.0f);
-    move_tiles_to_leaf(state.lanes, tiles, leaf, in_leaf);
+    move_tiles_to_leaf(state.lanes, leaf, in_leaf);
     const Floats doubt = load(in_leaf.edge_doubt);
     for (Each triangle(triangles); triangle; ++triangle) {
         Floats conic[3][6], above[3], along[3];
@@ -150,9 +205,10 @@ HWY_NOINLINE void draw_facet_lanes(const KernelScene& scene, const Leaf& leaf, s
             const std::uint32_t part = bits(partly);
             for (Each lane(lanes); lane; ++lane) {
                 const SampleTile& tile = scene.tiles->tiles[state.first_tile + *lane];
-                meet_tile(
-                    {scene, state, tile, in_leaf.doubts[*lane], leaf, tile.first_vector - state.first_vector},
-                    forms, bound, *lane, leaf.triangle[*triangle], !(part >> *lane & 1));
+                const TileDoubts doubts{in_leaf.edge_doubt[*lane], in_leaf.above_doubt[*lane],
+                                        in_leaf.along_doubt[*lane]};
+                meet_tile({scene, state, tile, doubts, leaf, tile.first_vector - state.first_vector}, forms,
+                          bound, *lane, leaf.triangle[*triangle], !(part >> *lane & 1));
             }
         }
     }

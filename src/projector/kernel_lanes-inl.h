@@ -85,6 +85,7 @@ HWY_INLINE void stream_words(const Words& v, std::uint32_t* to) {
 TRILENS_LANES_OPERATION(Floats, operator+, Add, Floats)
 TRILENS_LANES_OPERATION(Floats, operator-, Sub, Floats)
 TRILENS_LANES_OPERATION(Floats, operator*, Mul, Floats)
+TRILENS_LANES_OPERATION(Floats, operator/, Div, Floats)
 TRILENS_LANES_OPERATION(Floats, least, Min, Floats)
 TRILENS_LANES_OPERATION(Floats, largest, Max, Floats)
 TRILENS_LANES_OPERATION(Floats, flip_signs, Xor, Floats)

@@ -82,10 +82,9 @@ HWY_NOINLINE void make_edges(const Leaf& leaf, LeafEdges& edges) {
 
 /// How many samples see an average triangle of the leaf, if it faces them: from the area of the leaf's box
 /// and how far apart neighbouring rays are at t.
-HWY_INLINE float samples_per_triangle(const TileLanes& lanes, std::size_t tile, const Leaf& leaf, float t) {
+HWY_INLINE float samples_per_triangle(const float (&pitch)[4], const Leaf& leaf, float t) {
     const float far = std::max(t, 0.0f);
-    const float pitch_u = lanes.pitch[0][tile] + far * lanes.pitch[1][tile],
-                pitch_v = lanes.pitch[2][tile] + far * lanes.pitch[3][tile];
+    const float pitch_u = pitch[0] + far * pitch[1], pitch_v = pitch[2] + far * pitch[3];
     const float* h = leaf.half;
     return 2 * (h[0] * h[1] + h[1] * h[2] + h[2] * h[0]) /
            (pitch_u * pitch_v * static_cast<float>(leaf.count));
@@ -97,8 +96,7 @@ inline constexpr float kRaysBelow = 4;
 /// By what mode tiles and triangles that may meet are drawn fastest (measured).
 HWY_INLINE LeafMode cheapest_mode(const KernelState& state, const Leaf& leaf, float nearest, int tiles,
                                   int triangles) {
-    const std::size_t middle_tile = state.first_lane + state.tiles / 2;
-    if (samples_per_triangle(state.lanes, middle_tile, leaf, nearest) < kRaysBelow) return LeafMode::kRays;
+    if (samples_per_triangle(state.beam.pitch, leaf, nearest) < kRaysBelow) return LeafMode::kRays;
     return tiles > 1 && triangles + 0.7f < 2.0f * tiles ? LeafMode::kFacets : LeafMode::kTriangles;
 }
 

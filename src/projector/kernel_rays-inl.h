@@ -92,25 +92,26 @@ HWY_NOINLINE void make_vector_rays(const KernelScene& scene, KernelState& state,
     const SampleVector& samples = scene.tiles->vectors[state.first_vector + vector];
     const TileLanes& lanes = state.lanes;
     VectorRays& rays = state.rays[vector];
-    alignas(64) double u[kLanes], v[kLanes], inverse[kLanes];
-    for (std::size_t k = 0; k < kLanes; ++k) {
-        u[k] = samples.u[k];
-        v[k] = samples.v[k];
+    const hn::Rebind<float, DoubleTag> some;
+    for (std::size_t at = 0; at < kLanes; at += kDoubles) {
+        const Double u = hn::PromoteTo(kDouble, hn::Load(some, samples.u + at)),
+                     v = hn::PromoteTo(kDouble, hn::Load(some, samples.v + at));
+        const auto linear = [&](const double(&c)[3][kLanes]) HWY_ATTR {
+            return hn::MulAdd(u, hn::Set(kDouble, c[1][j]),
+                              hn::MulAdd(v, hn::Set(kDouble, c[2][j]), hn::Set(kDouble, c[0][j])));
+        };
+        const Double inverse = hn::Div(hn::Set(kDouble, 1.0), linear(lanes.weight));
+        for (int a = 0; a < 3; ++a) {
+            hn::Store(hn::Mul(linear(lanes.origin[a]), inverse), kDouble, rays.origin[a] + at);
+            hn::Store(hn::Mul(linear(lanes.direction[a]), inverse), kDouble, rays.direction[a] + at);
+        }
     }
-    for (std::size_t k = 0; k < kLanes; ++k)
-        inverse[k] = 1 / (lanes.weight[0][j] + u[k] * lanes.weight[1][j] + v[k] * lanes.weight[2][j]);
+    const Floats least = set(1e-30f), one = set(1.0f);
     for (int a = 0; a < 3; ++a) {
-        const double o0 = lanes.origin[a][0][j], o1 = lanes.origin[a][1][j], o2 = lanes.origin[a][2][j];
-        const double d0 = lanes.direction[a][0][j], d1 = lanes.direction[a][1][j],
-                     d2 = lanes.direction[a][2][j];
-        for (std::size_t k = 0; k < kLanes; ++k) {
-            rays.origin[a][k] = (o0 + u[k] * o1 + v[k] * o2) * inverse[k];
-            rays.direction[a][k] = (d0 + u[k] * d1 + v[k] * d2) * inverse[k];
-        }
-        for (std::size_t k = 0; k < kLanes; ++k) {
-            const float d = static_cast<float>(rays.direction[a][k]);
-            rays.inverse[a][k] = 1 / (std::fabs(d) < 1e-30f ? 1e-30f : d);
-        }
+        const Floats d = narrow(load_doubles(rays.direction[a])), o = narrow(load_doubles(rays.origin[a]));
+        const Floats inverse = one / choose(absolute(d) < least, least, d);
+        store(inverse, rays.inverse[a]);
+        store(o * inverse, rays.start[a]);
     }
     state.rays_made[vector] = 1;
 }
@@ -123,8 +124,9 @@ struct alignas(64) RaysInLeaf {
 
 /// The double part of the doubts of a tile's rays in a leaf. Weights lie above kLeastWeight.
 struct RayDoubts {
-    double edge, above, slack;  // slack: by how much a box must be larger than the leaf
+    double edge, above;
     double d[3];                // from the facet's centre to the leaf's
+    float middle[3], swing[3];  // the leaf's box from the facet's centre, wider by what floats round
 };
 
 HWY_INLINE RayDoubts ray_doubts(const TileLanes& lanes, std::size_t j, const Leaf& leaf) {
@@ -138,51 +140,60 @@ HWY_INLINE RayDoubts ray_doubts(const TileLanes& lanes, std::size_t j, const Lea
     const double h = std::max(leaf.half[0], std::max(leaf.half[1], leaf.half[2]));
     doubts.edge = 8 * lanes.decision_doubt[j] * far * far + kUnderflow;
     doubts.above = 8 * 3 * 8 * kDecisionDoubt * h * h * far + kUnderflow;
-    doubts.slack = 8 * kDecisionDoubt * far;
+    // |origin| + |d| is at most 3.5 `far`. Their floats, the products with the inverse, its own two roundings
+    // and the difference are off by 7 half units of that.
+    const double slack = 4 * (8 * 0x1p-24 + 2 * kDecisionDoubt) * far;
+    for (int a = 0; a < 3; ++a) {
+        doubts.middle[a] = static_cast<float>(doubts.d[a]);
+        doubts.swing[a] = static_cast<float>(1.00001 * (leaf.half[a] + slack));
+    }
     return doubts;
 }
 
-HWY_NOINLINE void finish_rays_in_leaf(const VectorRays& rays, const RayDoubts& doubts, const Leaf& leaf,
-                                      RaysInLeaf& r) {
+HWY_NOINLINE void move_rays_to_leaf(const VectorRays& rays, const RayDoubts& doubts, const Leaf& leaf,
+                                    RaysInLeaf& r) {
+    DoubleLanes o[3], d[3], m[3];
+    for (std::size_t i = 0; i < kLanes / kDoubles; ++i) {
+        const Vector3 direction = load3(rays.direction, i * kDoubles),
+                      origin = minus(load3(rays.origin, i * kDoubles),
+                                     {hn::Set(kDouble, doubts.d[0]), hn::Set(kDouble, doubts.d[1]),
+                                      hn::Set(kDouble, doubts.d[2])});
+        const Vector3 moment = outer(origin, direction);
+        o[0].part[i] = origin.x, o[1].part[i] = origin.y, o[2].part[i] = origin.z;
+        d[0].part[i] = direction.x, d[1].part[i] = direction.y, d[2].part[i] = direction.z;
+        m[0].part[i] = moment.x, m[1].part[i] = moment.y, m[2].part[i] = moment.z;
+    }
     const float h[3] = {leaf.half[0], leaf.half[1], leaf.half[2]};
     const float hh[3] = {h[1] * h[2], h[2] * h[0], h[0] * h[1]};
-    for (std::size_t k = 0; k < kLanes; ++k) {
-        const double x = rays.origin[0][k] - doubts.d[0], y = rays.origin[1][k] - doubts.d[1],
-                     z = rays.origin[2][k] - doubts.d[2];
-        const double dx = rays.direction[0][k], dy = rays.direction[1][k], dz = rays.direction[2][k];
-        const float fx = static_cast<float>(dx), fy = static_cast<float>(dy), fz = static_cast<float>(dz);
-        const float mx = static_cast<float>(y * dz - z * dy), my = static_cast<float>(z * dx - x * dz),
-                    mz = static_cast<float>(x * dy - y * dx);
-        r.direction[0][k] = fx, r.direction[1][k] = fy, r.direction[2][k] = fz;
-        r.moment[0][k] = mx, r.moment[1][k] = my, r.moment[2][k] = mz;
-        const float along = std::fabs(fx) * hh[0] + std::fabs(fy) * hh[1] + std::fabs(fz) * hh[2];
-        const float moment = std::fabs(mx) * h[0] + std::fabs(my) * h[1] + std::fabs(mz) * h[2];
-        const float above = hh[0] * (std::fabs(r.origin[0][k]) + h[0]) +
-                            hh[1] * (std::fabs(r.origin[1][k]) + h[1]) +
-                            hh[2] * (std::fabs(r.origin[2][k]) + h[2]);
-        const float speed = std::fabs(fx) + std::fabs(fy) + std::fabs(fz);
-        r.edge_doubt[k] =
-            kEdgeDoubt * (along + moment) + static_cast<float>(doubts.edge) + kUnderflow * (1 + speed);
-        r.along_doubt[k] = 2 * (kDepthDoubt * along + kUnderflow * (1 + speed));
-        r.above_doubt[k] = 2 * (kDepthDoubt * above + static_cast<float>(doubts.above));
+    Floats along = set(0.0f), moments = along, above = along, speed = along;
+    for (int a = 0; a < 3; ++a) {
+        const Floats origin = narrow(o[a]), direction = narrow(d[a]), moment = narrow(m[a]);
+        store(origin, r.origin[a]);
+        store(direction, r.direction[a]);
+        store(moment, r.moment[a]);
+        along = multiply_add(absolute(direction), set(hh[a]), along);
+        moments = multiply_add(absolute(moment), set(h[a]), moments);
+        above = multiply_add(set(hh[a]), absolute(origin) + set(h[a]), above);
+        speed = speed + absolute(direction);
     }
+    const Floats tiny = set(kUnderflow) * (set(1.0f) + speed);
+    store(multiply_add(set(kEdgeDoubt), along + moments, set(static_cast<float>(doubts.edge)) + tiny),
+          r.edge_doubt);
+    store(set(2.0f) * multiply_add(set(kDepthDoubt), along, tiny), r.along_doubt);
+    store(set(2.0f) * multiply_add(set(kDepthDoubt), above, set(static_cast<float>(doubts.above))),
+          r.above_doubt);
 }
 
-/// The lanes whose rays meet the leaf's box before they see something nearer. Also sets r.origin.
-HWY_INLINE std::uint32_t rays_at_leaf(const VectorRays& rays, const RayDoubts& doubts, const Leaf& leaf,
-                                      const Nearest& nearest, RaysInLeaf& r) {
-    // Products and differences round by 8 half units of the terms; the leaf's box is widened by as much.
-    const Floats slack = set(16 * 0x1p-24f);
+/// The lanes whose rays meet the leaf's box before they see something nearer.
+HWY_INLINE std::uint32_t rays_at_leaf(const VectorRays& rays, const RayDoubts& doubts,
+                                      const Nearest& nearest) {
     Floats enter = set(-kNever), leave = load(nearest.high);
     for (int a = 0; a < 3; ++a) {
-        for (std::size_t k = 0; k < kLanes; ++k)
-            r.origin[a][k] = static_cast<float>(rays.origin[a][k] - doubts.d[a]);
         const Floats inverse = load(rays.inverse[a]);
-        const Floats middle = set(0.0f) - load(r.origin[a]) * inverse;
-        const Floats swing = set(leaf.half[a] + static_cast<float>(doubts.slack)) * absolute(inverse);
-        const Floats wide = multiply_add(slack, absolute(middle) + swing, swing);
-        enter = largest(enter, middle - wide);
-        leave = least(leave, middle + wide);
+        const Floats middle = multiply_subtract(set(doubts.middle[a]), inverse, load(rays.start[a]));
+        const Floats swing = set(doubts.swing[a]) * absolute(inverse);
+        enter = largest(enter, middle - swing);
+        leave = least(leave, middle + swing);
     }
     return kAllLanes & ~bits((enter > leave) | (leave < set(0.0f)));
 }
@@ -287,13 +298,13 @@ HWY_NOINLINE void draw_ray_lanes(const KernelScene& scene, const Leaf& leaf, con
                 doubts = ray_doubts(state.lanes, tile, leaf);
             }
             const VectorRays& rays = state.rays[vector];
-            RaysInLeaf r;
             const std::uint32_t samples = scene.tiles->samples[state.first_vector + vector].valid &
-                                          rays_at_leaf(rays, doubts, leaf, state.nearest[vector], r);
+                                          rays_at_leaf(rays, doubts, state.nearest[vector]);
             if (!samples) continue;
             const std::uint32_t triangles = triangles_in_vector(state.beams[g], *lane, leaf, middle);
             if (!triangles) continue;
-            finish_rays_in_leaf(rays, doubts, leaf, r);
+            RaysInLeaf r;
+            move_rays_to_leaf(rays, doubts, leaf, r);
             const float by_samples = kTrianglePerSample * static_cast<float>(std::popcount(triangles));
             if (by_samples <= static_cast<float>(std::popcount(samples)))
                 meet_sample_lanes(r, state.edges, leaf, triangles, vector, samples, state);

@@ -16,42 +16,49 @@ HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
 
+using NameTag = hn::Rebind<std::uint64_t, DoubleTag>;
+using IdTag = hn::Rebind<std::uint32_t, DoubleTag>;
+inline constexpr NameTag kName;
+inline constexpr IdTag kId;
+
 /// What a vector's samples see, in the terms of the scene's triangles.
 struct alignas(64) Placed {
     double t[kLanes], second[kLanes], third[kLanes];
-    Id triangle[kLanes];
+    std::uint64_t name[kLanes];  // the lower half: index into the scene, or kNone
 };
 
 HWY_INLINE void set_lane(Placed& placed, std::size_t lane, const Hit& hit) {
-    placed.triangle[lane] = hit.triangle;
+    placed.name[lane] = hit.triangle;
     placed.t[lane] = hit.t;
     placed.second[lane] = hit.barycentric.x;
     placed.third[lane] = hit.barycentric.y;
 }
 
-/// Past the caches: nobody here reads it again.
-HWY_INLINE void stream_floats(const double* from, float* to) {
-    const hn::Rebind<float, DoubleTag> some;
-    alignas(64) float floats[kLanes];
-    for (std::size_t at = 0; at < kLanes; at += kDoubles)
-        hn::Store(hn::DemoteTo(some, hn::Load(kDouble, from + at)), some, floats + at);
-    stream(load(floats), to);
+HWY_INLINE Words triangles_of(const Placed& placed) {
+    Words r;
+    for (std::size_t i = 0; i < kParts; ++i) {
+        const auto low = hn::Load(kName, placed.name + i * kPart),
+                   high = hn::Load(kName, placed.name + i * kPart + kDoubles);
+        r.part[i] = hn::Combine(kWord, hn::TruncateTo(kId, high), hn::TruncateTo(kId, low));
+    }
+    return r;
 }
 
 HWY_NOINLINE void write_hits(const KernelScene& scene, std::uint32_t vector, const Placed& placed) {
     if (!scene.vector_hits.empty()) {
+        // Past the caches: nobody here reads it again.
         VectorHits& out = scene.vector_hits[vector];
-        stream_words(load_words(placed.triangle), out.triangle);
-        stream_floats(placed.t, out.t);
-        stream_floats(placed.second, out.u);
-        stream_floats(placed.third, out.v);
+        stream_words(triangles_of(placed), out.triangle);
+        stream(narrow(load_doubles(placed.t)), out.t);
+        stream(narrow(load_doubles(placed.second)), out.u);
+        stream(narrow(load_doubles(placed.third)), out.v);
     }
     if (scene.hits.empty()) return;
     const VectorSamples& samples = scene.tiles->samples[vector];
     for (Each lane(samples.valid); lane; ++lane) {
         const std::size_t k = *lane;
         scene.hits[samples.sample[k]] = {
-            placed.triangle[k], placed.t[k], {placed.second[k], placed.third[k]}};
+            static_cast<Id>(placed.name[k]), placed.t[k], {placed.second[k], placed.third[k]}};
     }
 }
 
@@ -62,42 +69,31 @@ HWY_INLINE std::array<Vec3, 3> corners_of(const PreparedScene::Data& data, Id tr
 
 /// Where one sure hit lies, by the scalar decision, which must agree that it is one.
 HWY_NOINLINE Hit decide_sure(const KernelScene& scene, const FacetRays& facet, Id sample, Id triangle) {
-    const std::optional<LineHit> hit = decide(facet, facet.at(scene.grid->position(sample)),
-                                              corners_of(*scene.data, triangle, facet.centre));
+    const std::optional<LineHit> hit =
+        decide(facet.at(scene.grid->position(sample)), corners_of(*scene.data, triangle, facet.centre));
     TRILENS_CHECK(hit.has_value(), "a sure hit must be one for the exact decision too");
     return scene_hit(*scene.data, triangle, *hit);
 }
 
-HWY_NOINLINE void fill_forms(const KernelScene& scene, const Vec3& centre, Id triangle,
-                             const FacetCoefficients& facet, CachedForms& to) {
-    const std::array<Vec3, 3> corner = corners_of(*scene.data, triangle, centre);
-    make_forms(facet, corner.data(), to);
-    to.triangle = scene.data->triangle[triangle];
-    const std::array<std::uint8_t, 3>& was = scene.data->was_corner[triangle];
-    to.second_corner = was[0] == 1 ? 0 : was[1] == 1 ? 1 : 2;
-    to.third_corner = was[0] == 2 ? 0 : was[1] == 2 ? 1 : 2;
+HWY_NOINLINE void fill_frame(const PreparedTriangle& triangle, const Vec3& centre, CachedFrame& to) {
+    to.frame = triangle_frame(
+        {triangle.corner[0] - centre, triangle.corner[1] - centre, triangle.corner[2] - centre});
+    to.triangle = triangle.triangle();
+    to.second = static_cast<std::uint8_t>(triangle.second());
+    to.third = static_cast<std::uint8_t>(triangle.third());
 }
 
-HWY_INLINE bool has_forms(const FormCache& cache, const SampleTile& tile, Id triangle) {
-    return cache.rays == tile.rays && cache.triangle[triangle % kCachedForms] == triangle;
-}
-
-HWY_INLINE const CachedForms& cached_forms(const KernelScene& scene, const SampleTile& tile, Id triangle,
-                                           FormCache& cache) {
-    if (cache.rays != tile.rays) {
-        cache.triangle.fill(kNone);
-        cache.rays = tile.rays;
-        set_facet(scene.tiles->rays[tile.rays], cache.facet);
-    }
-    const std::size_t at = triangle % kCachedForms;
+HWY_INLINE const CachedFrame& cached_frame(const KernelScene& scene, const Vec3& centre, Id triangle,
+                                           FrameCache& cache) {
+    const std::size_t at = triangle % kCachedFrames;
     if (cache.triangle[at] != triangle) {
-        fill_forms(scene, scene.tiles->rays[tile.rays].centre, triangle, cache.facet, cache.forms[at]);
+        fill_frame(scene.data->triangles[triangle], centre, cache.frame[at]);
         cache.triangle[at] = triangle;
     }
-    return cache.forms[at];
+    return cache.frame[at];
 }
 
-HWY_INLINE const Double& weight_of(const PlacedLanes& p, std::uint8_t sorted_corner) {
+HWY_INLINE const Double& weight_of(const PlacedLanes& p, std::size_t sorted_corner) {
     return sorted_corner == 0 ? p.first : sorted_corner == 1 ? p.second : p.third;
 }
 
@@ -112,105 +108,121 @@ HWY_INLINE hn::Mask<DoubleTag> mask_of_doubles(std::uint32_t lanes) {
     return hn::LoadMaskBits(kDouble, bytes);
 }
 
-/// Lanes of a vector that see one triangle. Returns those where place() says nothing.
-HWY_INLINE std::uint32_t place_on_one(const CachedForms& cached, const SampleLanes* samples,
-                                      std::uint32_t lanes, const TileTrust& trust, Placed& placed) {
-    const FormLanes forms = broadcast(cached);
-    std::uint32_t bad = 0;
-    for (std::size_t at = 0, i = 0; at < kLanes; at += kDoubles, ++i) {
-        const std::uint32_t own = lanes >> at & first_lanes(kDoubles);
-        if (!own) continue;
-        const PlacedLanes p = place_lanes(forms, samples[i], trust);
-        const auto mask = mask_of_doubles(own);
-        hn::BlendedStore(p.t, mask, kDouble, placed.t + at);
-        hn::BlendedStore(weight_of(p, cached.second_corner), mask, kDouble, placed.second + at);
-        hn::BlendedStore(weight_of(p, cached.third_corner), mask, kDouble, placed.third + at);
-        bad |= (own & ~bits(p.good)) << at;
+using PairTag = hn::FixedTag<double, 2>;
+using Pair = hn::Vec<PairTag>;
+inline constexpr std::size_t kPairs = kDoubles / 2;
+
+/// Pairs side by side.
+template <typename Tag>
+HWY_INLINE hn::Vec<Tag> join(Tag tag, const Pair* pair) {
+    if constexpr (hn::MaxLanes(Tag()) == 2) {
+        return pair[0];
+    } else {
+        const hn::Half<Tag> half;
+        return hn::Combine(tag, join(half, pair + hn::MaxLanes(half) / 2), join(half, pair));
     }
-    return bad;
 }
 
-/// Lanes that see many triangles: each its own forms.
-HWY_NOINLINE std::uint32_t place_on_many(const KernelScene& scene, const FacetRays& facet,
-                                         const SampleLanes* samples, const Id* triangle, std::uint32_t lanes,
-                                         const TileTrust& trust, Placed& placed) {
-    const PreparedScene::Data& data = *scene.data;
-    std::uint32_t bad = 0;
-    for (std::size_t at = 0, i = 0; at < kLanes; at += kDoubles, ++i) {
-        const std::uint32_t own = lanes >> at & first_lanes(kDoubles);
-        if (!own) continue;
-        HWY_ALIGN double at_corner[3][3][kDoubles] = {};
-        for (Each lane(own); lane; ++lane) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Vec3 c = data.corner(k, triangle[at + *lane], facet.centre);
-                at_corner[k][0][*lane] = c.x;
-                at_corner[k][1][*lane] = c.y;
-                at_corner[k][2][*lane] = c.z;
-            }
+/// PreparedTriangles, one per lane: as numbers, 9 of corners and the name.
+struct TriangleLanes {
+    Double number[10];
+};
+
+HWY_INLINE TriangleLanes gather_triangles(const PreparedTriangle* const (&from)[kDoubles]) {
+    static_assert(sizeof(PreparedTriangle) == 10 * sizeof(double));
+    const PairTag pair_tag;
+    TriangleLanes triangles;
+    for (std::size_t n = 0; n < 10; n += 2) {
+        Pair even[kPairs], odd[kPairs];
+        for (std::size_t i = 0; i < kPairs; ++i) {
+            const Pair a = hn::LoadU(pair_tag, reinterpret_cast<const double*>(from[2 * i]) + n),
+                       b = hn::LoadU(pair_tag, reinterpret_cast<const double*>(from[2 * i + 1]) + n);
+            even[i] = hn::InterleaveLower(pair_tag, a, b);
+            odd[i] = hn::InterleaveUpper(pair_tag, a, b);
         }
-        Vector3 corner[3];
-        for (int k = 0; k < 3; ++k)
-            corner[k] = {hn::Load(kDouble, at_corner[k][0]), hn::Load(kDouble, at_corner[k][1]),
-                         hn::Load(kDouble, at_corner[k][2])};
-        const PlacedLanes p = place_lanes(forms_in_lanes(facet, corner), samples[i], trust);
-        HWY_ALIGN double weight[3][kDoubles], t[kDoubles];
-        hn::Store(p.t, kDouble, t);
-        hn::Store(p.first, kDouble, weight[0]);
-        hn::Store(p.second, kDouble, weight[1]);
-        hn::Store(p.third, kDouble, weight[2]);
-        for (Each lane(own); lane; ++lane) {
-            const std::size_t k = at + *lane;
-            const std::array<std::uint8_t, 3>& was = data.was_corner[triangle[k]];
-            double of[3];
-            for (std::size_t c = 0; c < 3; ++c) of[was[c]] = weight[c][*lane];
-            placed.t[k] = t[*lane];
-            placed.second[k] = of[1];
-            placed.third[k] = of[2];
-            placed.triangle[k] = data.triangle[triangle[k]];
-        }
-        bad |= (own & ~bits(p.good)) << at;
+        triangles.number[n] = join(kDouble, even);
+        triangles.number[n + 1] = join(kDouble, odd);
     }
-    return bad;
+    return triangles;
+}
+
+/// Where the sure hits of a tile are placed.
+struct TilePlacing {
+    const KernelScene& scene;
+    const FacetRays& facet;
+    TileSpots spots;
+};
+
+/// From lane `at` on: each of `lanes` its own triangle, the others nothing. Returns those where place() says
+/// nothing.
+HWY_INLINE std::uint32_t place_each(const TilePlacing& tile, const RayLanes& rays, const Id* triangle,
+                                    std::uint32_t lanes, std::size_t at, Placed& placed) {
+    const PreparedTriangle* from[kDoubles];
+    const PreparedTriangle* all = tile.scene.data->triangles.data();
+    const Id some = triangle[std::countr_zero(lanes)];
+    for (std::size_t k = 0; k < kDoubles; ++k) from[k] = all + (lanes >> k & 1 ? triangle[k] : some);
+    const TriangleLanes own = gather_triangles(from);
+    Vector3 corner[3];
+    for (std::size_t c = 0; c < 3; ++c)
+        corner[c] =
+            minus({own.number[3 * c], own.number[3 * c + 1], own.number[3 * c + 2]}, set3(tile.facet.centre));
+    const PlacedLanes p = place_lanes(frame_lanes(corner), rays);
+    const auto name = hn::BitCast(kName, own.number[9]);
+    const auto weight = [&](int bit) HWY_ATTR {
+        const auto is_second = hn::TestBit(name, hn::Set(kName, std::uint64_t{1} << bit));
+        const auto is_third = hn::TestBit(name, hn::Set(kName, std::uint64_t{2} << bit));
+        return hn::IfThenElse(hn::RebindMask(kDouble, is_second), p.second,
+                              hn::IfThenElse(hn::RebindMask(kDouble, is_third), p.third, p.first));
+    };
+    const auto mask = mask_of_doubles(lanes);
+    hn::Store(hn::IfThenElseZero(mask, p.t), kDouble, placed.t + at);
+    hn::Store(hn::IfThenElseZero(mask, weight(PreparedTriangle::kSecondBit)), kDouble, placed.second + at);
+    hn::Store(hn::IfThenElseZero(mask, weight(PreparedTriangle::kThirdBit)), kDouble, placed.third + at);
+    hn::Store(hn::IfThenElse(hn::RebindMask(kName, mask), name, hn::Set(kName, std::uint64_t{kNone})), kName,
+              placed.name + at);
+    return lanes & ~bits(p.good);
+}
+
+/// From lane `at` on: all see one triangle. Returns as place_each().
+HWY_INLINE std::uint32_t place_all(const CachedFrame& cached, const RayLanes& rays, std::size_t at,
+                                   Placed& placed) {
+    const PlacedLanes p = place_lanes(broadcast(cached.frame), rays);
+    hn::Store(p.t, kDouble, placed.t + at);
+    hn::Store(weight_of(p, cached.second), kDouble, placed.second + at);
+    hn::Store(weight_of(p, cached.third), kDouble, placed.third + at);
+    hn::Store(hn::Set(kName, std::uint64_t{cached.triangle}), kName, placed.name + at);
+    return first_lanes(kDoubles) & ~bits(p.good);
 }
 
 /// What the samples of a vector surely see.
-HWY_NOINLINE void place_sure_hits(const KernelScene& scene, const SampleTile& tile, std::uint32_t vector,
-                                  const Nearest& nearest, const TileTrust& trust, FormCache& cache,
-                                  Placed& placed) {
-    constexpr int kSeveral = 4;  // measured: so many lanes that see one triangle are worth its own forms
-    const FacetRays& facet = scene.tiles->rays[tile.rays];
-    SampleLanes samples[kLanes / kDoubles];
-    for (std::size_t at = 0, i = 0; at < kLanes; at += kDoubles, ++i)
-        samples[i] = samples_of(*scene.grid, facet, tile, scene.tiles->vectors[vector], at);
-
+HWY_NOINLINE void place_sure_hits(const TilePlacing& tile, std::uint32_t vector, const Nearest& nearest,
+                                  FrameCache& cache, Placed& placed) {
+    const KernelScene& scene = tile.scene;
+    const SampleVector& samples = scene.tiles->vectors[vector];
     const Words triangles = load_words(nearest.triangle);
-    const std::uint32_t see = kAllLanes & ~bits(same(triangles, set_word(kNone)));
-    std::uint32_t left = see, bad = 0;
-    if (see != kAllLanes) {
-        for (std::size_t k = 0; k < kLanes; ++k) set_lane(placed, k, Hit{});
-    }
-    std::uint32_t alone = 0;
-    for (; left; left &= left - 1) {
-        const std::uint32_t first = static_cast<std::uint32_t>(std::countr_zero(left));
-        const Id triangle = nearest.triangle[first];
-        const Mask see_it = same(triangles, set_word(triangle));
-        const std::uint32_t own = bits(see_it);
-        if (std::popcount(own) < kSeveral && !has_forms(cache, tile, triangle)) {
-            alone |= own;
-        } else {
-            const CachedForms& forms = cached_forms(scene, tile, triangle, cache);
-            store_words(choose(see_it, set_word(forms.triangle), load_words(placed.triangle)),
-                        placed.triangle);
-            bad |= place_on_one(forms, samples, own, trust, placed);
+    const Id first = nearest.triangle[0];
+    std::uint32_t bad = 0;
+    if (first != kNone && bits(same(triangles, set_word(first))) == kAllLanes) {
+        const CachedFrame& cached = cached_frame(scene, tile.facet.centre, first, cache);
+        for (std::size_t at = 0; at < kLanes; at += kDoubles)
+            bad |= place_all(cached, rays_of(tile.spots, tile.facet, samples, at), at, placed) << at;
+    } else {
+        const std::uint32_t see = kAllLanes & ~bits(same(triangles, set_word(kNone)));
+        for (std::size_t at = 0; at < kLanes; at += kDoubles) {
+            const std::uint32_t own = see >> at & first_lanes(kDoubles);
+            if (own) {
+                bad |= place_each(tile, rays_of(tile.spots, tile.facet, samples, at), nearest.triangle + at,
+                                  own, at, placed)
+                       << at;
+            } else {
+                for (std::size_t k = at; k < at + kDoubles; ++k) set_lane(placed, k, Hit{});
+            }
         }
-        left &= ~own | 1u << first;
     }
-    if (alone) bad |= place_on_many(scene, facet, samples, nearest.triangle, alone, trust, placed);
-    if (!trust.weight) bad = see;
     for (Each lane(bad); lane; ++lane)
-        set_lane(
-            placed, *lane,
-            decide_sure(scene, facet, scene.tiles->samples[vector].sample[*lane], nearest.triangle[*lane]));
+        set_lane(placed, *lane,
+                 decide_sure(scene, tile.facet, scene.tiles->samples[vector].sample[*lane],
+                             nearest.triangle[*lane]));
 }
 
 /// One sample among its sure hit, if any, and its doubtful triangles, all decided exactly, by FirstHits'
@@ -222,8 +234,7 @@ HWY_NOINLINE Hit resolve_sample(const KernelScene& scene, const FacetRays& facet
     const auto offer_all = [&] {
         Id last = kNone;
         const auto offer = [&](Id triangle) {
-            const std::optional<LineHit> hit =
-                decide(facet, ray, corners_of(*scene.data, triangle, facet.centre));
+            const std::optional<LineHit> hit = decide(ray, corners_of(*scene.data, triangle, facet.centre));
             if (hit) hits.offer(0, *hit, triangle, scene.data->rank[triangle]);
         };
         if (sure != kNone) offer(sure);
@@ -238,6 +249,19 @@ HWY_NOINLINE Hit resolve_sample(const KernelScene& scene, const FacetRays& facet
     return winner == kNone ? Hit{} : scene_hit(*scene.data, winner, hits.hit(0));
 }
 
+/// What place_sure_hits() reads of the scene.
+HWY_INLINE void prefetch_triangles(const KernelScene& scene, const Nearest& nearest) {
+    const Words triangles = load_words(nearest.triangle);
+    std::uint32_t left = kAllLanes & ~bits(same(triangles, set_word(kNone)));
+    while (left) {
+        const Id triangle = nearest.triangle[std::countr_zero(left)];
+        const char* from = reinterpret_cast<const char*>(&scene.data->triangles[triangle]);
+        hwy::Prefetch(from);
+        hwy::Prefetch(from + sizeof(PreparedTriangle) - 1);
+        left &= ~bits(same(triangles, set_word(triangle)));
+    }
+}
+
 /// Writes the hits of all of the group's samples.
 HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
     std::vector<Doubt>& doubts = state.doubts;
@@ -245,16 +269,23 @@ HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
         if (a.vector != b.vector) return a.vector < b.vector;
         return a.lane != b.lane ? a.lane < b.lane : a.triangle < b.triangle;
     });
+    constexpr std::uint32_t kAhead = 3;
     std::size_t next = 0;
     for (std::uint32_t j = state.first_lane; j < state.first_lane + state.tiles; ++j) {
         const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
         const FacetRays& facet = scene.tiles->rays[tile.rays];
-        const TileTrust trust = trust_of(facet, tile, *scene.grid);
+        if (state.cache.rays != tile.rays) {
+            state.cache.triangle.fill(kNone);
+            state.cache.rays = tile.rays;
+        }
+        const TilePlacing placing{scene, facet, spots_of(*scene.grid, facet, tile)};
         Placed placed;
         for (std::uint32_t i = 0; i < tile.vectors; ++i) {
             const std::uint32_t vector = tile.first_vector + i, in_group = vector - state.first_vector;
             const Nearest& nearest = state.nearest[in_group];
-            place_sure_hits(scene, tile, vector, nearest, trust, state.cache, placed);
+            if (in_group + kAhead < state.vectors)
+                prefetch_triangles(scene, state.nearest[in_group + kAhead]);
+            place_sure_hits(placing, vector, nearest, state.cache, placed);
             while (next < doubts.size() && doubts[next].vector == in_group) {
                 std::size_t end = next;
                 while (end < doubts.size() && doubts[end].vector == in_group &&

@@ -51,6 +51,26 @@ HWY_INLINE Vector3 unit(const Vector3& a) {
     return times(hn::Div(hn::Set(kDouble, 1.0), hn::Sqrt(square)), a);
 }
 
+/// 16 doubles.
+struct DoubleLanes {
+    Double part[kLanes / kDoubles];
+};
+
+HWY_INLINE DoubleLanes load_doubles(const double* from) {
+    DoubleLanes r;
+    for (std::size_t i = 0; i < kLanes / kDoubles; ++i) r.part[i] = hn::Load(kDouble, from + i * kDoubles);
+    return r;
+}
+HWY_INLINE Floats narrow(const DoubleLanes& v) {
+    const hn::Rebind<float, DoubleTag> some;
+    static_assert(kPart == 2 * kDoubles);
+    Floats r;
+    for (std::size_t i = 0; i < kParts; ++i)
+        r.part[i] =
+            hn::Combine(kFloat, hn::DemoteTo(some, v.part[2 * i + 1]), hn::DemoteTo(some, v.part[2 * i]));
+    return r;
+}
+
 /// Copies what one tile brings into its lane: the facet's rays, moved to the tile's rectangle.
 HWY_NOINLINE void gather_tile(const KernelScene& scene, const SampleTile& tile, std::size_t j,
                               TileLanes& lanes) {
@@ -123,70 +143,79 @@ HWY_NOINLINE void scale_lanes(TileLanes& lanes) {
     lanes.broken = broken;
 }
 
+HWY_INLINE void store3(const Vector3& v, double (*to)[6][kLanes], int q, std::size_t at) {
+    hn::Store(v.x, kDouble, to[0][q] + at);
+    hn::Store(v.y, kDouble, to[1][q] + at);
+    hn::Store(v.z, kDouble, to[2][q] + at);
+}
+template <std::size_t kCoefficients>
+HWY_INLINE Vector3 load_part(const double (*from)[kCoefficients][kLanes], int part, std::size_t at) {
+    return {hn::Load(kDouble, from[0][part] + at), hn::Load(kDouble, from[1][part] + at),
+            hn::Load(kDouble, from[2][part] + at)};
+}
+HWY_INLINE Vector3 absolute(const Vector3& a) {
+    return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)};
+}
+
 /// The quadratics of the rays' Pluecker coordinates (trilinear/edge_conic.h, line_quadratic).
 HWY_NOINLINE void make_lines(TileLanes& lanes) {
-    constexpr int kFirst[6] = {0, 0, 0, 1, 1, 2}, kSecond[6] = {0, 1, 2, 1, 2, 2};
-    for (int a = 0; a < 3; ++a)
-        for (std::size_t j = 0; j < kLanes; ++j) lanes.line_sum[a][j] = 0;
-    for (int q = 0; q < 6; ++q) {
-        const int p = kFirst[q], r = kSecond[q];
-        for (int a = 0; a < 3; ++a) {
-            const int b = (a + 1) % 3, c = (a + 2) % 3;
-            const double *wp = lanes.weight[p], *wr = lanes.weight[r], *dp = lanes.direction[a][p],
-                         *dr = lanes.direction[a][r];
-            const double *obp = lanes.origin[b][p], *ocp = lanes.origin[c][p], *obr = lanes.origin[b][r],
-                         *ocr = lanes.origin[c][r];
-            const double *dbp = lanes.direction[b][p], *dcp = lanes.direction[c][p],
-                         *dbr = lanes.direction[b][r], *dcr = lanes.direction[c][r];
-            double *line = lanes.line[a][q], *moment = lanes.moment[a][q], *sum = lanes.line_sum[a];
-            if (p == r) {
-                for (std::size_t j = 0; j < kLanes; ++j) {
-                    line[j] = wp[j] * dp[j];
-                    moment[j] = obp[j] * dcp[j] - ocp[j] * dbp[j];
-                }
-            } else {
-                for (std::size_t j = 0; j < kLanes; ++j) {
-                    line[j] = wp[j] * dr[j] + wr[j] * dp[j];
-                    moment[j] = obp[j] * dcr[j] - ocp[j] * dbr[j] + (obr[j] * dcp[j] - ocr[j] * dbp[j]);
-                }
-            }
-            for (std::size_t j = 0; j < kLanes; ++j) sum[j] += std::fabs(line[j]);
+    for (std::size_t at = 0; at < kLanes; at += kDoubles) {
+        Vector3 o[3], d[3];
+        Double w[3];
+        for (int p = 0; p < 3; ++p) {
+            o[p] = load_part(lanes.origin, p, at);
+            d[p] = load_part(lanes.direction, p, at);
+            w[p] = hn::Load(kDouble, lanes.weight[p] + at);
         }
+        const auto square = [&](int p) HWY_ATTR { return times(w[p], d[p]); };
+        const auto mixed = [&](int p, int r) HWY_ATTR { return plus(times(w[p], d[r]), times(w[r], d[p])); };
+        const Vector3 line[6] = {square(0), mixed(0, 1), mixed(0, 2), square(1), mixed(1, 2), square(2)};
+        const auto mixed_moment = [&](int p, int r)
+                                      HWY_ATTR { return plus(outer(o[p], d[r]), outer(o[r], d[p])); };
+        const Vector3 moment[6] = {outer(o[0], d[0]), mixed_moment(0, 1), mixed_moment(0, 2),
+                                   outer(o[1], d[1]), mixed_moment(1, 2), outer(o[2], d[2])};
+        Vector3 sum = absolute(line[0]);
+        for (int q = 1; q < 6; ++q) sum = plus(sum, absolute(line[q]));
+        for (int q = 0; q < 6; ++q) {
+            store3(line[q], lanes.line, q, at);
+            store3(moment[q], lanes.moment, q, at);
+        }
+        hn::Store(sum.x, kDouble, lanes.line_sum[0] + at);
+        hn::Store(sum.y, kDouble, lanes.line_sum[1] + at);
+        hn::Store(sum.z, kDouble, lanes.line_sum[2] + at);
     }
 }
 
-/// Copies each tile's coefficients together.
-HWY_NOINLINE void transpose_lanes(std::uint32_t tiles, TileLanes& lanes) {
-    for (std::size_t j = 0; j < tiles; ++j) {
-        for (int a = 0; a < 3; ++a) {
-            for (int q = 0; q < 6; ++q) {
-                lanes.tile[j][a][q] = lanes.line[a][q][j];
-                lanes.tile[j][3 + a][q] = lanes.moment[a][q][j];
-            }
-            for (int p = 0; p < 3; ++p) {
-                lanes.tile[j][6 + a][p] = lanes.origin[a][p][j];
-                lanes.tile[j][9 + a][p] = lanes.direction[a][p][j];
-            }
+/// Copies a tile's coefficients together, once.
+HWY_NOINLINE void transpose_tile(std::size_t j, TileLanes& lanes) {
+    for (int a = 0; a < 3; ++a) {
+        for (int q = 0; q < 6; ++q) {
+            lanes.tile[j][a][q] = lanes.line[a][q][j];
+            lanes.tile[j][3 + a][q] = lanes.moment[a][q][j];
         }
-        for (int p = 0; p < 3; ++p) lanes.tile[j][12][p] = lanes.weight[p][j];
+        for (int p = 0; p < 3; ++p) {
+            lanes.tile[j][6 + a][p] = lanes.origin[a][p][j];
+            lanes.tile[j][9 + a][p] = lanes.direction[a][p][j];
+        }
     }
+    for (int p = 0; p < 3; ++p) lanes.tile[j][12][p] = lanes.weight[p][j];
+    lanes.transposed |= 1u << j;
 }
 
-/// About how far apart the rays of neighbouring samples are, where the weight is 1.
-HWY_NOINLINE void measure_pitch(std::uint32_t tiles, const SampleTile* tile, TileLanes& lanes) {
-    for (std::size_t j = 0; j < tiles; ++j) {
-        for (int p = 1; p < 3; ++p) {
-            double origin = 0, direction = 0;
-            for (int a = 0; a < 3; ++a) {
-                const double o = lanes.origin[a][p][j] - lanes.origin[a][0][j] * lanes.weight[p][j];
-                const double d = lanes.direction[a][p][j] - lanes.direction[a][0][j] * lanes.weight[p][j];
-                origin += o * o;
-                direction += d * d;
-            }
-            const double cells = std::max(0.5, 0.5 * ((p == 1 ? tile[j].width : tile[j].height) - 1));
-            lanes.pitch[2 * p - 2][j] = static_cast<float>(std::sqrt(origin) / cells);
-            lanes.pitch[2 * p - 1][j] = static_cast<float>(std::sqrt(direction) / cells);
+/// About how far apart the rays of a tile's neighbouring samples are, where the weight is 1.
+HWY_NOINLINE void measure_pitch(const TileLanes& lanes, std::size_t j, const SampleTile& tile,
+                                float (&pitch)[4]) {
+    for (int p = 1; p < 3; ++p) {
+        double origin = 0, direction = 0;
+        for (int a = 0; a < 3; ++a) {
+            const double o = lanes.origin[a][p][j] - lanes.origin[a][0][j] * lanes.weight[p][j];
+            const double d = lanes.direction[a][p][j] - lanes.direction[a][0][j] * lanes.weight[p][j];
+            origin += o * o;
+            direction += d * d;
         }
+        const double cells = std::max(0.5, 0.5 * ((p == 1 ? tile.width : tile.height) - 1));
+        pitch[2 * p - 2] = static_cast<float>(std::sqrt(origin) / cells);
+        pitch[2 * p - 1] = static_cast<float>(std::sqrt(direction) / cells);
     }
 }
 
@@ -241,6 +270,16 @@ HWY_NOINLINE void gather_hull(const KernelScene& scene, const SampleTile& tile, 
     }
 }
 
+/// As floats. Returns those.
+HWY_INLINE Vector3 store_floats(const Vector3& v, float (*to)[kLanes], std::size_t at) {
+    const hn::Rebind<float, DoubleTag> some;
+    const auto x = hn::DemoteTo(some, v.x), y = hn::DemoteTo(some, v.y), z = hn::DemoteTo(some, v.z);
+    hn::Store(x, some, to[0] + at);
+    hn::Store(y, some, to[1] + at);
+    hn::Store(z, some, to[2] + at);
+    return {hn::PromoteTo(kDouble, x), hn::PromoteTo(kDouble, y), hn::PromoteTo(kDouble, z)};
+}
+
 /// Planes around each tile's hull. A plane holds only if, as floats, its normal points along all four corner
 /// directions; it is turned towards the axis by more than it rounds, then checked.
 HWY_NOINLINE void make_planes(const KernelScene& scene, HullLanes& lanes) {
@@ -277,18 +316,7 @@ HWY_NOINLINE void make_planes(const KernelScene& scene, HullLanes& lanes) {
                 hn::IfThenElse(hn::Lt(inside, zero), hn::Set(kDouble, -1.0), hn::Set(kDouble, 1.0));
             normal = plus(times(sign, unit(normal)), times(turn, axis));
 
-            HWY_ALIGN double n[3][kDoubles];
-            hn::Store(normal.x, kDouble, n[0]);
-            hn::Store(normal.y, kDouble, n[1]);
-            hn::Store(normal.z, kDouble, n[2]);
-            for (int a = 0; a < 3; ++a) {
-                for (std::size_t i = 0; i < kDoubles; ++i) {
-                    lanes.plane[k][a][at + i] = static_cast<float>(n[a][i]);
-                    n[a][i] = lanes.plane[k][a][at + i];
-                }
-            }
-            const Vector3 rounded = {hn::Load(kDouble, n[0]), hn::Load(kDouble, n[1]),
-                                     hn::Load(kDouble, n[2])};
+            const Vector3 rounded = store_floats(normal, lanes.plane[k], at);
             Double along = inner(rounded, d[0]), offset = inner(rounded, o[0]), size = zero;
             for (int m = 0; m < 4; ++m) {
                 along = hn::Min(along, inner(rounded, d[m]));
@@ -303,10 +331,20 @@ HWY_NOINLINE void make_planes(const KernelScene& scene, HullLanes& lanes) {
             offset = hn::Sub(offset, hn::Mul(hn::Set(kDouble, kPlaneDoubt), size));
             const auto holds = hn::Gt(along, hn::Set(kDouble, 1e-12));
             offset = hn::IfThenElse(holds, offset, hn::Set(kDouble, -1e300));
-            HWY_ALIGN double stored[kDoubles];
-            hn::Store(offset, kDouble, stored);
-            for (std::size_t i = 0; i < kDoubles; ++i)
-                lanes.offset[k][at + i] = static_cast<float>(stored[i]);
+            const hn::Rebind<float, DoubleTag> some;
+            hn::Store(hn::DemoteTo(some, offset), some, lanes.offset[k] + at);
+        }
+    }
+}
+
+/// What gather_hull() reads of the mesh.
+HWY_INLINE void prefetch_corner_rays(const KernelScene& scene, const SampleTile* tile, std::uint32_t tiles) {
+    for (std::uint32_t j = 0; j < tiles; ++j) {
+        if (!tile[j].whole_facet) continue;
+        for (const Id corner : scene.mesh->facets[tile[j].facet]) {
+            const char* from = reinterpret_cast<const char*>(&scene.mesh->rays[corner]);
+            hwy::Prefetch(from);
+            hwy::Prefetch(from + sizeof(Ray) - 1);
         }
     }
 }
@@ -316,10 +354,10 @@ HWY_NOINLINE void set_up_batch(const KernelScene& scene, const SampleTile* tile,
                                TileLanes& lanes) {
     for (std::size_t j = 0; j < kLanes; ++j)
         gather_tile(scene, tile[std::min<std::size_t>(j, tiles - 1)], j, lanes);
+    prefetch_corner_rays(scene, tile, tiles);
     scale_lanes(lanes);
     make_lines(lanes);
-    transpose_lanes(tiles, lanes);
-    measure_pitch(tiles, tile, lanes);
+    lanes.transposed = 0;
     for (std::size_t j = 0; j < kLanes; ++j)
         gather_hull(scene, tile[std::min<std::size_t>(j, tiles - 1)], j, lanes);
     std::copy_n(lanes.origin_terms, kLanes, lanes.hull.origin_terms);

@@ -63,11 +63,11 @@ struct alignas(64) TileLanes {
     double decision_doubt[kLanes];  // times (weight_terms reach + origin_terms)^2: the decision's own doubt
 
     HullLanes hull;
-    float pitch[4][kLanes];  // how far apart neighbouring samples' rays are: u at t = 0, per t; v likewise
 
     // The same by tile, so that the coefficients of one are together: line 0..2, moment 3..5, origin 6..8,
-    // direction 9..11, weight 12.
+    // direction 9..11, weight 12. Made for the tiles of `transposed`.
     double tile[kLanes][13][8];
+    std::uint32_t transposed;
     std::uint32_t broken;  // bit j: the vector engine cannot bound this tile
 };
 
@@ -77,6 +77,8 @@ struct GroupBeam {
     int planes = 0;
     float axis[3] = {0, 0, 0};
     float start = 0, speed_inverse = 0;  // t >= (axis . x - start) * speed_inverse for every x on a ray
+    // Of the middle tile: how far apart neighbouring samples' rays are: u at t = 0, per t; v likewise.
+    float pitch[4];
 };
 
 /// The nearest sure hit of each sample of a vector so far: its t lies in [low, high].
@@ -104,10 +106,11 @@ struct Waiting {
     float middle[3], half[3];
 };
 
-/// The rays of a vector's samples, weight divided out, from their facet's centre; and 1 / direction.
+/// The rays of a vector's samples, weight divided out, from their facet's centre; 1 / direction, and origin /
+/// direction.
 struct alignas(64) VectorRays {
     double origin[3][kLanes], direction[3][kLanes];
-    float inverse[3][kLanes];
+    float inverse[3][kLanes], start[3][kLanes];
 };
 
 /// Beams around 16 vectors.
@@ -116,28 +119,20 @@ struct alignas(64) VectorBeams {
     float farthest[kLanes];                        // no farther hit can matter to the vector
 };
 
-/// A triangle's PlaceForms through one facet, with room for whole vectors, and which sorted corners are the
-/// second and the third of the scene's own triangle.
-struct alignas(64) CachedForms {
-    double above[8], along[8], second[8], third[8];
-    double size = 0;
-    Id triangle = kNone;  // index into the scene
-    std::uint8_t second_corner = 1, third_corner = 2;
+/// A triangle's frame for one facet.
+struct CachedFrame {
+    TriangleFrame frame;
+    Id triangle = kNone;                 // index into the scene
+    std::uint8_t second = 1, third = 2;  // which sorted corners are the scene's second and third
 };
 
-/// What forms are made of, lanes are coefficients: FacetRays' own.
-struct alignas(64) FacetCoefficients {
-    double origin[3][8], direction[3][8], weight[8], line[3][8], moment[3][8];
-};
-
-/// The forms of some triangles that one facet sees, by the index into PreparedScene::Data modulo
-/// kCachedForms.
-inline constexpr std::size_t kCachedForms = 64;
-struct FormCache {
+/// The frames of some triangles that one facet sees, by the index into PreparedScene::Data modulo
+/// kCachedFrames.
+inline constexpr std::size_t kCachedFrames = 16;
+struct FrameCache {
     Id rays = kNone;  // of the facet
-    FacetCoefficients facet;
-    std::array<Id, kCachedForms> triangle{};
-    std::array<CachedForms, kCachedForms> forms;
+    std::array<Id, kCachedFrames> triangle{};
+    std::array<CachedFrame, kCachedFrames> frame;
 };
 
 /// Everything that one thread needs for one batch.
@@ -159,7 +154,7 @@ struct KernelState {
     std::uint32_t first_lane = 0, tiles = 0;  // the group's lanes
     std::uint32_t first_vector = 0, vectors = 0;
     std::size_t most_doubts = 0;
-    FormCache cache;
+    FrameCache cache;
 };
 
 }  // namespace trilens

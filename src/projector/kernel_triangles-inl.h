@@ -8,6 +8,7 @@
 #endif
 
 #include "projector/kernel_offer-inl.h"
+#include "projector/kernel_setup-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
@@ -317,6 +318,7 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
 HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf, std::size_t j,
                                       KernelState& state) {
     TileInLeaf in_leaf;
+    if (!(state.lanes.transposed >> j & 1)) transpose_tile(j, state.lanes);
     move_tile_to_leaf(state.lanes, j, leaf, in_leaf);
     Floats conic[3][6], above[3], along[3];
     triangle_forms(in_leaf, state.edges, conic, above, along);

@@ -16,36 +16,63 @@ HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
 
-/// The corner rays of a group's tiles, one after the other; origins from the tree's centre.
+/// The corner rays of a group's tiles, in lanes of kDoubles; origins from the tree's centre. The last ones
+/// may repeat.
 struct HullRays {
-    double origin[3][4 * kLanes], direction[3][4 * kLanes];
+    alignas(64) double origin[3][4 * kLanes], direction[3][4 * kLanes], shortness[4 * kLanes];
     std::size_t count = 0;
     double size = 0;  // largest origin in the 1-norm, and the tree's
 };
 
-HWY_NOINLINE void gather_hulls(const KernelScene& scene, const KernelState& state, HullRays& rays) {
-    const Vec3& centre = scene.tree->centre;
-    const Vec3& half = scene.tree->half;
-    rays.count = 0;
-    double size = 0;
-    for (std::size_t j = state.first_lane; j < state.first_lane + state.tiles; ++j) {
-        for (std::size_t k = 0; k < 4; ++k) {
-            double own = 1e-6 * state.lanes.origin_terms[j];
-            for (int a = 0; a < 3; ++a) {
-                const double from_tree = state.lanes.centre[a][j] - centre[a];
-                rays.origin[a][rays.count] = state.lanes.hull.origin[k][a][j] + from_tree;
-                rays.direction[a][rays.count] = state.lanes.hull.direction[k][a][j];
-                own += std::fabs(state.lanes.hull.origin[k][a][j]) + std::fabs(from_tree);
-            }
-            size = std::max(size, own);
-            ++rays.count;
-        }
-    }
-    rays.size = size + half.x + half.y + half.z;
+HWY_INLINE double least_of(const Double& v) {
+    return hn::GetLane(hn::MinOfLanes(kDouble, v));
+}
+HWY_INLINE double largest_of(const Double& v) {
+    return hn::GetLane(hn::MaxOfLanes(kDouble, v));
+}
+HWY_INLINE double sum_of(const Double& v) {
+    return hn::GetLane(hn::SumOfLanes(kDouble, v));
+}
+HWY_INLINE Vector3 load_ray(const double (*from)[4 * kLanes], std::size_t at) {
+    return {hn::Load(kDouble, from[0] + at), hn::Load(kDouble, from[1] + at),
+            hn::Load(kDouble, from[2] + at)};
+}
+HWY_INLINE Vector3 set_vector(const double* v) {
+    return {hn::Set(kDouble, v[0]), hn::Set(kDouble, v[1]), hn::Set(kDouble, v[2])};
 }
 
-HWY_INLINE double dot3(const double (*v)[4 * kLanes], std::size_t i, const double* n) {
-    return v[0][i] * n[0] + v[1][i] * n[1] + v[2][i] * n[2];
+HWY_NOINLINE void gather_hulls(const KernelScene& scene, const KernelState& state, HullRays& rays) {
+    const Vec3& centre = scene.tree->centre;
+    const HullLanes& hull = state.lanes.hull;
+    const std::size_t first = state.first_lane, tiles = state.tiles;
+    for (int a = 0; a < 3; ++a) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            for (std::size_t j = 0; j < tiles; ++j) {
+                rays.origin[a][k * tiles + j] =
+                    hull.origin[k][a][first + j] + (hull.centre[a][first + j] - centre[a]);
+                rays.direction[a][k * tiles + j] = hull.direction[k][a][first + j];
+            }
+        }
+        for (std::size_t i = 4 * tiles; i % kDoubles != 0; ++i) {
+            rays.origin[a][i] = rays.origin[a][4 * tiles - 1];
+            rays.direction[a][i] = rays.direction[a][4 * tiles - 1];
+        }
+    }
+    rays.count = (4 * tiles + kDoubles - 1) / kDoubles * kDoubles;
+    // Both terms of the sum above, each at most this in the 1-norm.
+    double far = 0, terms = 0;
+    for (std::size_t j = first; j < first + tiles; ++j) {
+        double from_tree = 1e-6 * state.lanes.origin_terms[j];
+        for (int a = 0; a < 3; ++a) from_tree += std::fabs(hull.centre[a][j] - centre[a]);
+        far = std::max(far, from_tree);
+    }
+    Double largest_origin = hn::Zero(kDouble);
+    for (std::size_t at = 0; at < rays.count; at += kDoubles) {
+        const Vector3 o = absolute(load_ray(rays.origin, at));
+        largest_origin = hn::Max(largest_origin, hn::Add(o.x, hn::Add(o.y, o.z)));
+    }
+    terms = largest_of(largest_origin) + 2 * far;
+    rays.size = terms + scene.tree->half.x + scene.tree->half.y + scene.tree->half.z;
 }
 
 /// Adds the plane with this normal, turned towards the axis by more than it rounds, if it then holds.
@@ -54,19 +81,73 @@ HWY_NOINLINE void add_plane(const HullRays& rays, const double* normal, const do
     double length = 0, n[3];
     for (int a = 0; a < 3; ++a) length += normal[a] * normal[a];
     if (!(length > 0) || !(cosine > 0)) return;
-    const int at = beam.planes;
+    const int to = beam.planes;
+    const double shortness = 1 / std::sqrt(length), turn = 0x1p-21 / cosine;
     for (int a = 0; a < 3; ++a) {
-        const double turned = normal[a] / std::sqrt(length) + 0x1p-21 / cosine * axis[a];
-        beam.plane[at][a] = static_cast<float>(turned);
-        n[a] = beam.plane[at][a];
+        beam.plane[to][a] = static_cast<float>(normal[a] * shortness + turn * axis[a]);
+        n[a] = beam.plane[to][a];
     }
-    double offset = INFINITY;
-    for (std::size_t i = 0; i < rays.count; ++i) {
-        if (!(dot3(rays.direction, i, n) >= 0)) return;
-        offset = std::min(offset, dot3(rays.origin, i, n));
+    const Vector3 plane = set_vector(n);
+    Double offset = hn::Set(kDouble, INFINITY), along = offset;
+    for (std::size_t at = 0; at < rays.count; at += kDoubles) {
+        along = hn::Min(along, inner(load_ray(rays.direction, at), plane));
+        offset = hn::Min(offset, inner(load_ray(rays.origin, at), plane));
     }
-    beam.offset[at] = static_cast<float>(offset - kPlaneDoubt * rays.size);
+    if (!(least_of(along) >= 0)) return;
+    beam.offset[to] = static_cast<float>(least_of(offset) - kPlaneDoubt * rays.size);
     ++beam.planes;
+}
+
+/// What the hull's rays have in common along an axis.
+struct AlongAxis {
+    double speed = 0, start = 0, cosine = 0;  // largest, largest, least
+};
+
+HWY_INLINE AlongAxis measure_along(const HullRays& rays, const double* axis) {
+    const Vector3 ahead = set_vector(axis);
+    Double speed = hn::Zero(kDouble), start = hn::Set(kDouble, -INFINITY), cosine = hn::Set(kDouble, 1.0);
+    for (std::size_t at = 0; at < rays.count; at += kDoubles) {
+        const Double along = inner(load_ray(rays.direction, at), ahead);
+        cosine = hn::Min(cosine, hn::Mul(along, hn::Load(kDouble, rays.shortness + at)));
+        speed = hn::Max(speed, along);
+        start = hn::Max(start, inner(load_ray(rays.origin, at), ahead));
+    }
+    return {largest_of(speed), largest_of(start), least_of(cosine)};
+}
+
+/// A pair of planes that hold the rays' slopes to `side`.
+HWY_INLINE void add_slopes(const HullRays& rays, const double* side, const double* axis, double cosine,
+                           GroupBeam& beam) {
+    Double low = hn::Set(kDouble, INFINITY), high = hn::Set(kDouble, -INFINITY);
+    const Vector3 across = set_vector(side), ahead = set_vector(axis);
+    for (std::size_t at = 0; at < rays.count; at += kDoubles) {
+        const Vector3 d = load_ray(rays.direction, at);
+        const Double slope = hn::Div(inner(d, across), inner(d, ahead));
+        low = hn::Min(low, slope);
+        high = hn::Max(high, slope);
+    }
+    const double least = least_of(low), most = largest_of(high);
+    double n[3];
+    for (int a = 0; a < 3; ++a) n[a] = side[a] - least * axis[a];
+    add_plane(rays, n, axis, cosine, beam);
+    for (int a = 0; a < 3; ++a) n[a] = most * axis[a] - side[a];
+    add_plane(rays, n, axis, cosine, beam);
+}
+
+/// The rays' mean direction, not unit; also sets `shortness`, 1 / length or 0.
+HWY_INLINE void mean_direction(HullRays& rays, double (&axis)[3]) {
+    Vector3 sum = {hn::Zero(kDouble), hn::Zero(kDouble), hn::Zero(kDouble)};
+    for (std::size_t at = 0; at < rays.count; at += kDoubles) {
+        const Vector3 d = load_ray(rays.direction, at);
+        const Double square = inner(d, d);
+        const Double inverse = hn::Div(hn::Set(kDouble, 1.0), hn::Sqrt(square));
+        const Double own = hn::IfThenElseZero(hn::Gt(square, hn::Zero(kDouble)), inverse);
+        hn::Store(own, kDouble, rays.shortness + at);
+        sum = plus(sum, times(own, d));
+    }
+    axis[0] = sum_of(sum.x);
+    axis[1] = sum_of(sum.y);
+    axis[2] = sum_of(sum.z);
 }
 
 /// Around all of the group's rays: two pairs of planes along the mean direction and one across it.
@@ -74,36 +155,23 @@ HWY_NOINLINE void make_group_beam(const KernelScene& scene, const KernelState& s
     HullRays rays;
     gather_hulls(scene, state, rays);
     beam.planes = 0;
-    double axis[3] = {0, 0, 0}, length = 0;
-    for (std::size_t i = 0; i < rays.count; ++i) {
-        double own = 0;
-        for (int a = 0; a < 3; ++a) own += rays.direction[a][i] * rays.direction[a][i];
-        own = own > 0 ? 1 / std::sqrt(own) : 0;
-        for (int a = 0; a < 3; ++a) axis[a] += own * rays.direction[a][i];
-    }
+    double axis[3], length = 0;
+    mean_direction(rays, axis);
     for (const double a : axis) length += a * a;
     beam.start = 0;
     beam.speed_inverse = 0;
     if (!(length > 1e-12)) return;
+    const double shortness = 1 / std::sqrt(length);
     for (int a = 0; a < 3; ++a) {
-        beam.axis[a] = static_cast<float>(axis[a] / std::sqrt(length));
+        beam.axis[a] = static_cast<float>(axis[a] * shortness);
         axis[a] = beam.axis[a];
     }
+    const AlongAxis along = measure_along(rays, axis);
+    beam.start = static_cast<float>(along.start + kPlaneDoubt * rays.size);
+    beam.speed_inverse = along.speed > 0 ? static_cast<float>((1 - 1e-6) / along.speed) : 0;
+    if (!(along.cosine > 1e-3)) return;
 
-    double speed = 0, start = -INFINITY, cosine = 1;
-    for (std::size_t i = 0; i < rays.count; ++i) {
-        const double along = dot3(rays.direction, i, axis);
-        double own = 0;
-        for (int a = 0; a < 3; ++a) own += rays.direction[a][i] * rays.direction[a][i];
-        cosine = std::min(cosine, along / std::sqrt(own));
-        speed = std::max(speed, along);
-        start = std::max(start, dot3(rays.origin, i, axis));
-    }
-    beam.start = static_cast<float>(start + kPlaneDoubt * rays.size);
-    beam.speed_inverse = speed > 0 ? static_cast<float>((1 - 1e-6) / speed) : 0;
-    if (!(cosine > 1e-3)) return;
-
-    add_plane(rays, axis, axis, cosine, beam);
+    add_plane(rays, axis, axis, along.cosine, beam);
     if (state.tiles == 1) {
         for (int k = 0; k < 4; ++k) {
             if (!(state.lanes.hull.offset[k][state.first_lane] > -kNever)) continue;
@@ -123,19 +191,7 @@ HWY_NOINLINE void make_group_beam(const KernelScene& scene, const KernelState& s
         const int b = (a + 1) % 3, c = (a + 2) % 3;
         across[1][a] = axis[b] * across[0][c] - axis[c] * across[0][b];
     }
-    for (const double* side : {across[0], across[1]}) {
-        double low = INFINITY, high = -INFINITY;
-        for (std::size_t i = 0; i < rays.count; ++i) {
-            const double slope = dot3(rays.direction, i, side) / dot3(rays.direction, i, axis);
-            low = std::min(low, slope);
-            high = std::max(high, slope);
-        }
-        double n[3];
-        for (int a = 0; a < 3; ++a) n[a] = side[a] - low * axis[a];
-        add_plane(rays, n, axis, cosine, beam);
-        for (int a = 0; a < 3; ++a) n[a] = high * axis[a] - side[a];
-        add_plane(rays, n, axis, cosine, beam);
-    }
+    for (const double* side : {across[0], across[1]}) add_slopes(rays, side, axis, along.cosine, beam);
 }
 
 /// The children that no plane of the beam cuts off, and the least t of each.
@@ -212,6 +268,7 @@ HWY_INLINE bool reaches_some_vector(const KernelState& state, const Waiting& nod
 /// Finds the nearest sure hit of every sample of the group, and lists the doubtful triangles.
 HWY_NOINLINE void walk_group(const KernelScene& scene, LeafMode mode, KernelState& state) {
     constexpr int kLeavesBetweenLooks = 8, kLooksBeforeBeams = 3;  // measured
+    constexpr std::size_t kFetchedAhead = 2;                       // likewise
     const LeafTree& tree = *scene.tree;
     int leaves = 0, looks = 0;
     state.stack.clear();
@@ -220,7 +277,8 @@ HWY_NOINLINE void walk_group(const KernelScene& scene, LeafMode mode, KernelStat
         const Waiting next = state.stack.back();
         state.stack.pop_back();
         if (next.nearest > state.group_farthest) continue;
-        if (!state.stack.empty()) prefetch_child(tree, state.stack.back().child);
+        if (state.stack.size() >= kFetchedAhead)
+            prefetch_child(tree, state.stack[state.stack.size() - kFetchedAhead].child);
         if (next.child < 0) {
             draw_leaf(scene, tree.leaves[static_cast<std::size_t>(~next.child)], next.nearest, mode, state);
             if (++leaves % kLeavesBetweenLooks != 0) continue;
@@ -237,6 +295,9 @@ HWY_NOINLINE void walk_group(const KernelScene& scene, LeafMode mode, KernelStat
             if (!(nearest[*lane] > state.group_farthest))
                 push_child(state.stack, base, waiting_child(node, *lane, nearest[*lane]));
         }
+        const std::size_t waiting = state.stack.size();
+        for (std::size_t i = waiting; i > base && i + kFetchedAhead > waiting; --i)
+            prefetch_child(tree, state.stack[i - 1].child);
     }
 }
 

@@ -44,8 +44,7 @@ std::vector<Id> tie_ranks(const TriangleScene& scene) {
     return rank;
 }
 
-void put_triangle(PreparedScene::Data& data, const TriangleScene& scene, std::size_t place) {
-    const Id triangle = data.triangle[place];
+PreparedTriangle prepared_triangle(const TriangleScene& scene, Id triangle) {
     std::array<Vec3, 3> point;
     for (std::size_t k = 0; k < 3; ++k) point[k] = scene.points[scene.triangles[triangle][k]];
     std::array<std::uint8_t, 3> corner{0, 1, 2};
@@ -53,8 +52,14 @@ void put_triangle(PreparedScene::Data& data, const TriangleScene& scene, std::si
         const Vec3 &p = point[a], &q = point[b];
         return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
     });
-    for (std::size_t k = 0; k < 3; ++k) data.corners[place][k] = point[corner[k]];
-    data.was_corner[place] = corner;
+    PreparedTriangle prepared;
+    prepared.name = triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+        prepared.corner[k] = point[corner[k]];
+        if (corner[k] == 1) prepared.name |= std::uint64_t{k} << PreparedTriangle::kSecondBit;
+        if (corner[k] == 2) prepared.name |= std::uint64_t{k} << PreparedTriangle::kThirdBit;
+    }
+    return prepared;
 }
 
 Box box_of_corners(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -67,21 +72,21 @@ PreparedScene::PreparedScene(const TriangleScene& scene) : data_(std::make_uniqu
     check_triangles(scene);
     Data& data = *data_;
     const std::size_t count = scene.size();
+    std::vector<Id> order;
     data.leaves = cut_leaf_tree(
         count,
         [&](Id i) {
             const IdTriple& corner = scene.triangles[i];
             return box_of_corners(scene.points[corner[0]], scene.points[corner[1]], scene.points[corner[2]]);
         },
-        data.triangle);
+        order);
     const std::vector<Id> rank = tie_ranks(scene);
     data.rank.resize(count);
-    data.was_corner.resize(count);
-    data.corners.resize(count);
+    data.triangles.resize(count);
     parallel_for(count, kTogether, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            put_triangle(data, scene, i);
-            data.rank[i] = rank[data.triangle[i]];
+            data.triangles[i] = prepared_triangle(scene, order[i]);
+            data.rank[i] = rank[order[i]];
         }
     });
     fill_leaves(data, data.leaves);
@@ -90,7 +95,8 @@ PreparedScene::PreparedScene(const TriangleScene& scene) : data_(std::make_uniqu
 const Bvh& PreparedScene::Data::bvh() const {
     return bvh_.get([this] {
         const auto box_of = [this](Id i) {
-            return box_of_corners(corners[i][0], corners[i][1], corners[i][2]);
+            const std::array<Vec3, 3>& corner = triangles[i].corner;
+            return box_of_corners(corner[0], corner[1], corner[2]);
         };
         auto bvh = std::make_unique<Bvh>(build_bvh(size(), box_of));
         fit_boxes(*bvh, [&](Id place) { return box_of(bvh->order[place]); });

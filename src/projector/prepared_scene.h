@@ -14,23 +14,34 @@
 
 namespace trilens {
 
-/// One entry per triangle, in leaf order. A triangle's corners are sorted by their coordinates, so that
-/// triangles with the same corners give the same bits whatever their winding: coincident triangles tie
-/// exactly.
+/// What is asked of a triangle that a sample sees, in one place of the memory. Its corners are sorted by
+/// their coordinates, so that triangles with the same corners give the same bits whatever their winding:
+/// coincident triangles tie exactly.
+struct PreparedTriangle {
+    std::array<Vec3, 3> corner;  // sorted
+    // The index into the scene; above it, two bits each, which sorted corner is the scene's second and third.
+    std::uint64_t name = 0;
+
+    static constexpr int kSecondBit = 32, kThirdBit = 34;
+    Id triangle() const { return static_cast<Id>(name); }
+    std::size_t second() const { return name >> kSecondBit & 3; }
+    std::size_t third() const { return name >> kThirdBit & 3; }
+};
+
+/// One entry per triangle, in leaf order.
 struct PreparedScene::Data {
-    std::vector<std::array<Vec3, 3>> corners;  // sorted
-    std::vector<std::array<std::uint8_t, 3>>
-        was_corner;            // which corner of the scene's triangle a sorted one is
-    std::vector<Id> triangle;  // index into the scene
-    std::vector<Id> rank;      // its place in the order of (object, primitive, index)
-    LeafTree leaves;           // over the arrays above, for the vector engine
+    std::vector<PreparedTriangle> triangles;
+    std::vector<Id> rank;  // its place in the order of (object, primitive, index)
+    LeafTree leaves;       // over the arrays above, for the vector engine
 
     /// A tree over the arrays above for the other engines, made when it is first asked for. Thread-safe.
     const Bvh& bvh() const;
 
-    std::size_t size() const { return triangle.size(); }
+    std::size_t size() const { return triangles.size(); }
     /// The sorted corner k of triangle i, from `centre`.
-    Vec3 corner(std::size_t k, std::size_t i, const Vec3& centre) const { return corners[i][k] - centre; }
+    Vec3 corner(std::size_t k, std::size_t i, const Vec3& centre) const {
+        return triangles[i].corner[k] - centre;
+    }
 
   private:
     Lazy<Bvh> bvh_;
@@ -40,9 +51,8 @@ struct PreparedScene::Data {
 inline Hit scene_hit(const PreparedScene::Data& data, Id index, const LineHit& hit) {
     const Vec2 b = hit.barycentric;
     const std::array<double, 3> sorted{std::max(0.0, 1 - b.x - b.y), b.x, b.y};
-    std::array<double, 3> weight{};
-    for (std::size_t k = 0; k < 3; ++k) weight[data.was_corner[index][k]] = sorted[k];
-    return {data.triangle[index], hit.t, {weight[1], weight[2]}};
+    const PreparedTriangle& triangle = data.triangles[index];
+    return {triangle.triangle(), hit.t, {sorted[triangle.second()], sorted[triangle.third()]}};
 }
 
 }  // namespace trilens

@@ -41,7 +41,7 @@ void draw_triangle(const BlockRays& block, const LocalTriangle& triangle, FirstH
                                         edge_conic(block.line, p[0], p[1])};
     if (!may_be_seen(edge, doubt_of_edges(block, p))) return;
     for (std::size_t s = 0; s < block.count; ++s) {
-        const std::optional<LineHit> hit = decide(*block.facet, block.sample[s], p);
+        const std::optional<LineHit> hit = decide(block.sample[s], p);
         if (hit) hits.offer(s, *hit, triangle.index, triangle.rank);
     }
 }
