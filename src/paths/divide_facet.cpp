@@ -145,6 +145,7 @@ Id next_of(const Look& look) {
 void Divider::project_mirror(const Triangle& corners) {
     PathSegment segment;
     segment.step = {looking_.optic, Event::kReflect};
+    segment.medium = felt_body(*looking_.world, looking_.camera.media(corners[0].screen));
     projected_.histories = {segment};
     for (std::size_t k = 0; k < 3; ++k)
         if (corners[k].look->state == LookState::kSeen) projected_.segment[k] = {0};
