@@ -67,7 +67,11 @@ std::optional<Arrival> arrival(const Looking& looking, const Chord& chord, LookS
     const Vec3 along = normalize_or_zero(to_chord.direction);
     const double back =
         looking.camera.parallel ? chord.reach : std::min(chord.reach, length(to_chord.direction));
-    const Ray near{chord.point - back * along, along};
+    // Between corners on the film a camera that is not linear looks past the chord.
+    const Vec3& from_eye = to_chord.origin;
+    const Vec3 point =
+        looking.camera.affine ? from_eye + dot(chord.point - from_eye, along) * along : chord.point;
+    const Ray near{point - back * along, along};
     const LimitTracer& tracer = *looking.world->optics[looking.optic].tracer;
     const double far = back + chord.reach;
     for (double from = 0; from < far;) {

@@ -1,6 +1,7 @@
 // What a camera's ray through one point of a facet comes to: the exact paths from there.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -22,6 +23,8 @@ struct PathCamera {
     /// parallel, origin + direction lies at the chord's point or, for a camera that is not linear, near it.
     std::function<Ray(const Vec3& screen, const Vec3& chord)> ray;
     Vec2 film{0};  // its size in pixels; nothing off it is seen
+    /// Where its rays or their derivatives jump, in x and in y, in pixels: no facet stands for both sides.
+    std::array<std::vector<double>, 2> breaks = {};
     /// The bodies that the camera's ray through a homogeneous screen position starts in. Unset: none, any.
     std::function<Media(const Vec3& screen)> around = {};
 

@@ -107,6 +107,7 @@ PathCamera path_camera(const CameraRays& camera, double depth) {
     if (camera.linear) return path_camera(*camera.linear);
     PathCamera of_paths;
     of_paths.affine = true;
+    if (camera.model) of_paths.breaks = {camera.model->breaks_x(), camera.model->breaks_y()};
     const auto ray_at = [&camera](const Vec3& screen) {
         return exact_ray(camera, Vec2(screen) / screen.z).value_or(Ray{});
     };
