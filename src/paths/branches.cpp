@@ -26,17 +26,14 @@ struct Interface {
     Media before, after;
     Vec3 normal;  // on the ray's side
 
-    const Material* glass(const Media& media) const {
-        const Id felt = media.felt([&](Id optic) { return world.optics[optic].priority; });
-        return felt == kNone ? nullptr : world.optics[felt].material;
+    /// Two bodies of one material that touch or overlap have none.
+    GlassInterface glass() const {
+        return {felt_glass(world, before), felt_glass(world, after),
+                world.optics[at.optic].material->base_color_factor};
     }
-    /// Index of refraction where the ray comes from over that where it goes.
-    double eta(Colours colours) const {
-        const Material *from = glass(before), *to = glass(after);
-        return (from ? ior_of(*from, colours) : 1) / (to ? ior_of(*to, colours) : 1);
-    }
+    double eta(Colours colours) const { return eta_of(glass(), colours); }
     bool disperses() const {
-        const Material *from = glass(before), *to = glass(after);
+        const auto [from, to, tint] = glass();
         return (from && from->dispersion > 0) || (to && to->dispersion > 0);
     }
 };
@@ -110,16 +107,11 @@ std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Me
                  true}};
     }
 
-    Interface interface { world, at, media, media, normal };
-    if (at.front) {
-        if (!interface.after.enter(at.optic)) return {};
-    } else {
-        if (!media.holds(at.optic) && !interface.before.enter(at.optic)) return {};
-        interface.after = interface.before;
-        interface.after.leave(at.optic);
-    }
-    // Two bodies of one material that touch or overlap have no interface either.
-    if (interface.glass(interface.before) == interface.glass(interface.after))
+    const std::optional<MediaSides> sides = sides_of(media, at.optic, at.front);
+    if (!sides) return {};
+    const Interface interface { world, at, sides->before, sides->after, normal };
+    const GlassInterface glass = interface.glass();
+    if (glass.before == glass.after)
         return {{{at.optic, Event::kPass},
                  at.incoming,
                  masked(Vec3(1), colours),

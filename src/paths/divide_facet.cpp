@@ -71,6 +71,7 @@ class Divider {
     void divide(Id cell, const Triangle& corners, int level);
     void split(Id cell, const Triangle& corners, const Inside& inside, int level);
     bool is_least(const Triangle& corners, int level) const;
+    bool has_break(const Triangle& corners) const;
     bool project(const Triangle& corners, std::span<const Point> inside, int level);
     bool mirror_alone(const Triangle& corners, std::span<const Point> inside) const;
     bool layered(const Triangle& corners, std::span<const Point> inside, int level);
@@ -145,6 +146,7 @@ Id next_of(const Look& look) {
 void Divider::project_mirror(const Triangle& corners) {
     PathSegment segment;
     segment.step = {looking_.optic, Event::kReflect};
+    segment.medium = felt_body(*looking_.world, looking_.camera.media(corners[0].screen));
     projected_.histories = {segment};
     for (std::size_t k = 0; k < 3; ++k)
         if (corners[k].look->state == LookState::kSeen) projected_.segment[k] = {0};
@@ -171,7 +173,22 @@ bool Divider::layered(const Triangle& corners, std::span<const Point> inside, in
     return true;
 }
 
+/// Whether the camera's rays jump within the part.
+bool Divider::has_break(const Triangle& corners) const {
+    for (int axis = 0; axis < 2; ++axis)
+        for (const double at : looking_.camera.breaks[static_cast<std::size_t>(axis)]) {
+            int before = 0, behind = 0;
+            for (const Point& corner : corners) {
+                before += corner.screen[axis] < at * corner.screen.z;
+                behind += corner.screen[axis] > at * corner.screen.z;
+            }
+            if (before > 0 && behind > 0) return true;
+        }
+    return false;
+}
+
 bool Divider::project(const Triangle& corners, std::span<const Point> inside, int level) {
+    if (has_break(corners)) return false;
     projected_ = part_of(corners, level);
     for (const Point& point : inside) projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
     if (!looking_.world->reflect && mirror_) return true;

@@ -124,11 +124,12 @@ OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
         leaves_.push_back({static_cast<Id>(f)});
         cells_[f].leaf = static_cast<Id>(f);
     }
-    const auto add = [&](const RayMesh& mesh, Event event, Id medium) -> PathNode& {
+    const Media around = looking_.camera.media(Vec3(0));
+    const auto add = [&](const RayMesh& mesh, Event event, const Media& media) -> PathNode& {
         PathSegment segment;
         segment.step = {looking_.optic, event};
         segment.path = event == Event::kReflect ? Path::kReflect : Path::kRefract;
-        segment.medium = medium;
+        segment.medium = felt_body(*looking_.world, media);
         PathNode& node = nodes_[node_of(kNone, segment)];
         node.mesh = mesh;
         node.ends.assign(facets, 1);
@@ -137,11 +138,15 @@ OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
         node.weight.assign(mesh.rays.size(), Vec3(1));
         return node;
     };
-    if (reflection) add(*reflection, Event::kReflect, kNone);
+    if (reflection) add(*reflection, Event::kReflect, around);
     if (!refraction) return;
     // Facets seen from the front show what is in the glass, those seen from behind what is outside.
     for (const bool into : {true, false}) {
-        PathNode& node = add(*refraction, Event::kTransmit, into ? looking_.optic : kNone);
+        const std::optional<MediaSides> sides = sides_of(around, looking_.optic, into);
+        if (!sides) continue;
+        const bool is_interface =
+            felt_glass(*looking_.world, sides->before) != felt_glass(*looking_.world, sides->after);
+        PathNode& node = add(*refraction, is_interface ? Event::kTransmit : Event::kPass, sides->after);
         for (std::size_t f = 0; f < facets; ++f)
             if (shows_front(static_cast<Id>(f)) != into) node.mesh.facets[f] = {kNone, kNone, kNone};
     }

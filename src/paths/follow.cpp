@@ -34,10 +34,10 @@ struct Pending {
 class Follower {
   public:
     Follower(const PathWorld& world, const FollowParams& params) : world_(world), params_(params) {}
-    FollowedPaths follow(const Meeting& first, double way);
+    FollowedPaths follow(const PathStart& begin);
 
   private:
-    void start(const Meeting& first, double way);
+    void start(const PathStart& from);
     void run(const Pending& from);
     void go_on(const Pending& from, Id segment, const NextOptic& next);
 
@@ -47,8 +47,10 @@ class Follower {
     std::vector<Pending> waiting_;
 };
 
-void Follower::start(const Meeting& first, double way) {
-    std::vector<Branch> ways = branches(world_, first, {}, kAllColours);
+void Follower::start(const PathStart& from) {
+    const Meeting& first = from.first;
+    const std::vector<Branch> ways = branches(world_, first, from.around, kAllColours);
+    if (ways.empty()) followed_.cut.lost += 1;
     for (auto way_on = ways.rbegin(); way_on != ways.rend(); ++way_on) {
         const bool reflects = way_on->step.event == Event::kReflect;
         if (!(reflects ? world_.reflect : world_.refract)) continue;
@@ -57,7 +59,7 @@ void Follower::start(const Meeting& first, double way) {
         pending.path = reflects ? Path::kReflect : Path::kRefract;
         pending.principal = reflects || way_on->principal;
         pending.point = first.point;
-        pending.way = way;
+        pending.way = from.way;
         pending.turned = std::fabs(dot(first.incoming, first.normal));
         pending.first_weight = way_on->weight;
         if (way_on->colours != kAllColours) {
@@ -103,7 +105,7 @@ void Follower::run(const Pending& from) {
     segment.principal = from.principal;
     segment.colours = from.branch.colours;
     segment.depth = from.depth;
-    segment.medium = from.branch.media.felt([&](Id optic) { return world_.optics[optic].priority; });
+    segment.medium = felt_body(world_, from.branch.media);
     segment.ray = {from.point, from.branch.direction};
     segment.way = from.way;
     segment.weight = from.weight;
@@ -130,8 +132,8 @@ void Follower::run(const Pending& from) {
     if (next) go_on(from, static_cast<Id>(followed_.segments.size() - 1), *next);
 }
 
-FollowedPaths Follower::follow(const Meeting& first, double way) {
-    start(first, way);
+FollowedPaths Follower::follow(const PathStart& begin) {
+    start(begin);
     while (!waiting_.empty()) {
         const Pending from = waiting_.back();
         waiting_.pop_back();
@@ -203,24 +205,23 @@ std::optional<NextOptic> next_optic(const PathWorld& world, const LeavingRay& le
     return *first;
 }
 
-FollowedPaths follow_paths(const PathWorld& world, const Meeting& first, double way,
-                           const FollowParams& params) {
-    return Follower(world, params).follow(first, way);
+FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params) {
+    return Follower(world, params).follow(start);
 }
 
-std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const Meeting& first, double way,
+std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const PathStart& start,
                                                      const std::vector<PathSegment>& like) {
     struct Arrived {
         std::vector<Branch> ways;  // from the optic at the segment's far end
         Meeting meeting;
         double way = 0;
     };
-    const Arrived start{branches(world, first, {}, kAllColours), first, way};
+    const Arrived begin{branches(world, start.first, start.around, kAllColours), start.first, start.way};
     std::vector<Arrived> after(like.size());
     std::vector<std::optional<PathSegment>> again(like.size());
     for (std::size_t i = 0; i < like.size(); ++i) {
         PathSegment segment = like[i];
-        const Arrived& from = segment.parent == kNone ? start : after[segment.parent];
+        const Arrived& from = segment.parent == kNone ? begin : after[segment.parent];
         const Branch* branch = same_branch(from.ways, segment);
         if (!branch) continue;
         segment.ray = {from.meeting.point, branch->direction};

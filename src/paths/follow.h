@@ -48,14 +48,20 @@ struct FollowedPaths {
     CutPaths cut;
 };
 
-/// Follows a ray from its first meeting with an optic. `way`: its length from the eye to there. Segments of
-/// depth world.max_depth meet no further optic.
-FollowedPaths follow_paths(const PathWorld& world, const Meeting& first, double way,
-                           const FollowParams& params = {});
+/// Where paths begin.
+struct PathStart {
+    Meeting first;      // with an optic
+    double way = 0;     // from the eye to there
+    Media around = {};  // the bodies that the ray is inside of before it
+};
 
-/// The segments of `like` once more from another meeting nearby: ray, way, next and turned of each are set
+/// Follows a ray from its first meeting with an optic. Segments of depth world.max_depth meet no further
+/// optic.
+FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params = {});
+
+/// The segments of `like` once more from another start nearby: ray, way, next and turned of each are set
 /// again; none where the path from there has another history. Nothing is cut and nothing blocks.
-std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const Meeting& first, double way,
+std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const PathStart& start,
                                                      const std::vector<PathSegment>& like);
 
 /// What a ray meets first among the optics, from a place that may lie on one of them.

@@ -30,7 +30,8 @@ std::optional<Exit> exit_at(const HistoryQuery& query, const Vec2& pixel) {
     const Vec3 incoming = normalize_or_zero(ray.direction);
     const Meeting first{optic, incoming, hit->point.position, hit->point.normal,
                         dot(incoming, hit->point.normal) <= 0};
-    for (const auto& segment : repeat_paths(*query.world, first, exit.first_way, query.history)) {
+    const Media around = query.around ? query.around(ray) : Media();
+    for (const auto& segment : repeat_paths(*query.world, {first, exit.first_way, around}, query.history)) {
         if (!segment) return std::nullopt;
         exit.ray = segment->ray;
         exit.corners.push_back(segment->ray.origin);

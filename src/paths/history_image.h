@@ -13,6 +13,7 @@ namespace trilens {
 struct HistoryQuery {
     const PathWorld* world = nullptr;
     std::function<Ray(const Vec2& pixel)> camera_ray;  // exact; pixels from the film's top left
+    std::function<Media(const Ray& ray)> around;       // what a ray of the camera starts in; unset: air
     std::vector<PathSegment> history;  // a chain: each segment the parent of the next; only steps, colours
                                        // and `ends` are asked, and the last one ends
     Vec3 point{0};                     // world

@@ -21,8 +21,10 @@ Meeting meeting_at(const Looking& looking, const Place& place, const Vec3& incid
 }
 
 /// The paths from `place`, where this ray of the camera arrives.
-Look arrive(const Looking& looking, const Place& place, const Vec3& incident, const LookParams& params) {
+Look arrive(const Looking& looking, const Place& place, const CornerView& view, const LookParams& params) {
+    const Vec3& incident = view.incident;
     Look look;
+    look.screen = view.screen;
     look.incident = incident;
     look.place = place;
     const double cosine = dot(incident, place.normal);
@@ -32,9 +34,10 @@ Look arrive(const Looking& looking, const Place& place, const Vec3& incident, co
         return look;
     }
     look.state = LookState::kSeen;
-    FollowedPaths followed =
-        follow_paths(*looking.world, meeting_at(looking, place, incident, look.front), length(incident),
-                     {.objects = nullptr, .least_weight = params.least_weight});
+    look.around = looking.camera.media(view.screen);
+    FollowedPaths followed = follow_paths(
+        *looking.world, {meeting_at(looking, place, incident, look.front), length(incident), look.around},
+        {.objects = nullptr, .least_weight = params.least_weight});
     look.segments = std::move(followed.segments);
     look.cut = followed.cut;
     return look;
@@ -64,7 +67,11 @@ std::optional<Arrival> arrival(const Looking& looking, const Chord& chord, LookS
     const Vec3 along = normalize_or_zero(to_chord.direction);
     const double back =
         looking.camera.parallel ? chord.reach : std::min(chord.reach, length(to_chord.direction));
-    const Ray near{chord.point - back * along, along};
+    // Between corners on the film a camera that is not linear looks past the chord.
+    const Vec3& from_eye = to_chord.origin;
+    const Vec3 point =
+        looking.camera.affine ? from_eye + dot(chord.point - from_eye, along) * along : chord.point;
+    const Ray near{point - back * along, along};
     const LimitTracer& tracer = *looking.world->optics[looking.optic].tracer;
     const double far = back + chord.reach;
     for (double from = 0; from < far;) {
@@ -88,7 +95,8 @@ Beside beside_on_surface(const Looking& looking, const Look& look, int axis) {
     const Place place = beside(*looking.surface, look.place, axis);
     const Vec3 incident = looking.camera.ray(looking.camera.screen(place.point), place.point).direction;
     return {place, incident, film_place(looking, place.point) - film_place(looking, look.place.point),
-            repeat_paths(*looking.world, meeting_at(looking, place, incident, look.front), length(incident),
+            repeat_paths(*looking.world,
+                         {meeting_at(looking, place, incident, look.front), length(incident), look.around},
                          look.segments)};
 }
 
@@ -103,8 +111,10 @@ std::optional<Beside> beside_on_film(const Looking& looking, const Look& look, i
         if (!there) continue;
         const Vec3 incident = there->place.point - there->ray.origin;
         return Beside{there->place, there->place.point - (look.place.point - look.incident), step,
-                      repeat_paths(*looking.world, meeting_at(looking, there->place, incident, look.front),
-                                   length(incident), look.segments)};
+                      repeat_paths(*looking.world,
+                                   {meeting_at(looking, there->place, incident, look.front), length(incident),
+                                    look.around},
+                                   look.segments)};
     }
     return std::nullopt;
 }
@@ -112,9 +122,7 @@ std::optional<Beside> beside_on_film(const Looking& looking, const Look& look, i
 }  // namespace
 
 Look look_at(const Looking& looking, const Place& place, const CornerView& view, const LookParams& params) {
-    Look look = arrive(looking, place, view.incident, params);
-    look.screen = view.screen;
-    return look;
+    return arrive(looking, place, view, params);
 }
 
 Look look_at(const Looking& looking, const Place& place, const LookParams& params) {
@@ -129,7 +137,7 @@ Look look_through(const Looking& looking, const Chord& chord, const LookParams& 
         // As long as the way to the surface itself.
         const Vec3 incident =
             looking.camera.parallel ? there->ray.direction : there->place.point - there->ray.origin;
-        look = arrive(looking, there->place, incident, params);
+        look = arrive(looking, there->place, {chord.screen, incident}, params);
     } else {
         look.incident = looking.camera.ray(chord.screen, chord.point).direction;
     }

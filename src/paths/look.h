@@ -1,6 +1,7 @@
 // What a camera's ray through one point of a facet comes to: the exact paths from there.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -22,6 +23,12 @@ struct PathCamera {
     /// parallel, origin + direction lies at the chord's point or, for a camera that is not linear, near it.
     std::function<Ray(const Vec3& screen, const Vec3& chord)> ray;
     Vec2 film{0};  // its size in pixels; nothing off it is seen
+    /// Where its rays or their derivatives jump, in x and in y, in pixels: no facet stands for both sides.
+    std::array<std::vector<double>, 2> breaks = {};
+    /// The bodies that the camera's ray through a homogeneous screen position starts in. Unset: none, any.
+    std::function<Media(const Vec3& screen)> around = {};
+
+    Media media(const Vec3& at) const { return around ? around(at) : Media(); }
 };
 
 /// Who looks at which optic of what world; what is pointed to must live longer.
@@ -59,6 +66,7 @@ struct Look {
     Vec3 screen{0};     // homogeneous
     Vec3 incident{0};   // the camera's ray to the point, not unit: the eye-to-point length
     bool front = true;  // it looks at the surface's front
+    Media around;       // what the camera's ray starts in
     Place place;
     std::vector<PathSegment> segments;  // of kSeen
     CutPaths cut;

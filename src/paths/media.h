@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "base/ids.h"
 
@@ -50,5 +51,25 @@ struct Media {
         return best;
     }
 };
+
+/// What a ray is inside of before and behind a surface.
+struct MediaSides {
+    Media before, after;
+};
+
+/// The sides of a body's surface for a ray that is inside of `media`; it comes to the body's front, from
+/// outside, or to its back. One that comes to the back of a body that it did not enter (an open surface)
+/// leaves it. None where the ray is inside of too many bodies to tell.
+inline std::optional<MediaSides> sides_of(const Media& media, Id body, bool front) {
+    MediaSides sides{media, media};
+    if (front) {
+        if (!sides.after.enter(body)) return std::nullopt;
+        return sides;
+    }
+    if (!media.holds(body) && !sides.before.enter(body)) return std::nullopt;
+    sides.after = sides.before;
+    sides.after.leave(body);
+    return sides;
+}
 
 }  // namespace trilens

@@ -28,6 +28,16 @@ struct PathWorld {
     bool reflect = true, refract = true;  // the first events that are wanted
 };
 
+/// The body whose glass is felt inside of these; kNone: air.
+inline Id felt_body(const PathWorld& world, const Media& media) {
+    return media.felt([&](Id optic) { return world.optics[optic].priority; });
+}
+/// Its material; null: air.
+inline const Material* felt_glass(const PathWorld& world, const Media& media) {
+    const Id body = felt_body(world, media);
+    return body == kNone ? nullptr : world.optics[body].material;
+}
+
 /// Where a ray meets an optic.
 struct Meeting {
     Id optic = kNone;
@@ -53,8 +63,7 @@ struct Branch {
 /// add up to 1 in each colour that the ray has, but for what a tint or a mirror takes away. Empty where the
 /// ray is inside of too many bodies to tell.
 ///
-/// A ray that comes to the back of a body that it did not enter (an open surface, or a camera in the glass)
-/// leaves it. A normal beyond grazing counts as grazing for refraction.
+/// On either side lies what sides_of says. A normal beyond grazing counts as grazing for refraction.
 std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Media& media, Colours colours);
 
 }  // namespace trilens

@@ -26,7 +26,7 @@ struct LayerOptic {
 struct LayerStage {
     PathWorld world;                 // whole
     std::vector<LayerOptic> optics;  // as PathWorld::optics
-    PathCamera camera;               // perspective
+    PathCamera camera;               // perspective, in air
     Vec3 eye{0};                     // its centre, world
     DivideParams divide;             // of facets that a layer's corners do not tell the truth about
 };

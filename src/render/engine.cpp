@@ -15,14 +15,14 @@ FacetViews make_views(const World& world, const FrameParams& frame, const Engine
     prepare_shadows(world);
     if (engine.engine == Engine::kLimitTruth) {
         CameraRays camera = make_camera_rays(world.scene, frame.camera);
-        if (camera.linear) warn_of_surroundings(world, *camera.linear, warn);
+        warn_of_surroundings(world, surroundings_of(world, camera), warn);
         return {make_limit_viewer(world, std::move(camera)), {}};
     }
     FrameParams params = frame;
     if (engine.engine == Engine::kEnvironment || engine.engine == Engine::kPlanar)
         params.rays = CornerRays::kInterpolated;
     Frame placed = make_frame(world, params, warn);
-    if (placed.camera.linear) warn_of_surroundings(world, *placed.camera.linear, warn);
+    warn_of_surroundings(world, placed.surroundings, warn);
     return make_facet_views(world, std::move(placed), engine);
 }
 

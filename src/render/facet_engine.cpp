@@ -84,6 +84,7 @@ void FacetViewer::describe_optic(std::size_t index, const Hit& hit, SampleView& 
     view.incidence.front = faces_front(grid, corner, view.ray.direction);
     const Vec3 unit = normalize_or_zero(normal) * (view.incidence.front ? 1.0 : -1.0);
     view.incidence.cosine = std::clamp(-dot(normalize_or_zero(view.ray.direction), unit), 0.0, 1.0);
+    if (view.around != kNone) view.way = hit.t * length(view.ray.direction);
 }
 
 void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const {
@@ -132,6 +133,7 @@ void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     views.reset(grid.size());
     const FacetSamples owned = rasterize_facets(frame.camera.mesh, grid);
     set_camera_rays(frame.camera.mesh, owned, grid, views.samples);
+    set_surroundings(frame.surroundings, views);
     view_objects(owned, grid, views);
     for (std::size_t i = 0; i < frame.optics.size(); ++i) view_optic(i, owned, grid, views);
     if (redraws_direct) redraw_direct(owned, grid, views);

@@ -17,15 +17,18 @@ void append_steps(const std::vector<PathSegment>& segments, Id last, std::vector
 
 }  // namespace
 
-void follow_sample(const World& world, const SurfaceHit& hit, SampleView& view, std::vector<PathEnd>& ends,
+void follow_sample(const World& world, const FirstHit& first, SampleView& view, std::vector<PathEnd>& ends,
                    std::vector<Step>& steps) {
+    const SurfaceHit& hit = first.at;
     const PathWorld& paths = path_world(world);
     const double cosine = dot(normalize_or_zero(view.ray.direction), hit.point.normal);
     view.incidence = {std::min(1.0, std::fabs(cosine)), cosine <= 0};
     const double eye = hit.t * length(view.ray.direction);
-    const Meeting first{view.optic, normalize_or_zero(view.ray.direction), hit.point.position,
-                        hit.point.normal, view.incidence.front};
-    const FollowedPaths followed = follow_paths(paths, first, eye, {.objects = &object_tracer(world)});
+    view.way = eye;
+    const Meeting meeting{view.optic, normalize_or_zero(view.ray.direction), hit.point.position,
+                          hit.point.normal, view.incidence.front};
+    const FollowedPaths followed =
+        follow_paths(paths, {meeting, eye, first.around}, {.objects = &object_tracer(world)});
     for (std::size_t i = 0; i < followed.segments.size(); ++i) {
         const PathSegment& segment = followed.segments[i];
         if (!segment.ends) continue;

@@ -9,10 +9,16 @@
 
 namespace trilens {
 
-/// Appends the ends of all paths of a sample whose ray meets its optic (view.optic) at `hit`, with their
-/// steps, and sets view.incidence. `first_step` of the ends counts in `steps`. The rays that leave carry the
-/// eye-to-surface length, as corner rays do.
-void follow_sample(const World& world, const SurfaceHit& hit, SampleView& view, std::vector<PathEnd>& ends,
+/// Where a sample's ray meets its optic first.
+struct FirstHit {
+    SurfaceHit at;
+    Media around;  // what the ray starts in
+};
+
+/// Appends the ends of all paths of a sample whose ray meets its optic (view.optic) there, with their steps,
+/// and sets view.incidence and view.way. `first_step` of the ends counts in `steps`. The rays that leave
+/// carry the eye-to-surface length, as corner rays do.
+void follow_sample(const World& world, const FirstHit& first, SampleView& view, std::vector<PathEnd>& ends,
                    std::vector<Step>& steps);
 
 }  // namespace trilens

@@ -20,8 +20,9 @@ double believable_error(int resolution, int film_height) {
     return std::max(1.0, coarser * coarser * film_height / kOnFilm);
 }
 
-FramedOptic frame_optic(const World& world, std::size_t index, const CameraRays& camera,
+FramedOptic frame_optic(const World& world, std::size_t index, const Frame& frame,
                         const FrameParams& params) {
+    const CameraRays& camera = frame.camera;
     const Optic& optic = world.optics[index];
     const RenderSettings& settings = world.scene.render;
     FramedOptic framed;
@@ -37,7 +38,7 @@ FramedOptic frame_optic(const World& world, std::size_t index, const CameraRays&
             std::make_shared<FilmGrid>(make_film_grid(framed.facets->grid(), *camera.model, camera.film));
     }
     const auto add = [&](Path path) {
-        const double ior = world.scene.materials[optic.material].ior;
+        const double ior = relative_ior(world, index, frame.surroundings.fixed);
         framed.paths.push_back(
             camera.linear ? make_path_mesh(path, framed.facets->grid(), *camera.linear, ior)
                           : make_path_mesh(path, framed.film_grid->grid, framed.film_grid->views, ior));
@@ -63,10 +64,11 @@ CornerRays optic_rays(const World& world, std::size_t optic, const FrameParams& 
 Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn) {
     Frame frame;
     frame.camera = std::move(camera);
+    frame.surroundings = surroundings_of(world, frame.camera);
     frame.max_error = params.max_error.value_or(world.scene.render.max_error);
     check_facet_count(world, params.resolution);
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
-        frame.optics.push_back(frame_optic(world, i, frame.camera, params));
+        frame.optics.push_back(frame_optic(world, i, frame, params));
         const std::vector<Vec3>& normals = frame.optics.back().facets->grid().corner_normal;
         const auto bad = std::count(normals.begin(), normals.end(), Vec3(0));
         if (bad > 0 && warn)
@@ -105,6 +107,7 @@ PathCamera path_camera(const CameraRays& camera, double depth) {
     if (camera.linear) return path_camera(*camera.linear);
     PathCamera of_paths;
     of_paths.affine = true;
+    if (camera.model) of_paths.breaks = {camera.model->breaks_x(), camera.model->breaks_y()};
     const auto ray_at = [&camera](const Vec3& screen) {
         return exact_ray(camera, Vec2(screen) / screen.z).value_or(Ray{});
     };
@@ -121,6 +124,16 @@ PathCamera path_camera(const CameraRays& camera, double depth) {
 }
 
 namespace {
+
+/// What the rays through a screen position start in; unset where all start in air.
+std::function<Media(const Vec3&)> media_at(const Frame& frame) {
+    if (frame.surroundings.none()) return {};
+    return [&frame](const Vec3& screen) {
+        if (!frame.surroundings.world) return frame.surroundings.fixed;
+        const auto ray = screen.z > 0 ? exact_ray(frame.camera, Vec2(screen) / screen.z) : std::nullopt;
+        return ray ? frame.surroundings.of(*ray) : Media();
+    };
+}
 
 /// How many squares along the film's side do for n facets along a face's: a body shows about three faces.
 constexpr int kSquaresPerFacet = 2;
@@ -197,20 +210,24 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
         const FilmWindow window = film_window(world, framed, seen.views);
         looking.camera = path_camera(frame.camera, window.depth);
         looking.camera.film = film;
+        looking.camera.around = media_at(frame);
         return std::make_unique<OpticPaths>(looking, window, params);
     }
     if (whole) {
         looking.camera = path_camera(*frame.camera.linear);
         looking.camera.film = film;
+        looking.camera.around = media_at(frame);
         return std::make_unique<OpticPaths>(looking, *seen.grid, params);
     }
+    looking.camera.around = media_at(frame);
     return std::make_unique<OpticPaths>(looking,
                                         FirstPaths{seen.grid, seen.views, find_path(framed, Path::kReflect),
                                                    find_path(framed, Path::kRefract)});
 }
 
 std::optional<LayerStage> make_layer_stage(const World& world, const Frame& frame) {
-    if (!frame.camera.linear || frame.camera.linear->parallel) return std::nullopt;
+    if (!frame.camera.linear || frame.camera.linear->parallel || !frame.surroundings.none())
+        return std::nullopt;
     LayerStage stage;
     stage.world = path_world(world);
     for (std::size_t i = 0; i < world.optics.size(); ++i)
@@ -244,7 +261,7 @@ std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Fra
                                                    Engine engine) {
     const FramedOptic& framed = frame.optics[optic];
     const SeenGrid seen = seen_grid(frame, framed);
-    const double ior = world.scene.materials[world.optics[optic].material].ior;
+    const double ior = relative_ior(world, optic, frame.surroundings.fixed);
     std::vector<PathMesh> meshes;
     for (const PathMesh& path : framed.paths)
         meshes.push_back(engine == Engine::kPlanar
@@ -255,7 +272,8 @@ std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Fra
             if (one.path == path) return &one.mesh;
         return nullptr;
     };
-    const Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
+    Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
+    looking.camera.around = media_at(frame);
     return std::make_unique<OpticPaths>(
         looking, FirstPaths{seen.grid, seen.views, find(Path::kReflect), find(Path::kRefract)});
 }

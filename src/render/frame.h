@@ -12,6 +12,7 @@
 #include "render/film_grid.h"
 #include "render/geometry.h"
 #include "render/request.h"
+#include "render/surroundings.h"
 
 namespace trilens {
 
@@ -35,6 +36,7 @@ struct FramedOptic {
 
 struct Frame {
     CameraRays camera;
+    Surroundings surroundings;        // of the camera
     std::vector<FramedOptic> optics;  // as World::optics
     double max_error = 0;             // as RenderSettings, or kAnyError
 };
@@ -58,7 +60,7 @@ PathCamera path_camera(const CameraRays& camera, double depth);
 std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
                                              const SeenLayers* layers = nullptr);
 
-/// What all layers of this camera have in common; none where it has no eye.
+/// What all layers of this camera have in common; none where it has no eye in air.
 std::optional<LayerStage> make_layer_stage(const World& world, const Frame& frame);
 
 /// What is seen in an optic, as layers; null where it has none: it is glass, or alone, its facets lie on the

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "render/channels.h"
 #include "render/pixel_filter.h"
+#include "render/surroundings.h"
 
 namespace trilens {
 namespace {
@@ -23,7 +24,8 @@ bool lacks_ray(const World& world, const SampleViews& views, const SampleView& v
     const RenderSettings& settings = world.scene.render;
     if (optic.mirror) return settings.reflect && !views.find(view, Path::kReflect);
     return settings.refract && !views.find(view, Path::kRefract) && !view.traced &&
-           !reflects_totally(world.scene.materials[optic.material], view.incidence);
+           !reflects_totally(interface_of(world, view.optic, views.around_of(view), view.incidence.front),
+                             view.incidence.cosine);
 }
 
 void add(SampleColour& sum, double weight, const SampleColour& one) {

@@ -7,6 +7,7 @@
 #include "base/rasterize.h"
 #include "render/follow_sample.h"
 #include "render/geometry.h"
+#include "render/surroundings.h"
 
 namespace trilens {
 namespace {
@@ -24,14 +25,15 @@ struct LimitViewer {
     CameraRays camera;
     const PathWorld* paths = nullptr;
     const Tracer* objects = nullptr;
+    Surroundings surroundings;
 
     void operator()(const SampleGrid& grid, SampleViews& views) const;
 
   private:
-    void view_sample(SampleView& view, Found& found) const;
+    void view_sample(SampleView& view, const Media& around, Found& found) const;
 };
 
-void LimitViewer::view_sample(SampleView& view, Found& found) const {
+void LimitViewer::view_sample(SampleView& view, const Media& around, Found& found) const {
     const double reach = camera.far_depth - camera.near_depth;
     view.hit = objects->first_hit(view.ray);
     if (view.hit.seen() && view.hit.t > reach) view.hit = {};
@@ -49,7 +51,7 @@ void LimitViewer::view_sample(SampleView& view, Found& found) const {
         view.depth = nearest->t;
         view.facet = nearest->face;
         view.uv = nearest->uv;
-        follow_sample(*world, *nearest, view, found.ends, found.steps);
+        follow_sample(*world, {*nearest, around}, view, found.ends, found.steps);
     }
     view.end_count = found.ends.size() - view.first_end;
 }
@@ -64,6 +66,7 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
         set_camera_rays(camera.mesh, owned, grid, views.samples);
     }
 
+    set_surroundings(surroundings, views);
     const std::size_t count = owned.sample.size();
     std::vector<Found> found((count + kSamplesPerTask - 1) / kSamplesPerTask);
     const auto samples_of = [&](std::size_t task) {
@@ -72,7 +75,10 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     };
     parallel_for(found.size(), 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t task = from; task < to; ++task)
-            for (const Id s : samples_of(task)) view_sample(views.samples[s], found[task]);
+            for (const Id s : samples_of(task)) {
+                SampleView& view = views.samples[s];
+                view_sample(view, views.around_of(view), found[task]);
+            }
     });
     for (std::size_t task = 0; task < found.size(); ++task) {
         for (const Id s : samples_of(task)) views.samples[s].first_end += views.ends.size();
@@ -88,6 +94,7 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
 Viewer make_limit_viewer(const World& world, CameraRays camera) {
     auto viewer = std::make_shared<LimitViewer>();
     viewer->world = &world;
+    viewer->surroundings = surroundings_of(world, camera);
     viewer->camera = std::move(camera);
     viewer->objects = &object_tracer(world);
     viewer->paths = &path_world(world);

@@ -85,7 +85,7 @@ void follow_samples(const OpticEndsParams& params, const std::vector<Id>& sample
                 view.traced = true;
                 const auto hit = world.optics[params.optic].tracer->first_hit(view.ray);
                 if (hit)
-                    follow_sample(params.world, *hit, view, own.ends, own.steps);
+                    follow_sample(params.world, {*hit, views.around_of(view)}, view, own.ends, own.steps);
                 else
                     pass_by(params.world, view, own);
                 own.sample.resize(own.ends.size(), samples[i]);

@@ -60,6 +60,8 @@ HistoryQuery history_query(const World& world, const Frame& frame, const std::ve
     query.camera_ray = [&camera = frame.camera](const Vec2& pixel) {
         return exact_ray(camera, pixel).value_or(Ray{});
     };
+    if (!frame.surroundings.none())
+        query.around = [&frame](const Ray& ray) { return frame.surroundings.of(ray); };
     for (std::size_t i = 0; i < steps.size(); ++i) {
         PathSegment segment;
         segment.parent = i == 0 ? kNone : static_cast<Id>(i - 1);
@@ -139,8 +141,9 @@ void SeveralOpticsImages::add_lone_rays(const PathLeaf& leaf) {
     const Vec3 incoming = normalize_or_zero(ray.direction);
     const FollowedPaths followed = follow_paths(
         world,
-        {optic, incoming, hit->point.position, hit->point.normal, dot(incoming, hit->point.normal) <= 0},
-        hit->t * length(ray.direction));
+        {{optic, incoming, hit->point.position, hit->point.normal, dot(incoming, hit->point.normal) <= 0},
+         hit->t * length(ray.direction),
+         frame_.surroundings.of(ray)});
     for (std::size_t i = 0; i < followed.segments.size(); ++i) {
         const PathSegment& segment = followed.segments[i];
         if (segment.parent == kNone || (segment.colours != kAllColours && segment.colours != 1)) continue;

@@ -1,5 +1,7 @@
 #include "render/sample_colour.h"
 
+#include "render/surroundings.h"
+
 namespace trilens {
 
 double path_length(const PathEnd& end) {
@@ -12,11 +14,11 @@ SampleColour sample_colour(const World& world, const SampleViews& views, const S
     if (view.ray.direction == Vec3(0)) return colour;  // the camera has no ray there
     colour.coverage = view.hit.seen() || view.optic != kNone ? 1 : 0;
     if (view.optic == kNone) {
-        if (settings.direct) colour.direct = shade_ray(world.shading, view.hit, view.ray);
+        if (settings.direct)
+            colour.direct = light_of_view(world, views, view) * shade_ray(world.shading, view.hit, view.ray);
         return colour;
     }
-    const Material& material = world.scene.materials[world.optics[view.optic].material];
-    const OpticWeights weights = optic_weights(material, view.incidence, settings.fresnel);
+    const OpticWeights weights = first_weights(world, views, view);
     for (const PathEnd& end : views.ends_of(view)) {
         const bool reflected = end.path == Path::kReflect;
         const Vec3 weight = (reflected ? weights.reflect : weights.refract) * end.weight;

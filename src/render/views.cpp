@@ -12,6 +12,7 @@ void SampleViews::reset(std::size_t count) {
     samples.assign(count, {});
     ends.clear();
     steps.clear();
+    around.clear();
     projected_facets = 0;
     crowded_out = 0;
 }

@@ -19,6 +19,8 @@ struct SampleView {
     Id facet = kNone;     // of the optic's grid; limit truth: face of the surface
     Vec2 uv{0};           // in the facet's face
     Incidence incidence;  // of `ray` at the optic
+    Id around = kNone;    // what `ray` starts in, of SampleViews::around; kNone: air
+    double way = 0;       // of a ray that does not start in air: its length to the optic, scene units
 
     Id leaf = kNone;          // of its optic's OpticPaths; limit truth: none
     bool traced = false;      // its own paths were followed, those of no facet
@@ -43,6 +45,7 @@ struct SampleViews {
     std::vector<SampleView> samples;   // one per sample
     std::vector<PathEnd> ends;         // of all samples, those of one side by side
     std::vector<Step> steps;           // of all ends; ends with one history may share theirs
+    std::vector<Media> around;         // that rays of the camera start in
     std::size_t projected_facets = 0;  // facets and parts of facets that the optics have by now
     std::size_t crowded_out = 0;       // facets that are traced for want of room
 
@@ -51,6 +54,9 @@ struct SampleViews {
     }
     std::span<const Step> steps_of(const PathEnd& end) const {
         return {steps.data() + end.first_step, end.step_count};
+    }
+    Media around_of(const SampleView& sample) const {
+        return sample.around == kNone ? Media() : around[sample.around];
     }
     /// The sample's principal end on this path; null where it has none.
     const PathEnd* find(const SampleView& sample, Path path) const;

@@ -6,15 +6,17 @@
 namespace trilens {
 namespace {
 
-/// Refractive index where the ray comes from over the index where it goes.
-double eta_of(const Material& material, bool front, int colour) {
-    const double ior = ior_of(material, colour);
-    return front ? 1 / ior : ior;
+GlassInterface interface_of(const Material& material, bool front) {
+    return {front ? nullptr : &material, front ? &material : nullptr, material.base_color_factor};
 }
 
-double reflectance_of(const Material& material, const Incidence& incidence, bool fresnel, int colour) {
-    const double share = fresnel_reflectance(incidence.cosine, eta_of(material, incidence.front, colour));
+double reflectance_of(const GlassInterface& interface, double cosine, bool fresnel, int colour) {
+    const double share = fresnel_reflectance(cosine, eta_of(interface, colour));
     return fresnel || share >= 1 ? share : 0;
+}
+
+bool disperses(const Material* material) {
+    return material && material->dispersion > 0;
 }
 
 }  // namespace
@@ -24,25 +26,42 @@ double ior_of(const Material& material, int colour) {
     return material.ior + (colour - 1) * (material.ior - 1) * 0.025 * material.dispersion;
 }
 
-OpticWeights optic_weights(const Material& material, const Incidence& incidence, bool fresnel) {
+double eta_of(const GlassInterface& interface, int colour) {
+    return (interface.before ? ior_of(*interface.before, colour) : 1) /
+           (interface.after ? ior_of(*interface.after, colour) : 1);
+}
+
+OpticWeights interface_weights(const GlassInterface& interface, double cosine, bool fresnel) {
     OpticWeights weights;
-    if (is_mirror(material)) {
-        weights.reflect = fresnel ? metal_reflectance(material.base_color_factor, incidence.cosine)
-                                  : material.base_color_factor;
+    if (interface.before == interface.after) {
+        weights.refract = Vec3(1);
         return weights;
     }
-    if (material.dispersion > 0)
+    if (disperses(interface.before) || disperses(interface.after))
         for (int colour = 0; colour < 3; ++colour)
-            weights.reflect[colour] = reflectance_of(material, incidence, fresnel, colour);
+            weights.reflect[colour] = reflectance_of(interface, cosine, fresnel, colour);
     else
-        weights.reflect = Vec3(reflectance_of(material, incidence, fresnel, -1));
-    weights.refract = (Vec3(1) - weights.reflect) * material.base_color_factor;
+        weights.reflect = Vec3(reflectance_of(interface, cosine, fresnel, -1));
+    weights.refract = (Vec3(1) - weights.reflect) * interface.tint;
+    return weights;
+}
+
+bool reflects_totally(const GlassInterface& interface, double cosine) {
+    return interface.before != interface.after && fresnel_reflectance(cosine, eta_of(interface, -1)) >= 1;
+}
+
+OpticWeights optic_weights(const Material& material, const Incidence& incidence, bool fresnel) {
+    if (!is_mirror(material))
+        return interface_weights(interface_of(material, incidence.front), incidence.cosine, fresnel);
+    OpticWeights weights;
+    weights.reflect = fresnel ? metal_reflectance(material.base_color_factor, incidence.cosine)
+                              : material.base_color_factor;
     return weights;
 }
 
 bool reflects_totally(const Material& material, const Incidence& incidence) {
     return !is_mirror(material) &&
-           fresnel_reflectance(incidence.cosine, eta_of(material, incidence.front, -1)) >= 1;
+           reflects_totally(interface_of(material, incidence.front), incidence.cosine);
 }
 
 }  // namespace trilens

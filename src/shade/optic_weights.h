@@ -37,4 +37,21 @@ OpticWeights optic_weights(const Material& material, const Incidence& incidence,
 /// Whether glass reflects all light that comes so.
 bool reflects_totally(const Material& material, const Incidence& incidence);
 
+/// A surface between two media. Null: air. With one medium on both sides it is no interface: all light goes
+/// on, and nothing tints it.
+struct GlassInterface {
+    const Material* before = nullptr;  // where light comes from
+    const Material* after = nullptr;   // where it goes
+    Vec3 tint{1};                      // of what goes through
+};
+
+/// Refractive index before over that after; `colour` as ior_of has it.
+double eta_of(const GlassInterface& interface, int colour);
+
+/// As optic_weights; `cosine`: of the angle of incidence, 0..1.
+OpticWeights interface_weights(const GlassInterface& interface, double cosine, bool fresnel);
+
+/// Whether all light that comes at this angle is reflected.
+bool reflects_totally(const GlassInterface& interface, double cosine);
+
 }  // namespace trilens

@@ -283,6 +283,19 @@ TEST_CASE("POV-Ray sees the same squares through glass in glass", "[laws][povray
     check(stage, "three nested", kSameColour);
 }
 
+TEST_CASE("POV-Ray sees the same squares from inside of glass, past other glass and a mirror",
+          "[laws][povray]") {
+    if (povray_missing()) TRILENS_SKIP("needs povray");
+    Stage stage{{{{0, 0.1, 0}, 2, 1.5}, {{0.15, 0.2, -0.3}, 0.55, 1.2, 1}, {{-0.9, -0.2, -0.4}, 0.35}},
+                room()};
+    stage.eye = {0.2, 0.4, 1.4};
+    stage.yfov = 70;
+    check(stage, "eye in glass", kSameColour);
+    stage.balls.erase(stage.balls.begin() + 1);  // POV-Ray's Fresnel knows glass beside air alone
+    stage.fresnel = true;
+    check(stage, "eye in glass with Fresnel", 1e-3);
+}
+
 TEST_CASE("POV-Ray weighs reflection and transmission of a glass ball alike", "[laws][povray]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
     Stage stage{{kGlassBall}, room()};

@@ -38,7 +38,7 @@ std::optional<FollowedPaths> exact_paths(const Stage& stage, Id optic, const Pat
     const auto first = next_optic(stage.world, {unit});
     if (!first || first->meeting.optic != optic || length(first->meeting.point - chord) > 1e-6)
         return std::nullopt;
-    return follow_paths(stage.world, first->meeting, first->distance,
+    return follow_paths(stage.world, {first->meeting, first->distance},
                         {.objects = nullptr, .least_weight = 1e-3 * kLeastWeight});
 }
 

@@ -51,7 +51,8 @@ struct Layered {
         const auto first = next_optic(stage.world, {{layers.eye, direction}});
         if (!first || first->meeting.optic != mirror) return std::nullopt;
         std::vector<Id> met;
-        for (const PathSegment& segment : follow_paths(stage.world, first->meeting, first->distance).segments)
+        for (const PathSegment& segment :
+             follow_paths(stage.world, {first->meeting, first->distance}).segments)
             if (segment.parent != kNone) met.push_back(segment.step.optic);
         return met;
     }

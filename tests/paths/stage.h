@@ -58,7 +58,7 @@ class Stage {
                                                  double least_weight = trilens::kLeastWeight) const {
         const auto first = trilens::next_optic(world, {{from, normalize(direction)}});
         if (!first) return std::nullopt;
-        return trilens::follow_paths(world, first->meeting, first->distance,
+        return trilens::follow_paths(world, {first->meeting, first->distance},
                                      {.objects = nullptr, .least_weight = least_weight});
     }
 

@@ -127,7 +127,7 @@ TEST_CASE("a table under a slab that lies on it is seen through the slab by ever
         const auto first = next_optic(stage.world, {{from, direction}});
         REQUIRE(first);
         const FollowedPaths paths =
-            follow_paths(stage.world, first->meeting, first->distance, {.objects = &tracer});
+            follow_paths(stage.world, {first->meeting, first->distance}, {.objects = &tracer});
         const PathSegment* end = end_with(paths, through({0}));
         REQUIRE(end);
         REQUIRE(end->hit.seen());

@@ -190,8 +190,8 @@ TEST_CASE("the same paths again from the same place, and from beside it") {
         const Vec3 from = 5.0 * random.direction(), direction = normalize(random.in_box(0.5) - from);
         const auto first = next_optic(stage.world, {{from, direction}});
         if (!first) continue;
-        const FollowedPaths paths = follow_paths(stage.world, first->meeting, first->distance);
-        const auto again = repeat_paths(stage.world, first->meeting, first->distance, paths.segments);
+        const FollowedPaths paths = follow_paths(stage.world, {first->meeting, first->distance});
+        const auto again = repeat_paths(stage.world, {first->meeting, first->distance}, paths.segments);
         REQUIRE(again.size() == paths.segments.size());
         for (std::size_t s = 0; s < again.size(); ++s) {
             const PathSegment& one = paths.segments[s];
@@ -206,9 +206,9 @@ TEST_CASE("the same paths again from the same place, and from beside it") {
         const Vec3 beside = normalize(direction + 1e-4 * random.direction());
         const auto near = next_optic(stage.world, {{from, beside}});
         if (!near || near->meeting.optic != first->meeting.optic) continue;
-        const FollowedPaths there = follow_paths(stage.world, near->meeting, near->distance,
+        const FollowedPaths there = follow_paths(stage.world, {near->meeting, near->distance},
                                                  {.objects = nullptr, .least_weight = 0.1 * kLeastWeight});
-        const auto like = repeat_paths(stage.world, near->meeting, near->distance, paths.segments);
+        const auto like = repeat_paths(stage.world, {near->meeting, near->distance}, paths.segments);
         for (std::size_t s = 0; s < like.size(); ++s) {
             if (!like[s] || !like[s]->ends) continue;
             const PathSegment* end =
