@@ -154,6 +154,7 @@ HWY_NOINLINE void meet_tile(const TileDrawing& drawing, const Forms& forms, cons
                             std::size_t lane, Id triangle, bool whole) {
     constexpr std::uint32_t kFewVectors = 4;  // measured: no box is worth asking
     const SampleTile& tile = drawing.tile;
+    const TileVectors vectors = vectors_of(drawing);
     for (std::uint32_t g = 0; g * kLanes < tile.vectors; ++g) {
         std::uint32_t near = first_lanes(tile.vectors - g * static_cast<std::uint32_t>(kLanes));
         if (!whole && tile.vectors > kFewVectors) {
@@ -172,7 +173,8 @@ HWY_NOINLINE void meet_tile(const TileDrawing& drawing, const Forms& forms, cons
             near &= ~bits(outside);
         }
         for (Each vector(near); vector; ++vector)
-            meet_vector(drawing, forms, lane, triangle, g * static_cast<std::uint32_t>(kLanes) + *vector);
+            meet_vector(drawing, vectors, forms, lane, triangle,
+                        g * static_cast<std::uint32_t>(kLanes) + *vector);
     }
 }
 

@@ -160,10 +160,24 @@ struct TileDrawing {
     std::uint32_t first_vector;  // of the tile, in the group
 };
 
+/// What meets vectors of a tile needs, in registers.
+struct TileVectors {
+    const SampleVector* vectors;
+    const VectorSamples* samples;
+    Nearest* nearest;
+    TileDoubts doubts;
+};
+
+HWY_INLINE TileVectors vectors_of(const TileDrawing& drawing) {
+    return {&drawing.scene.tiles->vectors[drawing.tile.first_vector],
+            &drawing.scene.tiles->samples[drawing.tile.first_vector],
+            &drawing.state.nearest[drawing.first_vector], drawing.doubts};
+}
+
 /// A triangle, whose forms are in `lane`, against one vector of the tile.
-HWY_INLINE void meet_vector(const TileDrawing& drawing, const Forms& forms, std::size_t lane, Id triangle,
-                            std::uint32_t vector) {
-    const SampleVector& samples = drawing.scene.tiles->vectors[drawing.tile.first_vector + vector];
+HWY_INLINE void meet_vector(const TileDrawing& drawing, const TileVectors& tile, const Forms& forms,
+                            std::size_t lane, Id triangle, std::uint32_t vector) {
+    const SampleVector& samples = tile.vectors[vector];
     const Floats u = load(samples.u), v = load(samples.v);
     const auto conic = [&](const float(&c)[6][kLanes]) HWY_ATTR {
         return multiply_add(
@@ -173,13 +187,15 @@ HWY_INLINE void meet_vector(const TileDrawing& drawing, const Forms& forms, std:
     const auto linear = [&](const float(&c)[3][kLanes]) HWY_ATTR {
         return multiply_add(u, set(c[1][lane]), multiply_add(v, set(c[2][lane]), set(c[0][lane])));
     };
-    const TileDoubts& doubts = drawing.doubts;
+    const TileDoubts& doubts = tile.doubts;
     const Floats low = least(conic(forms.edge[0]), least(conic(forms.edge[1]), conic(forms.edge[2])));
     const Floats along = linear(forms.along), inverse = reciprocal(along), t = linear(forms.above) * inverse;
-    offer_lanes(drawing.state, drawing.first_vector + vector, triangle,
-                {low<set(-doubts.edge), low> set(doubts.edge), along > set(doubts.along), t,
-                 doubt_of_time(t, inverse, set(doubts.above), set(doubts.along))},
-                drawing.scene.tiles->samples[drawing.tile.first_vector + vector].valid);
+    const Meeting meeting{low<set(-doubts.edge), low> set(doubts.edge), along > set(doubts.along), t,
+                          doubt_of_time(t, inverse, set(doubts.above), set(doubts.along))};
+    const std::uint32_t doubtful =
+        tile.samples[vector].valid & keep_nearest(tile.nearest[vector], triangle, meeting);
+    if (HWY_UNLIKELY(doubtful != 0))
+        list_doubts(drawing.state, drawing.first_vector + vector, doubtful, triangle);
 }
 
 /// Cells of the tile's lattice.
@@ -249,8 +265,10 @@ HWY_NOINLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, con
 }
 
 /// Pairs of vectors and triangles that may meet: for each vector, its rectangle against all lanes at once.
-HWY_NOINLINE std::size_t list_pairs(const TileDrawing& drawing, const EdgeBounds& bounds,
-                                    const Extent& extent, std::uint32_t lanes) {
+HWY_NOINLINE std::size_t list_pairs(const TileDrawing& drawing, const EdgeBounds& all_bounds,
+                                    const Extent& whole_extent, std::uint32_t lanes) {
+    const EdgeBounds bounds = all_bounds;
+    const Extent extent = whole_extent;
     const SampleTile& tile = drawing.tile;
     std::vector<std::uint32_t>& pairs = drawing.state.pairs;
     if (pairs.size() < (tile.vectors + 1) * kLanes) pairs.resize((tile.vectors + 1) * kLanes);
@@ -307,11 +325,11 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
     if (small) walk_cells(drawing, forms, cells, small);
     if (!(lanes & ~small)) return;
     const std::size_t pairs = list_pairs(drawing, bounds, extent, lanes & ~small);
-    for (std::size_t p = 0; p < pairs; ++p) {
-        const std::uint32_t pair = drawing.state.pairs[p];
-        meet_vector(drawing, forms, pair % kLanes, drawing.leaf.triangle[pair % kLanes],
-                    pair / static_cast<std::uint32_t>(kLanes));
-    }
+    const TileVectors tile = vectors_of(drawing);
+    const std::uint32_t* const pair = drawing.state.pairs.data();
+    for (std::size_t p = 0; p < pairs; ++p)
+        meet_vector(drawing, tile, forms, pair[p] % kLanes, drawing.leaf.triangle[pair[p] % kLanes],
+                    pair[p] / static_cast<std::uint32_t>(kLanes));
 }
 
 /// The leaf's triangles through the tile of lane `j`.
