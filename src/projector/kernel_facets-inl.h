@@ -21,20 +21,6 @@ struct alignas(64) TilesInLeaf {
     float edge_doubt[kLanes], above_doubt[kLanes], along_doubt[kLanes];  // TileDoubts
 };
 
-/// Three axes of 16 doubles.
-struct DoubleLanes3 {
-    DoubleLanes axis[3];
-
-    HWY_INLINE Vector3 at(std::size_t i) const { return {axis[0].part[i], axis[1].part[i], axis[2].part[i]}; }
-    HWY_INLINE void set(std::size_t i, const Vector3& v) {
-        axis[0].part[i] = v.x;
-        axis[1].part[i] = v.y;
-        axis[2].part[i] = v.z;
-    }
-};
-
-inline constexpr std::size_t kHalves = kLanes / kDoubles;
-
 /// doubts_of() in lanes. The sums are over the coefficients of moments and origins.
 HWY_INLINE void put_doubts(const TileLanes& lanes, const Leaf& leaf, const DoubleLanes3& d,
                            const DoubleLanes3& moment_sum, const DoubleLanes3& origin_sum,
