@@ -21,20 +21,6 @@ struct alignas(64) TilesInLeaf {
     float edge_doubt[kLanes], above_doubt[kLanes], along_doubt[kLanes];  // TileDoubts
 };
 
-/// Three axes of 16 doubles.
-struct DoubleLanes3 {
-    DoubleLanes axis[3];
-
-    HWY_INLINE Vector3 at(std::size_t i) const { return {axis[0].part[i], axis[1].part[i], axis[2].part[i]}; }
-    HWY_INLINE void set(std::size_t i, const Vector3& v) {
-        axis[0].part[i] = v.x;
-        axis[1].part[i] = v.y;
-        axis[2].part[i] = v.z;
-    }
-};
-
-inline constexpr std::size_t kHalves = kLanes / kDoubles;
-
 /// doubts_of() in lanes. The sums are over the coefficients of moments and origins.
 HWY_INLINE void put_doubts(const TileLanes& lanes, const Leaf& leaf, const DoubleLanes3& d,
                            const DoubleLanes3& moment_sum, const DoubleLanes3& origin_sum,
@@ -154,6 +140,7 @@ HWY_NOINLINE void meet_tile(const TileDrawing& drawing, const Forms& forms, cons
                             std::size_t lane, Id triangle, bool whole) {
     constexpr std::uint32_t kFewVectors = 4;  // measured: no box is worth asking
     const SampleTile& tile = drawing.tile;
+    const TileVectors vectors = vectors_of(drawing);
     for (std::uint32_t g = 0; g * kLanes < tile.vectors; ++g) {
         std::uint32_t near = first_lanes(tile.vectors - g * static_cast<std::uint32_t>(kLanes));
         if (!whole && tile.vectors > kFewVectors) {
@@ -172,7 +159,8 @@ HWY_NOINLINE void meet_tile(const TileDrawing& drawing, const Forms& forms, cons
             near &= ~bits(outside);
         }
         for (Each vector(near); vector; ++vector)
-            meet_vector(drawing, forms, lane, triangle, g * static_cast<std::uint32_t>(kLanes) + *vector);
+            meet_vector(drawing, vectors, forms, lane, triangle,
+                        g * static_cast<std::uint32_t>(kLanes) + *vector);
     }
 }
 

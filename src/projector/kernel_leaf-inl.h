@@ -90,13 +90,15 @@ HWY_INLINE float samples_per_triangle(const float (&pitch)[4], const Leaf& leaf,
            (pitch_u * pitch_v * static_cast<float>(leaf.count));
 }
 
-/// Measured: below this many samples per triangle, rays are faster.
-inline constexpr float kRaysBelow = 4;
+/// Measured: below this many samples per triangle, rays are faster: for one tile, whose conics serve many
+/// samples, and for several small ones.
+inline constexpr float kRaysBelow = 4, kRaysBelowAtTiles = 32;
 
 /// By what mode tiles and triangles that may meet are drawn fastest (measured).
 HWY_INLINE LeafMode cheapest_mode(const KernelState& state, const Leaf& leaf, float nearest, int tiles,
                                   int triangles) {
-    if (samples_per_triangle(state.beam.pitch, leaf, nearest) < kRaysBelow) return LeafMode::kRays;
+    const float rays_below = state.tiles > 1 ? kRaysBelowAtTiles : kRaysBelow;
+    if (samples_per_triangle(state.beam.pitch, leaf, nearest) < rays_below) return LeafMode::kRays;
     return tiles > 1 && triangles + 0.7f < 2.0f * tiles ? LeafMode::kFacets : LeafMode::kTriangles;
 }
 

@@ -63,19 +63,25 @@ struct Meeting {
     Floats t, off;
 };
 
-/// Keeps the hits that are sure and nearer than all before, and lists what may matter.
-HWY_INLINE void offer_lanes(KernelState& state, std::uint32_t vector, std::uint32_t triangle,
-                            const Meeting& m, std::uint32_t valid) {
-    Nearest& nearest = state.nearest[vector];
+/// Keeps the hits that are sure and nearer than all before. Returns the lanes where the triangle may matter
+/// or not.
+HWY_INLINE std::uint32_t keep_nearest(Nearest& nearest, std::uint32_t triangle, const Meeting& m) {
     const Floats t_low = m.t - m.off, t_high = m.t + m.off;
     const Floats old_low = load(nearest.low), old_high = load(nearest.high);
     const Mask hit = m.inside & m.placed & (t_low > set(0.0f)) & (t_high < old_low);
     const Mask beyond = m.placed & ((t_high < set(0.0f)) | (t_low > old_high));
-    const std::uint32_t doubtful = valid & ~bits(m.missed | beyond | hit);
-    if (HWY_UNLIKELY(doubtful != 0)) list_doubts(state, vector, doubtful, triangle);
+    const std::uint32_t known = bits(m.missed | beyond | hit);
     store(choose(hit, t_low, old_low), nearest.low);
     store(choose(hit, t_high, old_high), nearest.high);
     store_words(choose(hit, set_word(triangle), load_words(nearest.triangle)), nearest.triangle);
+    return kAllLanes & ~known;
+}
+
+/// The same, and lists those of them that are `valid`.
+HWY_INLINE void offer_lanes(KernelState& state, std::uint32_t vector, std::uint32_t triangle,
+                            const Meeting& m, std::uint32_t valid) {
+    const std::uint32_t doubtful = valid & keep_nearest(state.nearest[vector], triangle, m);
+    if (HWY_UNLIKELY(doubtful != 0)) list_doubts(state, vector, doubtful, triangle);
 }
 
 /// The same for one sample.

@@ -7,111 +7,11 @@
 #define TRILENS_KERNEL_TRIANGLES_INL_H
 #endif
 
-#include "projector/kernel_offer-inl.h"
-#include "projector/kernel_setup-inl.h"
+#include "projector/kernel_forms-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
-
-/// The functions of u and v that decide a triangle, lanes are triangles or tiles: conics of the edges; t =
-/// above / along. Turned so that inside is positive.
-struct alignas(64) Forms {
-    float edge[3][6][kLanes], above[3][kLanes], along[3][kLanes];
-};
-
-/// One tile's rays as floats around a leaf's centre.
-struct TileInLeaf {
-    float line[3][6], moment[3][6], origin[3][3], direction[3][3], weight[3];
-    TileDoubts doubts;
-};
-
-HWY_NOINLINE void move_tile_to_leaf(const TileLanes& lanes, std::size_t j, const Leaf& leaf,
-                                    TileInLeaf& tile) {
-    const double(*c)[8] = lanes.tile[j];
-    const double dx = leaf.centre[0] - lanes.centre[0][j], dy = leaf.centre[1] - lanes.centre[1][j],
-                 dz = leaf.centre[2] - lanes.centre[2][j];
-    TileSums sums{};
-    for (int q = 0; q < 6; ++q) {
-        const double m[3] = {c[3][q] - (dy * c[2][q] - dz * c[1][q]), c[4][q] - (dz * c[0][q] - dx * c[2][q]),
-                             c[5][q] - (dx * c[1][q] - dy * c[0][q])};
-        for (int a = 0; a < 3; ++a) {
-            tile.line[a][q] = static_cast<float>(c[a][q]);
-            tile.moment[a][q] = static_cast<float>(m[a]);
-            sums.moment[a] += std::fabs(m[a]);
-        }
-    }
-    const double d[3] = {dx, dy, dz};
-    for (int p = 0; p < 3; ++p) {
-        for (int a = 0; a < 3; ++a) {
-            const double o = c[6 + a][p] - c[12][p] * d[a];
-            tile.origin[a][p] = static_cast<float>(o);
-            tile.direction[a][p] = static_cast<float>(c[9 + a][p]);
-            sums.origin[a] += std::fabs(o);
-        }
-        tile.weight[p] = static_cast<float>(c[12][p]);
-    }
-    sums.reach = std::fabs(dx) + std::fabs(dy) + std::fabs(dz) + leaf.half[0] + leaf.half[1] + leaf.half[2];
-    tile.doubts = doubts_of(lanes, j, leaf, sums);
-}
-
-/// Linear bounds of the three conics over the tile: conic <= bound[k] + u slope_u[k] + v slope_v[k].
-struct EdgeBounds {
-    Floats slope_u[3], slope_v[3], bound[3];
-};
-
-/// Of which lanes may be seen from the front, where the conics are positive, and from the back.
-struct Sides {
-    std::uint32_t front = 0, back = 0;
-};
-
-/// Middle and swing of a conic over the square: u^2 and v^2 lie in [0, 1].
-HWY_INLINE Floats middle_of(const Floats* c) {
-    return multiply_add(set(0.5f), c[3] + c[5], c[0]);
-}
-HWY_INLINE Floats bend_of(const Floats* c, const Floats& doubt) {
-    return doubt + multiply_add(set(0.5f), absolute(c[3]) + absolute(c[5]), absolute(c[4]));
-}
-
-HWY_INLINE Sides sides_of(const Floats (&conic)[3][6], const Floats& doubt) {
-    Mask no_front = mask_of(0), no_back = no_front;
-    for (int k = 0; k < 3; ++k) {
-        const Floats middle = middle_of(conic[k]);
-        const Floats swing = absolute(conic[k][1]) + absolute(conic[k][2]) + bend_of(conic[k], doubt);
-        no_front = no_front | (middle + swing < set(0.0f));
-        no_back = no_back | (middle - swing > set(0.0f));
-    }
-    return {kAllLanes & ~bits(no_front), kAllLanes & ~bits(no_back)};
-}
-
-/// The conics and the depth of 16 triangles through one tile.
-HWY_NOINLINE void triangle_forms(const TileInLeaf& tile, const LeafEdges& edges, Floats (&conic)[3][6],
-                                 Floats (&above)[3], Floats (&along)[3]) {
-    for (int k = 0; k < 3; ++k) {
-        const Floats lx = load(edges.edge[k][0]), ly = load(edges.edge[k][1]), lz = load(edges.edge[k][2]);
-        const Floats mx = load(edges.moment[k][0]), my = load(edges.moment[k][1]),
-                     mz = load(edges.moment[k][2]);
-        for (int q = 0; q < 6; ++q) {
-            conic[k][q] = multiply_add(
-                set(tile.line[0][q]), mx,
-                multiply_add(set(tile.line[1][q]), my,
-                             multiply_add(set(tile.line[2][q]), mz,
-                                          multiply_add(set(tile.moment[0][q]), lx,
-                                                       multiply_add(set(tile.moment[1][q]), ly,
-                                                                    set(tile.moment[2][q]) * lz)))));
-        }
-    }
-    const Floats nx = load(edges.normal[0]), ny = load(edges.normal[1]), nz = load(edges.normal[2]),
-                 height = load(edges.height);
-    for (int p = 0; p < 3; ++p) {
-        above[p] = subtract_product(
-            nx, set(tile.origin[0][p]),
-            subtract_product(ny, set(tile.origin[1][p]),
-                             subtract_product(nz, set(tile.origin[2][p]), set(tile.weight[p]) * height)));
-        along[p] = multiply_add(nx, set(tile.direction[0][p]),
-                                multiply_add(ny, set(tile.direction[1][p]), nz * set(tile.direction[2][p])));
-    }
-}
 
 /// The rectangle of local coordinates outside which no lane's triangle is seen.
 struct Extent {
@@ -160,10 +60,24 @@ struct TileDrawing {
     std::uint32_t first_vector;  // of the tile, in the group
 };
 
+/// What meets vectors of a tile needs, in registers.
+struct TileVectors {
+    const SampleVector* vectors;
+    const VectorSamples* samples;
+    Nearest* nearest;
+    TileDoubts doubts;
+};
+
+HWY_INLINE TileVectors vectors_of(const TileDrawing& drawing) {
+    return {&drawing.scene.tiles->vectors[drawing.tile.first_vector],
+            &drawing.scene.tiles->samples[drawing.tile.first_vector],
+            &drawing.state.nearest[drawing.first_vector], drawing.doubts};
+}
+
 /// A triangle, whose forms are in `lane`, against one vector of the tile.
-HWY_INLINE void meet_vector(const TileDrawing& drawing, const Forms& forms, std::size_t lane, Id triangle,
-                            std::uint32_t vector) {
-    const SampleVector& samples = drawing.scene.tiles->vectors[drawing.tile.first_vector + vector];
+HWY_INLINE void meet_vector(const TileDrawing& drawing, const TileVectors& tile, const Forms& forms,
+                            std::size_t lane, Id triangle, std::uint32_t vector) {
+    const SampleVector& samples = tile.vectors[vector];
     const Floats u = load(samples.u), v = load(samples.v);
     const auto conic = [&](const float(&c)[6][kLanes]) HWY_ATTR {
         return multiply_add(
@@ -173,13 +87,15 @@ HWY_INLINE void meet_vector(const TileDrawing& drawing, const Forms& forms, std:
     const auto linear = [&](const float(&c)[3][kLanes]) HWY_ATTR {
         return multiply_add(u, set(c[1][lane]), multiply_add(v, set(c[2][lane]), set(c[0][lane])));
     };
-    const TileDoubts& doubts = drawing.doubts;
+    const TileDoubts& doubts = tile.doubts;
     const Floats low = least(conic(forms.edge[0]), least(conic(forms.edge[1]), conic(forms.edge[2])));
     const Floats along = linear(forms.along), inverse = reciprocal(along), t = linear(forms.above) * inverse;
-    offer_lanes(drawing.state, drawing.first_vector + vector, triangle,
-                {low<set(-doubts.edge), low> set(doubts.edge), along > set(doubts.along), t,
-                 doubt_of_time(t, inverse, set(doubts.above), set(doubts.along))},
-                drawing.scene.tiles->samples[drawing.tile.first_vector + vector].valid);
+    const Meeting meeting{low<set(-doubts.edge), low> set(doubts.edge), along > set(doubts.along), t,
+                          doubt_of_time(t, inverse, set(doubts.above), set(doubts.along))};
+    const std::uint32_t doubtful =
+        tile.samples[vector].valid & keep_nearest(tile.nearest[vector], triangle, meeting);
+    if (HWY_UNLIKELY(doubtful != 0))
+        list_doubts(drawing.state, drawing.first_vector + vector, doubtful, triangle);
 }
 
 /// Cells of the tile's lattice.
@@ -249,8 +165,10 @@ HWY_NOINLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, con
 }
 
 /// Pairs of vectors and triangles that may meet: for each vector, its rectangle against all lanes at once.
-HWY_NOINLINE std::size_t list_pairs(const TileDrawing& drawing, const EdgeBounds& bounds,
-                                    const Extent& extent, std::uint32_t lanes) {
+HWY_NOINLINE std::size_t list_pairs(const TileDrawing& drawing, const EdgeBounds& all_bounds,
+                                    const Extent& whole_extent, std::uint32_t lanes) {
+    const EdgeBounds bounds = all_bounds;
+    const Extent extent = whole_extent;
     const SampleTile& tile = drawing.tile;
     std::vector<std::uint32_t>& pairs = drawing.state.pairs;
     if (pairs.size() < (tile.vectors + 1) * kLanes) pairs.resize((tile.vectors + 1) * kLanes);
@@ -307,11 +225,11 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
     if (small) walk_cells(drawing, forms, cells, small);
     if (!(lanes & ~small)) return;
     const std::size_t pairs = list_pairs(drawing, bounds, extent, lanes & ~small);
-    for (std::size_t p = 0; p < pairs; ++p) {
-        const std::uint32_t pair = drawing.state.pairs[p];
-        meet_vector(drawing, forms, pair % kLanes, drawing.leaf.triangle[pair % kLanes],
-                    pair / static_cast<std::uint32_t>(kLanes));
-    }
+    const TileVectors tile = vectors_of(drawing);
+    const std::uint32_t* const pair = drawing.state.pairs.data();
+    for (std::size_t p = 0; p < pairs; ++p)
+        meet_vector(drawing, tile, forms, pair[p] % kLanes, drawing.leaf.triangle[pair[p] % kLanes],
+                    pair[p] / static_cast<std::uint32_t>(kLanes));
 }
 
 /// The leaf's triangles through the tile of lane `j`.

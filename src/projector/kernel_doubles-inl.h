@@ -1,0 +1,106 @@
+// Doubles and vectors of three of them, as many at once as a register holds, and 16 of them as floats.
+// Included once per instruction set.
+#if defined(TRILENS_KERNEL_DOUBLES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TRILENS_KERNEL_DOUBLES_INL_H
+#undef TRILENS_KERNEL_DOUBLES_INL_H
+#else
+#define TRILENS_KERNEL_DOUBLES_INL_H
+#endif
+
+#include "projector/kernel_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace trilens {
+namespace HWY_NAMESPACE {
+
+using DoubleTag = hn::CappedTag<double, kLanes / 2>;
+inline constexpr DoubleTag kDouble;
+using Double = hn::Vec<DoubleTag>;
+inline constexpr std::size_t kDoubles = hn::MaxLanes(kDouble);
+
+struct Vector3 {
+    Double x, y, z;
+};
+HWY_INLINE Vector3 load3(const double (*from)[kLanes], std::size_t at) {
+    return {hn::Load(kDouble, from[0] + at), hn::Load(kDouble, from[1] + at),
+            hn::Load(kDouble, from[2] + at)};
+}
+HWY_INLINE Vector3 plus(const Vector3& a, const Vector3& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Vector3 minus(const Vector3& a, const Vector3& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vector3 times(const Double& s, const Vector3& a) {
+    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
+HWY_INLINE Double inner(const Vector3& a, const Vector3& b) {
+    return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+HWY_INLINE Vector3 outer(const Vector3& a, const Vector3& b) {
+    return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
+            hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+}
+HWY_INLINE Vector3 unit(const Vector3& a) {
+    const Double square = hn::Max(inner(a, a), hn::Set(kDouble, 1e-300));
+    return times(hn::Div(hn::Set(kDouble, 1.0), hn::Sqrt(square)), a);
+}
+
+/// 16 doubles.
+struct DoubleLanes {
+    Double part[kLanes / kDoubles];
+};
+
+HWY_INLINE DoubleLanes load_doubles(const double* from) {
+    DoubleLanes r;
+    for (std::size_t i = 0; i < kLanes / kDoubles; ++i) r.part[i] = hn::Load(kDouble, from + i * kDoubles);
+    return r;
+}
+HWY_INLINE Floats narrow(const DoubleLanes& v) {
+    const hn::Rebind<float, DoubleTag> some;
+    static_assert(kPart == 2 * kDoubles);
+    Floats r;
+    for (std::size_t i = 0; i < kParts; ++i)
+        r.part[i] =
+            hn::Combine(kFloat, hn::DemoteTo(some, v.part[2 * i + 1]), hn::DemoteTo(some, v.part[2 * i]));
+    return r;
+}
+
+/// Three axes of 16 doubles.
+struct DoubleLanes3 {
+    DoubleLanes axis[3];
+
+    HWY_INLINE Vector3 at(std::size_t i) const { return {axis[0].part[i], axis[1].part[i], axis[2].part[i]}; }
+    HWY_INLINE void set(std::size_t i, const Vector3& v) {
+        axis[0].part[i] = v.x;
+        axis[1].part[i] = v.y;
+        axis[2].part[i] = v.z;
+    }
+};
+
+inline constexpr std::size_t kHalves = kLanes / kDoubles;
+
+template <std::size_t kCoefficients>
+HWY_INLINE Vector3 load_part(const double (*from)[kCoefficients][kLanes], int part, std::size_t at) {
+    return {hn::Load(kDouble, from[0][part] + at), hn::Load(kDouble, from[1][part] + at),
+            hn::Load(kDouble, from[2][part] + at)};
+}
+HWY_INLINE Vector3 absolute(const Vector3& a) {
+    return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)};
+}
+
+/// As floats. Returns those.
+HWY_INLINE Vector3 store_floats(const Vector3& v, float (*to)[kLanes], std::size_t at) {
+    const hn::Rebind<float, DoubleTag> some;
+    const auto x = hn::DemoteTo(some, v.x), y = hn::DemoteTo(some, v.y), z = hn::DemoteTo(some, v.z);
+    hn::Store(x, some, to[0] + at);
+    hn::Store(y, some, to[1] + at);
+    hn::Store(z, some, to[2] + at);
+    return {hn::PromoteTo(kDouble, x), hn::PromoteTo(kDouble, y), hn::PromoteTo(kDouble, z)};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace trilens
+HWY_AFTER_NAMESPACE();
+
+#endif
