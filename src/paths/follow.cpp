@@ -8,7 +8,6 @@
 namespace trilens {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Steps on one path at the most, whatever the depth: passing through surfaces without an interface counts
 /// for nothing else.
 constexpr std::size_t kMostSteps = 256;
