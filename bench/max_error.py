@@ -38,7 +38,7 @@ class Study:
     def __init__(self, options, scene, folder):
         self.options, self.folder = options, folder
         self.scene, _, camera = scene.partition("@")
-        self.name = pathlib.Path(self.scene).stem + (f", {camera}" if camera else "")
+        self.name = pathlib.Path(self.scene).stem + (f"@{camera}" if camera else "")
         self.camera = ["--camera", camera] if camera else []
         self.truth = str(folder / "truth.exr")
         run([options.trilens, "trace", self.scene, "-o", self.truth, *self.camera])
@@ -123,7 +123,7 @@ def main():
     failed = 0
     for scene in options.scenes:
         file, _, camera = scene.partition("@")
-        if any(row["scene"] == pathlib.Path(file).stem + (f", {camera}" if camera else "") for row in rows):
+        if any(row["scene"] == pathlib.Path(file).stem + (f"@{camera}" if camera else "") for row in rows):
             continue
         print(scene, file=sys.stderr, flush=True)
         with tempfile.TemporaryDirectory() as folder:

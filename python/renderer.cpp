@@ -50,6 +50,7 @@ struct FacetArguments {
     std::optional<std::string> rays;
     std::optional<double> max_error;
     std::optional<std::string> grid;
+    std::optional<std::string> seen_optics = {};
 
     FrameParams of(FrameParams frame) const {
         if (grid) {
@@ -59,6 +60,10 @@ struct FacetArguments {
         if (rays) {
             require_known("rays", *rays, Names{"fitted", "interpolated"});
             frame.rays = *rays == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
+        }
+        if (seen_optics) {
+            require_known("seen_optics", *seen_optics, Names{"layers", "divided"});
+            frame.layered = *seen_optics == "layers";
         }
         frame.max_error = max_error;
         return frame;
@@ -111,11 +116,13 @@ void bind_pictures(RendererClass& renderer) {
            const std::optional<std::string>& curves, const std::optional<std::string>& clip,
            std::optional<int> pieces, std::optional<double> tolerance, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
-           const py::object& progress, const py::object& warn) {
+           const std::optional<std::string>& seen_optics, const py::object& progress,
+           const py::object& warn) {
             Talk talk(progress, warn);
             return draw(
                 self,
-                {FacetArguments{rays, max_error, grid}.of(frame_params(self, resolution, camera)),
+                {FacetArguments{rays, max_error, grid, seen_optics}.of(
+                     frame_params(self, resolution, camera)),
                  projecting_engine(engine, {curves, clip, pieces, tolerance}), layer_request(layers, window)},
                 "render", talk);
         },
@@ -123,7 +130,8 @@ void bind_pictures(RendererClass& renderer) {
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("curves") = py::none(), py::arg("clip") = py::none(), py::arg("pieces") = py::none(),
         py::arg("tolerance") = py::none(), py::arg("rays") = py::none(), py::arg("max_error") = py::none(),
-        py::arg("grid") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        py::arg("grid") = py::none(), py::arg("seen_optics") = py::none(), py::arg("progress") = py::none(),
+        py::arg("warn") = py::none(),
         "Draws the scene by projection. The same pixels for any number of threads.\n\n"
         "resolution: 1..1024, of every optic's grid; 0: as the scene says.\n"
         "camera: by name; None: the scene's own.\n"
@@ -137,6 +145,9 @@ void bind_pictures(RendererClass& renderer) {
         "rays: \"fitted\" or \"interpolated\", of every optic; None: as the scene says.\n"
         "max_error: pixels; facets whose predicted displacement is more are divided, and at last traced; 0: "
         "none;\n"
+        "None: as the scene says.\n"
+        "seen_optics: \"layers\" (optics seen in mirrors are layers of their own, where they can be) or "
+        "\"divided\";\n"
         "None: as the scene says.\n"
         "grid: \"surface\" (n x n facets on each face) or \"screen\" (n x n over each optic's bounds on the "
         "film).\n"
@@ -152,20 +163,23 @@ void bind_pictures(RendererClass& renderer) {
            const std::optional<std::string>& camera, const std::optional<Names>& layers,
            const std::optional<Window>& window, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
-           const py::object& progress, const py::object& warn) {
+           const std::optional<std::string>& seen_optics, const py::object& progress,
+           const py::object& warn) {
             require_known("surface", surface, Names{"limit", "facets"});
-            if (surface == "limit" && (rays || max_error || grid))
-                throw UsageError("rays, max_error and grid are about facets; add surface=\"facets\"");
+            if (surface == "limit" && (rays || max_error || grid || seen_optics))
+                throw UsageError(
+                    "rays, max_error, grid and seen_optics are about facets; add surface=\"facets\"");
             Talk talk(progress, warn);
             return draw(self,
-                        {FacetArguments{rays, max_error, grid}.of(frame_params(self, resolution, camera)),
+                        {FacetArguments{rays, max_error, grid, seen_optics}.of(
+                             frame_params(self, resolution, camera)),
                          engine_choice(surface), layer_request(layers, window)},
                         "trace", talk);
         },
         py::arg("surface") = "limit", py::arg("resolution") = 0, py::arg("camera") = py::none(),
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("rays") = py::none(), py::arg("max_error") = py::none(), py::arg("grid") = py::none(),
-        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        py::arg("seen_optics") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the same scene by ray tracing: the truth.\n\n"
         "surface: \"limit\" (the exact surfaces) or \"facets\" (the rays that render's facets interpolate).\n"
         "The other arguments, and what is raised, are those of render.");

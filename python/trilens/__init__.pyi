@@ -218,6 +218,7 @@ class Renderer:
         rays: Optional[str] = None,
         max_error: Optional[float] = None,
         grid: Optional[str] = None,
+        seen_optics: Optional[str] = None,
         progress: _Progress = None,
         warn: _Warn = None,
     ) -> Image: ...
@@ -232,6 +233,7 @@ class Renderer:
         rays: Optional[str] = None,
         max_error: Optional[float] = None,
         grid: Optional[str] = None,
+        seen_optics: Optional[str] = None,
         progress: _Progress = None,
         warn: _Warn = None,
     ) -> Image: ...

@@ -8,7 +8,6 @@
 namespace trilens {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Steps on one path at the most, whatever the depth: passing through surfaces without an interface counts
 /// for nothing else.
 constexpr std::size_t kMostSteps = 256;
@@ -178,7 +177,7 @@ std::optional<NextOptic> meet(const PathWorld& world, Id optic, const LeavingRay
 
 /// Among optics that are met at the same place.
 int turn_of(const PathWorld& world, const NextOptic& next) {
-    return world.optics[next.meeting.optic].mirror ? 0 : next.meeting.front ? 1 : 2;
+    return turn_at_place(world.optics[next.meeting.optic].mirror, next.meeting.front);
 }
 
 /// The branch that a segment took; null where there is none.

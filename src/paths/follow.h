@@ -79,6 +79,12 @@ struct LeavingRay {
     Media media{};    // where it runs
 };
 
+/// Among optics that are met at the same place the one with the least comes first: mirrors, then bodies that
+/// the ray comes into by their front, then those that it leaves.
+constexpr int turn_at_place(bool mirror, bool front) {
+    return mirror ? 0 : front ? 1 : 2;
+}
+
 /// Optics that touch, to 1e-9 of their sizes, are met one after the other, at no distance: mirrors first,
 /// then bodies that the ray comes into, then those that it leaves. So bodies that touch have no air between
 /// them, and light that comes through a body to a mirror on it is mirrored in the body.

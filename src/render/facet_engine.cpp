@@ -54,11 +54,17 @@ struct FacetViewer {
     /// Along the camera's rays as far as its far plane.
     double reach() const { return frame.camera.far_depth - frame.camera.near_depth; }
     void view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
+    bool comes_first(std::size_t index, const Hit& hit, const SampleView& view) const;
     void view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                     SampleViews& views) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void describe_optic(std::size_t index, const Hit& hit, SampleView& view) const;
 };
+
+/// As comes_before has it.
+bool touches(double t, double than_t) {
+    return std::fabs(t - than_t) <= kDepthTie * std::fabs(std::min(t, than_t));
+}
 
 Vec3 corner_weights(const Hit& hit) {
     return {1 - hit.barycentric.x - hit.barycentric.y, hit.barycentric.x, hit.barycentric.y};
@@ -97,6 +103,16 @@ void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid
     }
 }
 
+/// Of two optics that touch where a ray meets them, whether this one's turn comes before that of the one that
+/// the sample shows so far.
+bool FacetViewer::comes_first(std::size_t index, const Hit& hit, const SampleView& view) const {
+    const SurfaceGrid& grid = frame.optics[index].facets->grid();
+    const int own = turn_at_place(world->optics[index].mirror,
+                                  faces_front(grid, grid.facets[hit.triangle], view.ray.direction));
+    const int other = turn_at_place(world->optics[view.optic].mirror, view.incidence.front);
+    return own < other || (own == other && index < view.optic);
+}
+
 void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                              SampleViews& views) const {
     std::vector<Hit> hits(grid.size());
@@ -110,7 +126,11 @@ void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const
             if (sees_optic || sees_object) {
                 const Id other =
                     sees_optic ? world->optics[view.optic].mesh : world->objects.object[view.hit.triangle];
-                if (!comes_before(hits[s].t, own, view.depth, other)) continue;
+                if (sees_optic && touches(hits[s].t, view.depth)) {
+                    if (!comes_first(index, hits[s], view)) continue;
+                } else if (!comes_before(hits[s].t, own, view.depth, other)) {
+                    continue;
+                }
             }
             describe_optic(index, hits[s], view);
         }

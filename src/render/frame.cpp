@@ -51,6 +51,26 @@ FramedOptic frame_optic(const World& world, std::size_t index, const Frame& fram
     return framed;
 }
 
+/// Why an optic has no layers though they are asked for; empty where it has. Alone, it sees none to have.
+std::string reason_for_none(const World& world, const Frame& frame, std::size_t optic) {
+    const RenderSettings& settings = world.scene.render;
+    if (!world.optics[optic].mirror) return "it is glass";
+    if (frame.max_error > 0) return "an error is asked for";
+    if (frame.optics[optic].grid == GridKind::kScreen) return "its facets lie on the film";
+    if (!frame.camera.linear || frame.camera.linear->parallel) return "the camera has no one eye";
+    if (!frame.surroundings.none()) return "the camera may be in glass";
+    if (settings.max_depth < 1 || !settings.reflect) return "paths end before them";
+    return {};
+}
+
+void warn_of_no_layers(const World& world, const Frame& frame, const Warn& warn) {
+    if (!warn || world.optics.size() < 2) return;
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        if (const std::string why = reason_for_none(world, frame, i); !why.empty())
+            warn("optics seen in " + world.names[world.optics[i].mesh] + " are no layers: " + why +
+                 "; its facets are divided where they are seen");
+}
+
 }  // namespace
 
 Frame make_frame(const World& world, const FrameParams& params, const Warn& warn) {
@@ -80,6 +100,7 @@ Frame make_frame(const World& world, CameraRays camera, const FrameParams& param
                  " facets lie across a pole of the camera or reach where it has no image; what they reflect "
                  "or refract is not drawn");
     }
+    if (params.layered.value_or(false)) warn_of_no_layers(world, frame, warn);
     return frame;
 }
 
@@ -245,9 +266,7 @@ std::optional<LayerStage> make_layer_stage(const World& world, const Frame& fram
 std::unique_ptr<SeenLayers> make_seen_layers(const World& world, const Frame& frame, const LayerStage& stage,
                                              std::size_t optic) {
     const FramedOptic& framed = frame.optics[optic];
-    const RenderSettings& settings = world.scene.render;
-    if (!framed.layered || !world.optics[optic].mirror || !settings.reflect || settings.max_depth < 1 ||
-        frame.max_error > 0 || framed.grid == GridKind::kScreen || world.optics.size() < 2)
+    if (!framed.layered || world.optics.size() < 2 || !reason_for_none(world, frame, optic).empty())
         return nullptr;
     std::vector<Vec3> towards;
     for (const Vec3& point : framed.facets->grid().points) towards.push_back(point - stage.eye);

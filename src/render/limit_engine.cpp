@@ -1,6 +1,7 @@
 #include "render/limit_engine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/parallel.h"
@@ -39,9 +40,20 @@ void LimitViewer::view_sample(SampleView& view, const Media& around, Found& foun
     if (view.hit.seen() && view.hit.t > reach) view.hit = {};
     if (view.hit.seen()) view.depth = view.hit.t;
     std::optional<SurfaceHit> nearest;
+    // Of optics that touch there the one whose turn it is.
+    const auto turn = [&](std::size_t optic, const SurfaceHit& hit) {
+        return turn_at_place(paths->optics[optic].mirror, dot(hit.point.normal, view.ray.direction) <= 0);
+    };
+    const auto comes_first = [&](std::size_t optic, const SurfaceHit& hit) {
+        if (!nearest) return true;
+        const double touch = paths->optics[optic].tracer->self_hit_t_min(view.ray);
+        if (std::fabs(hit.t - nearest->t) > touch) return hit.t < nearest->t;
+        const int own = turn(optic, hit), other = turn(view.optic, *nearest);
+        return own < other || (own == other && hit.t < nearest->t);
+    };
     for (std::size_t i = 0; i < paths->optics.size(); ++i) {
         const std::optional<SurfaceHit> hit = paths->optics[i].tracer->first_hit(view.ray);
-        if (!hit || hit->t > reach || hit->t >= view.depth || (nearest && hit->t >= nearest->t)) continue;
+        if (!hit || hit->t > reach || hit->t >= view.depth || !comes_first(i, *hit)) continue;
         nearest = hit;
         view.optic = static_cast<Id>(i);
     }

@@ -9,6 +9,7 @@ namespace trilens {
 namespace {
 
 constexpr double kTouch = 1e-9;  // of t: an object on which the next optic lies is seen in it
+constexpr double kNear = 0.05;   // the same where it is known that it lies there: `next` is interpolated
 
 Vec3 share_of(const FacetWeights& weights, const Vec2& at) {
     const Vec3 e = weights.unnormalised(at.x, at.y);
@@ -91,7 +92,8 @@ void NodeDrawer::draw(Id index, OpticEnds& out) {
                     double next = 0;
                     for (int k = 0; k < 3; ++k)
                         next += share[k] * node.next[corner[static_cast<std::size_t>(k)]];
-                    goes_on[s] = !(hits[s].seen() && hits[s].t <= next * (1 + kTouch));
+                    const double reach = 1 + (node.touches[l] ? kNear : kTouch);
+                    goes_on[s] = !(hits[s].seen() && hits[s].t <= next * reach);
                     if (goes_on[s]) continue;
                 }
                 finish(node, s, weights, ends[i]);

@@ -243,3 +243,35 @@ def test_a_plan_runs_nothing(tmp_path):
         trilens.plan_sweep(SPHERE, tmp_path, "resolution=4..1:x2")
     with pytest.raises(trilens.InputError):
         trilens.load_sweep(tmp_path / "no")
+
+
+BALLS = SOURCE / "scenes/paths/mirror-balls.json"
+
+
+def balls():
+    return trilens.Renderer(trilens.load_scene(BALLS, SMALL, 8, warn=silent), warn=silent)
+
+
+def test_optics_in_mirrors_are_layers_or_divided_as_asked():
+    told = []
+    renderer = balls()
+    layers = renderer.render(layers=["stat"], seen_optics="layers", warn=told.append)
+    divided = renderer.render(layers=["stat"], seen_optics="divided", warn=told.append)
+    assert not any("no layers" in message for message in told)
+    traced = [np.count_nonzero(image["stat.method"] == 2) for image in (layers, divided)]
+    assert traced[0] < traced[1]
+    assert np.array_equal(renderer.render(layers=["stat"])["stat.method"], layers["stat.method"])
+    with pytest.raises(trilens.UsageError):
+        renderer.render(seen_optics="both")
+    with pytest.raises(trilens.UsageError):
+        renderer.trace(seen_optics="layers")
+
+
+def test_layers_that_cannot_be_are_told():
+    told = []
+    renderer = balls()
+    renderer.render(seen_optics="layers", max_error=0.5, warn=told.append)
+    assert len([message for message in told if "are no layers: an error is asked for" in message]) == 2
+    told.clear()
+    renderer.render(max_error=0.5, warn=told.append)  # nobody asked
+    assert not any("no layers" in message for message in told)
