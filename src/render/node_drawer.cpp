@@ -8,7 +8,6 @@
 namespace trilens {
 namespace {
 
-constexpr double kTouch = 1e-9;    // of t: an object on which the next optic lies is seen in it
 constexpr double kNear = 0.05;     // the same where it is known that it lies there: `next` is interpolated
 constexpr double kOnPlane = 1e-6;  // of a facet's size: as far from a plane as rounding puts it
 

@@ -11,6 +11,9 @@
 
 namespace trilens {
 
+/// Of t: an object that lies no farther behind the next optic is seen in it.
+inline constexpr double kTouch = 1e-9;
+
 /// An engine's work on one RayMesh: the nearest triangles along the rays of the owned samples.
 using DrawMesh = std::function<void(const RayMesh&, const FacetSamples&, const SampleGrid&, std::span<Hit>)>;
 

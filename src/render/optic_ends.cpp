@@ -11,7 +11,6 @@ namespace trilens {
 namespace {
 
 constexpr std::size_t kSamplesPerTask = 256;
-constexpr double kTouch = 1e-9;  // of t: an object on which the next optic lies is seen in it
 
 /// The samples that see the optic, by facet of its paths.
 FacetSamples samples_by_facet(const OpticEndsParams& params, const OpticPaths& paths, const SampleGrid& grid,

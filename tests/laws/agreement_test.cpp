@@ -64,7 +64,7 @@ TEST_CASE("projector and Embree agree over whole paths: every end of every sampl
             check_agreement(name, n, *shipped_world("paths/" + name, n, 120, 90), true);
 }
 
-TEST_CASE("the same through prism, lenses, rings and a glass of wine", "[.long][laws][paths]") {
+TEST_CASE("the same through prism, lenses, rings and a glass of wine", "[laws][paths]") {
     for (const std::string name :
          {"prism", "plano-convex", "meniscus", "glass-torus", "mirror-torus", "wine-glass"})
         for (const int n : {1, 2, 8})
