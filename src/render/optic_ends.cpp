@@ -4,8 +4,7 @@
 #include <map>
 
 #include "base/parallel.h"
-#include "render/follow_sample.h"
-#include "render/geometry.h"
+#include "render/trace_samples.h"
 
 namespace trilens {
 namespace {
@@ -55,48 +54,6 @@ std::vector<Id> leaves_of_samples(const OpticPaths& paths, const FacetSamples& o
         }
     });
     return leaf;
-}
-
-/// The camera's ray where it passes the exact surface by, at the rim of a facet: it goes straight on.
-void pass_by(const World& world, SampleView& view, OpticEnds& out) {
-    PathEnd end;
-    end.path = Path::kReflect;
-    end.first_step = out.steps.size();
-    end.step_count = 1;
-    out.steps.push_back({view.optic, Event::kReflect});
-    end.ray = {view.ray.origin + view.depth * view.ray.direction, view.depth * view.ray.direction};
-    end.hit = object_tracer(world).first_hit(end.ray);
-    view.incidence.cosine = 0;
-    out.ends.push_back(end);
-}
-
-/// Samples that no facet speaks for.
-void follow_samples(const OpticEndsParams& params, const std::vector<Id>& samples, SampleViews& views,
-                    OpticEnds& out) {
-    const PathWorld& world = path_world(params.world);
-    std::vector<OpticEnds> found((samples.size() + kSamplesPerTask - 1) / kSamplesPerTask);
-    parallel_for(found.size(), 1, [&](std::size_t from, std::size_t to) {
-        for (std::size_t task = from; task < to; ++task) {
-            OpticEnds& own = found[task];
-            const std::size_t last = std::min(samples.size(), (task + 1) * kSamplesPerTask);
-            for (std::size_t i = task * kSamplesPerTask; i < last; ++i) {
-                SampleView& view = views.samples[samples[i]];
-                view.traced = true;
-                const auto hit = world.optics[params.optic].tracer->first_hit(view.ray);
-                if (hit)
-                    follow_sample(params.world, {*hit, views.around_of(view)}, view, own.ends, own.steps);
-                else
-                    pass_by(params.world, view, own);
-                own.sample.resize(own.ends.size(), samples[i]);
-            }
-        }
-    });
-    for (OpticEnds& own : found) {
-        for (PathEnd& end : own.ends) end.first_step += out.steps.size();
-        out.ends.insert(out.ends.end(), own.ends.begin(), own.ends.end());
-        out.sample.insert(out.sample.end(), own.sample.begin(), own.sample.end());
-        out.steps.insert(out.steps.end(), own.steps.begin(), own.steps.end());
-    }
 }
 
 /// What is drawn: an optic that the camera sees itself, or a layer.
@@ -279,7 +236,7 @@ OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, con
     OpticEnds out;
     ShownDrawer drawer(params, grid, views);
     drawer.draw({paths, params.layers, samples_by_facet(params, paths, grid, views)}, out);
-    follow_samples(params, drawer.traced(), views, out);
+    trace_samples({params.world, params.optic, paths.looking().camera, grid}, drawer.traced(), views, out);
     return out;
 }
 

@@ -208,9 +208,8 @@ TEST_CASE("an error that is asked for is kept before every camera, and most is p
     std::size_t asked = 0;
     for (std::size_t c = 0; c < world->scene.cameras.size(); ++c) {
         const std::string& name = world->scene.cameras[c].name;
-        // In "several" views fade into each other, and film folds where they do; the ball stands behind
-        // "around".
-        if (name == "several" || name == "around") continue;
+        // The ball stands behind "around".
+        if (name == "around") continue;
         const auto [kept, pixels, adaptive] = summary(*world, c, 0.25);
         if (pixels < 500) continue;
         const Summary loose = std::get<0>(summary(*world, c, 0.0));
@@ -219,7 +218,8 @@ TEST_CASE("an error that is asked for is kept before every camera, and most is p
         ++asked;
         CHECK(kept.p99 <= 0.25);
         CHECK(kept.p99 < 0.9 * loose.p99);
-        CHECK(adaptive.traced_pixels < adaptive.optic_pixels / 4);
+        // In "several" the film folds where views fade into each other, and folds are traced.
+        CHECK(adaptive.traced_pixels < adaptive.optic_pixels / (name == "several" ? 3 : 4));
     }
     CHECK(asked >= 8);
 }
