@@ -134,7 +134,6 @@ OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
         node.mesh = mesh;
         node.ends.assign(facets, 1);
         node.principal.assign(facets, 1);
-        node.touches.assign(facets, 0);
         node.next.assign(mesh.rays.size(), kInfinity);
         node.weight.assign(mesh.rays.size(), Vec3(1));
         return node;
@@ -231,7 +230,6 @@ void OpticPaths::complete_nodes() {
         node.mesh.facets.resize(leaves_.size(), {kNone, kNone, kNone});
         node.ends.resize(leaves_.size(), 1);
         node.principal.resize(leaves_.size(), 0);
-        node.touches.resize(leaves_.size(), 0);
     }
 }
 
@@ -408,20 +406,7 @@ void OpticPaths::append_part(Id leaf, FacetPart& part) {
         node.ends[leaf] = history.ends;
         node.principal.resize(leaf + 1, 0);
         node.principal[leaf] = history.principal;
-        node.touches.resize(leaf + 1, 0);
-        node.touches[leaf] = touches_object(part, h);
     }
-}
-
-/// By the exact path at the part's middle.
-bool OpticPaths::touches_object(const FacetPart& part, std::size_t history) const {
-    constexpr double kTouch = 1e-8;  // of the way
-    if (!params_.objects || part.histories[history].ends || part.inside.empty()) return false;
-    const PartInside& middle = part.inside.back();
-    if (middle.segment.empty()) return false;
-    const PathSegment& exact = middle.at.look->segments[middle.segment[history]];
-    const Hit hit = params_.objects->first_hit(exact.ray);
-    return hit.seen() && std::fabs(hit.t - exact.next) <= kTouch * exact.next;
 }
 
 Id OpticPaths::leaf_at(Id facet, const Vec3& weights) const {

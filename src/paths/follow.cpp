@@ -16,6 +16,13 @@ double largest(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
+/// Whether the next optic lies on an object where the ray meets it: that is seen in the optic, and nothing
+/// goes on.
+bool lies_on_object(const PathWorld& world, const Ray& ray, const NextOptic& next) {
+    return world.objects &&
+           world.objects->occluded(ray, next.distance - next.touch, next.distance + next.touch);
+}
+
 /// A branch that waits to be followed.
 struct Pending {
     Branch branch;
@@ -115,11 +122,12 @@ void Follower::run(const Pending& from) {
         next = next_optic(world_, {segment.ray, from.branch.step.optic, from.branch.media});
     if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
     if (next && segment.hit.seen()) {
-        if (segment.hit.t <= next->distance + next->touch)  // an object that an optic lies on is seen in it
+        if (segment.hit.t <= next->distance + next->touch)
             next.reset();
         else
             segment.hit = {};
     }
+    if (next && lies_on_object(world_, segment.ray, *next)) next.reset();
     if (next && (from.depth >= world_.max_depth || from.steps >= kMostSteps)) {
         followed_.cut.too_deep += largest(light);
         if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);

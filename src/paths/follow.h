@@ -56,7 +56,7 @@ struct PathStart {
 };
 
 /// Follows a ray from its first meeting with an optic. Segments of depth world.max_depth meet no further
-/// optic.
+/// optic. Where the next optic lies on one of world.objects, to NextOptic::touch, the segment ends.
 FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params = {});
 
 /// The segments of `like` once more from another start nearby: ray, way, next and turned of each are set

@@ -55,6 +55,7 @@ struct FacetViewer {
     double reach() const { return frame.camera.far_depth - frame.camera.near_depth; }
     void view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     bool comes_first(std::size_t index, const Hit& hit, const SampleView& view) const;
+    bool leaves_body(std::size_t index, const Hit& hit, const Ray& ray) const;
     void view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                     SampleViews& views) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
@@ -113,6 +114,13 @@ bool FacetViewer::comes_first(std::size_t index, const Hit& hit, const SampleVie
     return own < other || (own == other && index < view.optic);
 }
 
+/// Whether the ray comes to a glass body's surface from inside: an object on which the body lies is seen
+/// then.
+bool FacetViewer::leaves_body(std::size_t index, const Hit& hit, const Ray& ray) const {
+    const SurfaceGrid& grid = frame.optics[index].facets->grid();
+    return !world->optics[index].mirror && !faces_front(grid, grid.facets[hit.triangle], ray.direction);
+}
+
 void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                              SampleViews& views) const {
     std::vector<Hit> hits(grid.size());
@@ -123,6 +131,8 @@ void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const
             SampleView& view = views.samples[s];
             if (!hits[s].seen() || hits[s].t > reach()) continue;
             const bool sees_optic = view.optic != kNone, sees_object = view.hit.seen();
+            if (sees_object && touches(hits[s].t, view.depth) && leaves_body(index, hits[s], view.ray))
+                continue;
             if (sees_optic || sees_object) {
                 const Id other =
                     sees_optic ? world->optics[view.optic].mesh : world->objects.object[view.hit.triangle];

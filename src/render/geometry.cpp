@@ -102,6 +102,7 @@ const PathWorld& path_world(const World& world) {
         paths->fresnel = settings.fresnel;
         paths->reflect = settings.reflect;
         paths->refract = settings.refract;
+        paths->objects = &object_tracer(world);
         for (std::size_t i = 0; i < world.optics.size(); ++i) {
             const Optic& optic = world.optics[i];
             paths->optics.push_back({&limit_tracer(world, i), &world.scene.materials[optic.material],

@@ -52,8 +52,13 @@ void LimitViewer::view_sample(SampleView& view, const Media& around, Found& foun
         return own < other || (own == other && hit.t < nearest->t);
     };
     for (std::size_t i = 0; i < paths->optics.size(); ++i) {
-        const std::optional<SurfaceHit> hit = paths->optics[i].tracer->first_hit(view.ray);
-        if (!hit || hit->t > reach || hit->t >= view.depth || !comes_first(i, *hit)) continue;
+        const PathOptic& optic = paths->optics[i];
+        const std::optional<SurfaceHit> hit = optic.tracer->first_hit(view.ray);
+        if (!hit || hit->t > reach || hit->t >= view.depth) continue;
+        // From inside of a body an object is seen on which that lies.
+        const bool leaves = !optic.mirror && dot(hit->point.normal, view.ray.direction) > 0;
+        const bool rests = view.hit.seen() && view.hit.t <= hit->t + optic.tracer->self_hit_t_min(view.ray);
+        if ((leaves && rests) || !comes_first(i, *hit)) continue;
         nearest = hit;
         view.optic = static_cast<Id>(i);
     }
