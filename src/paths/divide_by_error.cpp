@@ -82,8 +82,17 @@ double OpticPaths::predicted(const FittedLeaf& open) const {
     return most;
 }
 
-void OpticPaths::divide_by_error(std::vector<FittedLeaf> open) {
+/// So many at a time, so that what was looked at for their parts takes little room.
+void OpticPaths::divide_by_error(std::span<const FittedLeaf> open) {
+    constexpr std::size_t kBatch = 1024;
     if (std::isinf(params_.max_error)) return;
+    for (std::size_t first = 0; first < open.size(); first += kBatch) {
+        const auto batch = open.subspan(first, std::min(kBatch, open.size() - first));
+        divide_batch_by_error({batch.begin(), batch.end()});
+    }
+}
+
+void OpticPaths::divide_batch_by_error(std::vector<FittedLeaf> open) {
     std::deque<std::vector<DividedFacet>> levels;  // what later parts point into
     while (!open.empty()) {
         std::vector<double> error(open.size());

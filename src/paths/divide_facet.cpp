@@ -6,6 +6,8 @@
 #include <limits>
 #include <span>
 
+#include "paths/film_reach.h"
+
 namespace trilens {
 namespace {
 
@@ -238,6 +240,10 @@ bool Divider::is_least(const Triangle& corners, int level) const {
 }
 
 void Divider::divide(Id cell, const Triangle& corners, int level) {
+    // Nobody sees what is off the film.
+    if (level > 0 &&
+        !may_reach_film({corners[0].screen, corners[1].screen, corners[2].screen}, looking_.camera.film))
+        return trace(cell, corners, level);
     const double fainter = kFainter * kLeastWeight;
     const Inside inside{between({&corners[1], &corners[2]}, fainter),
                         between({&corners[2], &corners[0]}, fainter),

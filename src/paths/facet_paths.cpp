@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "paths/divide_facet.h"
+#include "paths/film_reach.h"
 #include "paths/fit_nodes.h"
 #include "paths/node_corner.h"
 
@@ -186,22 +187,11 @@ void OpticPaths::look_at_corners(std::span<const Id> facets) {
 }
 
 bool OpticPaths::on_film(Id facet) const {
-    constexpr double kMargin = 1;  // pixels
-    const Vec2& film = looking_.camera.film;
-    Vec2 low(kInfinity), high(-kInfinity);
-    int behind = 0;  // the eye: corners
-    for (const Id corner : outline_.facets[facet]) {
-        const Vec3& s = outline_.screen[corner];
-        if (s.z == 0) return false;  // it has no image
-        if (!(s.z > 0)) {
-            ++behind;
-            continue;
-        }
-        low = glm::min(low, Vec2(s.x, s.y) / s.z);
-        high = glm::max(high, Vec2(s.x, s.y) / s.z);
-    }
-    if (behind > 0) return behind < 3;
-    return low.x < film.x + kMargin && low.y < film.y + kMargin && high.x > -kMargin && high.y > -kMargin;
+    const IdTriple& corner = outline_.facets[facet];
+    const std::array<Vec3, 3> screen{outline_.screen[corner[0]], outline_.screen[corner[1]],
+                                     outline_.screen[corner[2]]};
+    const bool has_image = std::all_of(screen.begin(), screen.end(), [](const Vec3& s) { return s.z != 0; });
+    return has_image && may_reach_film(screen, looking_.camera.film);
 }
 
 /// Those of `facets` that are not known, and those that are fitted with them; ascending.
@@ -310,7 +300,7 @@ void OpticPaths::prepare(std::span<const Id> facets) {
     }
     complete_nodes();
     if (params_.fit) fit_nodes(whole, nodes_);
-    divide_by_error(std::move(open));
+    divide_by_error(open);
 }
 
 /// Cell 0 of `divided` becomes `cell`, the others stand at the end.

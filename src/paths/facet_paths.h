@@ -156,7 +156,8 @@ class OpticPaths {
     void append_part(Id leaf, FacetPart& part);
     void complete_nodes();
     void keep_room();
-    void divide_by_error(std::vector<FittedLeaf> open);
+    void divide_by_error(std::span<const FittedLeaf> open);
+    void divide_batch_by_error(std::vector<FittedLeaf> open);
     double predicted(const FittedLeaf& open) const;
     Id node_of(Id parent, const PathSegment& segment);
 
