@@ -17,8 +17,9 @@ constexpr std::size_t kFewPoints = 8;
 constexpr double kPartShare = 1;
 /// Cells whose normals turn less than this are asked the Newton operator, where their halves are at hand.
 constexpr double kNewtonTurn = 0.06;
-/// Cells whose normals turn less than this are left to the walks of the points.
-constexpr double kFlatPart = 0.05;
+/// Cells whose normals turn less than this, or with a side shorter than that, are left to the walks of the
+/// points.
+constexpr double kFlatPart = 0.05, kSmallPart = 0x1p-10;
 /// A tree of more nodes (some 500 bytes each) grows no further.
 constexpr std::size_t kMostNodes = 1u << 16;
 
@@ -58,12 +59,13 @@ class Batch {
 void Batch::sift(TreeNode& part, Parts& left) {
     const PlaceTest test = test_place(ball_, part.place, part.view, radius_);
     if (test.empty) return;
-    bool is_last = false;
+    const bool is_last = part.bounds && (part.bounds->is_finest || part.place.normal_radius < kFlatPart ||
+                                         part.box.high.x - part.box.low.x < kSmallPart ||
+                                         part.box.high.y - part.box.low.y < kSmallPart);
     if (part.bounds && part.place.normal_radius <= (part.is_halved ? kNewtonTurn : kHopelessTurn)) {
         const Vec2 half = part.box.half();
         const NewtonBounds newton = newton_bounds(ball_, *part.bounds, part.view, half, radius_);
         if (newton.known && leaves_cell(newton, half)) return;
-        is_last = part.bounds->is_finest || part.place.normal_radius < kFlatPart;
     }
     if (is_last || !(test.by_place > kPartShare * test.by_points)) {
         left.push_back(&part);

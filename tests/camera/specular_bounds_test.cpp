@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "camera/closed_forms.h"
 #include "camera/draw.h"
-#include "camera/perspective.h"
 #include "camera/specular_tree.h"
 #include "camera/specular_walk.h"
 #include "camera/test_surfaces.h"
@@ -148,7 +148,7 @@ TEST_CASE("where the Newton operator shrinks a cell there is one zero of the law
                     newton_bounds(query, bounds, eye_view(query, place_of(bounds)), half);
                 alone += newton.known && newton.spread.x < half.x && newton.spread.y < half.y;
             }
-            const CellBox small{a.face, max(a.uv - 0.01, Vec2(0)), min(a.uv + 0.01, Vec2(1))};
+            const CellBox small{a.face, max(a.uv - 1e-3, Vec2(0)), min(a.uv + 1e-3, Vec2(1))};
             const SurfaceBounds bounds = bounder->bounds(a.face, small.low, small.high);
             const NewtonBounds newton =
                 newton_bounds(query, bounds, eye_view(query, place_of(bounds)), small.half());
