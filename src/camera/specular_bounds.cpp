@@ -89,7 +89,8 @@ PlaceBounds place_of(const SurfaceBounds& bounds) {
 EyeView eye_view(const SpecularQuery& query, const PlaceBounds& place) {
     EyeView view;
     if (query.camera.parallel) {
-        view.sight.direction = query.camera.view_direction;
+        // Of oblique cameras it is no unit vector.
+        view.sight.direction = normalize_or_zero(query.camera.view_direction);
     } else {
         const Vec4& w = query.camera.screen_w;
         const double depth = screen_from_world(query.camera, place.position).z;

@@ -18,7 +18,7 @@ namespace {
 /// A point that the eye sees in place `at` of the surface, `distance` behind it: on the reflected ray, or on
 /// the refracted one by Snell's law. None where the light is reflected in total.
 std::optional<Vec3> point_seen_in(const SurfacePoint& at, const SpecularQuery& query, double distance) {
-    const Vec3 in = normalize(at.position - query.camera.eye);
+    const Vec3 in = normalize(incident_direction(query.camera, at.position));
     const double cosine = dot(in, at.normal);
     if (query.event == SpecularEvent::kReflect) return at.position + distance * (in - 2 * cosine * at.normal);
     const double ratio = query.eye_index / query.point_index;
@@ -105,6 +105,13 @@ TEST_CASE("a ball of points is excluded from no cell in which one of them has it
     glass.event = SpecularEvent::kRefract;
     glass.point_index = 1.5;
     check(exclude_images(draw, CubeSphere(Vec3(0), 1), glass, 20000));
+
+    // Parallel rays, of an oblique camera: their direction is no unit vector.
+    SpecularQuery oblique = mirror;
+    oblique.camera.parallel = true;
+    oblique.camera.view_direction = {0.3, -2, -1.1};
+    oblique.camera.screen_w = {0, 0, 0, 1};
+    check(exclude_images(draw, CubeSphere(Vec3(0), 1), oblique, 20000));
 
     // From inside, where one sphere has several images of a point.
     SpecularQuery room = mirror;
