@@ -16,22 +16,66 @@ struct PlaceBounds {
 
 PlaceBounds place_of(const SurfaceBounds& bounds);
 
-/// True only if the piece holds no image: everywhere it lies behind the camera, or eye and point lie on wrong
-/// sides of it, or h = n1 e + n2 x cannot be parallel to the normal.
-bool holds_no_image(const SpecularQuery& query, const PlaceBounds& place);
+/// The chord 2 sin(angle / 2) of an angle is at most this, for all sines up to 1.
+inline double chord_of(double sine) {
+    return sine * (1 + 0.4143 * sine * sine);
+}
+
+/// Directions from one ball of places to another.
+struct Sight {
+    Vec3 direction{0};       // unit, from middle to middle
+    double turn = 0;         // no direction differs by more
+    double sine = 0;         // of the largest angle
+    double by_distance = 0;  // 1 / distance of the middles
+
+    /// No 1 / distance differs by more.
+    double stretch() const { return by_distance * sine / (1 - sine); }
+};
+
+/// How the query's eye sees a piece: the same for all points.
+struct EyeView {
+    bool is_behind = false;  // proven: behind the camera, or seen from a side that is not asked for
+    bool is_apart = true;    // the eye is not in the piece's ball; else nothing more is known
+    bool knows_side = false;
+    double cosine = 0;  // of the direction and the normal; its sign is the side
+    Sight sight;
+};
+
+EyeView eye_view(const SpecularQuery& query, const PlaceBounds& place);
+
+/// What a piece of surface can show of a ball of points.
+struct PlaceTest {
+    bool empty = false;                  // proven: no point of the ball has an image in the piece
+    double by_place = 0, by_points = 0;  // how much of what is not known comes from either one's size
+};
+
+/// For the points within `point_radius` >= 0 (world units) of the query's point; `view` is eye_view(query,
+/// place). Empty only if everywhere the piece lies behind the camera, or eye and points lie on wrong sides of
+/// it, or h = n1 e + n2 x cannot be parallel to the normal.
+PlaceTest test_place(const SpecularQuery& query, const PlaceBounds& place, const EyeView& view,
+                     double point_radius);
 
 /// The interval Newton operator in Krawczyk's form (Neumaier, Interval Methods for Systems of Equations,
 /// chapter 5) on a cell of a face, in parameters from the cell's middle: every zero of (h . du, h . dv) in
-/// the cell lies within `spread` of `step`.
+/// the cell lies within `spread` + `shift` of `step`. Where the spread is less than half the cell's sides,
+/// there is one zero at most.
 struct NewtonBounds {
     bool known = false;  // else the bounds say nothing
     Vec2 step{0};        // Newton's step from the middle
     Vec2 spread{0};      // for zeros anywhere in the cell; in proportion to their distance from the start
     Vec2 rounding{0};    // how far rounding moves a zero
+    Vec2 shift{0};       // how far `step` may lie from the step of another point of the ball
     Mat2 inverse{0};     // of the Jacobian at the middle
+    Vec2 law{0};         // at the middle
 };
 
-/// `half`: half the cell's sides. For own normals.
-NewtonBounds newton_bounds(const SpecularQuery& query, const SurfaceBounds& bounds, const Vec2& half);
+/// For the points within `point_radius` >= 0 of the query's point; `view` is eye_view of the cell's place,
+/// `half` half its sides. For own normals.
+NewtonBounds newton_bounds(const SpecularQuery& query, const SurfaceBounds& bounds, const EyeView& view,
+                           const Vec2& half, double point_radius = 0);
+
+/// Works out inverse and step once more, with directions normalised to the last bit, where a zero is next
+/// looked for.
+void step_with_care(const SpecularQuery& query, const SurfacePoint& middle, NewtonBounds& newton);
 
 }  // namespace trilens

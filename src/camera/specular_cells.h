@@ -35,6 +35,12 @@ struct CellGroup {
     bool leaf = false;
 };
 
+/// Whether every place of `inner` is one of `outer`.
+inline bool is_within(const CellBox& inner, const CellBox& outer) {
+    return inner.face == outer.face && inner.low.x >= outer.low.x && inner.low.y >= outer.low.y &&
+           inner.high.x <= outer.high.x && inner.high.y <= outer.high.y;
+}
+
 /// Whether a box has nothing of the face's domain.
 bool is_outside(FaceDomain domain, const CellBox& box);
 

@@ -32,7 +32,10 @@ Vec3 turn(const Vec3& direction, double distance, const Vec3& step) {
 }  // namespace
 
 Mat2 path_hessian(const SpecularQuery& query, const SurfacePoint& point) {
-    const SpecularPath path = specular_path(query, point.position);
+    return path_hessian(query, specular_path(query, point.position), point);
+}
+
+Mat2 path_hessian(const SpecularQuery& query, const SpecularPath& path, const SurfacePoint& point) {
     const PathIndices n = path_indices(query);
     auto bend_change = [&](const Vec3& step) {
         return n.eye * turn(path.from_eye, path.eye_distance, step) +

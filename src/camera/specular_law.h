@@ -25,6 +25,9 @@ SpecularPath specular_path(const SpecularQuery& query, const Vec3& position);
 /// bending. For own normals.
 Mat2 path_hessian(const SpecularQuery& query, const SurfacePoint& point);
 
+/// The same where specular_path(query, point.position) is known.
+Mat2 path_hessian(const SpecularQuery& query, const SpecularPath& path, const SurfacePoint& point);
+
 /// Whether eye and point lie on the sides of the surface that the event and `viewed` ask for.
 bool sides_fit(const SpecularQuery& query, const SpecularPath& path, const Vec3& normal);
 

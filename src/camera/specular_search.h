@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/surface.h"
@@ -49,6 +50,15 @@ class SpecularSearcher {
     /// round. Both sides are searched and the images of both listed: which of them the body itself hides is
     /// for a tracer to say, as for any occlusion.
     SpecularSearch find_in_body(const SpecularQuery& query, const SearchLimits& limits = {}) const;
+
+    /// For each of `points` what find (find_in_body) lists for the query with that point, and whether it is
+    /// complete: the same images to the last bit, in the time of a few where the points lie close together.
+    /// What the points have in common is excluded once, and each search begins where its neighbour's ended;
+    /// `cells` counts what was looked at for the point alone.
+    std::vector<SpecularSearch> find_each(const SpecularQuery& query, std::span<const Vec3> points,
+                                          const SearchLimits& limits = {}) const;
+    std::vector<SpecularSearch> find_each_in_body(const SpecularQuery& query, std::span<const Vec3> points,
+                                                  const SearchLimits& limits = {}) const;
 
   private:
     struct Impl;

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 
+#include "base/halve_points.h"
 #include "base/parallel.h"
 #include "camera/specular_search.h"
 #include "render/facet_images.h"
+#include "render/facet_lookup.h"
 #include "render/path_images.h"
 
 namespace trilens {
@@ -17,23 +20,6 @@ constexpr double kFreeShare = 1e-6;
 /// A point nearer to the eye's plane than this share of the coordinates has no direct image: rounding put it
 /// there.
 constexpr double kLeastDepth = 1e-12;
-
-/// The facet of the grid that holds the parameter position; kNone where rounding leaves it in none.
-Id facet_at(const SurfaceGrid& grid, std::span<const Id> facets_of_face, const Vec2& uv) {
-    constexpr double kOutside = 1e-9;
-    for (const Id f : facets_of_face) {
-        const auto& [a, b, c] = grid.facet_uv[f];
-        const auto side = [](const Vec2& p, const Vec2& q, const Vec2& r) {
-            return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
-        };
-        const double area = side(a, b, c);
-        if (area == 0) continue;
-        if (side(a, b, uv) / area >= -kOutside && side(b, c, uv) / area >= -kOutside &&
-            side(c, a, uv) / area >= -kOutside)
-            return f;
-    }
-    return kNone;
-}
 
 /// An image through the facets this near to an exact one, in pixels, is taken for the same.
 constexpr double kSameImage = 3;
@@ -58,19 +44,24 @@ struct OpticPath {
 class PointProjector {
   public:
     PointProjector(const World& world, const ProjectRequest& request);
-    PointProjection images(const Vec3& point) const;
+
+    /// Adds to result[p] the images of points[p], for each p of `some`; points that lie close together take
+    /// less time.
+    void project(std::span<const Vec3> points, std::span<const std::size_t> some,
+                 std::span<PointProjection> result) const;
 
   private:
     void add_optic(std::size_t index);
     void add_direct(const Vec3& point, PointProjection& result) const;
     void add_camera_mesh(const Vec3& point, PointProjection& result) const;
-    void add_optic_path(const OpticPath& path, const Vec3& point, PointProjection& result) const;
+    void add_optic_path(const OpticPath& path, const Vec3& point, const SpecularSearch& searched,
+                        PointProjection& result) const;
     void add_several(const SeveralOpticsImages& several, const Vec3& point, PointProjection& result) const;
     void differentiate(WorldImage& image, const Vec3& point) const;
     bool goes_straight(const Vec3& from, const Vec3& to) const;
-    SpecularSearch search(const OpticPath& path, const Vec3& point) const;
+    std::vector<SpecularSearch> search(const OpticPath& path, std::span<const Vec3> points) const;
     std::vector<OpticImage> optic_images(const OpticPath& path, const Vec3& point,
-                                         PointProjection& result) const;
+                                         const SpecularSearch& searched, PointProjection& result) const;
     std::vector<OpticImage> images_on_film(const OpticPath& path, const SpecularSearch& searched) const;
     bool is_between_planes(double t) const { return t >= camera_.near_depth && t <= camera_.far_depth; }
     bool on_film(const Vec2& pixel) const;
@@ -89,7 +80,7 @@ class PointProjector {
     const CameraRays& camera_ = frame_.camera;
     std::unique_ptr<MeshPointImages> camera_mesh_;             // of a camera that is not linear
     std::vector<std::unique_ptr<SpecularSearcher>> searcher_;  // per optic; kComplete
-    std::vector<FacetsAround> facets_of_face_;  // per optic: facets at each face of its surface
+    std::vector<FacetLookup> facets_at_;                       // per optic; kComplete
     std::vector<OpticPath> paths_;
     std::vector<std::unique_ptr<SeveralOpticsImages>> several_;  // per optic, where paths go on
 };
@@ -114,14 +105,11 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
 
 void PointProjector::add_optic(std::size_t index) {
     const OpticFacets& facets = *frame_.optics[index].facets;
-    const SurfaceGrid& grid = facets.grid();
     facets.tracer();
     if (searches_surfaces()) {
         limit_tracer(world_, index);
         searcher_.push_back(std::make_unique<SpecularSearcher>(*world_.optics[index].surface));
-        std::vector<IdTriple> face(grid.facets.size());
-        for (std::size_t f = 0; f < face.size(); ++f) face[f] = {grid.facet_face[f], kNone, kNone};
-        facets_of_face_.push_back(facets_around(face, world_.optics[index].surface->face_count()));
+        facets_at_.emplace_back(facets.grid(), world_.optics[index].surface->face_count());
     }
     for (const PathMesh& path : frame_.optics[index].paths)
         if (!path.mesh.facets.empty())
@@ -245,21 +233,22 @@ void PointProjector::add_camera_mesh(const Vec3& point, PointProjection& result)
 
 /// Of a camera with an eye whose film is not linear, the images as points of the surface; their pixels mean
 /// nothing but tell them apart.
-SpecularSearch PointProjector::search(const OpticPath& path, const Vec3& point) const {
-    SpecularQuery query = specular_query(
+std::vector<SpecularSearch> PointProjector::search(const OpticPath& path,
+                                                   std::span<const Vec3> points) const {
+    if (!searches_surfaces()) return std::vector<SpecularSearch>(points.size());
+    const SpecularQuery query = specular_query(
         world_, path.optic, path.path, camera_.linear ? *camera_.linear : law_of_eye(*camera_.model->eye()));
-    query.point = point;
     const SpecularSearcher& searcher = *searcher_[path.optic];
-    return path.path == Path::kRefract ? searcher.find_in_body(query) : searcher.find(query);
+    return path.path == Path::kRefract ? searcher.find_each_in_body(query, points)
+                                       : searcher.find_each(query, points);
 }
 
 /// Where the film shows what a search found on the surface.
 std::vector<OpticImage> PointProjector::images_on_film(const OpticPath& path,
                                                        const SpecularSearch& searched) const {
-    const SurfaceGrid& grid = frame_.optics[path.optic].facets->grid();
     std::vector<OpticImage> images;
     for (const SpecularPoint& exact : searched.images) {
-        const Id facet = facet_at(grid, facets_of_face_[path.optic].of(exact.at.face), exact.at.uv);
+        const Id facet = facets_at_[path.optic].at(exact.at.face, exact.at.uv);
         const auto add = [&](const Vec2& pixel) {
             images.push_back({facet, pixel, exact.t, exact.distance, exact.position, true});
         };
@@ -271,12 +260,12 @@ std::vector<OpticImage> PointProjector::images_on_film(const OpticPath& path,
 }
 
 std::vector<OpticImage> PointProjector::optic_images(const OpticPath& path, const Vec3& point,
+                                                     const SpecularSearch& searched,
                                                      PointProjection& result) const {
     if (!searches_surfaces()) {
         result.complete = false;
         return path.facets->images(point, request_.refine && camera_.linear.has_value());
     }
-    const SpecularSearch searched = search(path, point);
     std::vector<OpticImage> found = images_on_film(path, searched);
     if (searched.complete) return found;
     result.complete = false;
@@ -293,8 +282,9 @@ std::vector<OpticImage> PointProjector::optic_images(const OpticPath& path, cons
     return found;
 }
 
-void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, PointProjection& result) const {
-    for (const OpticImage& one : optic_images(path, point, result)) {
+void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, const SpecularSearch& searched,
+                                    PointProjection& result) const {
+    for (const OpticImage& one : optic_images(path, point, searched, result)) {
         const std::optional<Ray> view = exact_ray(camera_, one.pixel);
         if (!view) continue;
         const Vec3& eye = view->origin;
@@ -320,14 +310,38 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, Po
     }
 }
 
-PointProjection PointProjector::images(const Vec3& point) const {
-    PointProjection result;
-    result.complete = true;
-    if (camera_mesh_) add_camera_mesh(point, result);
-    if (!camera_mesh_ && world_.scene.render.direct) add_direct(point, result);
-    for (const OpticPath& path : paths_) add_optic_path(path, point, result);
-    for (const auto& several : several_) add_several(*several, point, result);
-    return result;
+void PointProjector::project(std::span<const Vec3> points, std::span<const std::size_t> some,
+                             std::span<PointProjection> result) const {
+    std::vector<Vec3> of_some;
+    for (const std::size_t p : some) of_some.push_back(points[p]);
+    std::vector<std::vector<SpecularSearch>> searched;
+    for (const OpticPath& path : paths_) searched.push_back(search(path, of_some));
+    for (std::size_t k = 0; k < some.size(); ++k) {
+        const Vec3& point = of_some[k];
+        PointProjection& found = result[some[k]];
+        found.complete = true;
+        if (camera_mesh_) add_camera_mesh(point, found);
+        if (!camera_mesh_ && world_.scene.render.direct) add_direct(point, found);
+        for (std::size_t i = 0; i < paths_.size(); ++i)
+            add_optic_path(paths_[i], point, searched[i][k], found);
+        for (const auto& several : several_) add_several(*several, point, found);
+    }
+}
+
+/// Points that are searched for at one go: some pieces of work for each thread, none with more than have much
+/// in common.
+constexpr std::size_t kPiecesPerThread = 8, kLeastPiece = 16, kMostPiece = 2048;
+
+/// Halves `some` in space down to pieces of at most `most`.
+void add_pieces(std::span<const Vec3> points, std::span<std::size_t> some, std::size_t most,
+                std::vector<std::span<const std::size_t>>& pieces) {
+    if (some.size() <= most) {
+        pieces.push_back(some);
+        return;
+    }
+    const std::size_t half = halve_points(points, some);
+    add_pieces(points, some.first(half), most, pieces);
+    add_pieces(points, some.subspan(half), most, pieces);
 }
 
 }  // namespace
@@ -336,8 +350,13 @@ std::vector<PointProjection> project_points(const World& world, const ProjectReq
                                             std::span<const Vec3> points) {
     const PointProjector projector(world, request);
     std::vector<PointProjection> result(points.size());
-    parallel_for(points.size(), 16, [&](std::size_t from, std::size_t to) {
-        for (std::size_t i = from; i < to; ++i) result[i] = projector.images(points[i]);
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::vector<std::span<const std::size_t>> pieces;
+    const std::size_t share = points.size() / (kPiecesPerThread * static_cast<std::size_t>(thread_count()));
+    add_pieces(points, order, std::clamp(share, kLeastPiece, kMostPiece), pieces);
+    parallel_for(pieces.size(), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) projector.project(points, pieces[i], result);
     });
     return result;
 }

@@ -1,0 +1,25 @@
+// Points in two halves that lie apart, by their coordinates alone.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "base/vec.h"
+
+namespace trilens {
+
+/// A ball that holds points.
+struct PointBall {
+    Vec3 middle{0};
+    double radius = 0;
+};
+
+/// The ball around the box of the points that `some` counts, at least one.
+PointBall ball_around(std::span<const Vec3> points, std::span<const std::size_t> some);
+
+/// Orders `some`, indices of finite points, at least two, so that its first half comes before the second
+/// along the longest side of their box, and returns the size of the first half. Which points come into which
+/// half is a matter of their coordinates, not of their order.
+std::size_t halve_points(std::span<const Vec3> points, std::span<std::size_t> some);
+
+}  // namespace trilens

@@ -1,0 +1,63 @@
+#include "camera/specular_tree.h"
+
+namespace trilens {
+
+SpecularTree::SpecularTree(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query)
+    : surface_(surface), cells_(cells), query_(query), faces_(surface.face_count()) {
+    if (!cells.groups().empty()) root_ = add_group(cells.groups().size() - 1);
+}
+
+TreeNode* SpecularTree::add(const PlaceBounds& place) {
+    TreeNode& node = nodes_.emplace_back();
+    node.place = place;
+    node.view = eye_view(query_, place);
+    return &node;
+}
+
+TreeNode* SpecularTree::add_group(std::size_t index) {
+    TreeNode* node = add(cells_.groups()[index].place);
+    node->stored = index;
+    return node;
+}
+
+TreeNode* SpecularTree::add_cell(const CellBox& box, const SurfaceBounds& bounds, std::size_t halves) {
+    TreeNode* node = add(place_of(bounds));
+    node->box = box;
+    node->bounds = &bounds;
+    node->stored = halves;
+    return node;
+}
+
+TreeNode* SpecularTree::add_stored(std::size_t index) {
+    const SurfaceCell& cell = cells_.cells()[index];
+    if (is_outside(surface_.domain(cell.box.face), cell.box)) return nullptr;
+    return add_cell(cell.box, cell.bounds, cell.halves);
+}
+
+TreeNode* SpecularTree::add_fresh(const CellBox& box) {
+    if (is_outside(surface_.domain(box.face), box)) return nullptr;
+    return add_cell(box, fresh_.emplace_back(cells_.bounder()->bounds(box.face, box.low, box.high)), 0);
+}
+
+TreeNode& SpecularTree::face(Id face) {
+    if (!faces_[face]) faces_[face] = add_stored(face);
+    return *faces_[face];
+}
+
+void SpecularTree::halve(TreeNode& node) {
+    if (node.is_halved) return;
+    node.is_halved = true;
+    if (!node.bounds) {
+        const CellGroup& group = cells_.groups()[node.stored];
+        node.halves[0] = group.leaf ? &face(static_cast<Id>(group.first)) : add_group(group.first);
+        node.halves[1] = group.leaf ? nullptr : add_group(group.second);
+    } else if (node.stored > 0) {
+        for (std::size_t half = 0; half < 2; ++half) node.halves[half] = add_stored(node.stored + half);
+    } else {
+        const auto [first, second] = halves_of(node.box, node.bounds->middle);
+        node.halves[0] = add_fresh(first);
+        node.halves[1] = add_fresh(second);
+    }
+}
+
+}  // namespace trilens

@@ -1,0 +1,55 @@
+// A surface's cells as one camera sees them, halved as far as anybody came.
+#pragma once
+
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include "camera/specular_bounds.h"
+#include "camera/specular_cells.h"
+
+namespace trilens {
+
+/// A group of faces or a cell, with what does not depend on the point.
+struct TreeNode {
+    PlaceBounds place;
+    EyeView view;
+    CellBox box;                            // of a cell
+    const SurfaceBounds* bounds = nullptr;  // of a cell; null for a group
+    std::size_t stored = 0;  // of a group: its index; of a cell: that of its stored halves, or 0
+    bool is_halved = false;  // whether `halves` is known
+    TreeNode* halves[2] = {nullptr,
+                           nullptr};  // null: has nothing of the face; a leaf group has its cell alone
+};
+
+/// Grows on request: one thread each. Surface cells must live longer.
+class SpecularTree {
+  public:
+    /// For all queries that differ from this in the point alone.
+    SpecularTree(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query);
+
+    /// The whole surface; null where there are no cells.
+    TreeNode* root() const { return root_; }
+    /// The cell of a whole face.
+    TreeNode& face(Id face);
+    /// Fills in the node's halves.
+    void halve(TreeNode& node);
+    std::size_t size() const { return nodes_.size(); }
+
+  private:
+    TreeNode* add(const PlaceBounds& place);
+    TreeNode* add_group(std::size_t index);
+    TreeNode* add_cell(const CellBox& box, const SurfaceBounds& bounds, std::size_t halves);
+    TreeNode* add_stored(std::size_t index);
+    TreeNode* add_fresh(const CellBox& box);
+
+    const Surface& surface_;
+    const SurfaceCells& cells_;
+    const SpecularQuery query_;
+    std::deque<TreeNode> nodes_;
+    std::deque<SurfaceBounds> fresh_;
+    std::vector<TreeNode*> faces_;
+    TreeNode* root_ = nullptr;
+};
+
+}  // namespace trilens

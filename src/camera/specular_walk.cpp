@@ -1,0 +1,264 @@
+// Branch and bound over cells; interval Newton decides where images stand alone.
+#include "camera/specular_walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "camera/specular_law.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kBorder = kCellBorder;
+/// The interval Newton operator shrinks a cell to this share, so that Newton's method converges.
+constexpr double kContraction = 0.5;
+/// A refined image this far from the zero of the law that it began at is another one.
+constexpr double kSameZero = 1e-6;
+constexpr int kNewtonSteps = 30;
+/// Undecided cells from which images are refined, evenly among them all.
+constexpr std::size_t kUndecidedStarts = 64;
+
+/// Zeros nearer than this to a cell's border are left to the cells on both sides.
+constexpr double kClearOfBorder = 1e-9;
+/// A cell that the operator shrinks to this share has one zero at most: for two zeros p and q of it, 0 = J (p
+/// - q), J a mean of the Jacobians between them, and no such mean is singular.
+constexpr double kAloneShare = 0.9;
+/// A search among so many cells is none of a point whose neighbour has the same images.
+constexpr std::size_t kMostNear = 2000;
+/// The cells for the Newton operator where all zeros are thought to be known and the halves are at hand:
+/// smaller than where one would be looked for, since what is left is excluded by its place more cheaply.
+constexpr double kTurnAround = 0.03;
+/// Newton steps from a neighbour's zero: enough to tell the cells that hold the zero.
+constexpr int kNearSteps = 2;
+
+double largest(const Vec2& v) {
+    return std::max(std::fabs(v.x), std::fabs(v.y));
+}
+
+bool is_clear_of_border(const TreeNode& cell, const Vec2& uv) {
+    const Vec2 inside = glm::min(uv - cell.box.low, cell.box.high - uv);
+    return std::min(inside.x, inside.y) > kClearOfBorder;
+}
+
+}  // namespace
+
+bool leaves_cell(const NewtonBounds& newton, const Vec2& half) {
+    for (int axis = 0; axis < 2; ++axis) {
+        const double reach =
+            half[axis] + newton.spread[axis] + newton.shift[axis] + newton.rounding[axis] + kBorder;
+        if (std::fabs(newton.step[axis]) > reach) return true;
+    }
+    return false;
+}
+
+bool SpecularWalk::in_domain(Id face, const Vec2& uv) const {
+    return surface_.domain(face) == FaceDomain::kSquare || uv.x + uv.y <= 1 + kBorder;
+}
+
+SurfacePoint SpecularWalk::point_at(Id face, const Vec2& uv) const {
+    if (in_domain(face, uv)) return surface_.eval(face, uv);
+    return bounder_.bounds(face, uv, uv).middle;
+}
+
+/// True if the zero's image is listed, or the zero is none: seen from a wrong side or behind the camera.
+bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& point) {
+    const SpecularPath path = specular_path(query_, point.position);
+    if (sides_fit(query_, path, point.normal) && screen_from_world(query_.camera, point.position).z > 0) {
+        const auto image = refine_specular_point(surface_, zero, query_);
+        if (!image || largest(image->at.uv - zero.uv) > kSameZero) return false;
+        result_.images.push_back(*image);
+    }
+    zeros_.push_back(zero);
+    return true;
+}
+
+/// A cell with one zero at most: finds it, or shows that it lies outside.
+SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoint& middle,
+                                           const NewtonBounds& newton) {
+    const Vec2 half = box.half();
+    Vec2 uv = glm::clamp(box.middle() + newton.step, box.low, box.high);
+    SurfacePoint point = middle;
+    Vec2 law(0);
+    for (int step = 0; step < kNewtonSteps; ++step) {
+        point = point_at(box.face, uv);
+        const SpecularPath path = specular_path(query_, point.position);
+        law = {dot(path.bend, point.du), dot(path.bend, point.dv)};
+        const Vec2 next = uv - glm::inverse(path_hessian(query_, path, point)) * law;
+        if (!std::isfinite(next.x + next.y)) return Verdict::kSplit;
+        const Vec2 inside = glm::clamp(next, box.low, box.high);
+        const bool at_rest = largest(inside - uv) <= 0.1 * kBorder;
+        const bool is_zero = largest(next - uv) <= kBorder;
+        if (is_zero) {
+            if (!in_domain(box.face, uv)) return Verdict::kEmpty;
+            return add_image({box.face, uv}, point) ? Verdict::kSettled : Verdict::kSplit;
+        }
+        if (at_rest) break;
+        uv = inside;
+    }
+
+    // From a place on the cell's border all zeros lie around the step there, within the contraction's share
+    // of their distance; outward of the border there are none.
+    const Vec2 step = -(newton.inverse * law), share = newton.spread / half;
+    const double contraction = largest(share), far = largest(step / half) / (1 - contraction);
+    for (int axis = 0; axis < 2; ++axis) {
+        const double out = uv[axis] >= box.high[axis]  ? step[axis]
+                           : uv[axis] <= box.low[axis] ? -step[axis]
+                                                       : 0;
+        if (out - contraction * far * half[axis] > kBorder + newton.rounding[axis]) return Verdict::kEmpty;
+    }
+    // At rest on the border by rounding alone: a zero there is one.
+    const bool rounding =
+        std::fabs(step.x) <= kBorder + newton.rounding.x && std::fabs(step.y) <= kBorder + newton.rounding.y;
+    if (!rounding) return Verdict::kSplit;
+    if (!in_domain(box.face, uv)) return Verdict::kEmpty;
+    return add_image({box.face, uv}, point) ? Verdict::kSettled : Verdict::kSplit;
+}
+
+bool SpecularWalk::is_last(const TreeNode& cell) const {
+    return cell.bounds->is_finest || largest(cell.box.high - cell.box.low) <= limits_.smallest_cell;
+}
+
+SpecularWalk::Verdict SpecularWalk::ask_newton(const TreeNode& cell) {
+    share_ = HUGE_VAL;
+    const double turn = cell.is_halved ? turn_of_newton_ : kHopelessTurn;
+    if (cell.place.normal_radius > turn && !is_last(cell)) return Verdict::kSplit;
+    const Vec2 half = cell.box.half();
+    NewtonBounds newton = newton_bounds(query_, *cell.bounds, cell.view, half);
+    if (!newton.known) return Verdict::kSplit;
+    if (leaves_cell(newton, half)) return Verdict::kEmpty;
+    share_ = largest(newton.spread / half);
+    if (!(newton.spread.x <= kContraction * half.x && newton.spread.y <= kContraction * half.y))
+        return Verdict::kSplit;
+    step_with_care(query_, cell.bounds->middle, newton);
+    return settle(cell.box, cell.bounds->middle, newton);
+}
+
+SpecularWalk::Verdict SpecularWalk::judge_cell(const TreeNode& cell) {
+    if (is_isolated(cell.box)) return Verdict::kEmpty;
+    const std::size_t zeros = zeros_.size(), images = result_.images.size();
+    Verdict verdict = ask_newton(cell);
+    if (verdict == Verdict::kSettled && is_near_) {
+        const SurfaceParameter zero = zeros_.back();
+        zeros_.resize(zeros);
+        result_.images.resize(images);
+        settle_again(zero);
+    }
+    if (verdict != Verdict::kSplit || !(is_last(cell) || result_.cells >= limits_.most_cells)) return verdict;
+    undecided_.push_back({cell.box.face, cell.box.middle()});
+    return Verdict::kEmpty;
+}
+
+void SpecularWalk::visit(TreeNode& node) {
+    ++result_.cells;
+    if (test_place(query_, node.place, node.view, 0).empty) return;
+    if (node.bounds && judge_cell(node) != Verdict::kSplit) return;
+    tree_.halve(node);
+    for (TreeNode* half : {node.halves[1], node.halves[0]})
+        if (half) waiting_.push_back(half);
+}
+
+void SpecularWalk::visit_all(TreeNode& from) {
+    waiting_.assign(1, &from);
+    while (!waiting_.empty() && !is_lost_) {
+        TreeNode* next = waiting_.back();
+        waiting_.pop_back();
+        visit(*next);
+        is_lost_ = is_near_ && (is_lost_ || !undecided_.empty() || result_.cells >= kMostNear);
+    }
+}
+
+bool SpecularWalk::is_isolated(const CellBox& box) const {
+    return std::any_of(isolated_.begin(), isolated_.end(),
+                       [&](const CellBox& b) { return is_within(box, b); });
+}
+
+/// The zero near `start`, by its cell.
+void SpecularWalk::settle_near(SurfaceParameter start) {
+    for (int step = 0; step < kNearSteps; ++step) {
+        const SurfacePoint point = surface_.eval(start.face, start.uv);
+        const Vec3 bend = specular_path(query_, point.position).bend;
+        start.uv -=
+            glm::inverse(path_hessian(query_, point)) * Vec2(dot(bend, point.du), dot(bend, point.dv));
+        const bool inside = start.uv.x >= 0 && start.uv.y >= 0 && start.uv.x <= 1 && start.uv.y <= 1;
+        if (!inside || !in_domain(start.face, start.uv)) return;
+    }
+    settle_at(start);
+}
+
+/// A zero that was settled in a smaller cell than a search of the whole has it in: in that one.
+void SpecularWalk::settle_again(const SurfaceParameter& zero) {
+    if (is_isolated({zero.face, zero.uv, zero.uv})) return;
+    const std::size_t known = zeros_.size();
+    turn_of_newton_ = kHopelessTurn;
+    settle_at(zero);
+    turn_of_newton_ = kTurnAround;
+    is_lost_ = is_lost_ || zeros_.size() == known;
+}
+
+/// Goes down through the cells that hold the place to the one where a search of the whole settles it, if
+/// there is, and notes the largest in which it stands alone.
+void SpecularWalk::settle_at(const SurfaceParameter& zero) {
+    if (is_isolated({zero.face, zero.uv, zero.uv})) return;
+    const TreeNode* alone = nullptr;
+    for (TreeNode* cell = &tree_.face(zero.face); cell;) {
+        const Verdict verdict = ask_newton(*cell);
+        if (!alone && share_ <= kAloneShare) alone = cell;
+        if (verdict == Verdict::kSettled && is_clear_of_border(*cell, zeros_.back().uv))
+            isolated_.push_back(alone->box);
+        if (verdict != Verdict::kSplit || is_last(*cell)) return;
+        tree_.halve(*cell);
+        const CellBox& first = halves_of(cell->box, cell->bounds->middle).first;
+        const int axis = first.high.x < cell->box.high.x ? 0 : 1;
+        if (!(std::fabs(zero.uv[axis] - first.high[axis]) > kClearOfBorder)) return;
+        cell = cell->halves[zero.uv[axis] > first.high[axis] ? 1 : 0];
+    }
+}
+
+void SpecularWalk::refine_undecided() {
+    result_.undecided = undecided_.size();
+    const std::size_t stride = undecided_.size() / kUndecidedStarts + 1;
+    for (std::size_t k = 0; k < undecided_.size(); k += stride)
+        if (const auto image = refine_specular_point(surface_, undecided_[k], query_))
+            result_.images.push_back(*image);
+}
+
+void SpecularWalk::begin(const SpecularQuery& query, bool is_near) {
+    query_ = query;
+    is_near_ = is_near;
+    is_lost_ = false;
+    turn_of_newton_ = kHopelessTurn;
+    undecided_.clear();
+    zeros_.clear();
+    isolated_.clear();
+    result_ = {};
+}
+
+SpecularSearch SpecularWalk::end() {
+    refine_undecided();
+    result_.complete = undecided_.empty();
+    result_.images = distinct_images(std::move(result_.images));
+    return std::move(result_);
+}
+
+SpecularSearch SpecularWalk::run(const SpecularQuery& query) {
+    begin(query, false);
+    if (tree_.root()) visit_all(*tree_.root());
+    return end();
+}
+
+std::optional<SpecularSearch> SpecularWalk::run_near(const SpecularQuery& query,
+                                                     std::span<TreeNode* const> parts,
+                                                     std::span<const SurfaceParameter> near) {
+    begin(query, true);
+    for (const SurfaceParameter& start : near) settle_near(start);
+    turn_of_newton_ = kTurnAround;
+    for (TreeNode* part : parts) {
+        visit_all(*part);
+        if (is_lost_) return std::nullopt;
+    }
+    return end();
+}
+
+}  // namespace trilens
