@@ -23,20 +23,43 @@ class TileCutter {
     int side_;
 };
 
+/// Of a tile's rays, where it can be: beyond it conics are too bent to be bounded well (measured).
+constexpr double kTileSpread = 0.2;
+
+/// How far apart the unit directions of a facet's corner rays are.
+double spread_of(const FacetOnScreen& facet) {
+    const IdTriple& corner = facet.mesh.facets[facet.facet];
+    double spread = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 a = normalize_or_zero(facet.mesh.rays[corner[k]].direction),
+                   b = normalize_or_zero(facet.mesh.rays[corner[(k + 1) % 3]].direction);
+        spread = std::max(spread, length(a - b));
+    }
+    return spread;
+}
+
 void TileCutter::add_facet(const FacetOnScreen& facet, std::span<const Id> samples) {
     LatticeExtent all;
     LatticeWalk over_all(grid_);
     for (const Id s : samples) all.include(over_all.at(s));
+    // Most facets: nothing to divide, whatever their spread.
     if (all.x1 - all.x0 < side_ && all.y1 - all.y0 < side_) {
         tiles.push_back({facet, samples, all, true});
         return;
     }
-    const int across = (all.x1 - all.x0) / side_ + 1, down = (all.y1 - all.y0) / side_ + 1;
-    std::vector<std::uint32_t> column_cell(static_cast<std::size_t>(all.x1 - all.x0) + 1);
-    for (std::size_t x = 0; x < column_cell.size(); ++x)
-        column_cell[x] = static_cast<std::uint32_t>(x) / static_cast<std::uint32_t>(side_);
+    // Even parts; more where they stay half as wide as they may be and the rays spread.
+    const double spread = spread_of(facet);
+    const auto parts = [&](int length) {
+        const int wanted = static_cast<int>(std::min(1e4, std::ceil(spread / kTileSpread)));
+        return std::max((length + side_ - 1) / side_, std::min(wanted, 2 * length / side_));
+    };
+    const int width = all.x1 - all.x0 + 1, height = all.y1 - all.y0 + 1;
+    const int across = parts(width), down = parts(height);
+    std::vector<std::uint32_t> column_cell(static_cast<std::size_t>(width));
+    for (int x = 0; x < width; ++x)
+        column_cell[static_cast<std::size_t>(x)] = static_cast<std::uint32_t>(x * across / width);
     const auto cell = [&](const LatticeSample& s) {
-        return static_cast<std::size_t>((s.row - all.y0) / side_ * across) +
+        return static_cast<std::size_t>((s.row - all.y0) * down / height * across) +
                column_cell[static_cast<std::size_t>(s.column - all.x0)];
     };
     std::vector<std::size_t> start(static_cast<std::size_t>(across * down) + 1, 0);

@@ -66,7 +66,7 @@ inline constexpr std::uint16_t kNoSlot = 65535;
 struct TileParams {
     std::uint32_t group_samples = 1000;  // groups grow up to this
     std::uint32_t group_tiles = kLanes;
-    int tile_side = 96;  // samples
+    int tile_side = 64;  // samples
 };
 
 inline constexpr int kLargestTile = 240;  // whose slots fit 16 bits
