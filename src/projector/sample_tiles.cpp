@@ -170,13 +170,21 @@ TilePlan plan_tiles(const RayMesh& mesh, const FacetSamples& owned, const Sample
     TRILENS_CHECK(params.tile_side >= 1 && params.tile_side <= kLargestTile,
                   "a tile's slots must fit 16 bits");
     TRILENS_CHECK(params.group_tiles >= 1 && params.group_tiles <= kLanes, "a group's tiles are lanes");
+    TilePlan plan;
     TileCutter cutter(grid, params.tile_side);
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         if (owned.of(f).empty() || !mesh.has_rays(f)) continue;
         const FacetOnScreen facet{mesh, f, facet_weights(mesh, f)};
-        if (!facet.weights.edge_on) cutter.add_facet(facet, owned.of(f));
+        if (facet.weights.edge_on) continue;
+        if (owned.of(f).size() >= params.mixed_below) {
+            cutter.add_facet(facet, owned.of(f));
+            continue;
+        }
+        for (const Id s : owned.of(f))
+            plan.mixed.push_back({s, static_cast<std::uint32_t>(plan.mixed_facets.size())});
+        plan.mixed_facets.push_back(facet);
     }
-    TilePlan plan;
+    sort_mixed(grid, plan.mixed);
     Grouping grouping(params, cutter.tiles);
     plan.tiles = grouping.in_order(cutter.tiles);
     plan.groups = std::move(grouping.groups);
@@ -194,6 +202,7 @@ SampleTiles make_sample_tiles(const RayMesh& mesh, const FacetSamples& owned, co
     tiles.tiles.reserve(plan.tiles.size());
     TileMaker maker(grid);
     for (std::size_t b = 0; b < plan.batches.size(); ++b) maker.add_batch(plan, b, tiles);
+    for (std::size_t g = 0; g < plan.mixed_groups(); ++g) maker.add_mixed(plan, g, tiles);
     return tiles;
 }
 

@@ -1,0 +1,120 @@
+// Vectors of facets with few samples: neighbours share a vector, whatever their facets.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "projector/decide.h"
+#include "projector/sample_tiles.h"
+
+namespace trilens {
+namespace {
+
+constexpr int kCell = 4;  // samples along a cell's edge, and cells along a square's
+
+/// Widens the group's bounds by a facet's rays over the rectangle of its samples.
+void include_rays(const FacetRays& facet, const SampleGrid& grid, const LatticeExtent& extent,
+                  MixedGroup& group) {
+    const double side = grid.side;
+    const Vec2 low =
+        Vec2(grid.x0 + (extent.x0 + 0.5) / side, grid.y0 + (extent.y0 + 0.5) / side) - facet.screen;
+    const Vec2 high =
+        Vec2(grid.x0 + (extent.x1 + 0.5) / side, grid.y0 + (extent.y1 + 0.5) / side) - facet.screen;
+    const Vec2 reach = glm::max(glm::abs(low), glm::abs(high));
+    const std::array<double, 3>& w = facet.rays.weight;
+    double terms = std::fabs(w[0]) + reach.x * std::fabs(w[1]) + reach.y * std::fabs(w[2]);
+    double least =
+        std::min(std::min(facet.rays.weight_at(low.x, low.y), facet.rays.weight_at(high.x, low.y)),
+                 std::min(facet.rays.weight_at(low.x, high.y), facet.rays.weight_at(high.x, high.y)));
+    least -= kDecisionDoubt * terms;
+    const double scale = least > 0 ? 1 / least : std::numeric_limits<double>::infinity();
+    double origin = 0, direction = 0, shift = 0;
+    for (int a = 0; a < 3; ++a) {
+        origin += std::fabs(facet.rays.origin[0][a]) + reach.x * std::fabs(facet.rays.origin[1][a]) +
+                  reach.y * std::fabs(facet.rays.origin[2][a]);
+        direction += std::fabs(facet.rays.direction[0][a]) + reach.x * std::fabs(facet.rays.direction[1][a]) +
+                     reach.y * std::fabs(facet.rays.direction[2][a]);
+        shift += std::fabs(facet.centre[a] - group.centre[a]);
+    }
+    terms *= scale;
+    group.weight_terms = std::max(group.weight_terms, terms);
+    group.origin_terms = std::max(group.origin_terms, origin * scale + terms * shift);
+    group.direction_terms = std::max(group.direction_terms, direction * scale);
+    // Not a number: no bound.
+    if (!(scale * (1 + origin + direction + terms + shift) < std::numeric_limits<double>::infinity()))
+        group.weight_terms = std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+void sort_mixed(const SampleGrid& grid, std::vector<MixedSample>& samples) {
+    if (samples.empty()) return;
+    LatticeExtent all;
+    LatticeWalk walk(grid);
+    for (const MixedSample& s : samples) all.include(walk.at(s.sample));
+    const std::size_t across = static_cast<std::size_t>((all.x1 - all.x0) / (kCell * kCell) + 1),
+                      down = static_cast<std::size_t>((all.y1 - all.y0) / (kCell * kCell) + 1);
+    std::vector<std::uint32_t> cell(samples.size()), next(across * down * kCell * kCell + 1, 0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const LatticeSample at = walk.at(samples[i].sample);
+        const int x = (at.column - all.x0) / kCell, y = (at.row - all.y0) / kCell;
+        const std::size_t square =
+            static_cast<std::size_t>(y / kCell) * across + static_cast<std::size_t>(x / kCell);
+        cell[i] = static_cast<std::uint32_t>(square * kCell * kCell +
+                                             static_cast<std::size_t>(y % kCell * kCell + x % kCell));
+        ++next[cell[i] + 1];
+    }
+    for (std::size_t c = 1; c < next.size(); ++c) next[c] += next[c - 1];
+    std::vector<MixedSample> sorted(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) sorted[next[cell[i]]++] = samples[i];
+    samples = std::move(sorted);
+}
+
+void TileMaker::add_mixed(const TilePlan& plan, std::size_t number, SampleTiles& tiles) {
+    const std::size_t first = number * kMixedSamples,
+                      count = std::min(kMixedSamples, plan.mixed.size() - first);
+    const std::span<const MixedSample> samples = std::span(plan.mixed).subspan(first, count);
+    mixed_facets_.clear();
+    for (const MixedSample& s : samples)
+        if (mixed_facets_.empty() || mixed_facets_.back() != s.facet) mixed_facets_.push_back(s.facet);
+    std::sort(mixed_facets_.begin(), mixed_facets_.end());
+    mixed_facets_.erase(std::unique(mixed_facets_.begin(), mixed_facets_.end()), mixed_facets_.end());
+
+    MixedGroup group;
+    group.first_vector = static_cast<std::uint32_t>(tiles.vectors.size());
+    group.vectors = static_cast<std::uint32_t>((count + kLanes - 1) / kLanes);
+    group.first_lanes = static_cast<std::uint32_t>(tiles.lanes.size());
+    const std::size_t first_rays = tiles.rays.size();
+    group.first_rays = static_cast<std::uint32_t>(first_rays);
+    group.facets = static_cast<std::uint32_t>(mixed_facets_.size());
+    for (const std::uint32_t facet : mixed_facets_)
+        tiles.rays.push_back(make_facet_rays(plan.mixed_facets[facet]));
+    group.centre = tiles.rays[first_rays].centre;
+    mixed_extents_.assign(mixed_facets_.size(), {});
+
+    LatticeWalk walk(*grid_);
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < group.vectors * kLanes; ++i) {
+        const std::size_t lane = i % kLanes;
+        const MixedSample& s = samples[std::min(i, count - 1)];
+        if (lane == 0) {
+            tiles.vectors.emplace_back();
+            tiles.lanes.emplace_back();
+            tiles.samples.emplace_back().valid = (1u << std::min(kLanes, count - i)) - 1;
+        }
+        if (mixed_facets_[place] != s.facet)
+            place = static_cast<std::size_t>(
+                std::lower_bound(mixed_facets_.begin(), mixed_facets_.end(), s.facet) -
+                mixed_facets_.begin());
+        const LatticeSample at = walk.at(s.sample);
+        mixed_extents_[place].include(at);
+        tiles.vectors.back().u[lane] = static_cast<float>(at.column);
+        tiles.vectors.back().v[lane] = static_cast<float>(at.row);
+        tiles.lanes.back().rays[lane] = static_cast<Id>(first_rays + place);
+        tiles.samples.back().sample[lane] = s.sample;
+    }
+    for (std::size_t f = 0; f < mixed_facets_.size(); ++f)
+        include_rays(tiles.rays[first_rays + f], *grid_, mixed_extents_[f], group);
+    tiles.mixed.push_back(group);
+}
+
+}  // namespace trilens
