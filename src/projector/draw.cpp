@@ -111,9 +111,10 @@ void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& o
     if (!options.vectors || !options.cull)
         return draw_in_blocks(scene, mesh, owned, grid, hits, options.cull);
     // A batch's vectors are made, drawn and forgotten while they are in cache.
-    const TilePlan plan = plan_tiles(mesh, owned, grid, options.tiles);
+    const TilePlan plan =
+        plan_tiles(mesh, owned, grid, options.tiles.value_or(tile_params(scene.data().size())));
     const std::size_t batches = plan.batches.size();
-    parallel_for(batches + plan.mixed_groups(), 1, [&](std::size_t first, std::size_t last) {
+    parallel_for(batches + plan.mixed_groups.size(), 1, [&](std::size_t first, std::size_t last) {
         TileMaker maker(grid);
         SampleTiles& tiles = own_tiles();
         for (std::size_t b = first; b < last; ++b) {

@@ -46,8 +46,9 @@ void include_rays(const FacetRays& facet, const SampleGrid& grid, const LatticeE
 
 }  // namespace
 
-void sort_mixed(const SampleGrid& grid, std::vector<MixedSample>& samples) {
-    if (samples.empty()) return;
+std::vector<TileGroup> sort_mixed(const SampleGrid& grid, std::vector<MixedSample>& samples) {
+    static_assert(kCell * kCell * kCell * kCell == kMixedSamples);
+    if (samples.empty()) return {};
     LatticeExtent all;
     LatticeWalk walk(grid);
     for (const MixedSample& s : samples) all.include(walk.at(s.sample));
@@ -67,12 +68,21 @@ void sort_mixed(const SampleGrid& grid, std::vector<MixedSample>& samples) {
     std::vector<MixedSample> sorted(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) sorted[next[cell[i]]++] = samples[i];
     samples = std::move(sorted);
+    // `next` has become where the cells end.
+    std::vector<TileGroup> groups;
+    std::uint32_t first = 0;
+    for (std::size_t square = 1; square <= across * down; ++square) {
+        const std::uint32_t last = next[square * kCell * kCell - 1];
+        if (last > first) groups.push_back({first, last - first});
+        first = last;
+    }
+    return groups;
 }
 
 void TileMaker::add_mixed(const TilePlan& plan, std::size_t number, SampleTiles& tiles) {
-    const std::size_t first = number * kMixedSamples,
-                      count = std::min(kMixedSamples, plan.mixed.size() - first);
-    const std::span<const MixedSample> samples = std::span(plan.mixed).subspan(first, count);
+    const std::size_t count = plan.mixed_groups[number].count;
+    const std::span<const MixedSample> samples =
+        std::span(plan.mixed).subspan(plan.mixed_groups[number].first, count);
     mixed_facets_.clear();
     for (const MixedSample& s : samples)
         if (mixed_facets_.empty() || mixed_facets_.back() != s.facet) mixed_facets_.push_back(s.facet);

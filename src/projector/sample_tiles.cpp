@@ -165,6 +165,13 @@ std::vector<TileGroup> make_batches(std::span<const TileGroup> groups) {
 
 }  // namespace
 
+TileParams tile_params(std::size_t triangles) {
+    TileParams params;
+    const double below = std::sqrt(static_cast<double>(triangles));
+    params.mixed_below = static_cast<std::uint32_t>(std::clamp(below, 20.0, 150.0));
+    return params;
+}
+
 TilePlan plan_tiles(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                     const TileParams& params) {
     TRILENS_CHECK(params.tile_side >= 1 && params.tile_side <= kLargestTile,
@@ -184,7 +191,7 @@ TilePlan plan_tiles(const RayMesh& mesh, const FacetSamples& owned, const Sample
             plan.mixed.push_back({s, static_cast<std::uint32_t>(plan.mixed_facets.size())});
         plan.mixed_facets.push_back(facet);
     }
-    sort_mixed(grid, plan.mixed);
+    plan.mixed_groups = sort_mixed(grid, plan.mixed);
     Grouping grouping(params, cutter.tiles);
     plan.tiles = grouping.in_order(cutter.tiles);
     plan.groups = std::move(grouping.groups);
@@ -202,7 +209,7 @@ SampleTiles make_sample_tiles(const RayMesh& mesh, const FacetSamples& owned, co
     tiles.tiles.reserve(plan.tiles.size());
     TileMaker maker(grid);
     for (std::size_t b = 0; b < plan.batches.size(); ++b) maker.add_batch(plan, b, tiles);
-    for (std::size_t g = 0; g < plan.mixed_groups(); ++g) maker.add_mixed(plan, g, tiles);
+    for (std::size_t g = 0; g < plan.mixed_groups.size(); ++g) maker.add_mixed(plan, g, tiles);
     return tiles;
 }
 

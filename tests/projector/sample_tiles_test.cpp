@@ -1,6 +1,7 @@
 // Tiles, vectors and groups: every owned sample once, where the tables say it is.
 #include "projector/sample_tiles.h"
 
+#include <algorithm>
 #include <map>
 
 #include "base/rasterize.h"
@@ -69,6 +70,14 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
             }
             for (const MixedGroup& group : tiles.mixed) {
                 CHECK(group.vectors <= kLanes);
+                // Near each other, however few they are.
+                float least = 1e9f, most = 0;
+                for (std::uint32_t v = group.first_vector; v < group.first_vector + group.vectors; ++v) {
+                    least =
+                        std::min(least, *std::min_element(tiles.vectors[v].u, tiles.vectors[v].u + kLanes));
+                    most = std::max(most, *std::max_element(tiles.vectors[v].u, tiles.vectors[v].u + kLanes));
+                }
+                CHECK(most - least < static_cast<float>(kLanes));
                 for (std::uint32_t v = 0; v < group.vectors; ++v) {
                     const SampleVector& vector = tiles.vectors[group.first_vector + v];
                     const VectorSamples& ids = tiles.samples[group.first_vector + v];

@@ -44,7 +44,7 @@ void compare(const Case& c, const DrawOptions& options, Tally& tally) {
 DrawOptions with(LeafMode mode, std::uint32_t mixed_below) {
     DrawOptions options;
     options.kernel.leaf_mode = mode;
-    options.tiles.mixed_below = mixed_below;
+    options.tiles.emplace().mixed_below = mixed_below;
     return options;
 }
 
@@ -101,8 +101,9 @@ TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens
             compare({scene, mesh, grid, outside ? all_samples(grid) : rasterize_facets(mesh, grid)}, way,
                     tally);
         }
-        INFO("mode " << static_cast<int>(way.kernel.leaf_mode) << " mixed below " << way.tiles.mixed_below
-                     << " samples " << tally.samples << " seen " << tally.seen);
+        INFO("mode " << static_cast<int>(way.kernel.leaf_mode) << " mixed below "
+                     << (way.tiles ? way.tiles->mixed_below : 0) << " samples " << tally.samples << " seen "
+                     << tally.seen);
         CHECK(tally.different == 0);
         CHECK(tally.seen > 50000);
     }
@@ -121,7 +122,8 @@ TEST_CASE("the vector engine draws the plain engine's bits through many facets, 
                 compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, way, tally);
             }
         }
-        INFO("mode " << static_cast<int>(way.kernel.leaf_mode) << " mixed below " << way.tiles.mixed_below);
+        INFO("mode " << static_cast<int>(way.kernel.leaf_mode) << " mixed below "
+                     << (way.tiles ? way.tiles->mixed_below : 0));
         CHECK(tally.different == 0);
         CHECK(tally.seen == tally.samples);
     }
@@ -181,8 +183,9 @@ TEST_CASE(
             }
             compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, way, tally);
         }
-        INFO("mode " << static_cast<int>(way.kernel.leaf_mode) << " mixed below " << way.tiles.mixed_below
-                     << " samples " << tally.samples << " seen " << tally.seen);
+        INFO("mode " << static_cast<int>(way.kernel.leaf_mode) << " mixed below "
+                     << (way.tiles ? way.tiles->mixed_below : 0) << " samples " << tally.samples << " seen "
+                     << tally.seen);
         CHECK(tally.different == 0);
         CHECK(tally.seen > 50000);
     }
