@@ -11,21 +11,19 @@ namespace {
 
 constexpr int kCell = 4;  // samples along a cell's edge, and cells along a square's
 
-/// Widens the group's bounds by a facet's rays over the rectangle of its samples.
-void include_rays(const FacetRays& facet, const SampleGrid& grid, const LatticeExtent& extent,
+Vec2 position_of(const SampleGrid& grid, int column, int row) {
+    return {grid.x0 + (column + 0.5) / grid.side, grid.y0 + (row + 0.5) / grid.side};
+}
+
+/// Widens the group's bounds by a facet's rays through its samples.
+void include_rays(const FacetRays& facet, const SampleGrid& grid, const MixedExtent& samples,
                   MixedGroup& group) {
-    const double side = grid.side;
-    const Vec2 low =
-        Vec2(grid.x0 + (extent.x0 + 0.5) / side, grid.y0 + (extent.y0 + 0.5) / side) - facet.screen;
-    const Vec2 high =
-        Vec2(grid.x0 + (extent.x1 + 0.5) / side, grid.y0 + (extent.y1 + 0.5) / side) - facet.screen;
-    const Vec2 reach = glm::max(glm::abs(low), glm::abs(high));
+    const LatticeExtent& extent = samples.extent;
+    const Vec2 reach = glm::max(glm::abs(position_of(grid, extent.x0, extent.y0) - facet.screen),
+                                glm::abs(position_of(grid, extent.x1, extent.y1) - facet.screen));
     const std::array<double, 3>& w = facet.rays.weight;
     double terms = std::fabs(w[0]) + reach.x * std::fabs(w[1]) + reach.y * std::fabs(w[2]);
-    double least =
-        std::min(std::min(facet.rays.weight_at(low.x, low.y), facet.rays.weight_at(high.x, low.y)),
-                 std::min(facet.rays.weight_at(low.x, high.y), facet.rays.weight_at(high.x, high.y)));
-    least -= kDecisionDoubt * terms;
+    const double least = samples.least_weight - kDecisionDoubt * terms;
     const double scale = least > 0 ? 1 / least : std::numeric_limits<double>::infinity();
     double origin = 0, direction = 0, shift = 0;
     for (int a = 0; a < 3; ++a) {
@@ -116,7 +114,11 @@ void TileMaker::add_mixed(const TilePlan& plan, std::size_t number, SampleTiles&
                 std::lower_bound(mixed_facets_.begin(), mixed_facets_.end(), s.facet) -
                 mixed_facets_.begin());
         const LatticeSample at = walk.at(s.sample);
-        mixed_extents_[place].include(at);
+        const FacetRays& rays = tiles.rays[first_rays + place];
+        const Vec2 from = position_of(*grid_, at.column, at.row) - rays.screen;
+        MixedExtent& extent = mixed_extents_[place];
+        extent.extent.include(at);
+        extent.least_weight = std::min(extent.least_weight, rays.rays.weight_at(from.x, from.y));
         tiles.vectors.back().u[lane] = static_cast<float>(at.column);
         tiles.vectors.back().v[lane] = static_cast<float>(at.row);
         tiles.lanes.back().rays[lane] = static_cast<Id>(first_rays + place);

@@ -167,8 +167,8 @@ std::vector<TileGroup> make_batches(std::span<const TileGroup> groups) {
 
 TileParams tile_params(std::size_t triangles) {
     TileParams params;
-    const double below = std::sqrt(static_cast<double>(triangles));
-    params.mixed_below = static_cast<std::uint32_t>(std::clamp(below, 20.0, 150.0));
+    const double below = 0.7 * std::sqrt(static_cast<double>(triangles));
+    params.mixed_below = static_cast<std::uint32_t>(std::clamp(below, 20.0, 1000.0));
     return params;
 }
 

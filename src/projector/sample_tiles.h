@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -124,6 +125,12 @@ struct TilePlan {
 TilePlan plan_tiles(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                     const TileParams& params);
 
+/// A facet's samples in a mixed group: where they lie, and the smallest weight (FacetRays') of any.
+struct MixedExtent {
+    LatticeExtent extent;
+    double least_weight = std::numeric_limits<double>::infinity();
+};
+
 /// Makes the tiles of one batch after the other, with tables of its own that are kept in between.
 class TileMaker {
   public:
@@ -147,7 +154,7 @@ class TileMaker {
     std::vector<std::int32_t> column_, row_;       // in the order of vectors
     std::vector<Id> sample_;                       // likewise
     std::vector<std::uint32_t> mixed_facets_;      // of a group, in TilePlan::mixed_facets, ascending
-    std::vector<LatticeExtent> mixed_extents_;     // likewise, of their samples in the group
+    std::vector<MixedExtent> mixed_extents_;       // likewise, of their samples in the group
 };
 
 /// Puts samples in an order in which neighbours on the film are together, and names the ranges that are each
