@@ -250,6 +250,11 @@ HWY_NOINLINE void place_mixed(const KernelScene& scene, const LaneFacets& facets
                               const VectorSamples& samples, const MixedRays& rays, const Nearest& nearest,
                               Placed& placed) {
     const std::uint32_t see = kAllLanes & ~bits(same(load_words(nearest.triangle), set_word(kNone)));
+    const Id first = nearest.triangle[0];
+    const bool all_one =
+        see == kAllLanes && bits(same(load_words(nearest.triangle), set_word(first))) == kAllLanes;
+    TriangleLanes one;
+    if (all_one) one = broadcast_triangle(scene.data->triangles[first]);
     std::uint32_t bad = 0;
     for (std::size_t at = 0; at < kLanes; at += kDoubles) {
         const std::uint32_t own = see >> at & first_lanes(kDoubles);
@@ -259,7 +264,9 @@ HWY_NOINLINE void place_mixed(const KernelScene& scene, const LaneFacets& facets
         }
         const RayLanes lanes{load3(rays.origin, at), load3(rays.direction, at),
                              hn::Load(kDouble, rays.weight + at)};
-        bad |= place_each(*scene.data, load3(rays.centre, at), lanes, nearest.triangle + at, own, at, placed)
+        const Vector3 centre = load3(rays.centre, at);
+        bad |= (all_one ? place_own(one, centre, lanes, own, at, placed)
+                        : place_each(*scene.data, centre, lanes, nearest.triangle + at, own, at, placed))
                << at;
     }
     for (Each lane(bad); lane; ++lane)

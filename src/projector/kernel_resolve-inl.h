@@ -146,6 +146,17 @@ HWY_INLINE TriangleLanes gather_triangles(const PreparedTriangle* const (&from)[
     return triangles;
 }
 
+/// The same triangle in every lane.
+HWY_INLINE TriangleLanes broadcast_triangle(const PreparedTriangle& triangle) {
+    TriangleLanes lanes;
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (int a = 0; a < 3; ++a)
+            lanes.number[3 * c + static_cast<std::size_t>(a)] = hn::Set(kDouble, triangle.corner[c][a]);
+    }
+    lanes.number[9] = hn::BitCast(kDouble, hn::Set(kName, triangle.name));
+    return lanes;
+}
+
 /// Where the sure hits of a tile are placed.
 struct TilePlacing {
     const KernelScene& scene;
@@ -155,14 +166,8 @@ struct TilePlacing {
 
 /// From lane `at` on: each of `lanes` its own triangle, the others nothing. `centre`: of the facets. Returns
 /// those where place() says nothing.
-HWY_INLINE std::uint32_t place_each(const PreparedScene::Data& data, const Vector3& centre,
-                                    const RayLanes& rays, const Id* triangle, std::uint32_t lanes,
-                                    std::size_t at, Placed& placed) {
-    const PreparedTriangle* from[kDoubles];
-    const PreparedTriangle* all = data.triangles.data();
-    const Id some = triangle[std::countr_zero(lanes)];
-    for (std::size_t k = 0; k < kDoubles; ++k) from[k] = all + (lanes >> k & 1 ? triangle[k] : some);
-    const TriangleLanes own = gather_triangles(from);
+HWY_INLINE std::uint32_t place_own(const TriangleLanes& own, const Vector3& centre, const RayLanes& rays,
+                                   std::uint32_t lanes, std::size_t at, Placed& placed) {
     Vector3 corner[3];
     for (std::size_t c = 0; c < 3; ++c)
         corner[c] = minus({own.number[3 * c], own.number[3 * c + 1], own.number[3 * c + 2]}, centre);
@@ -181,6 +186,18 @@ HWY_INLINE std::uint32_t place_each(const PreparedScene::Data& data, const Vecto
     hn::Store(hn::IfThenElse(hn::RebindMask(kName, mask), name, hn::Set(kName, std::uint64_t{kNone})), kName,
               placed.name + at);
     return lanes & ~bits(p.good);
+}
+
+/// From lane `at` on: each of `lanes` its own triangle, the others nothing. `centre`: of the facets. Returns
+/// those where place() says nothing.
+HWY_INLINE std::uint32_t place_each(const PreparedScene::Data& data, const Vector3& centre,
+                                    const RayLanes& rays, const Id* triangle, std::uint32_t lanes,
+                                    std::size_t at, Placed& placed) {
+    const PreparedTriangle* from[kDoubles];
+    const PreparedTriangle* all = data.triangles.data();
+    const Id some = triangle[std::countr_zero(lanes)];
+    for (std::size_t k = 0; k < kDoubles; ++k) from[k] = all + (lanes >> k & 1 ? triangle[k] : some);
+    return place_own(gather_triangles(from), centre, rays, lanes, at, placed);
 }
 
 /// From lane `at` on: all see one triangle. Returns as place_each().

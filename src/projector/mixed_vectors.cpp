@@ -44,7 +44,8 @@ void include_rays(const FacetRays& facet, const SampleGrid& grid, const MixedExt
 
 }  // namespace
 
-std::vector<TileGroup> sort_mixed(const SampleGrid& grid, std::vector<MixedSample>& samples) {
+std::vector<TileGroup> sort_mixed(const SampleGrid& grid, const TileParams& params,
+                                  std::vector<MixedSample>& samples) {
     static_assert(kCell * kCell * kCell * kCell == kMixedSamples);
     if (samples.empty()) return {};
     LatticeExtent all;
@@ -52,15 +53,35 @@ std::vector<TileGroup> sort_mixed(const SampleGrid& grid, std::vector<MixedSampl
     for (const MixedSample& s : samples) all.include(walk.at(s.sample));
     const std::size_t across = static_cast<std::size_t>((all.x1 - all.x0) / (kCell * kCell) + 1),
                       down = static_cast<std::size_t>((all.y1 - all.y0) / (kCell * kCell) + 1);
-    std::vector<std::uint32_t> cell(samples.size()), next(across * down * kCell * kCell + 1, 0);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const LatticeSample at = walk.at(samples[i].sample);
-        const int x = (at.column - all.x0) / kCell, y = (at.row - all.y0) / kCell;
+    // The square of (x, y), and in it the cell next to (near_x, near_y), there and back by rows.
+    const auto cell_of = [&](int x, int y, int near_x, int near_y) {
+        const int square_x = x / (kCell * kCell), square_y = y / (kCell * kCell);
+        const int cell_x = std::clamp(near_x / kCell - square_x * kCell, 0, kCell - 1),
+                  cell_y = std::clamp(near_y / kCell - square_y * kCell, 0, kCell - 1);
         const std::size_t square =
-            static_cast<std::size_t>(y / kCell) * across + static_cast<std::size_t>(x / kCell);
-        cell[i] = static_cast<std::uint32_t>(square * kCell * kCell +
-                                             static_cast<std::size_t>(y % kCell * kCell + x % kCell));
-        ++next[cell[i] + 1];
+            static_cast<std::size_t>(square_y) * across + static_cast<std::size_t>(square_x);
+        return square * kCell * kCell +
+               static_cast<std::size_t>(cell_y * kCell + (cell_y % 2 ? kCell - 1 - cell_x : cell_x));
+    };
+    std::vector<std::uint32_t> cell(samples.size()), next(across * down * kCell * kCell + 1, 0);
+    // Samples of one facet follow each other: those of small ones are put in one cell, so that few vectors
+    // share a facet.
+    for (std::size_t first = 0, last = 0; first < samples.size(); first = last) {
+        int x_sum = 0, y_sum = 0;
+        for (; last < samples.size() && samples[last].facet == samples[first].facet; ++last) {
+            const LatticeSample at = walk.at(samples[last].sample);
+            x_sum += at.column - all.x0;
+            y_sum += at.row - all.y0;
+        }
+        const int count = static_cast<int>(last - first);
+        for (std::size_t i = first; i < last; ++i) {
+            const LatticeSample at = walk.at(samples[i].sample);
+            const int x = at.column - all.x0, y = at.row - all.y0;
+            const bool together = count <= static_cast<int>(params.together);
+            cell[i] = static_cast<std::uint32_t>(
+                cell_of(x, y, together ? x_sum / count : x, together ? y_sum / count : y));
+            ++next[cell[i] + 1];
+        }
     }
     for (std::size_t c = 1; c < next.size(); ++c) next[c] += next[c - 1];
     std::vector<MixedSample> sorted(samples.size());

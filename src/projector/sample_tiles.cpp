@@ -169,6 +169,8 @@ TileParams tile_params(std::size_t triangles) {
     TileParams params;
     const double below = 0.7 * std::sqrt(static_cast<double>(triangles));
     params.mixed_below = static_cast<std::uint32_t>(std::clamp(below, 20.0, 1000.0));
+    // Few facets in a vector are few rays to set up; a compact vector meets fewer of many triangles.
+    if (triangles > 4000) params.together = 0;
     return params;
 }
 
@@ -191,7 +193,7 @@ TilePlan plan_tiles(const RayMesh& mesh, const FacetSamples& owned, const Sample
             plan.mixed.push_back({s, static_cast<std::uint32_t>(plan.mixed_facets.size())});
         plan.mixed_facets.push_back(facet);
     }
-    plan.mixed_groups = sort_mixed(grid, plan.mixed);
+    plan.mixed_groups = sort_mixed(grid, params, plan.mixed);
     Grouping grouping(params, cutter.tiles);
     plan.tiles = grouping.in_order(cutter.tiles);
     plan.groups = std::move(grouping.groups);

@@ -87,6 +87,7 @@ struct TileParams {
     std::uint32_t group_tiles = kLanes;
     int tile_side = 64;              // samples
     std::uint32_t mixed_below = 20;  // facets of fewer samples share vectors
+    std::uint32_t together = 24;     // samples of a facet that stay together there; more, and it is spread
 };
 
 /// What draws a scene of so many triangles fastest (measured): a tile pays by the triangles that each cover
@@ -159,7 +160,8 @@ class TileMaker {
 
 /// Puts samples in an order in which neighbours on the film are together, and names the ranges that are each
 /// in a square of the lattice, with at most kMixedSamples.
-std::vector<TileGroup> sort_mixed(const SampleGrid& grid, std::vector<MixedSample>& samples);
+std::vector<TileGroup> sort_mixed(const SampleGrid& grid, const TileParams& params,
+                                  std::vector<MixedSample>& samples);
 
 /// The plan's tiles, all at once.
 SampleTiles make_sample_tiles(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,

@@ -35,6 +35,7 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
             TileParams params;
             params.tile_side = 20;
             params.mixed_below = 30;
+            params.together = side == 2 ? 0 : 24;
             const SampleTiles tiles = make_sample_tiles(mesh, owned, grid, params);
             std::vector<int> seen(grid.size(), 0);
             std::size_t misplaced = 0, outside = 0, wrong_slot = 0, foreign = 0, mixed = 0;
