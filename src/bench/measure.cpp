@@ -89,10 +89,10 @@ void explain(const RaceCourse& course, const View& view, Mismatches& found) {
     }
 }
 
-View make_view(const RaceView& view, const SampleGrid& grid) {
+View make_view(const RaceView& view, const SampleGrid& grid, std::size_t triangles) {
     View made{*view.mesh,
               *view.owned,
-              make_sample_tiles(*view.mesh, *view.owned, grid, {}),
+              make_sample_tiles(*view.mesh, *view.owned, grid, tile_params(triangles)),
               make_ray_packets(*view.mesh, *view.owned, grid),
               {},
               {},
@@ -157,7 +157,8 @@ Sides make_sides(const RaceCourse& course, const RaceParams& params, RaceResult&
         build.push_back(milliseconds([&] { PacketTracer(course.scene, options); }));
         prepare.push_back(milliseconds([&] { PreparedScene(course.scene); }));
         samples.push_back(milliseconds([&] {
-            for (const RaceView& v : course.views) make_sample_tiles(*v.mesh, *v.owned, course.grid, {});
+            for (const RaceView& v : course.views)
+                make_sample_tiles(*v.mesh, *v.owned, course.grid, tile_params(course.scene.size()));
         }));
         rays.push_back(milliseconds([&] {
             for (const RaceView& v : course.views) make_ray_packets(*v.mesh, *v.owned, course.grid);
@@ -168,7 +169,8 @@ Sides make_sides(const RaceCourse& course, const RaceParams& params, RaceResult&
     result.samples_ms = median(samples);
     result.rays_ms = median(rays);
     Sides sides{PreparedScene(course.scene), PacketTracer(course.scene, options), {}};
-    for (const RaceView& v : course.views) sides.views.push_back(make_view(v, course.grid));
+    for (const RaceView& v : course.views)
+        sides.views.push_back(make_view(v, course.grid, course.scene.size()));
     return sides;
 }
 

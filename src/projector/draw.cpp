@@ -41,6 +41,19 @@ void draw_tile_in_blocks(const KernelScene& scene, const SampleTile& tile) {
     }
 }
 
+void draw_mixed_in_blocks(const KernelScene& scene, const MixedGroup& group, std::uint32_t number) {
+    const std::uint32_t vector = group.first_vector + number;
+    const VectorSamples& own = scene.tiles->samples[vector];
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        if (!(own.valid >> k & 1)) continue;
+        Hit seen;
+        const FacetRays& facet = scene.tiles->rays[scene.tiles->lanes[group.first_lanes + number].rays[k]];
+        draw_block(*scene.data, facet, *scene.grid, std::span(&own.sample[k], 1), std::span(&seen, 1));
+        if (!scene.hits.empty()) scene.hits[own.sample[k]] = seen;
+        if (!scene.vector_hits.empty()) set_lane(scene.vector_hits[vector], k, seen);
+    }
+}
+
 /// A thread's own, kept from one call to the next.
 KernelState& own_state() {
     thread_local const std::unique_ptr<KernelState> state = std::make_unique<KernelState>();
@@ -56,6 +69,8 @@ void clear(SampleTiles& tiles) {
     tiles.tiles.clear();
     tiles.groups.clear();
     tiles.batches.clear();
+    tiles.mixed.clear();
+    tiles.lanes.clear();
     tiles.vectors.clear();
     tiles.samples.clear();
     tiles.boxes.clear();
@@ -70,11 +85,21 @@ void draw_one_batch(const KernelScene& scene, std::size_t batch, const KernelOpt
         if (left >> j & 1) draw_tile_in_blocks(scene, scene.tiles->tiles[first_tile + j]);
 }
 
+void draw_one_mixed(const KernelScene& scene, std::size_t number) {
+    const std::uint32_t left = draw_mixed(scene, number, own_state());
+    for (std::uint32_t v = 0; v < kLanes; ++v)
+        if (left >> v & 1) draw_mixed_in_blocks(scene, scene.tiles->mixed[number], v);
+}
+
 }  // namespace
 
 void draw_tiles(const KernelScene& scene, const KernelOptions& options) {
-    parallel_for(scene.tiles->batches.size(), 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t b = first; b < last; ++b) draw_one_batch(scene, b, options);
+    const std::size_t batches = scene.tiles->batches.size();
+    parallel_for(batches + scene.tiles->mixed.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t b = first; b < last; ++b) {
+            if (b < batches) draw_one_batch(scene, b, options);
+            if (b >= batches) draw_one_mixed(scene, b - batches);
+        }
     });
 }
 
@@ -86,15 +111,22 @@ void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& o
     if (!options.vectors || !options.cull)
         return draw_in_blocks(scene, mesh, owned, grid, hits, options.cull);
     // A batch's vectors are made, drawn and forgotten while they are in cache.
-    const TilePlan plan = plan_tiles(mesh, owned, grid, options.tiles);
-    parallel_for(plan.batches.size(), 1, [&](std::size_t first, std::size_t last) {
+    const TilePlan plan =
+        plan_tiles(mesh, owned, grid, options.tiles.value_or(tile_params(scene.data().size())));
+    const std::size_t batches = plan.batches.size();
+    parallel_for(batches + plan.mixed_groups.size(), 1, [&](std::size_t first, std::size_t last) {
         TileMaker maker(grid);
         SampleTiles& tiles = own_tiles();
         for (std::size_t b = first; b < last; ++b) {
             clear(tiles);
-            maker.add_batch(plan, b, tiles);
-            draw_one_batch({&scene.data(), &scene.data().leaves, &mesh, &grid, &tiles, hits, {}}, 0,
-                           options.kernel);
+            const KernelScene kernel{&scene.data(), &scene.data().leaves, &mesh, &grid, &tiles, hits, {}};
+            if (b < batches) {
+                maker.add_batch(plan, b, tiles);
+                draw_one_batch(kernel, 0, options.kernel);
+            } else {
+                maker.add_mixed(plan, b - batches, tiles);
+                draw_one_mixed(kernel, 0);
+            }
         }
     });
 }

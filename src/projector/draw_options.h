@@ -1,6 +1,8 @@
 // Switches of the exact engine that tests and benchmarks turn; none changes a bit of what it draws.
 #pragma once
 
+#include <optional>
+
 #include "projector/kernel.h"
 #include "projector/projector.h"
 #include "projector/sample_tiles.h"
@@ -11,7 +13,7 @@ struct DrawOptions {
     bool vectors = true;  // false: block by block, in double
     bool cull = true;     // false: every block tests every triangle, slowly
     KernelOptions kernel{};
-    TileParams tiles{};
+    std::optional<TileParams> tiles{};  // none: tile_params() of the scene
 };
 
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,

@@ -19,6 +19,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "projector/kernel_mixed-inl.h"
 #include "projector/kernel_resolve-inl.h"
 #include "projector/kernel_walk-inl.h"
 
@@ -26,20 +27,12 @@ HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE void begin_group(const KernelScene& scene, const TileGroup& group, KernelState& state) {
-    const SampleTile* tile = &scene.tiles->tiles[group.first];
-    state.first_lane = group.first - state.first_tile;
-    state.tiles = group.count;
+/// Of the vectors that `state` names: nothing is seen yet.
+HWY_INLINE void begin_vectors(const KernelScene& scene, std::size_t samples, KernelState& state) {
     state.group_farthest = kNever;
     store(set(kNever), state.farthest);
     state.doubts.clear();
     state.beams_made = false;
-
-    std::size_t samples = 0;
-    for (std::uint32_t i = 0; i < group.count; ++i) samples += tile[i].samples;
-    const SampleTile& last = tile[group.count - 1];
-    state.first_vector = tile[0].first_vector;
-    state.vectors = last.first_vector + last.vectors - state.first_vector;
     state.most_doubts = 4096 + 64 * samples;
     if (state.nearest.size() < state.vectors) state.nearest.resize(state.vectors);
     const SampleVector* vector = &scene.tiles->vectors[state.first_vector];
@@ -51,6 +44,20 @@ HWY_INLINE void begin_group(const KernelScene& scene, const TileGroup& group, Ke
         store(set(kNever), state.nearest[i].high);
         store_words(set_word(kNone), state.nearest[i].triangle);
     }
+}
+
+HWY_INLINE void begin_group(const KernelScene& scene, const TileGroup& group, KernelState& state) {
+    const SampleTile* tile = &scene.tiles->tiles[group.first];
+    state.first_lane = group.first - state.first_tile;
+    state.tiles = group.count;
+    state.first_vector = tile[0].first_vector;
+    std::size_t samples = 0;
+    for (std::uint32_t i = 0; i < group.count; ++i) {
+        samples += tile[i].samples;
+        state.tile_vectors[i] = tile[i].first_vector - state.first_vector;
+        state.vectors = state.tile_vectors[i + 1] = state.tile_vectors[i] + tile[i].vectors;
+    }
+    begin_vectors(scene, samples, state);
 }
 
 /// The facets' rays of a batch: their misses wait together, not one after the other.
@@ -96,6 +103,34 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
     return left;
 }
 
+/// Some vectors of a mixed group. False: they have no bounds, or too many doubts.
+HWY_INLINE bool draw_mixed_vectors(const KernelScene& scene, const MixedGroup& group, std::uint32_t first,
+                                   std::uint32_t count, KernelState& state) {
+    state.first_lane = 0;
+    state.tiles = 1;
+    state.first_vector = group.first_vector + first;
+    state.vectors = count;
+    state.tile_vectors[0] = 0;
+    state.tile_vectors[1] = count;
+    begin_vectors(scene, count * kLanes, state);
+    if (!set_up_mixed(scene, group, state)) return false;
+    walk_group(scene, LeafMode::kRays, state);
+    if (state.doubts.size() > state.most_doubts) return false;
+    resolve_mixed(scene, group, state);
+    return true;
+}
+
+std::uint32_t draw_mixed_here(const KernelScene& scene, std::size_t number, KernelState& state) {
+    const MixedGroup& group = scene.tiles->mixed[number];
+    std::uint32_t left = 0;
+    if (!draw_mixed_vectors(scene, group, 0, group.vectors, state)) {
+        for (std::uint32_t v = 0; v < group.vectors; ++v)
+            left |= draw_mixed_vectors(scene, group, v, 1, state) ? 0 : 1u << v;
+    }
+    if (!scene.vector_hits.empty()) hwy::FlushStream();
+    return left;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace trilens
 HWY_AFTER_NAMESPACE();
@@ -105,6 +140,7 @@ namespace trilens {
 namespace {
 
 HWY_EXPORT(draw_batch_here);
+HWY_EXPORT(draw_mixed_here);
 
 struct NamedTarget {
     const char* name;
@@ -118,6 +154,10 @@ constexpr NamedTarget kTargets[] = {
 std::uint32_t draw_batch(const KernelScene& scene, std::size_t batch, const KernelOptions& options,
                          KernelState& state) {
     return HWY_DYNAMIC_DISPATCH(draw_batch_here)(scene, batch, options, state);
+}
+
+std::uint32_t draw_mixed(const KernelScene& scene, std::size_t group, KernelState& state) {
+    return HWY_DYNAMIC_DISPATCH(draw_mixed_here)(scene, group, state);
 }
 
 std::vector<std::string> kernel_instruction_sets() {

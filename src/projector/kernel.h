@@ -22,6 +22,10 @@ void draw_tiles(const KernelScene& scene, const KernelOptions& options);
 std::uint32_t draw_batch(const KernelScene& scene, std::size_t batch, const KernelOptions& options,
                          KernelState& state);
 
+/// Draws one mixed group. Returns the vectors that it cannot bound (bit v: the group's vector v), whose hits
+/// are not written.
+std::uint32_t draw_mixed(const KernelScene& scene, std::size_t group, KernelState& state);
+
 /// The instruction sets that the engine is built for and this machine has, best first, as `--isa` names them;
 /// only the one that use_instruction_set chose while it holds.
 std::vector<std::string> kernel_instruction_sets();

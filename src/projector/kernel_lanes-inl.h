@@ -188,6 +188,11 @@ HWY_INLINE float least_lane(const Floats& a) {
     for (std::size_t i = 1; i < kParts; ++i) all = hn::Min(all, a.part[i]);
     return hn::GetLane(hn::MinOfLanes(kFloat, all));
 }
+HWY_INLINE float sum_of_lanes(const Floats& a) {
+    auto all = a.part[0];
+    for (std::size_t i = 1; i < kParts; ++i) all = hn::Add(all, a.part[i]);
+    return hn::GetLane(hn::SumOfLanes(kFloat, all));
+}
 /// Writes the numbers of the lanes, plus `plus`, one after the other, and returns how many there are. There
 /// is room for kLanes words.
 HWY_INLINE std::size_t list_lanes(const Mask& lanes, std::uint32_t plus, std::uint32_t* to) {

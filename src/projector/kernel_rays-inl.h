@@ -87,6 +87,17 @@ HWY_INLINE std::uint32_t triangles_in_vector(const VectorBeams& beams, std::size
     return first_lanes(leaf.count) & ~missed;
 }
 
+/// What the slab test takes of a vector's rays.
+HWY_INLINE void invert_directions(VectorRays& rays) {
+    const Floats least = set(1e-30f), one = set(1.0f);
+    for (int a = 0; a < 3; ++a) {
+        const Floats d = narrow(load_doubles(rays.direction[a])), o = narrow(load_doubles(rays.origin[a]));
+        const Floats inverse = one / choose(absolute(d) < least, least, d);
+        store(inverse, rays.inverse[a]);
+        store(o * inverse, rays.start[a]);
+    }
+}
+
 HWY_NOINLINE void make_vector_rays(const KernelScene& scene, KernelState& state, std::uint32_t vector) {
     const std::size_t j = state.tile_of_vector[vector];
     const SampleVector& samples = scene.tiles->vectors[state.first_vector + vector];
@@ -106,13 +117,7 @@ HWY_NOINLINE void make_vector_rays(const KernelScene& scene, KernelState& state,
             hn::Store(hn::Mul(linear(lanes.direction[a]), inverse), kDouble, rays.direction[a] + at);
         }
     }
-    const Floats least = set(1e-30f), one = set(1.0f);
-    for (int a = 0; a < 3; ++a) {
-        const Floats d = narrow(load_doubles(rays.direction[a])), o = narrow(load_doubles(rays.origin[a]));
-        const Floats inverse = one / choose(absolute(d) < least, least, d);
-        store(inverse, rays.inverse[a]);
-        store(o * inverse, rays.start[a]);
-    }
+    invert_directions(rays);
     state.rays_made[vector] = 1;
 }
 

@@ -146,6 +146,17 @@ HWY_INLINE TriangleLanes gather_triangles(const PreparedTriangle* const (&from)[
     return triangles;
 }
 
+/// The same triangle in every lane.
+HWY_INLINE TriangleLanes broadcast_triangle(const PreparedTriangle& triangle) {
+    TriangleLanes lanes;
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (int a = 0; a < 3; ++a)
+            lanes.number[3 * c + static_cast<std::size_t>(a)] = hn::Set(kDouble, triangle.corner[c][a]);
+    }
+    lanes.number[9] = hn::BitCast(kDouble, hn::Set(kName, triangle.name));
+    return lanes;
+}
+
 /// Where the sure hits of a tile are placed.
 struct TilePlacing {
     const KernelScene& scene;
@@ -153,19 +164,13 @@ struct TilePlacing {
     TileSpots spots;
 };
 
-/// From lane `at` on: each of `lanes` its own triangle, the others nothing. Returns those where place() says
-/// nothing.
-HWY_INLINE std::uint32_t place_each(const TilePlacing& tile, const RayLanes& rays, const Id* triangle,
-                                    std::uint32_t lanes, std::size_t at, Placed& placed) {
-    const PreparedTriangle* from[kDoubles];
-    const PreparedTriangle* all = tile.scene.data->triangles.data();
-    const Id some = triangle[std::countr_zero(lanes)];
-    for (std::size_t k = 0; k < kDoubles; ++k) from[k] = all + (lanes >> k & 1 ? triangle[k] : some);
-    const TriangleLanes own = gather_triangles(from);
+/// From lane `at` on: each of `lanes` its own triangle, the others nothing. `centre`: of the facets. Returns
+/// those where place() says nothing.
+HWY_INLINE std::uint32_t place_own(const TriangleLanes& own, const Vector3& centre, const RayLanes& rays,
+                                   std::uint32_t lanes, std::size_t at, Placed& placed) {
     Vector3 corner[3];
     for (std::size_t c = 0; c < 3; ++c)
-        corner[c] =
-            minus({own.number[3 * c], own.number[3 * c + 1], own.number[3 * c + 2]}, set3(tile.facet.centre));
+        corner[c] = minus({own.number[3 * c], own.number[3 * c + 1], own.number[3 * c + 2]}, centre);
     const PlacedLanes p = place_lanes(frame_lanes(corner), rays);
     const auto name = hn::BitCast(kName, own.number[9]);
     const auto weight = [&](int bit) HWY_ATTR {
@@ -181,6 +186,18 @@ HWY_INLINE std::uint32_t place_each(const TilePlacing& tile, const RayLanes& ray
     hn::Store(hn::IfThenElse(hn::RebindMask(kName, mask), name, hn::Set(kName, std::uint64_t{kNone})), kName,
               placed.name + at);
     return lanes & ~bits(p.good);
+}
+
+/// From lane `at` on: each of `lanes` its own triangle, the others nothing. `centre`: of the facets. Returns
+/// those where place() says nothing.
+HWY_INLINE std::uint32_t place_each(const PreparedScene::Data& data, const Vector3& centre,
+                                    const RayLanes& rays, const Id* triangle, std::uint32_t lanes,
+                                    std::size_t at, Placed& placed) {
+    const PreparedTriangle* from[kDoubles];
+    const PreparedTriangle* all = data.triangles.data();
+    const Id some = triangle[std::countr_zero(lanes)];
+    for (std::size_t k = 0; k < kDoubles; ++k) from[k] = all + (lanes >> k & 1 ? triangle[k] : some);
+    return place_own(gather_triangles(from), centre, rays, lanes, at, placed);
 }
 
 /// From lane `at` on: all see one triangle. Returns as place_each().
@@ -211,8 +228,9 @@ HWY_NOINLINE void place_sure_hits(const TilePlacing& tile, std::uint32_t vector,
         for (std::size_t at = 0; at < kLanes; at += kDoubles) {
             const std::uint32_t own = see >> at & first_lanes(kDoubles);
             if (own) {
-                bad |= place_each(tile, rays_of(tile.spots, tile.facet, samples, at), nearest.triangle + at,
-                                  own, at, placed)
+                bad |= place_each(*scene.data, set3(tile.facet.centre),
+                                  rays_of(tile.spots, tile.facet, samples, at), nearest.triangle + at, own,
+                                  at, placed)
                        << at;
             } else {
                 for (std::size_t k = at; k < at + kDoubles; ++k) set_lane(placed, k, Hit{});
@@ -263,14 +281,37 @@ HWY_INLINE void prefetch_triangles(const KernelScene& scene, const Nearest& near
     }
 }
 
-/// Writes the hits of all of the group's samples.
-HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
-    std::vector<Doubt>& doubts = state.doubts;
+/// By vector, lane and triangle.
+HWY_NOINLINE void sort_doubts(std::vector<Doubt>& doubts) {
     std::sort(doubts.begin(), doubts.end(), [](const Doubt& a, const Doubt& b) {
         if (a.vector != b.vector) return a.vector < b.vector;
         return a.lane != b.lane ? a.lane < b.lane : a.triangle < b.triangle;
     });
-    constexpr std::uint32_t kAhead = 3;
+}
+
+/// Decides the doubtful samples of a vector of the group, the next ones in the sorted list from `next` on.
+/// `facet_of`: of a lane.
+template <typename FacetOf>
+HWY_INLINE void resolve_doubts(const KernelScene& scene, const KernelState& state, std::uint32_t in_group,
+                               const FacetOf& facet_of, std::size_t& next, Placed& placed) {
+    const std::vector<Doubt>& doubts = state.doubts;
+    while (next < doubts.size() && doubts[next].vector == in_group) {
+        const std::size_t lane = doubts[next].lane;
+        std::size_t end = next;
+        while (end < doubts.size() && doubts[end].vector == in_group && doubts[end].lane == lane) ++end;
+        set_lane(placed, lane,
+                 resolve_sample(
+                     scene, facet_of(lane), scene.tiles->samples[state.first_vector + in_group].sample[lane],
+                     state.nearest[in_group].triangle[lane], std::span(doubts).subspan(next, end - next)));
+        next = end;
+    }
+}
+
+inline constexpr std::uint32_t kPlacedAhead = 3;  // vectors whose triangles are fetched meanwhile
+
+/// Writes the hits of all of the group's samples.
+HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
+    sort_doubts(state.doubts);
     std::size_t next = 0;
     for (std::uint32_t j = state.first_lane; j < state.first_lane + state.tiles; ++j) {
         const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
@@ -284,20 +325,11 @@ HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
         for (std::uint32_t i = 0; i < tile.vectors; ++i) {
             const std::uint32_t vector = tile.first_vector + i, in_group = vector - state.first_vector;
             const Nearest& nearest = state.nearest[in_group];
-            if (in_group + kAhead < state.vectors)
-                prefetch_triangles(scene, state.nearest[in_group + kAhead]);
+            if (in_group + kPlacedAhead < state.vectors)
+                prefetch_triangles(scene, state.nearest[in_group + kPlacedAhead]);
             place_sure_hits(placing, vector, nearest, state.cache, placed);
-            while (next < doubts.size() && doubts[next].vector == in_group) {
-                std::size_t end = next;
-                while (end < doubts.size() && doubts[end].vector == in_group &&
-                       doubts[end].lane == doubts[next].lane)
-                    ++end;
-                const std::size_t lane = doubts[next].lane;
-                set_lane(placed, lane,
-                         resolve_sample(scene, facet, scene.tiles->samples[vector].sample[lane],
-                                        nearest.triangle[lane], std::span(doubts).subspan(next, end - next)));
-                next = end;
-            }
+            resolve_doubts(
+                scene, state, in_group, [&](std::size_t) -> const FacetRays& { return facet; }, next, placed);
             write_hits(scene, vector, placed);
         }
     }

@@ -113,6 +113,12 @@ struct alignas(64) VectorRays {
     float inverse[3][kLanes], start[3][kLanes];
 };
 
+/// The rays of a mixed vector's samples as FacetRays::at gives them, and their facets' centres.
+struct alignas(64) MixedRays {
+    double centre[3][kLanes];  // world frame
+    double origin[3][kLanes], direction[3][kLanes], weight[kLanes];
+};
+
 /// Beams around 16 vectors.
 struct alignas(64) VectorBeams {
     float plane[4][3][kLanes], offset[4][kLanes];  // positions from the tree's centre
@@ -148,11 +154,13 @@ struct KernelState {
     std::vector<std::uint32_t> pairs;
     std::vector<VectorRays> rays;
     std::vector<std::uint8_t> rays_made, tile_of_vector;
+    std::vector<MixedRays> mixed;  // by vector of the group
     std::vector<VectorBeams> beams;
     bool beams_made = false;
     std::uint32_t first_tile = 0;             // of the batch
     std::uint32_t first_lane = 0, tiles = 0;  // the group's lanes
     std::uint32_t first_vector = 0, vectors = 0;
+    std::array<std::uint32_t, kLanes + 1> tile_vectors{};  // where the tiles' vectors begin, in the group
     std::size_t most_doubts = 0;
     FrameCache cache;
 };

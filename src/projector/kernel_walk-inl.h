@@ -115,6 +115,19 @@ HWY_INLINE AlongAxis measure_along(const HullRays& rays, const double* axis) {
     return {largest_of(speed), largest_of(start), least_of(cosine)};
 }
 
+/// Two directions square to the unit vector `axis` and to each other: the coordinate axis where it is
+/// smallest, made square to it, and their product. At least 0.8 long, at most 1.
+HWY_INLINE void directions_across(const double (&axis)[3], double (&across)[2][3]) {
+    const int least = std::fabs(axis[0]) <= std::fabs(axis[1])
+                          ? (std::fabs(axis[0]) <= std::fabs(axis[2]) ? 0 : 2)
+                          : (std::fabs(axis[1]) <= std::fabs(axis[2]) ? 1 : 2);
+    for (int a = 0; a < 3; ++a) across[0][a] = (a == least ? 1 : 0) - axis[least] * axis[a];
+    for (int a = 0; a < 3; ++a) {
+        const int b = (a + 1) % 3, c = (a + 2) % 3;
+        across[1][a] = axis[b] * across[0][c] - axis[c] * across[0][b];
+    }
+}
+
 /// A pair of planes that hold the rays' slopes to `side`.
 HWY_INLINE void add_slopes(const HullRays& rays, const double* side, const double* axis, double cosine,
                            GroupBeam& beam) {
@@ -181,16 +194,8 @@ HWY_NOINLINE void make_group_beam(const KernelScene& scene, const KernelState& s
         }
         return;
     }
-    // Across the axis: where it is smallest, made square to it.
-    const int least = std::fabs(axis[0]) <= std::fabs(axis[1])
-                          ? (std::fabs(axis[0]) <= std::fabs(axis[2]) ? 0 : 2)
-                          : (std::fabs(axis[1]) <= std::fabs(axis[2]) ? 1 : 2);
     double across[2][3];
-    for (int a = 0; a < 3; ++a) across[0][a] = (a == least ? 1 : 0) - axis[least] * axis[a];
-    for (int a = 0; a < 3; ++a) {
-        const int b = (a + 1) % 3, c = (a + 2) % 3;
-        across[1][a] = axis[b] * across[0][c] - axis[c] * across[0][b];
-    }
+    directions_across(axis, across);
     for (const double* side : {across[0], across[1]}) add_slopes(rays, side, axis, along.cosine, beam);
 }
 
@@ -216,18 +221,16 @@ HWY_INLINE std::uint32_t reached_children(const GroupBeam& beam, const WideNode&
 /// What no sample of the group can see is farther than this.
 HWY_NOINLINE void refresh_farthest(const KernelScene& scene, KernelState& state) {
     state.group_farthest = -kNever;
-    for (std::uint32_t j = state.first_lane; j < state.first_lane + state.tiles; ++j) {
-        const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
-        const std::uint32_t first = tile.first_vector - state.first_vector;
+    for (std::uint32_t k = 0; k < state.tiles; ++k) {
         Floats high = set(-kNever);
-        for (std::uint32_t i = first; i < first + tile.vectors; ++i) {
+        for (std::uint32_t i = state.tile_vectors[k]; i < state.tile_vectors[k + 1]; ++i) {
             const Mask valid = mask_of(scene.tiles->samples[state.first_vector + i].valid);
             const Floats own = choose(valid, load(state.nearest[i].high), set(-kNever));
             high = largest(high, own);
             if (state.beams_made) state.beams[i / kLanes].farthest[i % kLanes] = largest_lane(own);
         }
-        state.farthest[j] = largest_lane(high);
-        state.group_farthest = std::max(state.group_farthest, state.farthest[j]);
+        state.farthest[state.first_lane + k] = largest_lane(high);
+        state.group_farthest = std::max(state.group_farthest, state.farthest[state.first_lane + k]);
     }
 }
 
@@ -270,7 +273,7 @@ HWY_NOINLINE void walk_group(const KernelScene& scene, LeafMode mode, KernelStat
     constexpr int kLeavesBetweenLooks = 8, kLooksBeforeBeams = 3;  // measured
     constexpr std::size_t kFetchedAhead = 2;                       // likewise
     const LeafTree& tree = *scene.tree;
-    int leaves = 0, looks = 0;
+    int leaves = 0, looks = state.beams_made ? 1 : 0;
     state.stack.clear();
     if (!tree.empty()) state.stack.push_back({-kNever, tree.root, {0, 0, 0}, {kNever, kNever, kNever}});
     while (!state.stack.empty()) {

@@ -23,20 +23,43 @@ class TileCutter {
     int side_;
 };
 
+/// Of a tile's rays, where it can be: beyond it conics are too bent to be bounded well (measured).
+constexpr double kTileSpread = 0.2;
+
+/// How far apart the unit directions of a facet's corner rays are.
+double spread_of(const FacetOnScreen& facet) {
+    const IdTriple& corner = facet.mesh.facets[facet.facet];
+    double spread = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 a = normalize_or_zero(facet.mesh.rays[corner[k]].direction),
+                   b = normalize_or_zero(facet.mesh.rays[corner[(k + 1) % 3]].direction);
+        spread = std::max(spread, length(a - b));
+    }
+    return spread;
+}
+
 void TileCutter::add_facet(const FacetOnScreen& facet, std::span<const Id> samples) {
     LatticeExtent all;
     LatticeWalk over_all(grid_);
     for (const Id s : samples) all.include(over_all.at(s));
+    // Most facets: nothing to divide, whatever their spread.
     if (all.x1 - all.x0 < side_ && all.y1 - all.y0 < side_) {
         tiles.push_back({facet, samples, all, true});
         return;
     }
-    const int across = (all.x1 - all.x0) / side_ + 1, down = (all.y1 - all.y0) / side_ + 1;
-    std::vector<std::uint32_t> column_cell(static_cast<std::size_t>(all.x1 - all.x0) + 1);
-    for (std::size_t x = 0; x < column_cell.size(); ++x)
-        column_cell[x] = static_cast<std::uint32_t>(x) / static_cast<std::uint32_t>(side_);
+    // Even parts; more where they stay half as wide as they may be and the rays spread.
+    const double spread = spread_of(facet);
+    const auto parts = [&](int length) {
+        const int wanted = static_cast<int>(std::min(1e4, std::ceil(spread / kTileSpread)));
+        return std::max((length + side_ - 1) / side_, std::min(wanted, 2 * length / side_));
+    };
+    const int width = all.x1 - all.x0 + 1, height = all.y1 - all.y0 + 1;
+    const int across = parts(width), down = parts(height);
+    std::vector<std::uint32_t> column_cell(static_cast<std::size_t>(width));
+    for (int x = 0; x < width; ++x)
+        column_cell[static_cast<std::size_t>(x)] = static_cast<std::uint32_t>(x * across / width);
     const auto cell = [&](const LatticeSample& s) {
-        return static_cast<std::size_t>((s.row - all.y0) / side_ * across) +
+        return static_cast<std::size_t>((s.row - all.y0) * down / height * across) +
                column_cell[static_cast<std::size_t>(s.column - all.x0)];
     };
     std::vector<std::size_t> start(static_cast<std::size_t>(across * down) + 1, 0);
@@ -142,18 +165,35 @@ std::vector<TileGroup> make_batches(std::span<const TileGroup> groups) {
 
 }  // namespace
 
+TileParams tile_params(std::size_t triangles) {
+    TileParams params;
+    const double below = 0.7 * std::sqrt(static_cast<double>(triangles));
+    params.mixed_below = static_cast<std::uint32_t>(std::clamp(below, 20.0, 1000.0));
+    // Few facets in a vector are few rays to set up; a compact vector meets fewer of many triangles.
+    if (triangles > 4000) params.together = 0;
+    return params;
+}
+
 TilePlan plan_tiles(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                     const TileParams& params) {
     TRILENS_CHECK(params.tile_side >= 1 && params.tile_side <= kLargestTile,
                   "a tile's slots must fit 16 bits");
     TRILENS_CHECK(params.group_tiles >= 1 && params.group_tiles <= kLanes, "a group's tiles are lanes");
+    TilePlan plan;
     TileCutter cutter(grid, params.tile_side);
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         if (owned.of(f).empty() || !mesh.has_rays(f)) continue;
         const FacetOnScreen facet{mesh, f, facet_weights(mesh, f)};
-        if (!facet.weights.edge_on) cutter.add_facet(facet, owned.of(f));
+        if (facet.weights.edge_on) continue;
+        if (owned.of(f).size() >= params.mixed_below) {
+            cutter.add_facet(facet, owned.of(f));
+            continue;
+        }
+        for (const Id s : owned.of(f))
+            plan.mixed.push_back({s, static_cast<std::uint32_t>(plan.mixed_facets.size())});
+        plan.mixed_facets.push_back(facet);
     }
-    TilePlan plan;
+    plan.mixed_groups = sort_mixed(grid, params, plan.mixed);
     Grouping grouping(params, cutter.tiles);
     plan.tiles = grouping.in_order(cutter.tiles);
     plan.groups = std::move(grouping.groups);
@@ -171,6 +211,7 @@ SampleTiles make_sample_tiles(const RayMesh& mesh, const FacetSamples& owned, co
     tiles.tiles.reserve(plan.tiles.size());
     TileMaker maker(grid);
     for (std::size_t b = 0; b < plan.batches.size(); ++b) maker.add_batch(plan, b, tiles);
+    for (std::size_t g = 0; g < plan.mixed_groups.size(); ++g) maker.add_mixed(plan, g, tiles);
     return tiles;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -50,12 +51,30 @@ struct TileGroup {
     std::uint32_t first = 0, count = 0;  // tiles, at most kLanes
 };
 
+/// Neighbouring samples of several facets, of which each has so few that a tile for each would waste lanes:
+/// vectors whose lanes have facets of their own. The bounds are over all samples, with rays scaled to weight
+/// 1 and positions from `centre`.
+struct MixedGroup {
+    std::uint32_t first_vector = 0, vectors = 0;  // at most kLanes
+    std::uint32_t first_lanes = 0;                // of its first vector, in SampleTiles::lanes
+    std::uint32_t first_rays = 0, facets = 0;     // in SampleTiles::rays
+    Vec3 centre{0};                               // world frame
+    double origin_terms = 0, direction_terms = 0, weight_terms = 0;  // sums of absolute terms
+};
+
+/// The facets of a mixed vector's samples, in SampleTiles::rays.
+struct alignas(64) LaneFacets {
+    Id rays[kLanes];
+};
+
 struct SampleTiles {
-    std::vector<FacetRays> rays;  // of the facets that have tiles, some several times
+    std::vector<FacetRays> rays;  // of the facets that have samples here, some several times
     std::vector<SampleTile> tiles;
     std::vector<TileGroup> groups;   // of all tiles, in order
     std::vector<TileGroup> batches;  // of groups: consecutive ones with at most kLanes tiles in all
-    std::vector<SampleVector> vectors;
+    std::vector<MixedGroup> mixed;
+    std::vector<LaneFacets> lanes;       // by vector of a mixed group
+    std::vector<SampleVector> vectors;   // of mixed groups: columns and rows from the window's corner
     std::vector<VectorSamples> samples;  // by vector
     std::vector<VectorBoxes> boxes;
     std::vector<std::uint16_t> slot;  // by cell: 16 vector + lane inside the tile, or kNoSlot
@@ -66,10 +85,18 @@ inline constexpr std::uint16_t kNoSlot = 65535;
 struct TileParams {
     std::uint32_t group_samples = 1000;  // groups grow up to this
     std::uint32_t group_tiles = kLanes;
-    int tile_side = 96;  // samples
+    int tile_side = 64;              // samples
+    std::uint32_t mixed_below = 20;  // facets of fewer samples share vectors
+    std::uint32_t together = 24;     // samples of a facet that stay together there; more, and it is spread
 };
 
+/// What draws a scene of so many triangles fastest (measured): a tile pays by the triangles that each cover
+/// many of its samples.
+TileParams tile_params(std::size_t triangles);
+
 inline constexpr int kLargestTile = 240;  // whose slots fit 16 bits
+
+inline constexpr std::size_t kMixedSamples = kLanes * kLanes;  // of a group
 
 /// A tile before its vectors are made: the samples, ascending, and what they span.
 struct RoughTile {
@@ -79,16 +106,31 @@ struct RoughTile {
     bool whole_facet = false;
 };
 
+/// A sample of a facet that shares vectors.
+struct MixedSample {
+    Id sample = 0;
+    std::uint32_t facet = 0;  // in TilePlan::mixed_facets
+};
+
 /// What must be known of all samples before any is drawn. Refers to the mesh and its samples.
 struct TilePlan {
     std::vector<RoughTile> tiles;            // in the groups' order
     std::vector<TileGroup> groups, batches;  // as in SampleTiles
     std::vector<std::vector<Id>> binned;     // what tiles of facets in several tiles refer to
+    std::vector<FacetOnScreen> mixed_facets;
+    std::vector<MixedSample> mixed;       // neighbours on the film together
+    std::vector<TileGroup> mixed_groups;  // of these samples
 };
 
 /// Of all samples that `owned` gives to facets with rays and an area on the screen.
 TilePlan plan_tiles(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                     const TileParams& params);
+
+/// A facet's samples in a mixed group: where they lie, and the smallest weight (FacetRays') of any.
+struct MixedExtent {
+    LatticeExtent extent;
+    double least_weight = std::numeric_limits<double>::infinity();
+};
 
 /// Makes the tiles of one batch after the other, with tables of its own that are kept in between.
 class TileMaker {
@@ -97,6 +139,8 @@ class TileMaker {
 
     /// Appends the plan's batch to `tiles`.
     void add_batch(const TilePlan& plan, std::size_t batch, SampleTiles& tiles);
+    /// Appends one of the plan's mixed groups.
+    void add_mixed(const TilePlan& plan, std::size_t group, SampleTiles& tiles);
 
   private:
     void add_tile(const RoughTile& rough, SampleTiles& tiles);
@@ -110,7 +154,14 @@ class TileMaker {
     std::vector<int> first_column_, last_column_;  // by row of the tile
     std::vector<std::int32_t> column_, row_;       // in the order of vectors
     std::vector<Id> sample_;                       // likewise
+    std::vector<std::uint32_t> mixed_facets_;      // of a group, in TilePlan::mixed_facets, ascending
+    std::vector<MixedExtent> mixed_extents_;       // likewise, of their samples in the group
 };
+
+/// Puts samples in an order in which neighbours on the film are together, and names the ranges that are each
+/// in a square of the lattice, with at most kMixedSamples.
+std::vector<TileGroup> sort_mixed(const SampleGrid& grid, const TileParams& params,
+                                  std::vector<MixedSample>& samples);
 
 /// The plan's tiles, all at once.
 SampleTiles make_sample_tiles(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,

@@ -1,6 +1,7 @@
 // Tiles, vectors and groups: every owned sample once, where the tables say it is.
 #include "projector/sample_tiles.h"
 
+#include <algorithm>
 #include <map>
 
 #include "base/rasterize.h"
@@ -33,9 +34,14 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
             const FacetSamples owned = rasterize_facets(mesh, grid);
             TileParams params;
             params.tile_side = 20;
+            params.mixed_below = 30;
+            params.together = side == 2 ? 0 : 24;
             const SampleTiles tiles = make_sample_tiles(mesh, owned, grid, params);
             std::vector<int> seen(grid.size(), 0);
-            std::size_t misplaced = 0, outside = 0, wrong_slot = 0, foreign = 0;
+            std::size_t misplaced = 0, outside = 0, wrong_slot = 0, foreign = 0, mixed = 0;
+            std::vector<std::size_t> owner(grid.size(), 0);
+            for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+                for (const Id s : owned.of(f)) owner[s] = f;
             for (const SampleTile& tile : tiles.tiles) {
                 CHECK(tile.width <= params.tile_side);
                 CHECK(tile.height <= params.tile_side);
@@ -63,6 +69,37 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
                     }
                 }
             }
+            for (const MixedGroup& group : tiles.mixed) {
+                CHECK(group.vectors <= kLanes);
+                // Near each other, however few they are.
+                float least = 1e9f, most = 0;
+                for (std::uint32_t v = group.first_vector; v < group.first_vector + group.vectors; ++v) {
+                    least =
+                        std::min(least, *std::min_element(tiles.vectors[v].u, tiles.vectors[v].u + kLanes));
+                    most = std::max(most, *std::max_element(tiles.vectors[v].u, tiles.vectors[v].u + kLanes));
+                }
+                CHECK(most - least < static_cast<float>(kLanes));
+                for (std::uint32_t v = 0; v < group.vectors; ++v) {
+                    const SampleVector& vector = tiles.vectors[group.first_vector + v];
+                    const VectorSamples& ids = tiles.samples[group.first_vector + v];
+                    for (std::size_t k = 0; k < kLanes; ++k) {
+                        const Vec2 place =
+                            (Vec2(vector.u[k], vector.v[k]) + 0.5) / double(side) + Vec2(grid.x0, grid.y0);
+                        misplaced += length(place - grid.position(ids.sample[k])) > 1e-9;
+                        if (!(ids.valid >> k & 1)) continue;
+                        ++seen[ids.sample[k]];
+                        ++mixed;
+                        // The rays of a facet that owns the sample: the same bits as its own.
+                        const FacetRays& rays = tiles.rays[tiles.lanes[group.first_lanes + v].rays[k]];
+                        const SampleRay ray = rays.at(grid.position(ids.sample[k]));
+                        const FacetRays own = make_facet_rays(
+                            {mesh, owner[ids.sample[k]], facet_weights(mesh, owner[ids.sample[k]])});
+                        foreign += ray.origin != own.at(grid.position(ids.sample[k])).origin ||
+                                   rays.screen != own.screen || rays.centre != own.centre;
+                    }
+                }
+            }
+            CHECK((mixed > 0) == (cells == 40));
             CHECK(misplaced == 0);
             CHECK(outside == 0);
             CHECK(wrong_slot == 0);
@@ -78,7 +115,8 @@ TEST_CASE("groups and batches hold every tile once, within their limits, as one 
     const SampleGrid grid{0, 0, 200, 150, 1};
     const RayMesh mesh = flat_mesh(grid, 23);
     const FacetSamples owned = rasterize_facets(mesh, grid);
-    const TileParams params;
+    TileParams params;
+    params.mixed_below = 0;
     const SampleTiles tiles = make_sample_tiles(mesh, owned, grid, params);
     REQUIRE(tiles.groups.size() > 10);
     std::uint32_t next_tile = 0, next_group = 0, next_vector = 0;

@@ -1,5 +1,5 @@
-// The vector engine against the plain one: the same hits, bit for bit, in every leaf mode and instruction
-// set.
+// The vector engine against the plain one: the same hits, bit for bit, in every leaf mode, in tiles and
+// in vectors of mixed facets, and with every instruction set.
 #include <algorithm>
 
 #include "base/rasterize.h"
@@ -41,13 +41,20 @@ void compare(const Case& c, const DrawOptions& options, Tally& tally) {
     }
 }
 
-DrawOptions with(LeafMode mode) {
+DrawOptions with(LeafMode mode, std::uint32_t mixed_below) {
     DrawOptions options;
     options.kernel.leaf_mode = mode;
+    options.tiles.emplace().mixed_below = mixed_below;
     return options;
 }
 
-constexpr LeafMode kModes[] = {LeafMode::kCheapest, LeafMode::kTriangles, LeafMode::kFacets, LeafMode::kRays};
+/// Every leaf mode with tiles alone, all samples in vectors of mixed facets, and what is done by default.
+const std::vector<DrawOptions>& all_ways() {
+    static const std::vector<DrawOptions> ways{with(LeafMode::kCheapest, 0),    with(LeafMode::kTriangles, 0),
+                                               with(LeafMode::kFacets, 0),      with(LeafMode::kRays, 0),
+                                               with(LeafMode::kRays, 1u << 30), DrawOptions{}};
+    return ways;
+}
 
 /// Cells x cells quads over the film, a bowed mirror around the frame's origin.
 RayMesh bowed_mesh(const SampleGrid& grid, const Frame& frame, int cells) {
@@ -80,7 +87,7 @@ TriangleScene bumpy_room(const Frame& frame, int cells) {
 
 TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens of every kind") {
     Random random(21);
-    for (const LeafMode mode : kModes) {
+    for (const DrawOptions& way : all_ways()) {
         Tally tally;
         for (int i = 0; i < 400; ++i) {
             const int x0 = random.below(2000);
@@ -91,10 +98,12 @@ TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens
                 random_facet(random, grid, frame, static_cast<Rays>(i % 5), static_cast<Screen>(i / 5 % 4));
             const TriangleScene scene = random_triangles(random, frame, 1 + random.below(300));
             const bool outside = i % 7 == 0;
-            compare({scene, mesh, grid, outside ? all_samples(grid) : rasterize_facets(mesh, grid)},
-                    with(mode), tally);
+            compare({scene, mesh, grid, outside ? all_samples(grid) : rasterize_facets(mesh, grid)}, way,
+                    tally);
         }
-        INFO("mode " << static_cast<int>(mode) << " samples " << tally.samples << " seen " << tally.seen);
+        INFO("mode " << static_cast<int>(way.kernel.leaf_mode) << " mixed below "
+                     << (way.tiles ? way.tiles->mixed_below : 0) << " samples " << tally.samples << " seen "
+                     << tally.seen);
         CHECK(tally.different == 0);
         CHECK(tally.seen > 50000);
     }
@@ -102,7 +111,7 @@ TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens
 
 TEST_CASE("the vector engine draws the plain engine's bits through many facets, large and small") {
     Random random(22);
-    for (const LeafMode mode : kModes) {
+    for (const DrawOptions& way : all_ways()) {
         Tally tally;
         for (const int cells : {1, 3, 9, 30}) {
             for (const int room : {1, 5, 20}) {
@@ -110,10 +119,11 @@ TEST_CASE("the vector engine draws the plain engine's bits through many facets, 
                 const Frame frame = random_frame(random);
                 const RayMesh mesh = bowed_mesh(grid, frame, cells);
                 const TriangleScene scene = bumpy_room(frame, room);
-                compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, with(mode), tally);
+                compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, way, tally);
             }
         }
-        INFO("mode " << static_cast<int>(mode));
+        INFO("mode " << static_cast<int>(way.kernel.leaf_mode) << " mixed below "
+                     << (way.tiles ? way.tiles->mixed_below : 0));
         CHECK(tally.different == 0);
         CHECK(tally.seen == tally.samples);
     }
@@ -128,11 +138,11 @@ TEST_CASE("every instruction set draws the same bits") {
     for (const std::string& set : sets) {
         REQUIRE(use_instruction_set(set));
         Tally tally;
-        for (const LeafMode mode : kModes) {
+        for (const DrawOptions& way : all_ways()) {
             const Frame frame = random_frame(random);
             const RayMesh mesh = bowed_mesh(grid, frame, 8);
             const TriangleScene scene = random_triangles(random, frame, 2000);
-            compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, with(mode), tally);
+            compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, way, tally);
         }
         INFO(set);
         CHECK(tally.different == 0);
@@ -144,7 +154,7 @@ TEST_CASE("every instruction set draws the same bits") {
 TEST_CASE(
     "no wrong pixel: slivers, needles, coincident and edge-on triangles, far coordinates and all scales") {
     Random random(24);
-    for (const LeafMode mode : kModes) {
+    for (const DrawOptions& way : all_ways()) {
         Tally tally;
         for (int i = 0; i < 120; ++i) {
             const SampleGrid grid{0, 0, 48, 40, 1};
@@ -171,9 +181,11 @@ TEST_CASE(
                 const double lean = random.log_uniform(1e-12, 1);
                 add_triangle(scene, frame(Vec3(0, -4, 0)), frame(Vec3(lean, 4, 0)), frame(Vec3(0, 0, 9)));
             }
-            compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, with(mode), tally);
+            compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, way, tally);
         }
-        INFO("mode " << static_cast<int>(mode) << " samples " << tally.samples << " seen " << tally.seen);
+        INFO("mode " << static_cast<int>(way.kernel.leaf_mode) << " mixed below "
+                     << (way.tiles ? way.tiles->mixed_below : 0) << " samples " << tally.samples << " seen "
+                     << tally.seen);
         CHECK(tally.different == 0);
         CHECK(tally.seen > 50000);
     }
