@@ -7,50 +7,16 @@
 #include <span>
 
 #include "paths/film_reach.h"
+#include "paths/same_histories.h"
 
 namespace trilens {
 namespace {
-
-/// Paths fainter than followed at the centre are followed elsewhere, so that one that is just above the limit
-/// at the centre is found there too; one far above it that the centre lacks is another history.
-constexpr double kFainter = 1.0 / 8, kMuchLight = 8;
 
 struct Point {
     Look* look = nullptr;
     Vec3 screen{0}, chord{0};
     Id shared = kNone;
 };
-
-using Segments = std::vector<PathSegment>;
-
-/// For each of `histories` its place in `segments`; empty where one is missing.
-std::vector<std::size_t> matched(const Segments& histories, const Segments& segments) {
-    std::vector<std::size_t> found;
-    for (const PathSegment& wanted : histories) {
-        const Id parent = wanted.parent == kNone ? kNone : static_cast<Id>(found[wanted.parent]);
-        const auto same = std::find_if(segments.begin(), segments.end(), [&](const PathSegment& one) {
-            return one.parent == parent && one.step == wanted.step && one.colours == wanted.colours &&
-                   one.medium == wanted.medium && one.ends == wanted.ends &&
-                   one.principal == wanted.principal;
-        });
-        if (same == segments.end()) return {};
-        found.push_back(static_cast<std::size_t>(same - segments.begin()));
-    }
-    return found;
-}
-
-double largest(const Vec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
-
-/// Whether nothing but the matched ones carries much light.
-bool covers(const std::vector<std::size_t>& match, const Segments& segments) {
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-        if (std::find(match.begin(), match.end(), i) != match.end()) continue;
-        if (segments[i].principal || largest(segments[i].weight) > kMuchLight * kLeastWeight) return false;
-    }
-    return true;
-}
 
 class Divider {
   public:

@@ -76,6 +76,10 @@ inline Vec3 child_weights(const Vec3& weights, int child) {
     return of_child;
 }
 
+/// Paths this much fainter than followed at the centre are followed elsewhere, so that one that is just above
+/// the limit at the centre is found there too.
+inline constexpr double kFainter = 1.0 / 8;
+
 DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, const DivideParams& params);
 
 /// A facet that is traced, no part of it looked at; by its corners' homogeneous screen positions.

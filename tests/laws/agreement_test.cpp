@@ -66,7 +66,7 @@ TEST_CASE("projector and Embree agree over whole paths: every end of every sampl
 
 TEST_CASE("the same through prism, lenses, rings and a glass of wine", "[laws][paths]") {
     for (const std::string name :
-         {"prism", "plano-convex", "meniscus", "glass-torus", "mirror-torus", "wine-glass"})
+         {"prism", "plano-convex", "meniscus", "glass-torus", "mirror-torus", "wine-glass", "under-water"})
         for (const int n : {1, 2, 8})
             check_agreement(name, n, *shipped_world("paths/" + name, n, 160, 120), true);
 }

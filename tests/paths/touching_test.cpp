@@ -1,4 +1,5 @@
 // Optics that touch exactly: each surface is met once, whatever rounding says.
+#include <algorithm>
 #include <cmath>
 
 #include "intersect/random_scene.h"
@@ -133,4 +134,38 @@ TEST_CASE("a table under a slab that lies on it is seen through the slab by ever
         REQUIRE(end->hit.seen());
         CHECK(end->ray.origin.y + end->hit.t * end->ray.direction.y == Approx(kTouch).margin(1e-12));
     }
+}
+
+TEST_CASE("paths end where a body lies on an object, asked for objects or not, and nowhere else") {
+    Stage stage;
+    stage.add_body(make_box({-9, kTouch, -9}, {9, 0.7, 9}), glass_of(kUpper));
+    TriangleScene table;  // under half of the slab, and a block above the other half's bottom
+    table.points = {{-9, kTouch, -9}, {0, kTouch, -9}, {0, kTouch, 9}, {-9, kTouch, 9},
+                    {0.01, 0.5, -9},  {9, 0.5, -9},    {9, 0.5, 9},    {0.01, 0.5, 9}};
+    add_triangle(table, {0, 2, 1}, 0, 0);
+    add_triangle(table, {0, 3, 2}, 0, 1);
+    add_triangle(table, {4, 6, 5}, 1, 0);
+    add_triangle(table, {4, 7, 6}, 1, 1);
+    const Tracer tracer(table);
+    stage.world.objects = &tracer;
+    Random random(85);
+    int lies = 0, hangs = 0;
+    for (int i = 0; i < 300; ++i) {
+        const Vec3 from(random.uniform(-1, 1), random.uniform(1, 3), random.uniform(-1, 1));
+        const Vec3 direction = normalize(Vec3(random.uniform(-2, 2), kTouch, random.uniform(-2, 2)) - from);
+        const auto paths = stage.follow(from, direction);
+        REQUIRE(paths);
+        const auto entered =
+            std::find_if(paths->segments.begin(), paths->segments.end(), [](const PathSegment& segment) {
+                return segment.parent == kNone && segment.step.event == Event::kTransmit;
+            });
+        REQUIRE(entered != paths->segments.end());
+        const double bottom = (kTouch - entered->ray.origin.y) / entered->ray.direction.y;
+        const bool on_table = entered->ray.origin.x + bottom * entered->ray.direction.x < 0;
+        ++(on_table ? lies : hangs);
+        CHECK(entered->ends == on_table);
+        CHECK((end_with(*paths, through({0})) == &*entered) == on_table);
+    }
+    CHECK(lies > 50);
+    CHECK(hangs > 50);
 }

@@ -1,0 +1,18 @@
+// Whether the paths from two places have the same histories.
+#pragma once
+
+#include <vector>
+
+#include "paths/follow.h"
+
+namespace trilens {
+
+/// For each of `histories` its place in `segments`: the same steps, colours, media and end; empty where one
+/// is missing.
+std::vector<std::size_t> matched(const std::vector<PathSegment>& histories,
+                                 const std::vector<PathSegment>& segments);
+
+/// Whether no principal path and none that carries much light is left out of `match`.
+bool covers(const std::vector<std::size_t>& match, const std::vector<PathSegment>& segments);
+
+}  // namespace trilens
