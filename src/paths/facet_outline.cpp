@@ -130,6 +130,7 @@ OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
         node.mesh = mesh;
         node.ends.assign(facets, 1);
         node.principal.assign(facets, 1);
+        node.touches.assign(facets, 0);
         node.next.assign(mesh.rays.size(), kInfinity);
         node.weight.assign(mesh.rays.size(), Vec3(1));
         return node;

@@ -81,6 +81,7 @@ void OpticPaths::complete_nodes() {
         node.mesh.facets.resize(leaves_.size(), {kNone, kNone, kNone});
         node.ends.resize(leaves_.size(), 1);
         node.principal.resize(leaves_.size(), 0);
+        node.touches.resize(leaves_.size(), 0);
     }
 }
 

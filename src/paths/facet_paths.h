@@ -43,6 +43,7 @@ struct PathNode {
     RayMesh mesh;            // facet l: leaf l; {kNone, kNone, kNone}: no such path there
     std::vector<char> ends;  // per leaf: no other optic follows
     std::vector<char> principal;  // per leaf: see PathSegment
+    std::vector<char> touches;    // per leaf: an object lies on the next optic, at its middle
     std::vector<double> next;     // per corner: t of the next optic; infinity: none
     std::vector<Vec3> weight;     // per corner: see PathSegment::weight
 };
@@ -160,6 +161,7 @@ class OpticPaths {
     void divide_batch_by_error(std::vector<FittedLeaf> open);
     double predicted(const FittedLeaf& open) const;
     Id node_of(Id parent, const PathSegment& segment);
+    bool touches_object(const FacetPart& part, std::size_t history) const;
 
     Looking looking_;
     const SurfaceGrid* grid_ = nullptr;  // null on the film

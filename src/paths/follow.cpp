@@ -12,6 +12,9 @@ namespace {
 /// for nothing else.
 constexpr std::size_t kMostSteps = 256;
 
+/// So often looks go on where an optic lies on an object.
+constexpr int kMostRests = 2;
+
 double largest(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
@@ -29,6 +32,7 @@ struct Pending {
     Id parent = kNone;
     Path path = Path::kReflect;
     bool principal = true;
+    int rested = 0;  // it came so often to where an optic lies on an object
     std::uint16_t depth = 0;
     std::size_t steps = 1;
     Vec3 point{0};
@@ -127,7 +131,10 @@ void Follower::run(const Pending& from) {
         else
             segment.hit = {};
     }
-    if (next && lies_on_object(world_, segment.ray, *next)) next.reset();
+    // Where rays are looked at for others beside them, what would follow tells them apart: so it is
+    // followed, but not for ever.
+    const bool rests = next && lies_on_object(world_, segment.ray, *next);
+    if (rests && from.rested >= kMostRests) next.reset();
     if (next && (from.depth >= world_.max_depth || from.steps >= kMostSteps)) {
         followed_.cut.too_deep += largest(light);
         if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
@@ -136,7 +143,10 @@ void Follower::run(const Pending& from) {
     if (next) segment.next = next->distance;
     segment.ends = !next;
     followed_.segments.push_back(segment);
-    if (next) go_on(from, static_cast<Id>(followed_.segments.size() - 1), *next);
+    if (!next) return;
+    Pending on = from;
+    on.rested = from.rested + rests;
+    go_on(on, static_cast<Id>(followed_.segments.size() - 1), *next);
 }
 
 FollowedPaths Follower::follow(const PathStart& begin) {

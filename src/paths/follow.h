@@ -56,7 +56,9 @@ struct PathStart {
 };
 
 /// Follows a ray from its first meeting with an optic. Segments of depth world.max_depth meet no further
-/// optic. Where the next optic lies on one of world.objects, to NextOptic::touch, the segment ends.
+/// optic. Where an optic lies on one of world.objects, to NextOptic::touch, nothing goes on if objects are
+/// asked for; else, for what would follow tells rays apart, paths go on at two such places and end at the
+/// third.
 FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params = {});
 
 /// The segments of `like` once more from another start nearby: ray, way, next and turned of each are set

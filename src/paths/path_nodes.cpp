@@ -1,5 +1,6 @@
 // Parts of facets become leaves, and their histories nodes with the rays of their corners.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "paths/divide_facet.h"
@@ -101,7 +102,20 @@ void OpticPaths::append_part(Id leaf, FacetPart& part) {
         node.ends[leaf] = history.ends;
         node.principal.resize(leaf + 1, 0);
         node.principal[leaf] = history.principal;
+        node.touches.resize(leaf + 1, 0);
+        node.touches[leaf] = touches_object(part, h);
     }
+}
+
+/// By the exact path at the part's middle.
+bool OpticPaths::touches_object(const FacetPart& part, std::size_t history) const {
+    constexpr double kTouch = 1e-8;  // of the way
+    if (!params_.objects || part.histories[history].ends || part.inside.empty()) return false;
+    const PartInside& middle = part.inside.back();
+    if (middle.segment.empty()) return false;
+    const PathSegment& exact = middle.at.look->segments[middle.segment[history]];
+    const Hit hit = params_.objects->first_hit(exact.ray);
+    return hit.seen() && std::fabs(hit.t - exact.next) <= kTouch * exact.next;
 }
 
 Id OpticPaths::leaf_at(Id facet, const Vec3& weights) const {

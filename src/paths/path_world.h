@@ -26,7 +26,7 @@ struct PathWorld {
     int max_depth = 8;  // optic hits after the first
     bool fresnel = true;
     bool reflect = true, refract = true;  // the first events that are wanted
-    const Tracer* objects = nullptr;      // a path ends where an optic lies on one of them; null: none does
+    const Tracer* objects = nullptr;      // that optics may lie on, see follow_paths; null: none
 };
 
 /// The body whose glass is felt inside of these; kNone: air.

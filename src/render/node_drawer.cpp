@@ -8,6 +8,9 @@
 namespace trilens {
 namespace {
 
+constexpr double kNear = 0.05;     // the same where it is known that it lies there: `next` is interpolated
+constexpr double kOnPlane = 1e-6;  // of a facet's size: as far from a plane as rounding puts it
+
 Vec3 share_of(const FacetWeights& weights, const Vec2& at) {
     const Vec3 e = weights.unnormalised(at.x, at.y);
     return e / (e.x + e.y + e.z);
@@ -31,7 +34,34 @@ double magnification(const RayMesh& mesh, Id facet, const Vec3& weights, double 
     return area != 0 && std::isfinite(film / area) ? film / area : 0;
 }
 
+/// Whether a place lies on the plane of the points from which a node's rays start over a facet.
+bool lies_where_rays_start(const PathNode& node, Id facet, const Vec3& place) {
+    if (facet >= node.mesh.facets.size() || !node.mesh.has_rays(facet)) return false;
+    const IdTriple& corner = node.mesh.facets[facet];
+    const Vec3& a = node.mesh.rays[corner[0]].origin;
+    const Vec3 along_b = node.mesh.rays[corner[1]].origin - a, along_c = node.mesh.rays[corner[2]].origin - a;
+    const Vec3 normal = normalize_or_zero(cross(along_b, along_c));
+    return normal != Vec3(0) &&
+           std::fabs(dot(place - a, normal)) <= kOnPlane * std::max(length(along_b), length(along_c));
+}
+
 }  // namespace
+
+/// Whether what a sample sees lies before the next optic or on it: the path ends there.
+bool NodeDrawer::ends_before_next(Id index, Id leaf, const Hit& hit, const Vec3& share) const {
+    const PathNode& node = paths_.nodes()[index];
+    const IdTriple& corner = node.mesh.facets[leaf];
+    double next = 0;
+    for (int k = 0; k < 3; ++k) next += share[k] * node.next[corner[static_cast<std::size_t>(k)]];
+    if (hit.t <= next * (1 + kTouch)) return true;
+    if (!node.touches[leaf]) return false;
+    if (hit.t <= next * (1 + kNear)) return true;
+    const Ray ray = interpolated_ray(node.mesh, leaf, share);
+    const Vec3 place = ray.origin + hit.t * ray.direction;
+    return std::any_of(paths_.nodes().begin(), paths_.nodes().end(), [&](const PathNode& other) {
+        return other.parent == index && lies_where_rays_start(other, leaf, place);
+    });
+}
 
 /// Samples whose path came as far as this node, with their leaves.
 std::vector<Id> NodeDrawer::owners(const PathNode& node) const {
@@ -81,15 +111,11 @@ void NodeDrawer::draw(Id index, OpticEnds& out) {
             if (owned.of(l).empty()) continue;
             const FacetWeights weights = facet_weights(node.mesh, l);
             if (weights.edge_on) continue;
-            const IdTriple& corner = node.mesh.facets[l];
             for (std::size_t i = owned.first[l]; i < owned.first[l + 1]; ++i) {
                 const Id s = owned.sample[i];
                 if (!node.ends[l]) {
-                    const Vec3 share = share_of(weights, grid_.position(s));
-                    double next = 0;
-                    for (int k = 0; k < 3; ++k)
-                        next += share[k] * node.next[corner[static_cast<std::size_t>(k)]];
-                    goes_on[s] = !(hits[s].seen() && hits[s].t <= next * (1 + kTouch));
+                    goes_on[s] = !(hits[s].seen() && ends_before_next(index, static_cast<Id>(l), hits[s],
+                                                                      share_of(weights, grid_.position(s))));
                     if (goes_on[s]) continue;
                 }
                 finish(node, s, weights, ends[i]);

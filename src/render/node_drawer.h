@@ -37,6 +37,7 @@ class NodeDrawer {
 
   private:
     std::vector<Id> owners(const PathNode& node) const;
+    bool ends_before_next(Id node, Id leaf, const Hit& hit, const Vec3& share) const;
     void finish(const PathNode& node, Id sample, const FacetWeights& weights, PathEnd& end) const;
 
     const DrawMesh& draw_mesh_;

@@ -1,5 +1,6 @@
 // Triangles that may reach the film, against all of their points.
 #include "paths/film_reach.h"
+#include "intersect/random_scene.h"
 #include "support/test.h"
 
 using namespace trilens;

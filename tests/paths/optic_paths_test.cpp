@@ -15,13 +15,15 @@ using namespace trilens_test;
 
 namespace {
 
-/// A camera at `eye` that looks to -z, or parallel to it; 400 pixels to a unit at distance 1.
+/// A camera at `eye` that looks to -z, or parallel to it; 400 pixels to a unit at distance 1, the film's
+/// middle straight ahead.
 PathCamera camera_at(const Vec3& eye, bool parallel = false) {
     PathCamera camera;
+    camera.film = Vec2(10000);
     camera.parallel = parallel;
     camera.screen = [=](const Vec3& p) {
         const double w = parallel ? 1 : eye.z - p.z;
-        return Vec3(400 * (p.x - eye.x) + 500 * w, 400 * (eye.y - p.y) + 500 * w, w);
+        return Vec3(400 * (p.x - eye.x) + 5000 * w, 400 * (eye.y - p.y) + 5000 * w, w);
     };
     camera.ray = [=](const Vec3&, const Vec3& chord) {
         const Vec3 direction = parallel ? Vec3(0, 0, -1) : chord - eye;
@@ -249,8 +251,7 @@ TEST_CASE("facets whose paths there is no room for are traced, the same ones wha
     Stage stage;
     put_up(stage);
     const SurfaceGrid grid = make_grid(stage.surface(0), 6);
-    Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})};
-    looking.camera.film = Vec2(1000);
+    const Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})};
     DivideParams tight;
     tight.most_bytes = 1u << 18;
     OpticPaths roomy(looking, grid, DivideParams{}), at_once(looking, grid, tight),
