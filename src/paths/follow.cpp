@@ -19,8 +19,7 @@ double largest(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
-/// Whether the next optic lies on an object where the ray meets it: that is seen in the optic, and nothing
-/// goes on.
+/// Whether the next optic lies on an object where the ray meets it.
 bool lies_on_object(const PathWorld& world, const Ray& ray, const NextOptic& next) {
     return world.objects &&
            world.objects->occluded(ray, next.distance - next.touch, next.distance + next.touch);
@@ -126,14 +125,14 @@ void Follower::run(const Pending& from) {
         next = next_optic(world_, {segment.ray, from.branch.step.optic, from.branch.media});
     if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
     if (next && segment.hit.seen()) {
-        if (segment.hit.t <= next->distance + next->touch)
+        if (segment.hit.t <= next->distance + next->touch)  // an object that an optic lies on is seen in it
             next.reset();
         else
             segment.hit = {};
     }
     // Where rays are looked at for others beside them, what would follow tells them apart: so it is
     // followed, but not for ever.
-    const bool rests = next && lies_on_object(world_, segment.ray, *next);
+    const bool rests = next && !params_.objects && lies_on_object(world_, segment.ray, *next);
     if (rests && from.rested >= kMostRests) next.reset();
     if (next && (from.depth >= world_.max_depth || from.steps >= kMostSteps)) {
         followed_.cut.too_deep += largest(light);
