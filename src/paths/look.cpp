@@ -10,7 +10,7 @@ constexpr double kStep = 1e-4;      // of a face's parameters, for differences
 constexpr double kFilmStep = 0.01;  // pixels, likewise
 /// Of the way from the eye: how much deeper the surface may lie a step away.
 constexpr double kFilmReach = 1e-3;
-constexpr double kSoftened = 0.15;  // 0.05 to 0.3 differ by 5 %
+constexpr double kSoftened = 0.15;  // 0.1 to 0.3 differ by 10 % at the most
 /// A bundle that opens less than this, as a share of its patch seen head-on, is parallel but for rounding.
 constexpr double kNoSpread = 1e-9;
 /// A fold of the directions, or a focus of the bundle, would make corner rays endless or nothing.
@@ -181,9 +181,11 @@ void set_kappa(const Looking& looking, Look& look) {
                                     side[1].segments[i]->ray.direction) /
                              head_on;
         if (!(after > kNoSpread)) continue;
-        // Grazing bundles that stay as they are need no softening.
+        // Bundles that stay as they are need no softening; softened are those that graze, and those that
+        // the optics make parallel, where kappa would be infinite: directions so different in length along
+        // one facet would cost an order of its error.
         const double softened = kSoftened * (after - before) / (after + before);
-        look.kappa[i] = std::clamp(std::cbrt(std::sqrt(before * before + softened * softened) / after),
+        look.kappa[i] = std::clamp(std::cbrt(std::hypot(before, softened) / std::hypot(after, softened)),
                                    1 / kMostKappa, kMostKappa);
     }
     if (!kept) look.beside.clear();

@@ -105,8 +105,9 @@ void set_beside(const Looking& looking, Look& look);
 
 /// Sets kappa of each segment: the cube root of the solid angle that a bundle of the camera's rays has before
 /// the first optic over that which it has on the segment, by differences of exact rays on the surface;
-/// grazing incidence is softened by 0.15 (mathematics, section 6). A corner ray is the better for being the
-/// eye length times kappa long: the directions' second derivatives then have no part along the direction.
+/// solid angles near zero, of grazing bundles and of those that the optics make parallel, are softened by
+/// 0.15 (mathematics, section 6, softens the first alone). A corner ray is the better for being the eye
+/// length times kappa long: the directions' second derivatives then have no part along the direction.
 void set_kappa(const Looking& looking, Look& look);
 
 }  // namespace trilens
