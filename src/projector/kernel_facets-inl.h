@@ -198,8 +198,11 @@ HWY_NOINLINE void draw_facet_lanes(const KernelScene& scene, const Leaf& leaf, s
                 const SampleTile& tile = scene.tiles->tiles[state.first_tile + *lane];
                 const TileDoubts doubts{in_leaf.edge_doubt[*lane], in_leaf.above_doubt[*lane],
                                         in_leaf.along_doubt[*lane]};
+                const bool whole = !(part >> *lane & 1);
+                if (is_settled(forms, *lane, doubts, whole, leaf.triangle[*triangle], state)) continue;
+                touch_tile(scene, *lane, state);
                 meet_tile({scene, state, tile, doubts, leaf, tile.first_vector - state.first_vector}, forms,
-                          bound, *lane, leaf.triangle[*triangle], !(part >> *lane & 1));
+                          bound, *lane, leaf.triangle[*triangle], whole);
             }
         }
     }

@@ -9,7 +9,7 @@
 
 #include <bit>
 
-#include "projector/kernel_forms-inl.h"
+#include "projector/kernel_whole-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {

@@ -300,6 +300,7 @@ HWY_NOINLINE void draw_ray_lanes(const KernelScene& scene, const Leaf& leaf, con
             if (!state.rays_made[vector]) make_vector_rays(scene, state, vector);
             if (state.tile_of_vector[vector] != tile) {
                 tile = state.tile_of_vector[vector];
+                touch_tile(scene, tile, state);
                 doubts = ray_doubts(state.lanes, tile, leaf);
             }
             const VectorRays& rays = state.rays[vector];

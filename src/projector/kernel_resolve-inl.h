@@ -11,6 +11,7 @@
 
 #include "base/check.h"
 #include "projector/kernel_placed-inl.h"
+#include "projector/kernel_whole-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
@@ -129,30 +130,61 @@ struct TileVector {
     std::uint32_t vector, in_group;
 };
 
-HWY_INLINE void resolve_tile_vector(const TilePlacing& tile, const TileVector& at, KernelState& state,
-                                    std::size_t& next, Placed& placed) {
+/// Writes a vector all of whose samples surely see `triangle`. False: that needs a closer look, and `placed`
+/// says what is known.
+HWY_INLINE bool write_one(const TilePlacing& tile, const TileVector& at, Id triangle, KernelState& state,
+                          std::size_t next, Placed& placed) {
     const KernelScene& scene = tile.scene;
-    const Nearest& nearest = state.nearest[at.in_group];
-    const SampleVector& samples = scene.tiles->vectors[at.vector];
-    if (all_see_one(nearest)) {
-        const CachedFrame& cached = cached_frame(scene, tile.facet.centre, nearest.triangle[0], state.cache);
-        const PlacedVector one = place_all(tile, samples, cached);
-        const PlacedFloats floats = narrow(one, cached.triangle);
-        const bool sure = bits(sound(floats)) == kAllLanes && !is_doubtful(state, next, at.in_group);
-        if (HWY_UNLIKELY(!sure || !scene.hits.empty())) store_placed(one, cached.triangle, placed);
-        if (HWY_LIKELY(sure)) return write_hits(scene, at.vector, placed, floats);
-    } else {
-        place_several(tile, samples, nearest, placed);
+    const CachedFrame& cached = cached_frame(scene, tile.facet.centre, triangle, state.cache);
+    const PlacedVector one = place_all(tile, scene.tiles->vectors[at.vector], cached);
+    const PlacedFloats floats = narrow(one, cached.triangle);
+    const bool sure = bits(sound(floats)) == kAllLanes && !is_doubtful(state, next, at.in_group);
+    if (HWY_UNLIKELY(!sure || !scene.hits.empty())) store_placed(one, cached.triangle, placed);
+    if (HWY_LIKELY(sure)) write_hits(scene, at.vector, placed, floats);
+    return sure;
+}
+
+/// The covered tile of lane j.
+HWY_INLINE void resolve_covered(const TilePlacing& placing, const SampleTile& tile, std::size_t j,
+                                KernelState& state, std::size_t& next) {
+    const Id triangle = state.whole[j].triangle;
+    Placed placed;
+    for (std::uint32_t i = 0; i < tile.vectors; ++i) {
+        const TileVector at{tile.first_vector + i, tile.first_vector + i - state.first_vector};
+        if (HWY_LIKELY(write_one(placing, at, triangle, state, next, placed))) continue;
+        touch_tile(placing.scene, j, state);
+        finish_vector(
+            placing.scene, state, at.in_group,
+            [&](std::size_t) HWY_ATTR -> const FacetRays& { return placing.facet; }, next, placed);
     }
-    const auto facet_of = [&](std::size_t) HWY_ATTR -> const FacetRays& { return tile.facet; };
-    finish_vector(scene, state, at.in_group, facet_of, next, placed);
+}
+
+/// A tile whose vectors from `known` on are not set.
+HWY_INLINE void resolve_tile(const TilePlacing& placing, const SampleTile& tile, std::uint32_t known,
+                             KernelState& state, std::size_t& next) {
+    const KernelScene& scene = placing.scene;
+    Placed placed;
+    for (std::uint32_t i = 0; i < tile.vectors; ++i) {
+        const TileVector at{tile.first_vector + i, tile.first_vector + i - state.first_vector};
+        const Nearest& nearest = state.nearest[at.in_group];
+        if (at.in_group + kPlacedAhead < known)
+            prefetch_triangles(scene, state.nearest[at.in_group + kPlacedAhead]);
+        if (all_see_one(nearest)) {
+            if (write_one(placing, at, nearest.triangle[0], state, next, placed)) continue;
+        } else {
+            place_several(placing, scene.tiles->vectors[at.vector], nearest, placed);
+        }
+        finish_vector(
+            scene, state, at.in_group,
+            [&](std::size_t) HWY_ATTR -> const FacetRays& { return placing.facet; }, next, placed);
+    }
 }
 
 /// Writes the hits of all of the group's samples.
 HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
     sort_doubts(state.doubts);
     std::size_t next = 0;
-    Placed placed;
+    for (Each lane(state.untouched & ~state.covered); lane; ++lane) set_nearest(scene, *lane, state);
     for (std::uint32_t j = state.first_lane; j < state.first_lane + state.tiles; ++j) {
         const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
         const FacetRays& facet = scene.tiles->rays[tile.rays];
@@ -160,13 +192,12 @@ HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
             state.cache.triangle.fill(kNone);
             state.cache.rays = tile.rays;
         }
-        const TilePlacing placing{scene, facet, spots_of(*scene.grid, facet, tile)};
-        for (std::uint32_t i = 0; i < tile.vectors; ++i) {
-            const std::uint32_t vector = tile.first_vector + i, in_group = vector - state.first_vector;
-            if (in_group + kPlacedAhead < state.vectors)
-                prefetch_triangles(scene, state.nearest[in_group + kPlacedAhead]);
-            resolve_tile_vector(placing, {vector, in_group}, state, next, placed);
-        }
+        const TilePlacing placing{scene, facet, spots_of(*scene.grid, facet, tile, state.lanes, j)};
+        const std::uint32_t end = tile.first_vector + tile.vectors - state.first_vector;
+        if (state.covered >> j & 1)
+            resolve_covered(placing, tile, j, state, next);
+        else
+            resolve_tile(placing, tile, state.covered ? end : state.vectors, state, next);
     }
 }
 

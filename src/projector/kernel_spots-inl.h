@@ -37,19 +37,15 @@ struct TileSpots {
     double largest;            // coordinate of a ray's direction, or more
 };
 
-/// No coordinate of a direction of the tile's rays is larger, as place() computes it.
-HWY_INLINE double largest_direction(const SampleGrid& grid, const FacetRays& facet, const SampleTile& tile) {
-    const TileFrame frame = tile_frame(tile, grid);
-    const Vec2 reach = glm::abs(frame.centre - facet.screen) + frame.half;
-    const std::array<Vec3, 3>& d = facet.rays.direction;
-    double largest = 0;
-    for (int a = 0; a < 3; ++a)
-        largest = std::max(largest,
-                           std::fabs(d[0][a]) + reach.x * std::fabs(d[1][a]) + reach.y * std::fabs(d[2][a]));
-    return 1.0001 * largest;
+/// No coordinate of a direction of the rays of lane j's tile is larger, as place() computes it.
+HWY_INLINE double largest_direction(const TileLanes& lanes, std::size_t j) {
+    const double scaled =
+        std::max(lanes.direction_sum[0][j], std::max(lanes.direction_sum[1][j], lanes.direction_sum[2][j]));
+    return 1.0001 * lanes.weight_high[j] * scaled;
 }
 
-HWY_INLINE TileSpots spots_of(const SampleGrid& grid, const FacetRays& facet, const SampleTile& tile) {
+HWY_INLINE TileSpots spots_of(const SampleGrid& grid, const FacetRays& facet, const SampleTile& tile,
+                              const TileLanes& lanes, std::size_t j) {
     const float x = static_cast<float>(tile.width - 1) / 2, y = static_cast<float>(tile.height - 1) / 2;
     return {{std::max(0.5f, x), std::max(0.5f, y)},
             {x, y},
@@ -58,7 +54,7 @@ HWY_INLINE TileSpots spots_of(const SampleGrid& grid, const FacetRays& facet, co
             {grid.x0 + tile.column + 0.5, grid.y0 + tile.row + 0.5},
             grid.side,
             {facet.screen.x, facet.screen.y},
-            largest_direction(grid, facet, tile)};
+            largest_direction(lanes, j)};
 }
 
 /// Offsets along axis a from `local` and the kDoubles - 1 after it.

@@ -156,6 +156,7 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
 HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf, std::size_t j,
                                       KernelState& state) {
     TileInLeaf in_leaf;
+    touch_tile(scene, j, state);
     if (!(state.lanes.transposed >> j & 1)) transpose_tile(j, state.lanes);
     move_tile_to_leaf(state.lanes, j, leaf, in_leaf);
     Floats conic[3][6], above[3], along[3];

@@ -222,6 +222,7 @@ HWY_INLINE std::uint32_t reached_children(const GroupBeam& beam, const WideNode&
 HWY_NOINLINE void refresh_farthest(const KernelScene& scene, KernelState& state) {
     state.group_farthest = -kNever;
     for (std::uint32_t k = 0; k < state.tiles; ++k) {
+        touch_tile(scene, state.first_lane + k, state);
         Floats high = set(-kNever);
         for (std::uint32_t i = state.tile_vectors[k]; i < state.tile_vectors[k + 1]; ++i) {
             const Mask valid = mask_of(scene.tiles->samples[state.first_vector + i].valid);
