@@ -57,7 +57,7 @@ HWY_INLINE void begin_group(const KernelScene& scene, const TileGroup& group, Ke
         state.vectors = state.tile_vectors[i + 1] = state.tile_vectors[i] + tile[i].vectors;
     }
     state.covered = 0;
-    state.untouched = group.count > 1 ? first_lanes(group.count) << state.first_lane : 0;
+    state.untouched = first_lanes(group.count) << state.first_lane;
     begin_vectors(scene, samples, state);
 }
 

@@ -84,6 +84,17 @@ HWY_INLINE Sides sides_of(const Floats (&conic)[3][6], const Floats& doubt) {
     return {kAllLanes & ~bits(no_front), kAllLanes & ~bits(no_back)};
 }
 
+/// Lanes whose conics, turned, are not surely positive over the whole tile.
+HWY_INLINE std::uint32_t partly_outside(const Floats (&conic)[3][6], const Floats& doubt,
+                                        const Floats& flip) {
+    Mask partly = mask_of(0);
+    for (int k = 0; k < 3; ++k)
+        partly = partly | (flip_signs(middle_of(conic[k]), flip) - bend_of(conic[k], doubt) -
+                               absolute(conic[k][1]) - absolute(conic[k][2]) <
+                           set(0.0f));
+    return bits(partly);
+}
+
 /// Numerator and denominator of the depth, turned so that the denominator is positive inside.
 struct TurnedDepth {
     Floats above[3], along[3];

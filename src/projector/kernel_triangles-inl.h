@@ -152,11 +152,33 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
                     pair[p] / static_cast<std::uint32_t>(kLanes));
 }
 
+/// A leaf through an untouched tile.
+struct LeafThroughTile {
+    const Leaf& leaf;
+    const TileDoubts& doubts;
+    std::size_t tile;
+};
+
+/// Those of the lanes that need a look at the tile's vectors. `partly`: those that may not cover the tile;
+/// they are asked last.
+HWY_NOINLINE std::uint32_t unsettled(const Forms& forms, std::uint32_t lanes, std::uint32_t partly,
+                                     const LeafThroughTile& through, KernelState& state) {
+    std::uint32_t left = 0;
+    for (const std::uint32_t some : {lanes & ~partly, lanes & partly}) {
+        for (Each lane(some); lane; ++lane) {
+            const bool whole = !(partly >> *lane & 1);
+            if (!is_settled({forms, *lane, through.leaf.triangle[*lane], through.tile}, through.doubts, whole,
+                            state))
+                left |= 1u << *lane;
+        }
+    }
+    return left;
+}
+
 /// The leaf's triangles through the tile of lane `j`.
 HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf, std::size_t j,
                                       KernelState& state) {
     TileInLeaf in_leaf;
-    touch_tile(scene, j, state);
     if (!(state.lanes.transposed >> j & 1)) transpose_tile(j, state.lanes);
     move_tile_to_leaf(state.lanes, j, leaf, in_leaf);
     Floats conic[3][6], above[3], along[3];
@@ -186,6 +208,12 @@ HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf
             for (int q = 0; q < 6; ++q) store(flip_signs(conic[k][q], flip), forms.edge[k][q]);
             store(depth.above[k], forms.above[k]);
             store(depth.along[k], forms.along[k]);
+        }
+        if (state.untouched >> j & 1) {
+            lanes =
+                unsettled(forms, lanes, partly_outside(conic, doubt, flip), {leaf, in_leaf.doubts, j}, state);
+            if (!lanes) continue;
+            touch_tile(scene, j, state);
         }
         draw_turned(drawing, forms, bounds, lanes);
     }

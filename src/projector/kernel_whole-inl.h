@@ -72,32 +72,39 @@ HWY_INLINE WholeDepth whole_depth(const Forms& forms, std::size_t lane, const Ti
             (1 + kRound) * (highest + doubts.above) / (slowest - doubts.along)};
 }
 
-/// Takes note that the triangle of forms' lane covers the tile of that lane, which is untouched.
-HWY_INLINE void cover_tile(const Forms& forms, std::size_t lane, const TileDoubts& doubts,
-                           const WholeDepth& depth, std::uint32_t triangle, KernelState& state) {
-    WholeTile& whole = state.whole[lane];
-    whole.triangle = triangle;
+/// A triangle, whose forms are in `lane`, over the tile of lane `tile`.
+struct TileTriangle {
+    const Forms& forms;
+    std::size_t lane;
+    std::uint32_t triangle;  // index into PreparedScene::Data
+    std::size_t tile;
+};
+
+/// Takes note that the triangle covers the tile, which is untouched.
+HWY_INLINE void cover_tile(const TileTriangle& t, const TileDoubts& doubts, const WholeDepth& depth,
+                           KernelState& state) {
+    WholeTile& whole = state.whole[t.tile];
+    whole.triangle = t.triangle;
     for (int p = 0; p < 3; ++p) {
-        whole.above[p] = forms.above[p][lane];
-        whole.along[p] = forms.along[p][lane];
+        whole.above[p] = t.forms.above[p][t.lane];
+        whole.along[p] = t.forms.along[p][t.lane];
     }
     whole.above_doubt = doubts.above;
     whole.along_doubt = doubts.along;
     whole.farthest = depth.most;
-    state.covered |= 1u << lane;
+    state.covered |= 1u << t.tile;
 }
 
-/// Whether the triangle of forms' lane needs no look at the tile's vectors, because it covers an empty tile
-/// or lies behind the triangle that covers it.
-HWY_INLINE bool is_settled(const Forms& forms, std::size_t lane, const TileDoubts& doubts, bool whole,
-                           std::uint32_t triangle, KernelState& state) {
-    if (!(state.untouched >> lane & 1)) return false;
-    const bool covered = state.covered >> lane & 1;
+/// Whether the triangle needs no look at the tile's vectors, because it covers an empty tile or lies behind
+/// the triangle that covers it. `whole`: all samples of the tile are surely inside it.
+HWY_INLINE bool is_settled(const TileTriangle& t, const TileDoubts& doubts, bool whole, KernelState& state) {
+    if (!(state.untouched >> t.tile & 1)) return false;
+    const bool covered = state.covered >> t.tile & 1;
     if (!covered && !whole) return false;
-    const WholeDepth depth = whole_depth(forms, lane, doubts);
+    const WholeDepth depth = whole_depth(t.forms, t.lane, doubts);
     if (!depth.known) return false;
-    if (covered) return depth.least > state.whole[lane].farthest;
-    cover_tile(forms, lane, doubts, depth, triangle, state);
+    if (covered) return depth.least > state.whole[t.tile].farthest;
+    cover_tile(t, doubts, depth, state);
     return true;
 }
 
