@@ -27,7 +27,7 @@ HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
 
-/// Of the vectors that `state` names: nothing is seen yet.
+/// Of the vectors that `state` names, but for those of untouched tiles: nothing is seen yet.
 HWY_INLINE void begin_vectors(const KernelScene& scene, std::size_t samples, KernelState& state) {
     state.group_farthest = kNever;
     store(set(kNever), state.farthest);
@@ -36,13 +36,12 @@ HWY_INLINE void begin_vectors(const KernelScene& scene, std::size_t samples, Ker
     state.most_doubts = 4096 + 64 * samples;
     if (state.nearest.size() < state.vectors) state.nearest.resize(state.vectors);
     const SampleVector* vector = &scene.tiles->vectors[state.first_vector];
+    const bool wait = state.untouched != 0;
     for (std::uint32_t i = 0; i < state.vectors; ++i) {
+        if (!wait) clear_nearest(state.nearest[i]);
         hwy::Prefetch(vector[i].u);
         hwy::Prefetch(vector[i].v);
         hwy::Prefetch(&scene.tiles->samples[state.first_vector + i]);
-        store(set(kNever), state.nearest[i].low);
-        store(set(kNever), state.nearest[i].high);
-        store_words(set_word(kNone), state.nearest[i].triangle);
     }
 }
 
@@ -57,6 +56,8 @@ HWY_INLINE void begin_group(const KernelScene& scene, const TileGroup& group, Ke
         state.tile_vectors[i] = tile[i].first_vector - state.first_vector;
         state.vectors = state.tile_vectors[i + 1] = state.tile_vectors[i] + tile[i].vectors;
     }
+    state.covered = 0;
+    state.untouched = first_lanes(group.count) << state.first_lane;
     begin_vectors(scene, samples, state);
 }
 
@@ -89,7 +90,8 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
             continue;
         }
         begin_group(scene, group[g], state);
-        make_group_beam(scene, state, state.beam);
+        state.beam.planes = 0;
+        if (has_nodes(*scene.tree)) make_group_beam(scene, state, state.beam);
         const std::uint32_t middle = state.first_lane + state.tiles / 2;
         measure_pitch(state.lanes, middle, scene.tiles->tiles[state.first_tile + middle], state.beam.pitch);
         walk_group(scene, options.leaf_mode, state);
@@ -112,6 +114,7 @@ HWY_INLINE bool draw_mixed_vectors(const KernelScene& scene, const MixedGroup& g
     state.vectors = count;
     state.tile_vectors[0] = 0;
     state.tile_vectors[1] = count;
+    state.untouched = state.covered = 0;
     begin_vectors(scene, count * kLanes, state);
     if (!set_up_mixed(scene, group, state)) return false;
     walk_group(scene, LeafMode::kRays, state);

@@ -18,21 +18,54 @@ inline constexpr DoubleTag kDouble;
 using Double = hn::Vec<DoubleTag>;
 inline constexpr std::size_t kDoubles = hn::MaxLanes(kDouble);
 
-struct Vector3 {
-    Double x, y, z;
+/// Twice as many, worked on side by side: one waits while the other is computed.
+struct Two {
+    Double low, high;
 };
+
+#define TRILENS_DOUBLES_OPERATION(name, Name)                      \
+    HWY_INLINE Double name(const Double& a, const Double& b) {     \
+        return hn::Name(a, b);                                     \
+    }                                                              \
+    HWY_INLINE Two name(const Two& a, const Two& b) {              \
+        return {hn::Name(a.low, b.low), hn::Name(a.high, b.high)}; \
+    }                                                              \
+    HWY_INLINE Two name(const Two& a, const Double& b) {           \
+        return {hn::Name(a.low, b), hn::Name(a.high, b)};          \
+    }
+TRILENS_DOUBLES_OPERATION(plus, Add)
+TRILENS_DOUBLES_OPERATION(minus, Sub)
+TRILENS_DOUBLES_OPERATION(product, Mul)
+#undef TRILENS_DOUBLES_OPERATION
+HWY_INLINE Double inverse(const Double& a) {
+    return hn::Div(hn::Set(kDouble, 1.0), a);
+}
+HWY_INLINE Two inverse(const Two& a) {
+    return {inverse(a.low), inverse(a.high)};
+}
+
+/// Of Double or Two.
+template <typename Number>
+struct VectorOf {
+    Number x, y, z;
+};
+using Vector3 = VectorOf<Double>;
+
 HWY_INLINE Vector3 load3(const double (*from)[kLanes], std::size_t at) {
     return {hn::Load(kDouble, from[0] + at), hn::Load(kDouble, from[1] + at),
             hn::Load(kDouble, from[2] + at)};
 }
-HWY_INLINE Vector3 plus(const Vector3& a, const Vector3& b) {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+template <typename A, typename B>
+HWY_INLINE VectorOf<A> plus(const VectorOf<A>& a, const VectorOf<B>& b) {
+    return {plus(a.x, b.x), plus(a.y, b.y), plus(a.z, b.z)};
 }
-HWY_INLINE Vector3 minus(const Vector3& a, const Vector3& b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+template <typename A, typename B>
+HWY_INLINE VectorOf<A> minus(const VectorOf<A>& a, const VectorOf<B>& b) {
+    return {minus(a.x, b.x), minus(a.y, b.y), minus(a.z, b.z)};
 }
-HWY_INLINE Vector3 times(const Double& s, const Vector3& a) {
-    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+template <typename A, typename B>
+HWY_INLINE VectorOf<A> times(const A& s, const VectorOf<B>& a) {
+    return {product(s, a.x), product(s, a.y), product(s, a.z)};
 }
 HWY_INLINE Double inner(const Vector3& a, const Vector3& b) {
     return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
@@ -55,6 +88,9 @@ HWY_INLINE DoubleLanes load_doubles(const double* from) {
     DoubleLanes r;
     for (std::size_t i = 0; i < kLanes / kDoubles; ++i) r.part[i] = hn::Load(kDouble, from + i * kDoubles);
     return r;
+}
+HWY_INLINE void store_doubles(const DoubleLanes& v, double* to) {
+    for (std::size_t i = 0; i < kLanes / kDoubles; ++i) hn::Store(v.part[i], kDouble, to + i * kDoubles);
 }
 HWY_INLINE Floats narrow(const DoubleLanes& v) {
     const hn::Rebind<float, DoubleTag> some;

@@ -176,27 +176,32 @@ HWY_NOINLINE void draw_facet_lanes(const KernelScene& scene, const Leaf& leaf, s
         const Sides sides = sides_of(conic, doubt);
         const std::uint32_t first_back = sides.back & ~sides.front, second_back = sides.back & sides.front;
         for (int pass = 0; pass < 2; ++pass) {
-            const std::uint32_t lanes = tiles & (pass == 0 ? sides.front | sides.back : second_back);
+            std::uint32_t lanes = tiles & (pass == 0 ? sides.front | sides.back : second_back);
             if (!lanes) break;
             const Floats flip = choose(mask_of(pass == 0 ? first_back : second_back), set(-0.0f), set(0.0f));
+            const TurnedDepth depth = turn_depth(above, along, flip);
+            lanes &= ~bits(behind_tile(depth, load(in_leaf.above_doubt), load(in_leaf.along_doubt)));
+            if (!lanes) continue;
             Forms forms;
             alignas(64) float bound[3][kLanes];
-            Mask partly = mask_of(0);
             for (int k = 0; k < 3; ++k) {
                 const Floats middle = flip_signs(middle_of(conic[k]), flip), bend = bend_of(conic[k], doubt);
                 store(middle + bend, bound[k]);
-                partly = partly | (middle - bend - absolute(conic[k][1]) - absolute(conic[k][2]) < set(0.0f));
                 for (int q = 0; q < 6; ++q) store(flip_signs(conic[k][q], flip), forms.edge[k][q]);
-                store(flip_signs(above[k], flip), forms.above[k]);
-                store(flip_signs(along[k], flip), forms.along[k]);
+                store(depth.above[k], forms.above[k]);
+                store(depth.along[k], forms.along[k]);
             }
-            const std::uint32_t part = bits(partly);
+            const std::uint32_t part = partly_outside(conic, doubt, flip);
             for (Each lane(lanes); lane; ++lane) {
                 const SampleTile& tile = scene.tiles->tiles[state.first_tile + *lane];
                 const TileDoubts doubts{in_leaf.edge_doubt[*lane], in_leaf.above_doubt[*lane],
                                         in_leaf.along_doubt[*lane]};
+                const bool whole = !(part >> *lane & 1);
+                if (is_settled({forms, *lane, leaf.triangle[*triangle], *lane}, doubts, whole, state))
+                    continue;
+                touch_tile(scene, *lane, state);
                 meet_tile({scene, state, tile, doubts, leaf, tile.first_vector - state.first_vector}, forms,
-                          bound, *lane, leaf.triangle[*triangle], !(part >> *lane & 1));
+                          bound, *lane, leaf.triangle[*triangle], whole);
             }
         }
     }

@@ -84,6 +84,38 @@ HWY_INLINE Sides sides_of(const Floats (&conic)[3][6], const Floats& doubt) {
     return {kAllLanes & ~bits(no_front), kAllLanes & ~bits(no_back)};
 }
 
+/// Lanes whose conics, turned, are not surely positive over the whole tile.
+HWY_INLINE std::uint32_t partly_outside(const Floats (&conic)[3][6], const Floats& doubt,
+                                        const Floats& flip) {
+    Mask partly = mask_of(0);
+    for (int k = 0; k < 3; ++k)
+        partly = partly | (flip_signs(middle_of(conic[k]), flip) - bend_of(conic[k], doubt) -
+                               absolute(conic[k][1]) - absolute(conic[k][2]) <
+                           set(0.0f));
+    return bits(partly);
+}
+
+/// Numerator and denominator of the depth, turned so that the denominator is positive inside.
+struct TurnedDepth {
+    Floats above[3], along[3];
+};
+
+HWY_INLINE TurnedDepth turn_depth(const Floats (&above)[3], const Floats (&along)[3], const Floats& flip) {
+    TurnedDepth depth;
+    for (int p = 0; p < 3; ++p) {
+        depth.above[p] = flip_signs(above[p], flip);
+        depth.along[p] = flip_signs(along[p], flip);
+    }
+    return depth;
+}
+
+/// Lanes whose triangle's plane every ray of the tile surely meets before it starts.
+HWY_INLINE Mask behind_tile(const TurnedDepth& depth, const Floats& above_doubt, const Floats& along_doubt) {
+    const Floats slowest = depth.along[0] - absolute(depth.along[1]) - absolute(depth.along[2]);
+    const Floats highest = depth.above[0] + absolute(depth.above[1]) + absolute(depth.above[2]);
+    return (slowest > along_doubt) & (highest + above_doubt < set(0.0f));
+}
+
 /// The conics and the depth of 16 triangles through one tile.
 HWY_NOINLINE void triangle_forms(const TileInLeaf& tile, const LeafEdges& edges, Floats (&conic)[3][6],
                                  Floats (&above)[3], Floats (&along)[3]) {

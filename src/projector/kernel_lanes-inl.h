@@ -193,15 +193,19 @@ HWY_INLINE float sum_of_lanes(const Floats& a) {
     for (std::size_t i = 1; i < kParts; ++i) all = hn::Add(all, a.part[i]);
     return hn::GetLane(hn::SumOfLanes(kFloat, all));
 }
-/// Writes the numbers of the lanes, plus `plus`, one after the other, and returns how many there are. There
-/// is room for kLanes words.
+/// Writes kStep times the numbers of the lanes, plus `plus`, one after the other, and returns how many there
+/// are. There is room for kLanes words.
+template <std::uint32_t kStep = 1>
 HWY_INLINE std::size_t list_lanes(const Mask& lanes, std::uint32_t plus, std::uint32_t* to) {
+    static_assert(std::has_single_bit(kStep));
     // From memory: g++ 12 would put Iota() together lane by lane.
     alignas(64) static constexpr std::uint32_t kNumber[kLanes] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                                   8, 9, 10, 11, 12, 13, 14, 15};
     std::size_t count = 0;
     TRILENS_EACH_PART {
-        const auto number = hn::Add(hn::Load(kWord, kNumber + i * kPart), hn::Set(kWord, plus));
+        const auto number =
+            hn::Add(hn::ShiftLeft<std::countr_zero(kStep)>(hn::Load(kWord, kNumber + i * kPart)),
+                    hn::Set(kWord, plus));
         const auto own = hn::RebindMask(kWord, lanes.part[i]);
         // Not CompressStore: straight to memory it is slow on some machines.
         hn::StoreU(hn::Compress(number, own), kWord, to + count);

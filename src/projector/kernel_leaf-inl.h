@@ -25,7 +25,7 @@ HWY_INLINE void middle_in_tree(const LeafTree& tree, const Leaf& leaf, float (&m
 HWY_INLINE std::uint32_t tiles_at_leaf(const KernelState& state, const Leaf& leaf, const float (&middle)[3],
                                        float nearest) {
     const std::uint32_t own = first_lanes(state.tiles) << state.first_lane;
-    if (state.tiles == 1) return own;
+    if (state.tiles == 1 || state.beam.planes == 0) return own;
     const Floats cx = set(middle[0]), cy = set(middle[1]), cz = set(middle[2]);
     const Floats hx = set(leaf.half[0]), hy = set(leaf.half[1]), hz = set(leaf.half[2]);
     Mask missed = set(nearest) > load(state.farthest);

@@ -22,7 +22,8 @@ HWY_NOINLINE void make_mixed_rays(const KernelScene& scene, std::uint32_t vector
                                   MixedRays& rays) {
     const SampleVector& samples = scene.tiles->vectors[vector];
     const SampleGrid& grid = *scene.grid;
-    const TileSpots window{{1, 1}, {0, 0}, {0, 0}, {grid.x0, grid.y0}, grid.side, {0, 0}};
+    const TileSpots window{{1, 1},    {0, 0}, {0, 0}, {grid.x0, grid.y0}, {grid.x0 + 0.5, grid.y0 + 0.5},
+                           grid.side, {0, 0}, 0};
     Double x[kHalves], y[kHalves];
     for (std::size_t i = 0; i < kHalves; ++i) {
         x[i] = offsets_of(window, 0, samples.u + i * kDoubles);
@@ -246,33 +247,25 @@ HWY_NOINLINE bool set_up_mixed(const KernelScene& scene, const MixedGroup& group
 }
 
 /// What the samples of a mixed vector surely see.
-HWY_NOINLINE void place_mixed(const KernelScene& scene, const LaneFacets& facets,
-                              const VectorSamples& samples, const MixedRays& rays, const Nearest& nearest,
+HWY_NOINLINE void place_mixed(const KernelScene& scene, const MixedRays& rays, const Nearest& nearest,
                               Placed& placed) {
-    const std::uint32_t see = kAllLanes & ~bits(same(load_words(nearest.triangle), set_word(kNone)));
-    const Id first = nearest.triangle[0];
-    const bool all_one =
-        see == kAllLanes && bits(same(load_words(nearest.triangle), set_word(first))) == kAllLanes;
+    const Words triangles = load_words(nearest.triangle);
+    const std::uint32_t see = kAllLanes & ~bits(same(triangles, set_word(kNone)));
+    if (!see) return place_none(placed);
+    const Id some = nearest.triangle[std::countr_zero(see)];
+    const bool all_one = bits(same(triangles, set_word(some))) == see;
     TriangleLanes one;
-    if (all_one) one = broadcast_triangle(scene.data->triangles[first]);
-    std::uint32_t bad = 0;
+    if (all_one) one = broadcast_triangle(scene.data->triangles[some]);
+    hn::Vec<IdTag> ids[kHalves];
     for (std::size_t at = 0; at < kLanes; at += kDoubles) {
         const std::uint32_t own = see >> at & first_lanes(kDoubles);
-        if (!own) {
-            for (std::size_t k = at; k < at + kDoubles; ++k) set_lane(placed, k, Hit{});
-            continue;
-        }
-        const RayLanes lanes{load3(rays.origin, at), load3(rays.direction, at),
-                             hn::Load(kDouble, rays.weight + at)};
-        const Vector3 centre = load3(rays.centre, at);
-        bad |= (all_one ? place_own(one, centre, lanes, own, at, placed)
-                        : place_each(*scene.data, centre, lanes, nearest.triangle + at, own, at, placed))
-               << at;
+        const Vector3 direction = load3(rays.direction, at);
+        const RayLanes lanes{load3(rays.origin, at), direction, hn::Load(kDouble, rays.weight + at)};
+        if (!all_one) one = gather_seen(*scene.data, nearest.triangle + at, own, some);
+        store_part(place_own(one, load3(rays.centre, at), lanes, largest_part(direction), own), at, placed);
+        ids[at / kDoubles] = ids_of(one, own);
     }
-    for (Each lane(bad); lane; ++lane)
-        set_lane(placed, *lane,
-                 decide_sure(scene, scene.tiles->rays[facets.rays[*lane]], samples.sample[*lane],
-                             nearest.triangle[*lane]));
+    store_words(join_ids(ids), placed.triangle);
 }
 
 /// Writes the hits of all samples of the group's vectors that `state` names.
@@ -284,13 +277,11 @@ HWY_NOINLINE void resolve_mixed(const KernelScene& scene, const MixedGroup& grou
     Placed placed;
     for (std::uint32_t v = 0; v < state.vectors; ++v) {
         if (v + kPlacedAhead < state.vectors) prefetch_triangles(scene, state.nearest[v + kPlacedAhead]);
-        place_mixed(scene, facets[v], scene.tiles->samples[state.first_vector + v], state.mixed[v],
-                    state.nearest[v], placed);
-        resolve_doubts(
-            scene, state, v,
-            [&](std::size_t lane) -> const FacetRays& { return scene.tiles->rays[facets[v].rays[lane]]; },
-            next, placed);
-        write_hits(scene, state.first_vector + v, placed);
+        const auto facet_of = [&](std::size_t lane) HWY_ATTR -> const FacetRays& {
+            return scene.tiles->rays[facets[v].rays[lane]];
+        };
+        place_mixed(scene, state.mixed[v], state.nearest[v], placed);
+        finish_vector(scene, state, v, facet_of, next, placed);
     }
 }
 

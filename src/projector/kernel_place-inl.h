@@ -22,12 +22,14 @@ namespace HWY_NAMESPACE {
 HWY_INLINE Vector3 set3(const Vec3& v) {
     return {hn::Set(kDouble, v.x), hn::Set(kDouble, v.y), hn::Set(kDouble, v.z)};
 }
-HWY_INLINE Double exact_inner(const Vector3& a, const Vector3& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+template <typename A, typename B>
+HWY_INLINE A exact_inner(const VectorOf<A>& a, const VectorOf<B>& b) {
+    return plus(plus(product(a.x, b.x), product(a.y, b.y)), product(a.z, b.z));
 }
-HWY_INLINE Vector3 exact_outer(const Vector3& a, const Vector3& b) {
-    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
-            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+template <typename A>
+HWY_INLINE VectorOf<A> exact_outer(const VectorOf<A>& a, const VectorOf<A>& b) {
+    return {minus(product(a.y, b.z), product(b.y, a.z)), minus(product(a.z, b.x), product(b.z, a.x)),
+            minus(product(a.x, b.y), product(b.x, a.y))};
 }
 HWY_INLINE Double largest_part(const Vector3& v) {
     return hn::Max(hn::Abs(v.x), hn::Max(hn::Abs(v.y), hn::Abs(v.z)));
@@ -52,101 +54,60 @@ HWY_INLINE FrameLanes frame_lanes(const Vector3 (&corner)[3]) {
 }
 
 /// The rays of some samples, as FacetRays::at gives them.
-struct RayLanes {
-    Vector3 origin, direction;
-    Double weight;
+template <typename Number>
+struct RaysOf {
+    VectorOf<Number> origin, direction;
+    Number weight;
 };
+using RayLanes = RaysOf<Double>;
 
-HWY_INLINE Double linear_at(double c0, double c1, double c2, const Double& x, const Double& y) {
-    return hn::Add(hn::Add(hn::Set(kDouble, c0), hn::Mul(x, hn::Set(kDouble, c1))),
-                   hn::Mul(y, hn::Set(kDouble, c2)));
+template <typename Number>
+HWY_INLINE Number linear_at(double c0, double c1, double c2, const Number& x, const Number& y) {
+    return plus(plus(product(x, hn::Set(kDouble, c1)), hn::Set(kDouble, c0)),
+                product(y, hn::Set(kDouble, c2)));
 }
-HWY_INLINE Vector3 linear_at(const std::array<Vec3, 3>& c, const Double& x, const Double& y) {
+template <typename Number>
+HWY_INLINE VectorOf<Number> linear_at(const std::array<Vec3, 3>& c, const Number& x, const Number& y) {
     return {linear_at(c[0].x, c[1].x, c[2].x, x, y), linear_at(c[0].y, c[1].y, c[2].y, x, y),
             linear_at(c[0].z, c[1].z, c[2].z, x, y)};
 }
 
 /// `x`, `y`: from FacetRays::screen.
-HWY_INLINE RayLanes ray_lanes(const AffineRays& rays, const Double& x, const Double& y) {
+template <typename Number>
+HWY_INLINE RaysOf<Number> ray_lanes(const AffineRays& rays, const Number& x, const Number& y) {
     return {linear_at(rays.origin, x, y), linear_at(rays.direction, x, y),
             linear_at(rays.weight[0], rays.weight[1], rays.weight[2], x, y)};
 }
 
-/// `good`: lanes in which place() gives this value. It may give one in others too.
-struct PlacedLanes {
-    Double t, first, second, third;  // weights of the sorted corners
-    hn::Mask<DoubleTag> good;
+/// What place() says, without its questions.
+template <typename Number>
+struct PlacedOf {
+    Number t, second, third;  // weights of the sorted corners
+    Number along;
 };
 
-HWY_INLINE PlacedLanes place_lanes(const FrameLanes& f, const RayLanes& ray) {
-    const Double one = hn::Set(kDouble, 1.0);
-    const Vector3 from = minus(times(ray.weight, f.corner), ray.origin);
-    const Double along = exact_inner(f.normal, ray.direction);
-    const Vector3 turn = exact_outer(ray.direction, from);
-    const Double scale = hn::Div(one, hn::Mul(ray.weight, along));
-    PlacedLanes p;
-    p.t = hn::Mul(exact_inner(f.normal, from), hn::Mul(ray.weight, scale));
-    p.second = hn::Mul(exact_inner(f.turned, turn), scale);
-    p.third = hn::Mul(exact_inner(f.e1, turn), scale);
-    p.first = hn::Sub(hn::Sub(one, p.second), p.third);
-    // More than its rounding, so that second + third is at most 1.
-    const Double inside = hn::Set(kDouble, 0x1p-50);
-    const Double infinity = hn::Set(kDouble, std::numeric_limits<double>::infinity());
-    const Double trusted =
-        hn::Mul(hn::Set(kDouble, kLeastDeterminant), hn::Mul(largest_part(ray.direction), f.size));
-    const auto sound = hn::And(hn::Ge(hn::Abs(along), trusted), hn::Lt(hn::Abs(p.t), infinity));
-    const Double least = hn::Min(p.first, hn::Min(p.second, p.third));
-    p.good = hn::And(sound, hn::Gt(least, inside));
-    return p;
+template <typename Number>
+HWY_INLINE PlacedOf<Number> place_lanes(const FrameLanes& f, const RaysOf<Number>& ray) {
+    const VectorOf<Number> from = minus(times(ray.weight, f.corner), ray.origin);
+    const Number along = exact_inner(ray.direction, f.normal);
+    const VectorOf<Number> turn = exact_outer(ray.direction, from);
+    const Number scale = inverse(product(ray.weight, along));
+    return {product(exact_inner(from, f.normal), product(ray.weight, scale)),
+            product(exact_inner(turn, f.turned), scale), product(exact_inner(turn, f.e1), scale), along};
 }
 
-/// SampleGrid::position along one axis, from lines of samples counted from the window's corner.
-HWY_INLINE Double position_of_line(const Double& line, int start, int side) {
-    const Double half = hn::Set(kDouble, 0.5), from = hn::Set(kDouble, static_cast<double>(start));
-    if (side == 1) return hn::Add(hn::Add(from, line), half);
-    const Double n = hn::Set(kDouble, static_cast<double>(side));
-    const Double pixel = hn::Floor(hn::Div(hn::Add(line, half), n));
-    const Double inside = hn::Sub(line, hn::Mul(pixel, n));
-    return hn::Add(hn::Add(from, pixel), hn::Div(hn::Add(inside, half), n));
+/// `t` where place() trusts `along`, else not a number. `largest`: coordinate of the ray's direction, or
+/// more.
+HWY_INLINE Double trusted_time(const Double& t, const Double& along, const Double& largest,
+                               const Double& size) {
+    const Double least = hn::Mul(hn::Set(kDouble, kLeastDeterminant), hn::Mul(largest, size));
+    const Double unknown = hn::Set(kDouble, std::numeric_limits<double>::quiet_NaN());
+    return hn::IfThenElse(hn::Ge(hn::Abs(along), least), t, unknown);
 }
 
-/// From a tile's local coordinates to offsets from its facet's screen.
-struct TileSpots {
-    float half[2], middle[2];  // of the rectangle, in lines of samples
-    int first[2];              // line of the window
-    int start[2];              // of the window, in pixels
-    int side;                  // samples along a pixel's edge
-    double screen[2];          // of the facet
-};
-
-HWY_INLINE TileSpots spots_of(const SampleGrid& grid, const FacetRays& facet, const SampleTile& tile) {
-    const float x = static_cast<float>(tile.width - 1) / 2, y = static_cast<float>(tile.height - 1) / 2;
-    return {{std::max(0.5f, x), std::max(0.5f, y)},
-            {x, y},
-            {tile.column, tile.row},
-            {grid.x0, grid.y0},
-            grid.side,
-            {facet.screen.x, facet.screen.y}};
-}
-
-/// Offsets along axis a from `local` and the kDoubles - 1 after it.
-HWY_INLINE Double offsets_of(const TileSpots& spots, int a, const float* local) {
-    const hn::Rebind<float, DoubleTag> some;
-    const auto line = hn::Round(
-        hn::MulAdd(hn::Load(some, local), hn::Set(some, spots.half[a]), hn::Set(some, spots.middle[a])));
-    const Double own = hn::PromoteTo(kDouble, line);
-    const Double screen = hn::Set(kDouble, spots.screen[a]);
-    // Whole numbers and halves: their sums are exact in any order.
-    if (spots.side == 1)
-        return hn::Sub(hn::Add(own, hn::Set(kDouble, spots.start[a] + spots.first[a] + 0.5)), screen);
-    const Double in_window = hn::Add(own, hn::Set(kDouble, static_cast<double>(spots.first[a])));
-    return hn::Sub(position_of_line(in_window, spots.start[a], spots.side), screen);
-}
-
-/// The rays of a vector's samples, from `at` on.
-HWY_INLINE RayLanes rays_of(const TileSpots& spots, const FacetRays& facet, const SampleVector& vector,
-                            std::size_t at) {
-    return ray_lanes(facet.rays, offsets_of(spots, 0, vector.u + at), offsets_of(spots, 1, vector.v + at));
+/// The weight of the first sorted corner.
+HWY_INLINE Double first_weight(const Double& second, const Double& third) {
+    return hn::Sub(hn::Sub(hn::Set(kDouble, 1.0), second), third);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -161,8 +161,8 @@ HWY_NOINLINE void move_rays_to_leaf(const VectorRays& rays, const RayDoubts& dou
     for (std::size_t i = 0; i < kLanes / kDoubles; ++i) {
         const Vector3 direction = load3(rays.direction, i * kDoubles),
                       origin = minus(load3(rays.origin, i * kDoubles),
-                                     {hn::Set(kDouble, doubts.d[0]), hn::Set(kDouble, doubts.d[1]),
-                                      hn::Set(kDouble, doubts.d[2])});
+                                     Vector3{hn::Set(kDouble, doubts.d[0]), hn::Set(kDouble, doubts.d[1]),
+                                             hn::Set(kDouble, doubts.d[2])});
         const Vector3 moment = outer(origin, direction);
         o[0].part[i] = origin.x, o[1].part[i] = origin.y, o[2].part[i] = origin.z;
         d[0].part[i] = direction.x, d[1].part[i] = direction.y, d[2].part[i] = direction.z;
@@ -300,6 +300,7 @@ HWY_NOINLINE void draw_ray_lanes(const KernelScene& scene, const Leaf& leaf, con
             if (!state.rays_made[vector]) make_vector_rays(scene, state, vector);
             if (state.tile_of_vector[vector] != tile) {
                 tile = state.tile_of_vector[vector];
+                touch_tile(scene, tile, state);
                 doubts = ray_doubts(state.lanes, tile, leaf);
             }
             const VectorRays& rays = state.rays[vector];

@@ -277,15 +277,22 @@ HWY_INLINE void prefetch_corner_rays(const KernelScene& scene, const SampleTile*
     }
 }
 
-/// All lanes of a batch; lanes beyond its tiles repeat the last.
+/// Whether there is anything for beams to cut off: a single leaf is drawn whole.
+HWY_INLINE bool has_nodes(const LeafTree& tree) {
+    return !tree.empty() && tree.root >= 0;
+}
+
+/// All lanes of a batch; lanes beyond its tiles repeat the last. Hulls only where the tree has nodes.
 HWY_NOINLINE void set_up_batch(const KernelScene& scene, const SampleTile* tile, std::uint32_t tiles,
                                TileLanes& lanes) {
     for (std::size_t j = 0; j < kLanes; ++j)
         gather_tile(scene, tile[std::min<std::size_t>(j, tiles - 1)], j, lanes);
-    prefetch_corner_rays(scene, tile, tiles);
+    const bool hulls = has_nodes(*scene.tree);
+    if (hulls) prefetch_corner_rays(scene, tile, tiles);
     scale_lanes(lanes);
     make_lines(lanes);
     lanes.transposed = 0;
+    if (!hulls) return;
     for (std::size_t j = 0; j < kLanes; ++j)
         gather_hull(scene, tile[std::min<std::size_t>(j, tiles - 1)], j, lanes);
     std::copy_n(lanes.origin_terms, kLanes, lanes.hull.origin_terms);

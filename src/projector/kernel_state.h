@@ -87,6 +87,15 @@ struct alignas(64) Nearest {
     std::uint32_t triangle[kLanes];  // index into PreparedScene::Data, or kNone
 };
 
+/// A triangle that every sample of a tile surely meets: t = above / along, in local coordinates, and no more
+/// than `farthest`.
+struct WholeTile {
+    std::uint32_t triangle = 0;  // index into PreparedScene::Data
+    float above[3], along[3];
+    float above_doubt, along_doubt;
+    float farthest;
+};
+
 /// A triangle that may be what a sample sees, or may not.
 struct Doubt {
     std::uint32_t vector, lane, triangle;
@@ -148,6 +157,10 @@ struct KernelState {
     LeafEdges edges;
     alignas(64) float farthest[kLanes];  // by tile: no farther hit can matter
     float group_farthest = kNever;
+    // By tile: what is known of all its samples at once, until one of its vectors meets another triangle.
+    std::array<WholeTile, kLanes> whole;
+    std::uint32_t untouched = 0;   // bit j: `nearest` of the vectors of the tile of lane j is not set
+    std::uint32_t covered = 0;     // of those: bit j: whole[j] is seen, else nothing
     std::vector<Nearest> nearest;  // by vector of the group
     std::vector<Waiting> stack;
     std::vector<Doubt> doubts;

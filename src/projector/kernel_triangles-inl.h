@@ -7,48 +7,11 @@
 #define TRILENS_KERNEL_TRIANGLES_INL_H
 #endif
 
-#include "projector/kernel_forms-inl.h"
+#include "projector/kernel_pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
-
-/// The rectangle of local coordinates outside which no lane's triangle is seen.
-struct Extent {
-    Floats u_low, u_high, v_low, v_high;
-};
-
-/// From the corners where two of the edges' bounds meet. Where their determinant is less than 2^-7 of its
-/// terms, or a bound is far outside the square, nothing is known. Else a corner inside 1.5 times the square
-/// is right to 2^-11: the determinant to 2^-14 of itself, the numerators to 2^-12 of it.
-HWY_NOINLINE Extent extent_of(const EdgeBounds& e) {
-    Floats u[3], v[3];
-    Mask turned_right = mask_of(kAllLanes), turned_left = turned_right;
-    for (int k = 0; k < 3; ++k) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        const Floats determinant = multiply_subtract(e.slope_u[i], e.slope_v[j], e.slope_v[i] * e.slope_u[j]);
-        const Floats size_i = absolute(e.slope_u[i]) + absolute(e.slope_v[i]),
-                     size_j = absolute(e.slope_u[j]) + absolute(e.slope_v[j]);
-        const Floats trust = set(0x1p-7f) * (size_i * size_j);
-        const Floats inverse = reciprocal(determinant);
-        turned_right =
-            turned_right & (determinant > trust) &
-            (absolute(e.bound[k]) <= set(4.0f) * (absolute(e.slope_u[k]) + absolute(e.slope_v[k])));
-        turned_left = turned_left & (set(0.0f) - determinant > trust) &
-                      (absolute(e.bound[k]) <= set(4.0f) * (absolute(e.slope_u[k]) + absolute(e.slope_v[k])));
-        u[k] = multiply_subtract(e.slope_v[i], e.bound[j], e.slope_v[j] * e.bound[i]) * inverse;
-        v[k] = multiply_subtract(e.slope_u[j], e.bound[i], e.slope_u[i] * e.bound[j]) * inverse;
-    }
-    const Mask known = turned_right | turned_left;
-    const Floats one = set(1.0f), minus_one = set(-1.0f), pad = set(0x1p-10f);
-    const auto bounded_below = [&](const Floats* c) HWY_ATTR {
-        return choose(known, largest(minus_one, least(c[0], least(c[1], c[2])) - pad), minus_one);
-    };
-    const auto bounded_above = [&](const Floats* c) HWY_ATTR {
-        return choose(known, least(one, largest(c[0], largest(c[1], c[2])) + pad), one);
-    };
-    return {bounded_below(u), bounded_above(u), bounded_below(v), bounded_above(v)};
-}
 
 /// One tile, one leaf, and the state they are drawn into.
 struct TileDrawing {
@@ -164,53 +127,6 @@ HWY_NOINLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, con
     }
 }
 
-/// Pairs of vectors and triangles that may meet: for each vector, its rectangle against all lanes at once.
-HWY_NOINLINE std::size_t list_pairs(const TileDrawing& drawing, const EdgeBounds& all_bounds,
-                                    const Extent& whole_extent, std::uint32_t lanes) {
-    const EdgeBounds bounds = all_bounds;
-    const Extent extent = whole_extent;
-    const SampleTile& tile = drawing.tile;
-    std::vector<std::uint32_t>& pairs = drawing.state.pairs;
-    if (pairs.size() < (tile.vectors + 1) * kLanes) pairs.resize((tile.vectors + 1) * kLanes);
-    Floats steep_u[3], steep_v[3];
-    for (int k = 0; k < 3; ++k) {
-        steep_u[k] = absolute(bounds.slope_u[k]);
-        steep_v[k] = absolute(bounds.slope_v[k]);
-    }
-    const Mask of = mask_of(lanes);
-    const Floats none_low = set(9.0f), none_high = set(-9.0f);
-    const Floats u_low = set(least_lane(choose(of, extent.u_low, none_low))),
-                 u_high = set(largest_lane(choose(of, extent.u_high, none_high))),
-                 v_low = set(least_lane(choose(of, extent.v_low, none_low))),
-                 v_high = set(largest_lane(choose(of, extent.v_high, none_high)));
-    std::size_t count = 0;
-    for (std::uint32_t g = 0; g * kLanes < tile.vectors; ++g) {
-        const VectorBoxes& box = drawing.scene.tiles->boxes[tile.first_boxes + g];
-        const Floats cu = load(box.centre_u), cv = load(box.centre_v), hu = load(box.half_u),
-                     hv = load(box.half_v);
-        const std::uint32_t near =
-            bits((cu + hu >= u_low) & (cu - hu <= u_high) & (cv + hv >= v_low) & (cv - hv <= v_high));
-        for (Each vector(near); vector; ++vector) {
-            const std::size_t z = *vector;
-            const Floats bu = set(box.centre_u[z]), bv = set(box.centre_v[z]), wu = set(box.half_u[z]),
-                         wv = set(box.half_v[z]);
-            Mask outside = (bu + wu < extent.u_low) | (bu - wu > extent.u_high) | (bv + wv < extent.v_low) |
-                           (bv - wv > extent.v_high);
-            for (int k = 0; k < 3; ++k) {
-                const Floats highest = multiply_add(
-                    steep_u[k], wu,
-                    multiply_add(steep_v[k], wv,
-                                 multiply_add(bounds.slope_u[k], bu,
-                                              multiply_add(bounds.slope_v[k], bv, bounds.bound[k]))));
-                outside = outside | (highest < set(0.0f));
-            }
-            const std::uint32_t first = static_cast<std::uint32_t>((g * kLanes + z) * kLanes);
-            count += list_lanes(without(of, outside), first, &pairs[count]);
-        }
-    }
-    return count;
-}
-
 /// Draws the lanes that are turned one way.
 HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, const EdgeBounds& bounds,
                               std::uint32_t lanes) {
@@ -224,12 +140,39 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
     const std::uint32_t small = lanes & bits(area <= set(kFewCells));
     if (small) walk_cells(drawing, forms, cells, small);
     if (!(lanes & ~small)) return;
-    const std::size_t pairs = list_pairs(drawing, bounds, extent, lanes & ~small);
+    std::vector<std::uint32_t>& list = drawing.state.pairs;
+    if (list.size() < (drawing.tile.vectors + 1) * kLanes) list.resize((drawing.tile.vectors + 1) * kLanes);
+    const VectorBoxes* boxes = &drawing.scene.tiles->boxes[drawing.tile.first_boxes];
+    const std::size_t pairs =
+        list_pairs({boxes, drawing.tile.vectors}, bounds, extent, lanes & ~small, list.data());
     const TileVectors tile = vectors_of(drawing);
-    const std::uint32_t* const pair = drawing.state.pairs.data();
+    const std::uint32_t* const pair = list.data();
     for (std::size_t p = 0; p < pairs; ++p)
         meet_vector(drawing, tile, forms, pair[p] % kLanes, drawing.leaf.triangle[pair[p] % kLanes],
                     pair[p] / static_cast<std::uint32_t>(kLanes));
+}
+
+/// A leaf through an untouched tile.
+struct LeafThroughTile {
+    const Leaf& leaf;
+    const TileDoubts& doubts;
+    std::size_t tile;
+};
+
+/// Those of the lanes that need a look at the tile's vectors. `partly`: those that may not cover the tile;
+/// they are asked last.
+HWY_NOINLINE std::uint32_t unsettled(const Forms& forms, std::uint32_t lanes, std::uint32_t partly,
+                                     const LeafThroughTile& through, KernelState& state) {
+    std::uint32_t left = 0;
+    for (const std::uint32_t some : {lanes & ~partly, lanes & partly}) {
+        for (Each lane(some); lane; ++lane) {
+            const bool whole = !(partly >> *lane & 1);
+            if (!is_settled({forms, *lane, through.leaf.triangle[*lane], through.tile}, through.doubts, whole,
+                            state))
+                left |= 1u << *lane;
+        }
+    }
+    return left;
 }
 
 /// The leaf's triangles through the tile of lane `j`.
@@ -250,9 +193,12 @@ HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf
     // Front where it may be seen, else back; then the back of those that may be seen from both sides.
     const std::uint32_t first_back = sides.back & ~sides.front, second_back = sides.back & sides.front;
     for (int pass = 0; pass < 2; ++pass) {
-        const std::uint32_t lanes = live & (pass == 0 ? sides.front | sides.back : second_back);
+        std::uint32_t lanes = live & (pass == 0 ? sides.front | sides.back : second_back);
         if (!lanes) break;
         const Floats flip = choose(mask_of(pass == 0 ? first_back : second_back), set(-0.0f), set(0.0f));
+        const TurnedDepth depth = turn_depth(above, along, flip);
+        lanes &= ~bits(behind_tile(depth, set(in_leaf.doubts.above), set(in_leaf.doubts.along)));
+        if (!lanes) continue;
         Forms forms;
         EdgeBounds bounds;
         for (int k = 0; k < 3; ++k) {
@@ -260,8 +206,14 @@ HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf
             bounds.slope_v[k] = flip_signs(conic[k][2], flip);
             bounds.bound[k] = flip_signs(middle_of(conic[k]), flip) + bend_of(conic[k], doubt);
             for (int q = 0; q < 6; ++q) store(flip_signs(conic[k][q], flip), forms.edge[k][q]);
-            store(flip_signs(above[k], flip), forms.above[k]);
-            store(flip_signs(along[k], flip), forms.along[k]);
+            store(depth.above[k], forms.above[k]);
+            store(depth.along[k], forms.along[k]);
+        }
+        if (state.untouched >> j & 1) {
+            lanes =
+                unsettled(forms, lanes, partly_outside(conic, doubt, flip), {leaf, in_leaf.doubts, j}, state);
+            if (!lanes) continue;
+            touch_tile(scene, j, state);
         }
         draw_turned(drawing, forms, bounds, lanes);
     }

@@ -218,10 +218,27 @@ HWY_INLINE std::uint32_t reached_children(const GroupBeam& beam, const WideNode&
     return first_lanes(node.count) & ~missed;
 }
 
+/// Of an untouched tile, the group's k-th: all its vectors see the same, or nothing.
+HWY_INLINE void spread_farthest(std::uint32_t k, KernelState& state) {
+    const std::uint32_t j = state.first_lane + k;
+    const float high = state.covered >> j & 1 ? state.whole[j].farthest : kNever;
+    if (state.beams_made) {
+        for (std::uint32_t i = state.tile_vectors[k]; i < state.tile_vectors[k + 1]; ++i)
+            state.beams[i / kLanes].farthest[i % kLanes] = high;
+    }
+    state.farthest[j] = high;
+    state.group_farthest = std::max(state.group_farthest, high);
+}
+
 /// What no sample of the group can see is farther than this.
 HWY_NOINLINE void refresh_farthest(const KernelScene& scene, KernelState& state) {
     state.group_farthest = -kNever;
     for (std::uint32_t k = 0; k < state.tiles; ++k) {
+        const std::uint32_t j = state.first_lane + k;
+        if (state.untouched >> j & 1) {
+            spread_farthest(k, state);
+            continue;
+        }
         Floats high = set(-kNever);
         for (std::uint32_t i = state.tile_vectors[k]; i < state.tile_vectors[k + 1]; ++i) {
             const Mask valid = mask_of(scene.tiles->samples[state.first_vector + i].valid);

@@ -168,7 +168,7 @@ std::vector<TileGroup> make_batches(std::span<const TileGroup> groups) {
 TileParams tile_params(std::size_t triangles) {
     TileParams params;
     const double below = 0.7 * std::sqrt(static_cast<double>(triangles));
-    params.mixed_below = static_cast<std::uint32_t>(std::clamp(below, 20.0, 1000.0));
+    params.mixed_below = static_cast<std::uint32_t>(std::clamp(below, 12.0, 1000.0));
     // Few facets in a vector are few rays to set up; a compact vector meets fewer of many triangles.
     if (triangles > 4000) params.together = 0;
     return params;

@@ -5,6 +5,8 @@
 #include "base/rasterize.h"
 #include "film_mesh.h"
 #include "projector/draw_options.h"
+#include "projector/kernel.h"
+#include "projector/prepared_scene.h"
 #include "projector/projector.h"
 #include "random_cases.h"
 #include "support/test.h"
@@ -83,7 +85,80 @@ TriangleScene bumpy_room(const Frame& frame, int cells) {
     return scene;
 }
 
+/// Large sheets over the film around the frame's origin, a hair before one another, crossing, and behind the
+/// rays, with specks between them.
+TriangleScene sheets(Random& random, const Frame& frame, int count) {
+    TriangleScene scene;
+    for (int i = 0; i < count; ++i) {
+        const double z = random.below(4) == 0 ? -random.uniform(1, 5) : random.uniform(2, 6),
+                     hair = random.log_uniform(1e-9, 0.3), wide = random.log_uniform(0.05, 30);
+        const Vec3 lean = random.below(2) == 0 ? Vec3(0) : random.in_cube(0.1);
+        const Vec3 middle = wide > 8 ? Vec3(0) : random.in_cube(2);
+        for (const double depth : {z, z * (1 + hair)}) {
+            const auto corner = [&](double x, double y) {
+                return frame(Vec3(middle.x + wide * x, middle.y + wide * y,
+                                  depth + lean.x * x * wide + lean.y * y * wide));
+            };
+            add_triangle(scene, corner(-1, -1), corner(1.1, -1), corner(0, 1.2));
+        }
+    }
+    return scene;
+}
+
 }  // namespace
+
+TEST_CASE("tiles that one triangle covers, with others before, behind and through it") {
+    Random random(25);
+    for (const DrawOptions& way : all_ways()) {
+        Tally tally;
+        for (int i = 0; i < 60; ++i) {
+            const SampleGrid grid{0, 0, 80, 64, 1 + i % 2};
+            const Frame frame = random_frame(random);
+            const RayMesh mesh = bowed_mesh(grid, frame, 2 + random.below(14));
+            // In a single leaf, and in a tree.
+            const TriangleScene scene = sheets(random, frame, i % 3 == 0 ? 60 : 1 + random.below(8));
+            compare({scene, mesh, grid, rasterize_facets(mesh, grid)}, way, tally);
+        }
+        INFO("mode " << static_cast<int>(way.kernel.leaf_mode) << " mixed below "
+                     << (way.tiles ? way.tiles->mixed_below : 0) << " samples " << tally.samples << " seen "
+                     << tally.seen);
+        CHECK(tally.different == 0);
+        CHECK(tally.seen > tally.samples / 3);
+        CHECK(tally.seen < tally.samples);
+    }
+}
+
+TEST_CASE("hits left in the order of vectors are those of the samples, as floats") {
+    Random random(26);
+    std::size_t seen = 0, different = 0;
+    for (int i = 0; i < 20; ++i) {
+        const SampleGrid grid{0, 0, 131, 97, 1};
+        const Frame frame = random_frame(random);
+        const RayMesh mesh = bowed_mesh(grid, frame, 1 + random.below(20));
+        const PreparedScene scene(i % 2 == 0 ? sheets(random, frame, 1 + random.below(40))
+                                             : bumpy_room(frame, 1 + random.below(12)));
+        const FacetSamples owned = rasterize_facets(mesh, grid);
+        std::vector<Hit> plain(grid.size());
+        draw(scene, mesh, owned, grid, plain, {.vectors = false});
+        const SampleTiles tiles = make_sample_tiles(mesh, owned, grid, {});
+        std::vector<VectorHits> hits(tiles.vectors.size());
+        draw_tiles({&scene.data(), &scene.data().leaves, &mesh, &grid, &tiles, {}, hits}, {});
+        for (std::size_t v = 0; v < hits.size(); ++v) {
+            for (std::size_t k = 0; k < kLanes; ++k) {
+                if (!(tiles.samples[v].valid >> k & 1)) continue;
+                VectorHits expected{};
+                set_lane(expected, k, plain[tiles.samples[v].sample[k]]);
+                seen += expected.triangle[k] != kNone;
+                different += hits[v].triangle[k] != expected.triangle[k] ||
+                             (expected.triangle[k] != kNone &&
+                              (hits[v].t[k] != expected.t[k] || hits[v].u[k] != expected.u[k] ||
+                               hits[v].v[k] != expected.v[k]));
+            }
+        }
+    }
+    CHECK(different == 0);
+    CHECK(seen > 100000);
+}
 
 TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens of every kind") {
     Random random(21);
