@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "measure/comparable.h"
@@ -95,8 +96,7 @@ ColourPicture picture_of(const Image& image, const std::vector<ChannelPair>& rgb
     return {image.data_width, image.data_height, values(0), values(1), values(2)};
 }
 
-double flip_of(const Image& image, const std::vector<ChannelPair>& rgb, const Mask& mask) {
-    const std::vector<float> errors = flip_map(picture_of(image, rgb, true), picture_of(image, rgb, false));
+double mean_flip(const std::vector<float>& errors, const Mask& mask) {
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -107,6 +107,7 @@ double flip_of(const Image& image, const std::vector<ChannelPair>& rgb, const Ma
     return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
+/// All but FLIP's.
 Metrics metrics_of(const Image& image, const std::vector<ChannelPair>& channels, const Mask& mask) {
     double sum = 0, squares = 0, relative = 0;
     std::vector<double> largest;
@@ -132,7 +133,6 @@ Metrics metrics_of(const Image& image, const std::vector<ChannelPair>& channels,
     metrics.psnr_db =
         squares > 0 ? -10 * std::log10(squares / count) : std::numeric_limits<double>::infinity();
     metrics.ssim = ssim_of(image, channels, mask);
-    metrics.flip = flip_of(image, channels, mask);
     const Summary summary = summarize(std::move(largest));
     metrics.max = summary.max;
     metrics.p50 = summary.p50;
@@ -224,7 +224,8 @@ void judge(const CompareOptions& options, Comparison& result) {
 
 }  // namespace
 
-Comparison compare(const Image& reference, const Image& test, const CompareOptions& options) {
+Comparison compare(const Image& reference, const Image& test, const CompareOptions& options,
+                   std::vector<float>* flip) {
     require_comparable(reference, test);
     const Mask mask = compared_pixels(reference, test, options.mask_object);
     const std::vector<ChannelPair> channels = channels_of(reference, test, options.layer);
@@ -237,6 +238,10 @@ Comparison compare(const Image& reference, const Image& test, const CompareOptio
     result.counts.inf_ref = count_kind(odd_reference, mask, kInf);
     result.counts.inf_test = count_kind(odd_test, mask, kInf);
     result.metrics = metrics_of(reference, channels, mask);
+    std::vector<float> errors =
+        flip_map(picture_of(reference, channels, true), picture_of(reference, channels, false));
+    result.metrics.flip = mean_flip(errors, mask);
+    if (flip) *flip = std::move(errors);
     judge(options, result);
     return result;
 }

@@ -72,6 +72,8 @@ struct Comparison {
 /// % of the compared ones; else kWarning where warning pixels > warnpercent % of the compared ones; else
 /// kPass. No rule hides another. Throws InputError where the images cannot be compared (see
 /// require_comparable, compared_pixels) or the layer has no R, G and B.
-Comparison compare(const Image& reference, const Image& test, const CompareOptions& options = {});
+/// `flip`: where given, takes the errors of flip.h of all pixels of the layer, masked or not.
+Comparison compare(const Image& reference, const Image& test, const CompareOptions& options = {},
+                   std::vector<float>* flip = nullptr);
 
 }  // namespace trilens

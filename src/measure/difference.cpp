@@ -31,7 +31,8 @@ void add_shift(const std::string& layer, const Displacement& displacement, Image
     add_channel(difference, layer + ".shift.M", std::move(state));
 }
 
-Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options) {
+Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options,
+                      std::vector<float> flip) {
     require_comparable(reference, test);
     const std::vector<std::uint8_t> mask = compared_pixels(reference, test, options.mask_object);
 
@@ -51,7 +52,8 @@ Image make_difference(const Image& reference, const Image& test, const Differenc
         add_channel(image, std::string("abs.") + name, std::move(magnitudes));
     }
     add_channel(image, "mask.M", std::vector<float>(mask.begin(), mask.end()));
-    std::vector<float> flip = flip_map(picture_of(reference, options.layer), picture_of(test, options.layer));
+    if (flip.empty()) flip = flip_map(picture_of(reference, options.layer), picture_of(test, options.layer));
+    TRILENS_CHECK(flip.size() == mask.size(), "one error per pixel");
     for (std::size_t i = 0; i < flip.size(); ++i)
         if (!mask[i]) flip[i] = 0;
     add_channel(image, "flip.Y", std::move(flip));

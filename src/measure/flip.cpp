@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "measure/picture_window.h"
 #include "measure/separable_filter.h"
 
 namespace trilens {
@@ -110,11 +112,16 @@ struct Sensitivity {
 
 constexpr double kWidest = 0.04;  // the largest b: it gives the reach of all
 
+int sensitivity_reach(double per_degree) {
+    constexpr double kPi = std::numbers::pi;
+    return static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * per_degree));
+}
+
 /// The plane under a sum of Gaussians whose weights sum to one. The sum of two is not separable, each of them
 /// is.
 Plane filter_by_sensitivity(const Plane& plane, std::span<const Sensitivity> gaussians, double per_degree) {
     constexpr double kPi = std::numbers::pi;
-    const int reach = static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * per_degree));
+    const int reach = sensitivity_reach(per_degree);
     std::vector<Kernel> kernels;
     std::vector<double> shares;
     double whole = 0;
@@ -136,13 +143,23 @@ Plane filter_by_sensitivity(const Plane& plane, std::span<const Sensitivity> gau
     return out;
 }
 
+/// The standard deviation of the Gaussian that features are found with, pixels.
+double feature_width(double per_degree) {
+    constexpr double kPeakToTrough = 0.082;  // degrees, of human edge detection
+    return 0.5 * kPeakToTrough * per_degree;
+}
+int feature_reach(double per_degree) {
+    return static_cast<int>(std::ceil(3 * feature_width(per_degree)));
+}
+
 /// Lengths of the vectors (along rows, along columns) that `feature` across and `smooth` along find.
 std::vector<double> feature_strength(const Plane& lightness, const Kernel& feature, const Kernel& smooth) {
     const Plane across = filter_plane(lightness, feature, smooth),
                 down = filter_plane(lightness, smooth, feature);
     std::vector<double> lengths(lightness.values.size());
-    for (std::size_t i = 0; i < lengths.size(); ++i)
-        lengths[i] = std::hypot(across.values[i], down.values[i]);
+    parallel_for(lengths.size(), kPixelsAtOnce, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) lengths[i] = std::hypot(across.values[i], down.values[i]);
+    });
     return lengths;
 }
 
@@ -154,18 +171,20 @@ struct Prepared {
     std::vector<double> edges, points;  // how strong
 };
 
-Planes opponent_planes(const ColourPicture& picture, const std::vector<bool>& is_finite) {
+Planes opponent_planes(const ColourPicture& picture, const std::vector<std::uint8_t>& is_finite) {
     Planes planes;
     for (Plane& plane : planes)
         plane = {picture.width, picture.height, std::vector<double>(is_finite.size(), 0.0)};
-    for (std::size_t i = 0; i < is_finite.size(); ++i) {
-        const auto shown = [&](float value) {
-            return is_finite[i] ? std::clamp(static_cast<double>(value), 0.0, 1.0) : 0.0;
-        };
-        const Colour colour =
-            opponent(relative_to_white({shown(picture.r[i]), shown(picture.g[i]), shown(picture.b[i])}));
-        for (std::size_t c = 0; c < 3; ++c) planes[c].values[i] = colour[c];
-    }
+    parallel_for(is_finite.size(), kPixelsAtOnce, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const auto shown = [&](float value) {
+                return is_finite[i] ? std::clamp(static_cast<double>(value), 0.0, 1.0) : 0.0;
+            };
+            const Colour colour =
+                opponent(relative_to_white({shown(picture.r[i]), shown(picture.g[i]), shown(picture.b[i])}));
+            for (std::size_t c = 0; c < 3; ++c) planes[c].values[i] = colour[c];
+        }
+    });
     return planes;
 }
 
@@ -186,10 +205,10 @@ std::vector<Colour> filtered_lab(const Planes& planes, double per_degree) {
     return lab;
 }
 
-Prepared prepare(const ColourPicture& picture, const std::vector<bool>& is_finite, double per_degree) {
-    constexpr double kPeakToTrough = 0.082;  // degrees, of human edge detection
-    const double sigma = 0.5 * kPeakToTrough * per_degree;
-    const int reach = static_cast<int>(std::ceil(3 * sigma));
+Prepared prepare(const ColourPicture& picture, const std::vector<std::uint8_t>& is_finite,
+                 double per_degree) {
+    const double sigma = feature_width(per_degree);
+    const int reach = feature_reach(per_degree);
     const auto gaussian = [&](double i) { return std::exp(-i * i / (2 * sigma * sigma)); };
     Kernel smooth = make_kernel(reach, gaussian);
     const double sum = sum_of(smooth);
@@ -229,27 +248,44 @@ double error_at(const Prepared& reference, const Prepared& test, std::size_t i) 
     return std::pow(std::clamp(colour, 0.0, 1.0), 1 - strength);
 }
 
+/// Calls take(x, y, error) for every pixel of the pictures, on any thread.
+template <typename Take>
+void measure_window(const ColourPicture& reference, const ColourPicture& test, double per_degree,
+                    const Take& take) {
+    const std::size_t pixels = reference.r.size();
+    std::vector<std::uint8_t> is_finite(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) is_finite[i] = is_number(reference, i) && is_number(test, i);
+    const Prepared a = prepare(reference, is_finite, per_degree), b = prepare(test, is_finite, per_degree);
+    const std::size_t columns = static_cast<std::size_t>(reference.width);
+    parallel_for(pixels, kPixelsAtOnce, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            take(static_cast<int>(i % columns), static_cast<int>(i / columns),
+                 is_finite[i] ? static_cast<float>(error_at(a, b, i))
+                              : std::numeric_limits<float>::quiet_NaN());
+    });
+}
+
 }  // namespace
 
 std::vector<float> flip_map(const ColourPicture& reference, const ColourPicture& test,
                             double pixels_per_degree) {
     TRILENS_CHECK(reference.width == test.width && reference.height == test.height, "pictures of one size");
     TRILENS_CHECK(pixels_per_degree > 0, "some pixels per degree");
-    const std::size_t pixels =
-        static_cast<std::size_t>(reference.width) * static_cast<std::size_t>(reference.height);
-    std::vector<bool> is_finite(pixels);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        is_finite[i] = true;
-        for (const ColourPicture* picture : {&reference, &test})
-            is_finite[i] = is_finite[i] && std::isfinite(picture->r[i]) && std::isfinite(picture->g[i]) &&
-                           std::isfinite(picture->b[i]);
-    }
-    const Prepared a = prepare(reference, is_finite, pixels_per_degree),
-                   b = prepare(test, is_finite, pixels_per_degree);
-    std::vector<float> errors(pixels);
-    for (std::size_t i = 0; i < pixels; ++i)
-        errors[i] =
-            is_finite[i] ? static_cast<float>(error_at(a, b, i)) : std::numeric_limits<float>::quiet_NaN();
+    std::vector<float> errors(
+        static_cast<std::size_t>(reference.width) * static_cast<std::size_t>(reference.height), 0.0f);
+    // A pixel whose filters read no pixel that differs has an error of exactly zero: both pictures hold the
+    // same numbers there, and make the same sums of them.
+    const Window differing = differing_window(reference, test);
+    if (differing.is_empty()) return errors;
+    const int reach = std::max(sensitivity_reach(pixels_per_degree), feature_reach(pixels_per_degree));
+    const Window measured = differing.grown(reach, reference), read = measured.grown(reach, reference);
+    const CroppedPicture a(reference, read), b(test, read);
+    measure_window(a.picture(), b.picture(), pixels_per_degree, [&](int x, int y, float error) {
+        const int column = x + read.x0, row = y + read.y0;
+        if (measured.contains(column, row))
+            errors[static_cast<std::size_t>(row) * static_cast<std::size_t>(reference.width) +
+                   static_cast<std::size_t>(column)] = error;
+    });
     return errors;
 }
 

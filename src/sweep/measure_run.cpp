@@ -98,8 +98,9 @@ void take_worse(const MetricValues& layer, MetricValues& metrics) {
 
 MeasuredRun measure_run(const Image& test, const Image& truth, const std::vector<SweptOptic>& optics) {
     MeasuredRun run;
-    run.metrics = colour_values(compare(truth, test));
-    run.diff = make_difference(truth, test);
+    std::vector<float> flip;
+    run.metrics = colour_values(compare(truth, test, {}, &flip));
+    run.diff = make_difference(truth, test, {}, std::move(flip));
     for (const char* layer : kLayers) {
         add_mismatches(test, truth, layer, run.metrics);
         const std::optional<Displacement> displacement = measure_displacement(truth, test, layer);
