@@ -275,10 +275,10 @@ std::vector<float> flip_map(const ColourPicture& reference, const ColourPicture&
         static_cast<std::size_t>(reference.width) * static_cast<std::size_t>(reference.height), 0.0f);
     // A pixel whose filters read no pixel that differs has an error of exactly zero: both pictures hold the
     // same numbers there, and make the same sums of them.
-    const Window differing = differing_window(reference, test);
+    const PictureWindow differing = differing_window(reference, test);
     if (differing.is_empty()) return errors;
     const int reach = std::max(sensitivity_reach(pixels_per_degree), feature_reach(pixels_per_degree));
-    const Window measured = differing.grown(reach, reference), read = measured.grown(reach, reference);
+    const PictureWindow measured = differing.grown(reach, reference), read = measured.grown(reach, reference);
     const CroppedPicture a(reference, read), b(test, read);
     measure_window(a.picture(), b.picture(), pixels_per_degree, [&](int x, int y, float error) {
         const int column = x + read.x0, row = y + read.y0;

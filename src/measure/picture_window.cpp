@@ -4,8 +4,8 @@
 
 namespace trilens {
 
-Window differing_window(const ColourPicture& one, const ColourPicture& other) {
-    Window window;
+PictureWindow differing_window(const ColourPicture& one, const ColourPicture& other) {
+    PictureWindow window;
     for (int y = 0; y < one.height; ++y) {
         const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(one.width);
         const auto is_same = [&](int x) {
@@ -22,7 +22,7 @@ Window differing_window(const ColourPicture& one, const ColourPicture& other) {
     return window;
 }
 
-CroppedPicture::CroppedPicture(const ColourPicture& whole, const Window& window)
+CroppedPicture::CroppedPicture(const ColourPicture& whole, const PictureWindow& window)
     : width_(window.x1 - window.x0), height_(window.y1 - window.y0) {
     const std::array<std::span<const float>, 3> all = {whole.r, whole.g, whole.b};
     for (std::size_t c = 0; c < 3; ++c) {

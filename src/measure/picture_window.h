@@ -18,25 +18,25 @@ inline bool is_number(const ColourPicture& picture, std::size_t i) {
 }
 
 /// Pixels x0 .. x1 - 1, y0 .. y1 - 1.
-struct Window {
+struct PictureWindow {
     int x0 = std::numeric_limits<int>::max(), y0 = x0, x1 = 0, y1 = 0;
 
     bool is_empty() const { return x0 >= x1; }
     bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
     /// By so many pixels to each side, as far as the picture reaches.
-    Window grown(int by, const ColourPicture& inside) const {
+    PictureWindow grown(int by, const ColourPicture& inside) const {
         return {std::max(0, x0 - by), std::max(0, y0 - by), std::min(inside.width, x1 + by),
                 std::min(inside.height, y1 + by)};
     }
 };
 
 /// The smallest window about all pixels in which two pictures of one size differ or are not finite.
-Window differing_window(const ColourPicture& one, const ColourPicture& other);
+PictureWindow differing_window(const ColourPicture& one, const ColourPicture& other);
 
 /// A copy of a window of a picture.
 class CroppedPicture {
   public:
-    CroppedPicture(const ColourPicture& whole, const Window& window);
+    CroppedPicture(const ColourPicture& whole, const PictureWindow& window);
     ColourPicture picture() const { return {width_, height_, channels_[0], channels_[1], channels_[2]}; }
 
   private:
