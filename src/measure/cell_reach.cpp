@@ -12,6 +12,7 @@ namespace trilens {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr double kFar = std::numeric_limits<double>::infinity();
 
 float rounded_down(double x) {
     return std::nextafter(static_cast<float>(x), -kInfinity);
@@ -38,50 +39,60 @@ void set_directions(const Patch& patch, CellReach& reach) {
     set_direction(cross(normal, du), reach.slabs[1]);
 }
 
-void include(const PatchHull& hull, CellReach& reach) {
-    // The direction is no longer than 1 but for its rounding to float; what a patch shows lies within a few
-    // times its own size from the origin, and `around` is more than the products' rounding there.
-    const double around = hull.around * (1 + 1e-6);
-    for (std::size_t i = 0; i < hull.count; ++i) {
-        const Vec3& p = hull.points[i];
-        for (int k = 0; k < 3; ++k) {
-            reach.low[k] = std::min(reach.low[k], rounded_down(p[k] - hull.around));
-            reach.high[k] = std::max(reach.high[k], rounded_up(p[k] + hull.around));
-        }
-        for (CellReach::Slab& slab : reach.slabs) {
-            const double at = along(slab.direction, p);
-            slab.low = std::min(slab.low, rounded_down(at - around));
-            slab.high = std::max(slab.high, rounded_up(at + around));
-        }
-    }
-}
-
-/// The patches of a cell, each once.
-struct CellPatches {
-    const SeenField &field, &other;
-    int column, row;
+/// The bounds while they grow, not yet rounded.
+struct GrowingReach {
     CellReach& reach;
+    Box box = {};
+    double low[2] = {kFar, kFar}, high[2] = {-kFar, -kFar};  // of the slabs
     bool any = false;
 
-    /// By triangles, or whole.
-    void add(bool by_triangle) {
-        std::uint16_t seen = 0;
-        for (int corner = 0; corner < 4; ++corner) {
-            const int x = column + corner % 2, y = row + corner / 2;
-            if (!field.contains(x, y) || (seen >> kCellCorner[static_cast<std::size_t>(corner)]) & 1)
-                continue;
-            const SeenPoint point = field.seen_point(field.index(x, y));
-            Piece piece{point.object, point.optic, std::nullopt};
-            if (by_triangle) piece.primitive = point.primitive;
-            const std::optional<Patch> patch = make_patch(field, other, {column, row, corner}, piece);
-            if (!patch) continue;
-            seen |= patch->measured;
-            if (!any) set_directions(*patch, reach);
-            any = true;
-            include(hull_of(*patch), reach);
+    void include(const Patch& patch) {
+        if (!any) set_directions(patch, reach);
+        any = true;
+        const PatchHull hull = hull_of(patch);
+        // The direction is no longer than 1 but for its rounding to float; what a patch shows lies within a
+        // few times its own size from the origin, and `around` is more than the products' rounding there.
+        const double around = hull.around * (1 + 1e-6);
+        Box points;
+        for (std::size_t i = 0; i < hull.count; ++i) points.include(hull.points[i]);
+        box.include(points.low - Vec3(around));
+        box.include(points.high + Vec3(around));
+        for (std::size_t k = 0; k < 2; ++k) {
+            for (std::size_t i = 0; i < hull.count; ++i) {
+                const double at = along(reach.slabs[k].direction, hull.points[i]);
+                low[k] = std::min(low[k], at - around);
+                high[k] = std::max(high[k], at + around);
+            }
+        }
+    }
+    void round() const {
+        for (int k = 0; k < 3; ++k) {
+            reach.low[k] = any ? rounded_down(box.low[k]) : kInfinity;
+            reach.high[k] = any ? rounded_up(box.high[k]) : -kInfinity;
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+            reach.slabs[k].low = any ? rounded_down(low[k]) : kInfinity;
+            reach.slabs[k].high = any ? rounded_up(high[k]) : -kInfinity;
         }
     }
 };
+
+/// The patches of a cell, each once, by triangles or whole.
+void include_pieces(const SeenField& field, const SeenField& other, const PatchPlace& cell, bool by_triangle,
+                    GrowingReach& reach) {
+    std::uint16_t seen = 0;
+    for (int corner = 0; corner < 4; ++corner) {
+        const int x = cell.column + corner % 2, y = cell.row + corner / 2;
+        if (!field.contains(x, y) || (seen >> kCellCorner[static_cast<std::size_t>(corner)]) & 1) continue;
+        const SeenPoint point = field.seen_point(field.index(x, y));
+        Piece piece{point.object, point.optic, std::nullopt};
+        if (by_triangle) piece.primitive = point.primitive;
+        const std::optional<Patch> patch = make_patch(field, other, {cell.column, cell.row, corner}, piece);
+        if (!patch) continue;
+        seen |= patch->measured;
+        reach.include(*patch);
+    }
+}
 
 }  // namespace
 
@@ -97,13 +108,16 @@ bool CellReach::may_hold(const Vec3& point) const {
 
 CellReach reach_of_cell(const FieldIndex& index, const SeenField& other, int column, int row) {
     CellReach reach;
-    std::fill_n(reach.low, 3, kInfinity);
-    std::fill_n(reach.high, 3, -kInfinity);
-    for (CellReach::Slab& slab : reach.slabs) slab = {{0, 0, 0}, kInfinity, -kInfinity};
-    CellPatches patches{index.field, other, column, row, reach};
-    patches.add(false);
+    GrowingReach growing{reach};
+    const std::uint8_t wholeness = index.wholeness(column, row);
+    const PatchPlace cell{column, row, 0};
+    if (wholeness & FieldIndex::kWhole)
+        growing.include(index.whole_patch(column, row));
+    else
+        include_pieces(index.field, other, cell, false, growing);
     // By triangles the same again where there is but one.
-    if (!(index.wholeness(column, row) & FieldIndex::kWholeTriangle)) patches.add(true);
+    if (!(wholeness & FieldIndex::kWholeTriangle)) include_pieces(index.field, other, cell, true, growing);
+    growing.round();
     return reach;
 }
 

@@ -15,7 +15,7 @@ namespace trilens {
 struct CellReach {
     struct Slab {
         float direction[3] = {0, 0, 0};
-        float low = 0, high = 0;  // of dot(direction, point)
+        float low, high;  // of dot(direction, point)
     };
     float low[3], high[3];  // low > high: it shows nothing
     Slab slabs[2];

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "base/parallel.h"
 #include "measure/comparable.h"
-#include "measure/folds.h"
 #include "measure/image_finder.h"
 #include "measure/other_image.h"
+#include "measure/reference_layers.h"
 
 namespace trilens {
 namespace {
@@ -87,19 +88,35 @@ std::size_t count_shown(const SeenField& one, const SeenField& other, const std:
 std::optional<Displacement> measure_displacement(const Image& reference, const Image& test,
                                                  const std::string& layer,
                                                  const DisplacementOptions& options) {
-    require_comparable(reference, test);
-    const std::vector<std::uint8_t> mask = compared_pixels(reference, test, options.mask_object);
-    const std::optional<SeenField> reference_field = make_seen_field(reference, layer);
-    const std::optional<SeenField> test_field = make_seen_field(test, layer);
-    if (!reference_field || !test_field) return std::nullopt;
+    return measure_displacement(ReferenceLayers(reference), test, layer, options);
+}
 
+std::optional<Displacement> measure_displacement(const ReferenceLayers& reference, const Image& test,
+                                                 const std::string& layer,
+                                                 const DisplacementOptions& options) {
+    require_comparable(reference.image(), test);
+    const std::vector<std::uint8_t> mask = compared_pixels(reference.image(), test, options.mask_object);
+    const std::optional<SeenField> reference_field = make_seen_field(reference.image(), layer);
+    std::optional<SeenField> test_field = make_seen_field(test, layer);
+    if (!reference_field || !test_field) return std::nullopt;
     const std::size_t shown = count_shown(*reference_field, *test_field, mask);
     if (shown == 0) return nothing_shown(mask.size());
 
-    const FieldIndex reference_index(*reference_field), test_index(*test_field);
-    Displacement result = find_shifts({reference_index, test_index}, mask, options.radius, kAnywhere);
-    collect_statistics(near_folds(reference_index.field), result);
-    result.missing = find_shifts({test_index, reference_index}, mask, options.radius, options.radius).lost;
+    std::shared_ptr<const ReferenceLayers::Layer> there;
+    std::optional<FieldIndex> here;
+    run_side_by_side({[&] { there = reference.get(layer); }, [&] { here.emplace(*test_field); }});
+    Displacement result;
+    std::size_t missing = 0;
+    run_side_by_side({[&] {
+                          const ImageFinder finder(there->index, *here);
+                          result = find_shifts(finder, mask, options.radius, kAnywhere);
+                          collect_statistics(there->near_folds, result);
+                      },
+                      [&] {
+                          const ImageFinder finder(*here, there->index);
+                          missing = find_shifts(finder, mask, options.radius, options.radius).lost;
+                      }});
+    result.missing = missing;
     result.coverage = static_cast<double>(result.pixels) / static_cast<double>(shown);
     return result;
 }

@@ -184,6 +184,16 @@ FieldIndex::FieldIndex(SeenField without_links) : field(std::move(without_links)
     while (levels.back().quads.size() > 1) levels.push_back(coarser(levels.back()));
 }
 
+Patch FieldIndex::whole_patch(int column, int row) const {
+    Patch patch;
+    patch.measured = patch.supported = 0xffff;
+    for (std::size_t b = 0; b < 4; ++b) {
+        const std::size_t first = field.index(column - 1, row - 1 + static_cast<int>(b));
+        for (std::size_t a = 0; a < 4; ++a) patch.nodes[a + 4 * b] = field.point(first + a);
+    }
+    return patch;
+}
+
 bool FieldIndex::is_linked_cell(int column, int row) const {
     if (!field.contains(column, row) || !field.contains(column + 1, row + 1)) return false;
     constexpr std::uint8_t both = SeenField::kRight | SeenField::kDown;

@@ -8,6 +8,7 @@
 
 #include "base/ids.h"
 #include "base/vec.h"
+#include "measure/patch.h"
 #include "measure/seen_field.h"
 
 namespace trilens {
@@ -33,6 +34,8 @@ struct FieldIndex {
     std::uint8_t wholeness(int column, int row) const {
         return field.contains(column, row) ? patches[field.index(column, row)] : 0;
     }
+    /// The patch of a cell that is kWhole.
+    Patch whole_patch(int column, int row) const;
     /// The number of a cell, below cell_count().
     std::size_t cell_number(int column, int row) const {
         return static_cast<std::size_t>(row + 1) * static_cast<std::size_t>(field.width + 1) +

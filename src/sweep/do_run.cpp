@@ -90,10 +90,10 @@ struct DrawnRun {
 };
 
 /// Renders and measures one run into `run`.
-DrawnRun draw_run(const RunJob& job, const Truth& truth, RunRecord& run) {
+DrawnRun draw_run(const RunJob& job, const KeptTruth& truth, RunRecord& run) {
     MetricValues times;
     DrawnRun drawn{draw_timed(job, times), {}};
-    MeasuredRun measured = measure_run(drawn.image, truth.image, job.plan.optics);
+    MeasuredRun measured = measure_run(drawn.image, truth.layers, job.plan.optics);
     drawn.diff = std::move(measured.diff);
     run.metrics = std::move(measured.metrics);
     run.displacement = std::move(measured.displacement);
@@ -111,7 +111,7 @@ DrawnRun draw_run(const RunJob& job, const Truth& truth, RunRecord& run) {
 std::optional<RunRecord> do_run(const RunJob& job) {
     RunRecord run;
     run.plan = job.plan;
-    std::shared_ptr<const Truth> truth;
+    std::shared_ptr<const KeptTruth> truth;
     // Without the truth that all runs share none can be done; one of its own is a part of the run.
     if (job.shares_one_truth)
         truth = job.truths.get(job.plan, job.may_wait);

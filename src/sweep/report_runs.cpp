@@ -38,7 +38,7 @@ Facts run_facts(const RunRecord& run) {
     return facts;
 }
 
-ReportRun run_section(const std::string& folder, const RunRecord& run) {
+ReportRun run_section(const std::string& folder, const RunRecord& run, TruthPictures& truths) {
     ReportRun section;
     section.title = point_text(run.plan.at);
     section.warnings = run.warnings;
@@ -50,7 +50,7 @@ ReportRun run_section(const std::string& folder, const RunRecord& run) {
         section.error = "not done yet";
         return section;
     }
-    section.pictures = run_pictures(folder, run);
+    section.pictures = run_pictures(folder, run, truths);
     section.facts = run_facts(run);
     return section;
 }
@@ -85,13 +85,14 @@ void fill_runs(const SweepSummary& summary, std::size_t most_bytes, Report& repo
     const std::vector<RunRecord>& runs = summary.runs;
     report.runs.resize(runs.size());
     remove_pictures(summary.folder);
+    TruthPictures truths(summary.folder);
     std::size_t bytes = 0, embedded = 0;
     for (std::size_t from = 0; from < runs.size(); from += kBatch) {
         const std::size_t to = std::min(runs.size(), from + kBatch);
         // Decoding and encoding pictures is most of a report's time.
         parallel_for(to - from, 1, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = from + first; i < from + last; ++i) {
-                report.runs[i] = run_section(summary.folder, runs[i]);
+                report.runs[i] = run_section(summary.folder, runs[i], truths);
                 report.runs[i].is_folded = runs.size() > kMostOpen;
                 report.runs[i].row = static_cast<int>(i);
             }

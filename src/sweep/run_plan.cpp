@@ -15,6 +15,7 @@
 #include "sweep/file_lock.h"
 #include "sweep/machine.h"
 #include "sweep/memory_gate.h"
+#include "sweep/results_json.h"
 #include "sweep/run_files.h"
 #include "sweep/truth_store.h"
 
@@ -53,6 +54,7 @@ struct Workers {
     std::atomic<bool> stop = false;
     std::mutex mutex = {};  // of what follows, and of the callbacks of params
     std::vector<PlannedRun> busy = {};
+    std::map<std::string, RunRecord> done = {};  // by id
     std::size_t settled = 0;
     std::exception_ptr failure = {};
 
@@ -60,6 +62,16 @@ struct Workers {
         const std::lock_guard guard(mutex);
         if (params.on_run) params.on_run(run);
         params.progress(static_cast<double>(++settled) / static_cast<double>(mine.size()));
+    }
+
+    /// As its file says it: numbers that are not finite have no place there.
+    void keep(const RunRecord& run) {
+        if (run.state != RunState::kDone) return;
+        std::optional<RunRecord> read = parse_run(run_text(run), run.plan);
+        if (!read) return;
+        read->image_hash = run.image_hash;
+        const std::lock_guard guard(mutex);
+        done[run.plan.id] = std::move(*read);
     }
 
     /// False where the run's truth is in other hands. The caller holds the run's lock. A run that another
@@ -71,10 +83,11 @@ struct Workers {
         if (run.state != RunState::kDone && !is_tried) {
             const MemoryGate::Visit visit =
                 gate.enter(callbacks.memory ? callbacks.memory(plan) : 0, params.progress);
-            std::optional<RunRecord> done =
+            std::optional<RunRecord> drawn =
                 do_run({params, callbacks, truths, plan, shares_one_truth, may_wait});
-            if (!done) return false;
-            run = std::move(*done);
+            if (!drawn) return false;
+            run = std::move(*drawn);
+            keep(run);
         }
         tell(run);
         return true;
@@ -129,8 +142,8 @@ struct Workers {
 
 }  // namespace
 
-void run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
-              const std::vector<PlannedRun>& plan) {
+std::map<std::string, RunRecord> run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
+                                          const std::vector<PlannedRun>& plan) {
     const bool shares_one_truth =
         std::ranges::all_of(plan, [&](const PlannedRun& run) { return run.truth == plan[0].truth; });
     Workers workers{params,
@@ -151,6 +164,7 @@ void run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
     for (std::thread& thread : threads) thread.join();
     if (workers.failure) std::rethrow_exception(workers.failure);
     params.progress(1);
+    return std::move(workers.done);
 }
 
 }  // namespace trilens

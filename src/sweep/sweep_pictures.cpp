@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "image/image_io.h"
 #include "report/text.h"
 #include "sweep/measure_run.h"
@@ -70,17 +71,35 @@ PagePicture run_difference(const Image& image, const Image& truth, const RunReco
         "|projected − truth| × " + shortest_text(scale) + ", largest " + rounded_text(largest, 2));
 }
 
-std::vector<PagePicture> run_pictures(const std::string& folder, const RunRecord& run) {
+std::shared_ptr<const TruthPictures::Shown> TruthPictures::get(const std::string& hash) {
+    const std::lock_guard guard(mutex_);
+    if (last_ && hash == hash_) return last_;
+    // Others wait meanwhile: the loops in here must not take up their work.
+    run_isolated([&] {
+        Image image = read_exr(truth_file(folder_, hash));
+        PagePicture picture = beauty_picture(image, "truth");
+        std::erase_if(image.channels, [](const Channel& channel) {
+            return channel.name != "R" && channel.name != "G" && channel.name != "B";
+        });
+        last_ = std::make_shared<const Shown>(Shown{std::move(image), std::move(picture)});
+    });
+    hash_ = hash;
+    return last_;
+}
+
+std::vector<PagePicture> run_pictures(const std::string& folder, const RunRecord& run,
+                                      TruthPictures& truths) {
     const std::string home = run_folder(folder, run.plan.id);
     std::vector<PagePicture> pictures;
-    std::optional<Image> image, truth;
+    std::optional<Image> image;
+    std::shared_ptr<const TruthPictures::Shown> truth;
     pictures.push_back(picture_or_reason("projected", [&] {
         image = read_exr(home + "/image.exr");
         return beauty_picture(*image, "projected");
     }));
     pictures.push_back(picture_or_reason("truth", [&] {
-        truth = read_exr(truth_file(folder, run.plan.truth));
-        return beauty_picture(*truth, "truth");
+        truth = truths.get(run.plan.truth);
+        return truth->picture;
     }));
     pictures.back().is_over_previous = true;
 
@@ -93,7 +112,7 @@ std::vector<PagePicture> run_pictures(const std::string& folder, const RunRecord
     if (!failed.caption.empty()) pictures.push_back(failed);
     if (image && truth)
         pictures.push_back(
-            picture_or_reason("difference", [&] { return run_difference(*image, *truth, run); }));
+            picture_or_reason("difference", [&] { return run_difference(*image, truth->image, run); }));
     return pictures;
 }
 

@@ -2,18 +2,42 @@
 // differ.
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/image.h"
 #include "report/pictures.h"
 #include "sweep/results.h"
 
 namespace trilens {
 
+/// The truths of a sweep as pictures: one that several runs share is read and encoded once. Thread-safe.
+class TruthPictures {
+  public:
+    struct Shown {
+        Image image;  // R, G and B
+        PagePicture picture;
+    };
+
+    explicit TruthPictures(std::string folder) : folder_(std::move(folder)) {}
+
+    /// By the truth's hash. Throws InputError where it cannot be read.
+    std::shared_ptr<const Shown> get(const std::string& hash);
+
+  private:
+    std::string folder_;
+    std::mutex mutex_;  // of what follows
+    std::string hash_;
+    std::shared_ptr<const Shown> last_;
+};
+
 /// The pictures of one finished run: projected with the truth over it, the displacement of each layer in
 /// colours of its own range, and the difference times a factor of its own; ranges and factors are stated. A
 /// picture that cannot be made is a caption that says why.
-std::vector<PagePicture> run_pictures(const std::string& folder, const RunRecord& run);
+std::vector<PagePicture> run_pictures(const std::string& folder, const RunRecord& run, TruthPictures& truths);
 
 /// The difference of a run's image and its truth, times a power of two such that it is neither black nor
 /// white all over, which the caption states; a caption alone where they are the same.

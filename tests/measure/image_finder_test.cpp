@@ -8,6 +8,7 @@
 
 #include "measure/likely_place.h"
 #include "measure/plain_inversion.h"
+#include "measure/plain_patch.h"
 #include "measure/sliver.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
@@ -32,7 +33,7 @@ void try_pieces(const ImageFinder& finder, const SeenPoint& wanted, Vec2 cell, b
     for (int corner = 0; corner < 4; ++corner) {
         const int x = column + corner % 2, y = row + corner / 2;
         if (!field.contains(x, y)) continue;
-        const auto patch = make_patch(field, finder.test().field, {column, row, corner}, piece);
+        const auto patch = plain::plain_patch(field, finder.test().field, {column, row, corner}, piece);
         if (!patch) continue;
         best.tried = true;
         const Vec2 from(wanted.column, wanted.row);
@@ -143,6 +144,39 @@ TEST_CASE("the image finder finds what trying every cell finds, to the last bit"
     CHECK(alone == 0);
     CHECK(found > 4000);
     CHECK(far > 500);
+    CHECK(none > 500);
+}
+
+TEST_CASE("patches are continued as in plain code, to the last bit", "[measure][displacement]") {
+    std::mt19937_64 random(14);
+    std::size_t patches = 0, continued = 0, none = 0, wrong = 0;
+    for (int trial = 0; trial < 60; ++trial) {
+        const double amount = std::pow(10.0, std::uniform_real_distribution<double>(-3, 1)(random));
+        const Image one = random_image(random, 13, 12, amount), other = random_image(random, 13, 12, amount);
+        const FieldIndex index(make_seen_field(one, "reflect").value()),
+            beside(make_seen_field(other, "reflect").value());
+        for (int row = -1; row < 12; ++row)
+            for (int column = -1; column < 13; ++column)
+                for (int corner = 0; corner < 4; ++corner) {
+                    const int x = column + corner % 2, y = row + corner / 2;
+                    if (!index.field.contains(x, y)) continue;
+                    const SeenPoint seen = index.field.seen_point(index.field.index(x, y));
+                    Piece piece = piece_of(seen);
+                    if (random() % 2) piece.primitive = seen.primitive;
+                    const PatchPlace place{column, row, corner};
+                    const auto patch = make_patch(index.field, beside.field, place, piece);
+                    const auto expected = plain::plain_patch(index.field, beside.field, place, piece);
+                    (expected ? patches : none) += 1;
+                    wrong += patch.has_value() != expected.has_value();
+                    if (!patch || !expected) continue;
+                    continued += patch->measured != 0xffff;
+                    wrong += patch->measured != expected->measured ||
+                             patch->supported != expected->supported || patch->nodes != expected->nodes;
+                }
+    }
+    INFO(patches << " patches, " << continued << " continued, " << none << " none");
+    CHECK(wrong == 0);
+    CHECK(continued > 10000);
     CHECK(none > 500);
 }
 
