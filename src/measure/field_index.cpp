@@ -58,8 +58,9 @@ struct CellRow {
         const double margin = margin_steps * longest +
                               8 * static_cast<double>(std::numeric_limits<float>::epsilon()) * length(p);
         for (int k = 0; k < 3; ++k) {
-            quad.low[k][child] = std::min(quad.low[k][child], static_cast<float>(p[k] - margin));
-            quad.high[k][child] = std::max(quad.high[k][child], static_cast<float>(p[k] + margin));
+            const float low = quad.low[k][child], high = quad.high[k][child];
+            quad.low[k][child] = std::min(low, static_cast<float>(p[k] - margin));
+            quad.high[k][child] = std::max(high, static_cast<float>(p[k] + margin));
         }
     }
 
@@ -112,8 +113,9 @@ FieldIndex::Level coarser(const FieldIndex::Level& fine) {
                             static_cast<std::size_t>(column / 2)];
             const int child = column % 2 + 2 * (row % 2);
             for (int k = 0; k < 3; ++k) {
-                to.low[k][child] = *std::min_element(from.low[k], from.low[k] + 4);
-                to.high[k][child] = *std::max_element(from.high[k], from.high[k] + 4);
+                const BoxQuad::Floats &low = from.low[k], &high = from.high[k];
+                to.low[k][child] = std::min({low[0], low[1], low[2], low[3]});
+                to.high[k][child] = std::max({high[0], high[1], high[2], high[3]});
             }
         }
     }
@@ -166,16 +168,6 @@ std::vector<std::uint8_t> whole_patches(const SeenField& field) {
 }
 
 }  // namespace
-
-unsigned BoxQuad::holding(const Vec3& point) const {
-    const float x = static_cast<float>(point.x), y = static_cast<float>(point.y),
-                z = static_cast<float>(point.z);
-    unsigned inside[4];
-    for (int i = 0; i < 4; ++i)
-        inside[i] = static_cast<unsigned>((low[0][i] <= x) & (x <= high[0][i]) & (low[1][i] <= y) &
-                                          (y <= high[1][i]) & (low[2][i] <= z) & (z <= high[2][i]));
-    return inside[0] | inside[1] << 1 | inside[2] << 2 | inside[3] << 3;
-}
 
 FieldIndex::FieldIndex(SeenField without_links) : field(std::move(without_links)) {
     link_neighbours(field);

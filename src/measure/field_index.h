@@ -16,10 +16,21 @@ namespace trilens {
 /// The bounding boxes of four cells, or of four groups of cells: the children 2 x + 0, 1 and 2 y + 0, 1 of a
 /// larger group. Empty: low > high.
 struct BoxQuad {
-    float low[3][4], high[3][4];
+    // GCC's and Clang's vectors: side by side whatever the instruction set.
+    using Floats [[gnu::vector_size(16)]] = float;
+    using Bits [[gnu::vector_size(16)]] = std::int32_t;
+    Floats low[3], high[3];
 
     /// Bit i: box i (x + 2 y) holds the point, borders included. Exact for coordinates that are floats.
-    unsigned holding(const Vec3& point) const;
+    unsigned holding(const Vec3& point) const {
+        Bits inside = {1, 2, 4, 8};
+        for (int k = 0; k < 3; ++k) {
+            const float at = static_cast<float>(point[k]);
+            const Floats all = {at, at, at, at};
+            inside &= (low[k] <= all) & (all <= high[k]);
+        }
+        return static_cast<unsigned>(inside[0] | inside[1] | inside[2] | inside[3]);
+    }
 };
 
 /// A field with its links, and a pyramid over its cells: cell (column, row), from (-1, -1), lies between

@@ -18,6 +18,7 @@ std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wa
     std::array<ImageQuery, kPatchLanes> queries;
     std::array<std::size_t, kPatchLanes> number{};
     PatchBatch batch;
+    PatchCache patches(reference_, test_.field);
     std::optional<Vec2> last;
     std::size_t begun = 0;
 
@@ -26,7 +27,7 @@ std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wa
         while (begun < wanted.size()) {
             number[lane] = begun++;
             queries[lane].begin(*this, wanted[number[lane]], reach, last);
-            if (queries[lane].next(batch, lane)) return true;
+            if (queries[lane].next(batch, lane, patches)) return true;
             found[number[lane]] = queries[lane].shift();
         }
         return false;
@@ -37,7 +38,7 @@ std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wa
         const std::size_t asked = batch.count;
         for (std::size_t lane = 0; lane < asked; ++lane) queries[lane].take(batch, lane);
         for (std::size_t lane = 0; lane < batch.count;) {
-            if (queries[lane].next(batch, lane)) {
+            if (queries[lane].next(batch, lane, patches)) {
                 ++lane;
                 continue;
             }

@@ -55,9 +55,9 @@ void ImageQuery::begin(const ImageFinder& finder, const SeenPoint& wanted, doubl
     side_ = likely_side(field, wanted);
 }
 
-bool ImageQuery::next(PatchBatch& batch, std::size_t lane) {
+bool ImageQuery::next(PatchBatch& batch, std::size_t lane, PatchCache& patches) {
     while (stage_ != Stage::kEnd) {
-        if (next_patch(batch, lane)) return true;
+        if (next_patch(batch, lane, patches)) return true;
         if (!next_cell()) stage_ = Stage::kEnd;
     }
     return false;
@@ -194,10 +194,10 @@ bool ImageQuery::begin_cell(int column, int row) {
 
 /// Tries every piece of the wanted object and optic that has a pixel among the cell's corners: first of the
 /// point's own triangle, then, where none of those was solid enough to be tried, of any.
-bool ImageQuery::next_patch(PatchBatch& batch, std::size_t lane) {
+bool ImageQuery::next_patch(PatchBatch& batch, std::size_t lane, PatchCache& patches) {
     for (;;) {
         while (corner_ < 4)
-            if (put_patch(corner_++, batch, lane)) return true;
+            if (put_patch(corner_++, batch, lane, patches)) return true;
         if (any_ || !same_primitive_) return false;
         same_primitive_ = false;
         corner_ = 0;
@@ -205,7 +205,7 @@ bool ImageQuery::next_patch(PatchBatch& batch, std::size_t lane) {
     }
 }
 
-bool ImageQuery::put_patch(int corner, PatchBatch& batch, std::size_t lane) {
+bool ImageQuery::put_patch(int corner, PatchBatch& batch, std::size_t lane, PatchCache& patches) {
     const FieldIndex& index = finder_->reference();
     const SeenField& field = index.field;
     const int x = column_ + corner % 2, y = row_ + corner / 2;
@@ -227,8 +227,7 @@ bool ImageQuery::put_patch(int corner, PatchBatch& batch, std::size_t lane) {
         batch.ask(lane, wanted_.point, from, 0xffff);
         return true;
     }
-    const std::optional<Patch> patch =
-        make_patch(field, finder_->test().field, {column_, row_, corner}, piece);
+    const std::optional<Patch>& patch = patches.get({column_, row_, corner}, same_primitive_);
     if (!patch) return false;
     any_ = true;
     tried_ |= patch->measured;

@@ -9,6 +9,7 @@
 #include "base/vec.h"
 #include "measure/image_finder.h"
 #include "measure/patch_batch.h"
+#include "measure/patch_cache.h"
 
 namespace trilens {
 
@@ -19,8 +20,8 @@ class ImageQuery {
     void begin(const ImageFinder& finder, const SeenPoint& wanted, double reach,
                const std::optional<Vec2>& guess);
 
-    /// Puts the next patch into a lane of the batch; false at the end.
-    bool next(PatchBatch& batch, std::size_t lane);
+    /// Puts the next patch into a lane of the batch; false at the end. `patches`: of the finder's reference.
+    bool next(PatchBatch& batch, std::size_t lane, PatchCache& patches);
     /// What the batch says of that patch.
     void take(const PatchBatch& batch, std::size_t lane);
 
@@ -44,8 +45,8 @@ class ImageQuery {
     bool may_improve(double distance) const;
     void push(const Node& node);
     void push_children(const Node& node);
-    bool next_patch(PatchBatch& batch, std::size_t lane);
-    bool put_patch(int corner, PatchBatch& batch, std::size_t lane);
+    bool next_patch(PatchBatch& batch, std::size_t lane, PatchCache& patches);
+    bool put_patch(int corner, PatchBatch& batch, std::size_t lane, PatchCache& patches);
 
     const ImageFinder* finder_ = nullptr;
     SeenPoint wanted_;
