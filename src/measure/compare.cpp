@@ -89,11 +89,9 @@ double ssim_of(const Image& image, const std::vector<ChannelPair>& rgb, const Ma
                                  {image.data_width, image.data_height, test}, mask);
 }
 
-ColourPicture picture_of(const Image& image, const std::vector<ChannelPair>& rgb, bool is_reference) {
-    const auto values = [&](std::size_t c) -> const std::vector<float>& {
-        return is_reference ? rgb[c].reference : rgb[c].test;
-    };
-    return {image.data_width, image.data_height, values(0), values(1), values(2)};
+ColourPicture picture_of(const Image& image, const std::string& layer) {
+    return {image.data_width, image.data_height, float_channel(image, channel_of(layer, "R")),
+            float_channel(image, channel_of(layer, "G")), float_channel(image, channel_of(layer, "B"))};
 }
 
 double mean_flip(const std::vector<float>& errors, const Mask& mask) {
@@ -225,7 +223,7 @@ void judge(const CompareOptions& options, Comparison& result) {
 }  // namespace
 
 Comparison compare(const Image& reference, const Image& test, const CompareOptions& options,
-                   std::vector<float>* flip) {
+                   const std::vector<float>* flip) {
     require_comparable(reference, test);
     const Mask mask = compared_pixels(reference, test, options.mask_object);
     const std::vector<ChannelPair> channels = channels_of(reference, test, options.layer);
@@ -238,12 +236,15 @@ Comparison compare(const Image& reference, const Image& test, const CompareOptio
     result.counts.inf_ref = count_kind(odd_reference, mask, kInf);
     result.counts.inf_test = count_kind(odd_test, mask, kInf);
     result.metrics = metrics_of(reference, channels, mask);
-    std::vector<float> errors =
-        flip_map(picture_of(reference, channels, true), picture_of(reference, channels, false));
-    result.metrics.flip = mean_flip(errors, mask);
-    if (flip) *flip = std::move(errors);
+    result.metrics.flip = mean_flip(flip ? *flip : layer_flip(reference, test, options.layer), mask);
     judge(options, result);
     return result;
+}
+
+std::vector<float> layer_flip(const Image& reference, const Image& test, const std::string& layer,
+                              FlipReference* kept) {
+    require_comparable(reference, test);
+    return flip_map(picture_of(reference, layer), picture_of(test, layer), kFlipPixelsPerDegree, kept);
 }
 
 }  // namespace trilens

@@ -5,18 +5,13 @@
 
 #include "base/check.h"
 #include "measure/comparable.h"
-#include "measure/flip.h"
+#include "measure/compare.h"
 
 namespace trilens {
 namespace {
 
 void add_channel(Image& image, const std::string& name, std::vector<float> values) {
     image.channels.push_back({name, std::move(values)});
-}
-
-ColourPicture picture_of(const Image& image, const std::string& layer) {
-    return {image.data_width, image.data_height, float_channel(image, channel_of(layer, "R")),
-            float_channel(image, channel_of(layer, "G")), float_channel(image, channel_of(layer, "B"))};
 }
 
 }  // namespace
@@ -52,7 +47,7 @@ Image make_difference(const Image& reference, const Image& test, const Differenc
         add_channel(image, std::string("abs.") + name, std::move(magnitudes));
     }
     add_channel(image, "mask.M", std::vector<float>(mask.begin(), mask.end()));
-    if (flip.empty()) flip = flip_map(picture_of(reference, options.layer), picture_of(test, options.layer));
+    if (flip.empty()) flip = layer_flip(reference, test, options.layer);
     TRILENS_CHECK(flip.size() == mask.size(), "one error per pixel");
     for (std::size_t i = 0; i < flip.size(); ++i)
         if (!mask[i]) flip[i] = 0;

@@ -22,8 +22,7 @@ struct DifferenceOptions {
 ///   mask.M       1 where the pixel is compared, else 0
 ///   flip.Y       the error of flip.h, 0 (none to be seen) to 1; zero outside the mask
 /// Throws InputError where compare() would.
-/// `flip`: where given, the errors that compare() gave for the same images and layer: they need not be
-/// measured again.
+/// `flip`: the errors of layer_flip for the same images and layer, where they are known.
 Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options = {},
                       std::vector<float> flip = {});
 

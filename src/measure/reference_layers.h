@@ -10,11 +10,12 @@
 
 #include "base/image.h"
 #include "measure/field_index.h"
+#include "measure/flip.h"
 
 namespace trilens {
 
-/// Of one image, which must outlive it: its layers' indices, each made when it is first asked for.
-/// Thread-safe.
+/// Of one image, which must outlive it: its layers' indices, and what FLIP makes of its beauty, each made
+/// when it is first asked for. Thread-safe.
 class ReferenceLayers {
   public:
     struct Layer {
@@ -27,9 +28,11 @@ class ReferenceLayers {
     const Image& image() const { return image_; }
     /// Null where the image lacks the layer's objects or places.
     std::shared_ptr<const Layer> get(const std::string& layer) const;
+    FlipReference& flip() const { return flip_; }
 
   private:
     const Image& image_;
+    mutable FlipReference flip_;
     mutable std::mutex mutex_;
     mutable std::map<std::string, std::shared_ptr<const Layer>> layers_;
 };

@@ -104,7 +104,7 @@ MeasuredRun measure_run(const Image& test, const ReferenceLayers& truth,
     std::array<std::optional<Displacement>, kLayers.size()> displacement;
     std::exception_ptr failure;  // counts where the colours could be compared
     run_side_by_side({[&] {
-                          std::vector<float> flip;
+                          std::vector<float> flip = layer_flip(truth.image(), test, "", &truth.flip());
                           run.metrics = colour_values(compare(truth.image(), test, {}, &flip));
                           run.diff = make_difference(truth.image(), test, {}, std::move(flip));
                       },

@@ -153,3 +153,22 @@ TEST_CASE("where pictures agree nothing is measured, and elsewhere nothing chang
         CHECK(compared > 200);
     }
 }
+
+TEST_CASE("what was made of a reference before serves the next test as well", "[measure][flip]") {
+    std::mt19937 random(7);
+    const Film a = noise(8);
+    FlipReference kept;
+    for (int trial = 0; trial < 40; ++trial) {
+        Film b = a;
+        const std::size_t changes = 1 + random() % 5;
+        for (std::size_t k = 0; k < changes; ++k) {
+            float& value = b.b[random() % b.b.size()];
+            value = random() % 9 ? 1 - value : std::numeric_limits<float>::quiet_NaN();
+        }
+        const std::vector<float> alone = flip_map(a.picture(), b.picture()),
+                                 again = flip_map(a.picture(), b.picture(), kFlipPixelsPerDegree, &kept);
+        for (std::size_t i = 0; i < alone.size(); ++i)
+            if (alone[i] != again[i] && !(std::isnan(alone[i]) && std::isnan(again[i])))
+                FAIL_CHECK("trial " << trial << ", pixel " << i << ": " << alone[i] << ", " << again[i]);
+    }
+}
