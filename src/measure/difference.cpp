@@ -31,9 +31,8 @@ Image make_difference(const Image& reference, const Image& test, const Differenc
     require_comparable(reference, test);
     const std::vector<std::uint8_t> mask = compared_pixels(reference, test, options.mask_object);
 
-    Image image = reference;
-    image.channels.clear();
-    image.metadata = {{"trilens:kind", "difference"}};
+    Image image{reference.width,      reference.height,      reference.x0, reference.y0,
+                reference.data_width, reference.data_height, {},           {{"trilens:kind", "difference"}}};
     for (const char* name : {"R", "G", "B"}) {
         const std::vector<float>& a = float_channel(reference, channel_of(options.layer, name));
         const std::vector<float>& b = float_channel(test, channel_of(options.layer, name));

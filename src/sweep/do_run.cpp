@@ -14,6 +14,7 @@
 #include "sweep/machine.h"
 #include "sweep/measure_run.h"
 #include "sweep/run_files.h"
+#include "sweep/sweep_pictures.h"
 
 namespace trilens {
 namespace {
@@ -106,6 +107,15 @@ DrawnRun draw_run(const RunJob& job, const KeptTruth& truth, RunRecord& run) {
     return drawn;
 }
 
+/// Without room for them the report makes them of the run's files.
+void keep_pictures(const RunRecord& run, const RunImages& images, KeptPictures& pictures) {
+    try {
+        pictures.make(run, images);
+    } catch (const std::bad_alloc&) {
+        return;
+    }
+}
+
 }  // namespace
 
 std::optional<RunRecord> do_run(const RunJob& job) {
@@ -122,8 +132,11 @@ std::optional<RunRecord> do_run(const RunJob& job) {
     clear_run(job.params.folder, job.plan);
     DrawnRun drawn;
     if (truth) attempt(run, [&] { drawn = draw_run(job, *truth, run); });
-    if (run.state == RunState::kDone)
-        return store_run(job.params.folder, std::move(run), drawn.image, drawn.diff);
+    if (run.state == RunState::kDone) {
+        run = store_run(job.params.folder, std::move(run), drawn.image, drawn.diff);
+        if (job.pictures) keep_pictures(run, {drawn.image, truth->image, drawn.diff}, *job.pictures);
+        return run;
+    }
     store_failure(job.params.folder, run);
     return run;
 }

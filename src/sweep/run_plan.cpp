@@ -48,6 +48,7 @@ struct Workers {
     bool shares_one_truth;  // all runs of the plan
     TruthStore truths;
     MemoryGate gate;
+    KeptPictures* pictures;
     std::map<std::string, std::string> failures = {};  // id -> failure_stamp, as the folder was at the start
 
     std::atomic<std::size_t> next = 0;
@@ -84,7 +85,7 @@ struct Workers {
             const MemoryGate::Visit visit =
                 gate.enter(callbacks.memory ? callbacks.memory(plan) : 0, params.progress);
             std::optional<RunRecord> drawn =
-                do_run({params, callbacks, truths, plan, shares_one_truth, may_wait});
+                do_run({params, callbacks, truths, plan, shares_one_truth, may_wait, pictures});
             if (!drawn) return false;
             run = std::move(*drawn);
             keep(run);
@@ -143,7 +144,7 @@ struct Workers {
 }  // namespace
 
 std::map<std::string, RunRecord> run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
-                                          const std::vector<PlannedRun>& plan) {
+                                          const std::vector<PlannedRun>& plan, KeptPictures* pictures) {
     const bool shares_one_truth =
         std::ranges::all_of(plan, [&](const PlannedRun& run) { return run.truth == plan[0].truth; });
     Workers workers{params,
@@ -151,7 +152,8 @@ std::map<std::string, RunRecord> run_plan(const SweepParams& params, const Sweep
                     own_part(plan, params.shard),
                     shares_one_truth,
                     {params.folder, callbacks.trace, params.progress},
-                    MemoryGate(memory_limit(params))};
+                    MemoryGate(memory_limit(params)),
+                    pictures};
     const std::size_t jobs = std::clamp<std::size_t>(static_cast<std::size_t>(std::max(1, params.jobs)), 1,
                                                      std::max<std::size_t>(1, workers.mine.size()));
     workers.truths.set_kept(jobs);

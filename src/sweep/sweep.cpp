@@ -17,6 +17,7 @@
 #include "sweep/run_plan.h"
 #include "sweep/summary_latex.h"
 #include "sweep/sweep_folder.h"
+#include "sweep/sweep_pictures.h"
 #include "sweep/sweep_report.h"
 
 namespace trilens {
@@ -58,9 +59,9 @@ SweepSummary load_sweep(const std::string& folder, std::map<std::string, RunReco
     return summary;
 }
 
-void write_report_files(const SweepSummary& summary) {
+void write_report_files(const SweepSummary& summary, KeptPictures* pictures = nullptr) {
     write_tables(summary);
-    write_sweep_report(summary);
+    write_sweep_report(summary, pictures);
 }
 
 }  // namespace
@@ -72,15 +73,17 @@ void plan_sweep(const SweepParams& params, const SweepCallbacks& callbacks) {
 SweepSummary run_sweep(const SweepParams& params, const SweepCallbacks& callbacks) {
     const std::vector<PlannedRun> plan = plan_of(params, callbacks);
     const FileLock user = claim(params, plan);
+    const bool is_whole = params.shard.count == 1;
+    KeptPictures pictures(kMostBytesInPage);
     std::map<std::string, RunRecord> done;
     try {
-        done = run_plan(params, callbacks, plan);
+        done = run_plan(params, callbacks, plan, is_whole ? &pictures : nullptr);
     } catch (const Interrupted&) {
-        if (params.shard.count == 1) write_tables(load_sweep(params.folder));
+        if (is_whole) write_tables(load_sweep(params.folder));
         throw;
     }
     SweepSummary summary = load_sweep(params.folder, std::move(done));
-    if (params.shard.count == 1) write_report_files(summary);
+    if (is_whole) write_report_files(summary, &pictures);
     return summary;
 }
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -56,6 +58,18 @@ PagePicture displacement_of(const DisplacementMap& map, int width) {
     return picture;
 }
 
+std::vector<PagePicture> displacement_pictures(const Image& diff) {
+    std::vector<PagePicture> pictures;
+    for (const DisplacementMap& map : displacement_maps(diff))
+        pictures.push_back(displacement_of(map, diff.data_width));
+    return pictures;
+}
+
+void append(std::vector<PagePicture> more, std::vector<PagePicture>& pictures) {
+    pictures.insert(pictures.end(), std::make_move_iterator(more.begin()),
+                    std::make_move_iterator(more.end()));
+}
+
 }  // namespace
 
 PagePicture run_difference(const Image& image, const Image& truth, const RunRecord& run) {
@@ -104,15 +118,61 @@ std::vector<PagePicture> run_pictures(const std::string& folder, const RunRecord
     pictures.back().is_over_previous = true;
 
     const PagePicture failed = picture_or_reason("displacement", [&] {
-        const Image diff = read_exr(home + "/diff.exr");
-        for (const DisplacementMap& map : displacement_maps(diff))
-            pictures.push_back(displacement_of(map, diff.data_width));
+        append(displacement_pictures(read_exr(home + "/diff.exr")), pictures);
         return PagePicture{};
     });
     if (!failed.caption.empty()) pictures.push_back(failed);
     if (image && truth)
         pictures.push_back(
             picture_or_reason("difference", [&] { return run_difference(*image, truth->image, run); }));
+    return pictures;
+}
+
+PagePicture KeptPictures::truth_picture(const RunRecord& run, const Image& truth) {
+    {
+        const std::lock_guard guard(mutex_);
+        if (truth_ == run.plan.truth) return truth_picture_;
+    }
+    PagePicture picture = picture_or_reason("truth", [&] { return beauty_picture(truth, "truth"); });
+    picture.is_over_previous = true;
+    const std::lock_guard guard(mutex_);
+    truth_ = run.plan.truth;
+    return truth_picture_ = std::move(picture);
+}
+
+void KeptPictures::make(const RunRecord& run, const RunImages& images) {
+    {
+        const std::lock_guard guard(mutex_);
+        if (bytes_ >= most_bytes_) return;
+    }
+    PagePicture projected, truth, difference;
+    std::vector<PagePicture> displacement, all;
+    run_side_by_side({[&] {
+                          projected = picture_or_reason(
+                              "projected", [&] { return beauty_picture(images.image, "projected"); });
+                          truth = truth_picture(run, images.truth);
+                      },
+                      [&] { displacement = displacement_pictures(images.diff); },
+                      [&] {
+                          difference = picture_or_reason(
+                              "difference", [&] { return run_difference(images.image, images.truth, run); });
+                      }});
+    all.push_back(std::move(projected));
+    all.push_back(std::move(truth));
+    append(std::move(displacement), all);
+    all.push_back(std::move(difference));
+
+    const std::lock_guard guard(mutex_);
+    for (const PagePicture& picture : all) bytes_ += picture.png.size();
+    runs_[run.plan.id] = {run.plan.hash, std::move(all)};
+}
+
+std::optional<std::vector<PagePicture>> KeptPictures::take(const PlannedRun& run) {
+    const std::lock_guard guard(mutex_);
+    const auto found = runs_.find(run.id);
+    if (found == runs_.end() || found->second.hash != run.hash) return std::nullopt;
+    std::vector<PagePicture> pictures = std::move(found->second.pictures);
+    runs_.erase(found);
     return pictures;
 }
 
