@@ -24,6 +24,7 @@ struct ComparedInputs {
     CommonChannels images;
     Comparison comparison;
     std::vector<LayerComparison> layers;
+    std::vector<float> flip;  // layer_flip of the images
 };
 
 /// The table and the verdict, and the fields of `trilens.compare/1`.

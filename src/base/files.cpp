@@ -20,8 +20,18 @@ std::optional<std::string> read_whole_file(const std::string& file) {
     std::error_code failure;
     if (!fs::is_regular_file(file, failure)) return std::nullopt;
     std::ifstream in(file, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     if (!in) return std::nullopt;
+    // As much as it has now; it may grow or shrink meanwhile.
+    const std::uintmax_t size = fs::file_size(file, failure);
+    std::string text(failure ? 0 : static_cast<std::size_t>(size) + 1, '\0');
+    std::size_t filled = 0;
+    while (in) {
+        if (filled == text.size()) text.resize(2 * filled + 4096);
+        in.read(text.data() + filled, static_cast<std::streamsize>(text.size() - filled));
+        filled += static_cast<std::size_t>(in.gcount());
+    }
+    if (in.bad()) return std::nullopt;
+    text.resize(filled);
     return text;
 }
 

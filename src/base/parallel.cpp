@@ -39,6 +39,12 @@ void parallel_for(std::size_t count, std::size_t grain,
         [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
 }
 
+void run_side_by_side(std::initializer_list<std::function<void()>> tasks) {
+    parallel_for(tasks.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) tasks.begin()[i]();
+    });
+}
+
 void run_pipeline(std::size_t count, std::size_t slots, const PipelineStages& stages) {
     // Items end in order, and at most `slots` are on the way: the one that had this slot before has ended.
     std::size_t next = 0;

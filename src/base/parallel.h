@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 
 namespace trilens {
 
@@ -17,6 +18,10 @@ int thread_count();
 /// An exception thrown by body is rethrown here.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t first, std::size_t last)>& body);
+
+/// Calls every one of them, in any order and on any threads; returns when all have ended. An exception thrown
+/// by one is rethrown here.
+void run_side_by_side(std::initializer_list<std::function<void()>> tasks);
 
 /// A row of items that go through three stages, each in a slot that is its own on the way.
 struct PipelineStages {

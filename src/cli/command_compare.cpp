@@ -72,7 +72,7 @@ Image read_input(const CompareRequest& request, bool is_reference, Console& cons
 void write_difference(const CompareRequest& request, const ComparedInputs& inputs, Console& console) {
     const Stopwatch watch;
     Image difference = make_difference(inputs.images.reference, inputs.images.test,
-                                       {request.options.layer, request.options.mask_object});
+                                       {request.options.layer, request.options.mask_object}, inputs.flip);
     add_shifts(inputs.layers, difference);
     if (is_png(request.difference)) {
         for (const char* colour : {"R", "G", "B"}) {
@@ -98,8 +98,8 @@ void check_options(const CompareRequest& request, Console& console) {
 
 ComparedInputs read_inputs(const CompareRequest& request, Console& console) {
     Image reference = read_input(request, true, console), test = read_input(request, false, console);
-    if (request.strict) return {{std::move(reference), std::move(test), {}, {}}, {}, {}};
-    return {keep_common_channels(std::move(reference), std::move(test)), {}, {}};
+    if (request.strict) return {{std::move(reference), std::move(test), {}, {}}, {}, {}, {}};
+    return {keep_common_channels(std::move(reference), std::move(test)), {}, {}, {}};
 }
 
 /// A broken limit is a failure, beside whatever else is.
@@ -116,7 +116,8 @@ Answer run(const CompareRequest& request, Console& console) {
     ComparedInputs inputs = read_inputs(request, console);
     const Stopwatch watch;
     const CommonChannels& images = inputs.images;
-    inputs.comparison = compare(images.reference, images.test, request.options);
+    inputs.flip = layer_flip(images.reference, images.test, request.options.layer);
+    inputs.comparison = compare(images.reference, images.test, request.options, &inputs.flip);
     inputs.layers =
         compare_layers(images.reference, images.test, {request.radius, request.options.mask_object});
     judge_limits(request, inputs);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "measure/comparable.h"
@@ -88,15 +89,12 @@ double ssim_of(const Image& image, const std::vector<ChannelPair>& rgb, const Ma
                                  {image.data_width, image.data_height, test}, mask);
 }
 
-ColourPicture picture_of(const Image& image, const std::vector<ChannelPair>& rgb, bool is_reference) {
-    const auto values = [&](std::size_t c) -> const std::vector<float>& {
-        return is_reference ? rgb[c].reference : rgb[c].test;
-    };
-    return {image.data_width, image.data_height, values(0), values(1), values(2)};
+ColourPicture picture_of(const Image& image, const std::string& layer) {
+    return {image.data_width, image.data_height, float_channel(image, channel_of(layer, "R")),
+            float_channel(image, channel_of(layer, "G")), float_channel(image, channel_of(layer, "B"))};
 }
 
-double flip_of(const Image& image, const std::vector<ChannelPair>& rgb, const Mask& mask) {
-    const std::vector<float> errors = flip_map(picture_of(image, rgb, true), picture_of(image, rgb, false));
+double mean_flip(const std::vector<float>& errors, const Mask& mask) {
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -107,6 +105,7 @@ double flip_of(const Image& image, const std::vector<ChannelPair>& rgb, const Ma
     return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
+/// All but FLIP's.
 Metrics metrics_of(const Image& image, const std::vector<ChannelPair>& channels, const Mask& mask) {
     double sum = 0, squares = 0, relative = 0;
     std::vector<double> largest;
@@ -132,7 +131,6 @@ Metrics metrics_of(const Image& image, const std::vector<ChannelPair>& channels,
     metrics.psnr_db =
         squares > 0 ? -10 * std::log10(squares / count) : std::numeric_limits<double>::infinity();
     metrics.ssim = ssim_of(image, channels, mask);
-    metrics.flip = flip_of(image, channels, mask);
     const Summary summary = summarize(std::move(largest));
     metrics.max = summary.max;
     metrics.p50 = summary.p50;
@@ -224,7 +222,8 @@ void judge(const CompareOptions& options, Comparison& result) {
 
 }  // namespace
 
-Comparison compare(const Image& reference, const Image& test, const CompareOptions& options) {
+Comparison compare(const Image& reference, const Image& test, const CompareOptions& options,
+                   const std::vector<float>* flip) {
     require_comparable(reference, test);
     const Mask mask = compared_pixels(reference, test, options.mask_object);
     const std::vector<ChannelPair> channels = channels_of(reference, test, options.layer);
@@ -237,8 +236,15 @@ Comparison compare(const Image& reference, const Image& test, const CompareOptio
     result.counts.inf_ref = count_kind(odd_reference, mask, kInf);
     result.counts.inf_test = count_kind(odd_test, mask, kInf);
     result.metrics = metrics_of(reference, channels, mask);
+    result.metrics.flip = mean_flip(flip ? *flip : layer_flip(reference, test, options.layer), mask);
     judge(options, result);
     return result;
+}
+
+std::vector<float> layer_flip(const Image& reference, const Image& test, const std::string& layer,
+                              FlipReference* kept) {
+    require_comparable(reference, test);
+    return flip_map(picture_of(reference, layer), picture_of(test, layer), kFlipPixelsPerDegree, kept);
 }
 
 }  // namespace trilens

@@ -11,6 +11,8 @@
 
 namespace trilens {
 
+class FlipReference;
+
 /// What is compared, and the thresholds: idiff's options by name and meaning.
 struct CompareOptions {
     std::string layer;  // "": the beauty, R G B (and A where there is one); "reflect": reflect.R G B
@@ -72,6 +74,13 @@ struct Comparison {
 /// % of the compared ones; else kWarning where warning pixels > warnpercent % of the compared ones; else
 /// kPass. No rule hides another. Throws InputError where the images cannot be compared (see
 /// require_comparable, compared_pixels) or the layer has no R, G and B.
-Comparison compare(const Image& reference, const Image& test, const CompareOptions& options = {});
+/// `flip`: the errors of layer_flip for the same images and layer, where they are known.
+Comparison compare(const Image& reference, const Image& test, const CompareOptions& options = {},
+                   const std::vector<float>* flip = nullptr);
+
+/// The errors of flip.h of all pixels of the window, of a layer as CompareOptions names it. `kept`: as
+/// flip_map has it. Throws InputError where the images cannot be compared, or the layer has no R, G and B.
+std::vector<float> layer_flip(const Image& reference, const Image& test, const std::string& layer,
+                              FlipReference* kept = nullptr);
 
 }  // namespace trilens

@@ -5,18 +5,13 @@
 
 #include "base/check.h"
 #include "measure/comparable.h"
-#include "measure/flip.h"
+#include "measure/compare.h"
 
 namespace trilens {
 namespace {
 
 void add_channel(Image& image, const std::string& name, std::vector<float> values) {
     image.channels.push_back({name, std::move(values)});
-}
-
-ColourPicture picture_of(const Image& image, const std::string& layer) {
-    return {image.data_width, image.data_height, float_channel(image, channel_of(layer, "R")),
-            float_channel(image, channel_of(layer, "G")), float_channel(image, channel_of(layer, "B"))};
 }
 
 }  // namespace
@@ -31,13 +26,13 @@ void add_shift(const std::string& layer, const Displacement& displacement, Image
     add_channel(difference, layer + ".shift.M", std::move(state));
 }
 
-Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options) {
+Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options,
+                      std::vector<float> flip) {
     require_comparable(reference, test);
     const std::vector<std::uint8_t> mask = compared_pixels(reference, test, options.mask_object);
 
-    Image image = reference;
-    image.channels.clear();
-    image.metadata = {{"trilens:kind", "difference"}};
+    Image image{reference.width,      reference.height,      reference.x0, reference.y0,
+                reference.data_width, reference.data_height, {},           {{"trilens:kind", "difference"}}};
     for (const char* name : {"R", "G", "B"}) {
         const std::vector<float>& a = float_channel(reference, channel_of(options.layer, name));
         const std::vector<float>& b = float_channel(test, channel_of(options.layer, name));
@@ -51,7 +46,8 @@ Image make_difference(const Image& reference, const Image& test, const Differenc
         add_channel(image, std::string("abs.") + name, std::move(magnitudes));
     }
     add_channel(image, "mask.M", std::vector<float>(mask.begin(), mask.end()));
-    std::vector<float> flip = flip_map(picture_of(reference, options.layer), picture_of(test, options.layer));
+    if (flip.empty()) flip = layer_flip(reference, test, options.layer);
+    TRILENS_CHECK(flip.size() == mask.size(), "one error per pixel");
     for (std::size_t i = 0; i < flip.size(); ++i)
         if (!mask[i]) flip[i] = 0;
     add_channel(image, "flip.Y", std::move(flip));

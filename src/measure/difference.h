@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/ids.h"
 #include "base/image.h"
@@ -21,7 +22,9 @@ struct DifferenceOptions {
 ///   mask.M       1 where the pixel is compared, else 0
 ///   flip.Y       the error of flip.h, 0 (none to be seen) to 1; zero outside the mask
 /// Throws InputError where compare() would.
-Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options = {});
+/// `flip`: the errors of layer_flip for the same images and layer, where they are known.
+Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options = {},
+                      std::vector<float> flip = {});
 
 /// Adds what `layer` ("reflect", "refract") shows, moved, to the difference of the same two images:
 ///   LAYER.shift.X Y    Displacement::shift_x, shift_y, in pixels

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "base/parallel.h"
 #include "measure/comparable.h"
-#include "measure/folds.h"
 #include "measure/image_finder.h"
 #include "measure/other_image.h"
+#include "measure/reference_layers.h"
 
 namespace trilens {
 namespace {
@@ -19,28 +20,40 @@ std::size_t count(const std::vector<Shift>& states, Shift wanted) {
 
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
+Displacement nothing_shown(std::size_t pixels) {
+    Displacement result;
+    result.state.assign(pixels, Shift::kNothing);
+    result.shift_x.assign(pixels, 0);
+    result.shift_y.assign(pixels, 0);
+    return result;
+}
+
 /// The shifts of all pixels of the finder's test; of the statistics only the losses. Places are looked for up
 /// to `reach` pixels away, at least the radius.
 Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8_t>& mask, double radius,
                          double reach) {
-    const SeenField& field = finder.test();
-    Displacement result;
-    result.state.assign(mask.size(), Shift::kNothing);
-    result.shift_x.assign(mask.size(), 0);
-    result.shift_y.assign(mask.size(), 0);
+    const SeenField& field = finder.test().field;
+    Displacement result = nothing_shown(mask.size());
     std::vector<std::uint8_t> is_beyond(mask.size(), 0);
     parallel_for(mask.size(), 512, [&](std::size_t first, std::size_t last) {
+        std::vector<SeenPoint> wanted;
+        std::vector<std::size_t> pixels;
         for (std::size_t i = first; i < last; ++i) {
             if (!mask[i] || !field.shows_layer(i)) continue;
             result.state[i] = Shift::kLost;
             if (!field.sees(i)) continue;
-            const std::optional<Vec2> shift = finder.find(field.seen_point(i), reach);
-            if (!shift) continue;
-            is_beyond[i] = glm::length(*shift) > radius;
+            wanted.push_back(field.seen_point(i));
+            pixels.push_back(i);
+        }
+        const std::vector<std::optional<Vec2>> found = finder.find(wanted, reach);
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            if (!found[k]) continue;
+            const std::size_t i = pixels[k];
+            is_beyond[i] = glm::length(*found[k]) > radius;
             if (is_beyond[i]) continue;
             result.state[i] = Shift::kFound;
-            result.shift_x[i] = static_cast<float>(shift->x);
-            result.shift_y[i] = static_cast<float>(shift->y);
+            result.shift_x[i] = static_cast<float>(found[k]->x);
+            result.shift_y[i] = static_cast<float>(found[k]->y);
         }
     });
     drop_other_images(result, field.width);
@@ -75,18 +88,36 @@ std::size_t count_shown(const SeenField& one, const SeenField& other, const std:
 std::optional<Displacement> measure_displacement(const Image& reference, const Image& test,
                                                  const std::string& layer,
                                                  const DisplacementOptions& options) {
-    require_comparable(reference, test);
-    const std::vector<std::uint8_t> mask = compared_pixels(reference, test, options.mask_object);
-    const std::optional<SeenField> reference_field = make_seen_field(reference, layer);
-    const std::optional<SeenField> test_field = make_seen_field(test, layer);
-    if (!reference_field || !test_field) return std::nullopt;
+    return measure_displacement(ReferenceLayers(reference), test, layer, options);
+}
 
-    const ImageFinder finder(*reference_field, *test_field);
-    Displacement result = find_shifts(finder, mask, options.radius, kAnywhere);
-    collect_statistics(near_folds(finder.reference()), result);
-    result.missing = find_shifts({*test_field, *reference_field}, mask, options.radius, options.radius).lost;
+std::optional<Displacement> measure_displacement(const ReferenceLayers& reference, const Image& test,
+                                                 const std::string& layer,
+                                                 const DisplacementOptions& options) {
+    require_comparable(reference.image(), test);
+    const std::vector<std::uint8_t> mask = compared_pixels(reference.image(), test, options.mask_object);
+    const std::optional<SeenField> reference_field = make_seen_field(reference.image(), layer);
+    std::optional<SeenField> test_field = make_seen_field(test, layer);
+    if (!reference_field || !test_field) return std::nullopt;
     const std::size_t shown = count_shown(*reference_field, *test_field, mask);
-    if (shown > 0) result.coverage = static_cast<double>(result.pixels) / static_cast<double>(shown);
+    if (shown == 0) return nothing_shown(mask.size());
+
+    std::shared_ptr<const ReferenceLayers::Layer> there;
+    std::optional<FieldIndex> here;
+    run_side_by_side({[&] { there = reference.get(layer); }, [&] { here.emplace(*test_field); }});
+    Displacement result;
+    std::size_t missing = 0;
+    run_side_by_side({[&] {
+                          const ImageFinder finder(there->index, *here);
+                          result = find_shifts(finder, mask, options.radius, kAnywhere);
+                          collect_statistics(there->near_folds, result);
+                      },
+                      [&] {
+                          const ImageFinder finder(*here, there->index);
+                          missing = find_shifts(finder, mask, options.radius, options.radius).lost;
+                      }});
+    result.missing = missing;
+    result.coverage = static_cast<double>(result.pixels) / static_cast<double>(shown);
     return result;
 }
 

@@ -13,6 +13,8 @@
 
 namespace trilens {
 
+class ReferenceLayers;
+
 struct DisplacementOptions {
     double radius = 64;             // pixels; what is seen farther away counts as lost
     std::optional<Id> mask_object;  // as in CompareOptions
@@ -58,6 +60,11 @@ struct Displacement {
 /// the scene (the rim of a sphere) and the displacement is not small, it may reach some pixels. Nothing where
 /// the images have no such layer with places. Throws InputError where they cannot be compared.
 std::optional<Displacement> measure_displacement(const Image& reference, const Image& test,
+                                                 const std::string& layer,
+                                                 const DisplacementOptions& options = {});
+
+/// The same, for many tests of one reference.
+std::optional<Displacement> measure_displacement(const ReferenceLayers& reference, const Image& test,
                                                  const std::string& layer,
                                                  const DisplacementOptions& options = {});
 

@@ -4,14 +4,24 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "measure/picture_window.h"
 #include "measure/separable_filter.h"
 
 namespace trilens {
+
+struct FlipWindow {
+    std::vector<std::array<double, 3>> lab;  // filtered, Hunt-adjusted
+    std::vector<double> edges, points;       // how strong
+};
+
 namespace {
 
 using Colour = std::array<double, 3>;
@@ -110,11 +120,16 @@ struct Sensitivity {
 
 constexpr double kWidest = 0.04;  // the largest b: it gives the reach of all
 
+int sensitivity_reach(double per_degree) {
+    constexpr double kPi = std::numbers::pi;
+    return static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * per_degree));
+}
+
 /// The plane under a sum of Gaussians whose weights sum to one. The sum of two is not separable, each of them
 /// is.
 Plane filter_by_sensitivity(const Plane& plane, std::span<const Sensitivity> gaussians, double per_degree) {
     constexpr double kPi = std::numbers::pi;
-    const int reach = static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * per_degree));
+    const int reach = sensitivity_reach(per_degree);
     std::vector<Kernel> kernels;
     std::vector<double> shares;
     double whole = 0;
@@ -136,36 +151,43 @@ Plane filter_by_sensitivity(const Plane& plane, std::span<const Sensitivity> gau
     return out;
 }
 
+/// The standard deviation of the Gaussian that features are found with, pixels.
+double feature_width(double per_degree) {
+    constexpr double kPeakToTrough = 0.082;  // degrees, of human edge detection
+    return 0.5 * kPeakToTrough * per_degree;
+}
+int feature_reach(double per_degree) {
+    return static_cast<int>(std::ceil(3 * feature_width(per_degree)));
+}
+
 /// Lengths of the vectors (along rows, along columns) that `feature` across and `smooth` along find.
 std::vector<double> feature_strength(const Plane& lightness, const Kernel& feature, const Kernel& smooth) {
     const Plane across = filter_plane(lightness, feature, smooth),
                 down = filter_plane(lightness, smooth, feature);
     std::vector<double> lengths(lightness.values.size());
-    for (std::size_t i = 0; i < lengths.size(); ++i)
-        lengths[i] = std::hypot(across.values[i], down.values[i]);
+    parallel_for(lengths.size(), kPixelsAtOnce, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) lengths[i] = std::hypot(across.values[i], down.values[i]);
+    });
     return lengths;
 }
 
 // --- What one picture becomes
 // ----------------------------------------------------------------------------------------------
 
-struct Prepared {
-    std::vector<Colour> lab;            // filtered, Hunt-adjusted
-    std::vector<double> edges, points;  // how strong
-};
-
-Planes opponent_planes(const ColourPicture& picture, const std::vector<bool>& is_finite) {
+Planes opponent_planes(const ColourPicture& picture, const std::vector<std::uint8_t>& is_finite) {
     Planes planes;
     for (Plane& plane : planes)
         plane = {picture.width, picture.height, std::vector<double>(is_finite.size(), 0.0)};
-    for (std::size_t i = 0; i < is_finite.size(); ++i) {
-        const auto shown = [&](float value) {
-            return is_finite[i] ? std::clamp(static_cast<double>(value), 0.0, 1.0) : 0.0;
-        };
-        const Colour colour =
-            opponent(relative_to_white({shown(picture.r[i]), shown(picture.g[i]), shown(picture.b[i])}));
-        for (std::size_t c = 0; c < 3; ++c) planes[c].values[i] = colour[c];
-    }
+    parallel_for(is_finite.size(), kPixelsAtOnce, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const auto shown = [&](float value) {
+                return is_finite[i] ? std::clamp(static_cast<double>(value), 0.0, 1.0) : 0.0;
+            };
+            const Colour colour =
+                opponent(relative_to_white({shown(picture.r[i]), shown(picture.g[i]), shown(picture.b[i])}));
+            for (std::size_t c = 0; c < 3; ++c) planes[c].values[i] = colour[c];
+        }
+    });
     return planes;
 }
 
@@ -186,10 +208,10 @@ std::vector<Colour> filtered_lab(const Planes& planes, double per_degree) {
     return lab;
 }
 
-Prepared prepare(const ColourPicture& picture, const std::vector<bool>& is_finite, double per_degree) {
-    constexpr double kPeakToTrough = 0.082;  // degrees, of human edge detection
-    const double sigma = 0.5 * kPeakToTrough * per_degree;
-    const int reach = static_cast<int>(std::ceil(3 * sigma));
+FlipWindow prepare(const ColourPicture& picture, const std::vector<std::uint8_t>& is_finite,
+                   double per_degree) {
+    const double sigma = feature_width(per_degree);
+    const int reach = feature_reach(per_degree);
     const auto gaussian = [&](double i) { return std::exp(-i * i / (2 * sigma * sigma)); };
     Kernel smooth = make_kernel(reach, gaussian);
     const double sum = sum_of(smooth);
@@ -219,7 +241,7 @@ double redistributed(double distance, double largest) {
     return kShareOfRange + (distance - knee) / (largest - knee) * (1 - kShareOfRange);
 }
 
-double error_at(const Prepared& reference, const Prepared& test, std::size_t i) {
+double error_at(const FlipWindow& reference, const FlipWindow& test, std::size_t i) {
     static const double kLargest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), kColourExponent);
     const double colour =
         redistributed(std::pow(hyab(reference.lab[i], test.lab[i]), kColourExponent), kLargest);
@@ -229,27 +251,84 @@ double error_at(const Prepared& reference, const Prepared& test, std::size_t i) 
     return std::pow(std::clamp(colour, 0.0, 1.0), 1 - strength);
 }
 
+/// A window's borders a little outward, so that those of many tests are the same.
+PictureWindow rounded_outward(const PictureWindow& window, const ColourPicture& inside) {
+    constexpr int kStep = 32;
+    return {window.x0 / kStep * kStep, window.y0 / kStep * kStep,
+            std::min(inside.width, (window.x1 + kStep - 1) / kStep * kStep),
+            std::min(inside.height, (window.y1 + kStep - 1) / kStep * kStep)};
+}
+
+struct WindowPair {
+    PictureWindow window;
+    CroppedPicture reference, test;
+    std::vector<std::uint8_t> is_finite;
+    bool all_finite = true;
+
+    WindowPair(const ColourPicture& one, const ColourPicture& other, const PictureWindow& where)
+        : window(where), reference(one, where), test(other, where) {
+        const ColourPicture a = reference.picture(), b = test.picture();
+        is_finite.resize(a.r.size());
+        for (std::size_t i = 0; i < is_finite.size(); ++i) {
+            is_finite[i] = is_number(a, i) && is_number(b, i);
+            all_finite = all_finite && is_finite[i];
+        }
+    }
+};
+
+/// The errors of a window's pixels.
+std::vector<float> measure_window(const WindowPair& pair, double per_degree, FlipReference* kept) {
+    const auto make = [&] { return prepare(pair.reference.picture(), pair.is_finite, per_degree); };
+    const PictureWindow& w = pair.window;
+    // What is not finite in the test changes what is made of the reference.
+    const auto a = kept && pair.all_finite ? kept->get({w.x0, w.y0, w.x1, w.y1}, make)
+                                           : std::make_shared<const FlipWindow>(make());
+    const FlipWindow b = prepare(pair.test.picture(), pair.is_finite, per_degree);
+    std::vector<float> errors(pair.is_finite.size());
+    parallel_for(errors.size(), kPixelsAtOnce, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            errors[i] = pair.is_finite[i] ? static_cast<float>(error_at(*a, b, i))
+                                          : std::numeric_limits<float>::quiet_NaN();
+    });
+    return errors;
+}
+
 }  // namespace
 
+std::shared_ptr<const FlipWindow> FlipReference::get(const std::array<int, 4>& window,
+                                                     const std::function<FlipWindow()>& make) {
+    {
+        const std::lock_guard guard(mutex_);
+        if (kept_ && window_ == window) return kept_;
+    }
+    auto made = std::make_shared<const FlipWindow>(make());
+    const std::lock_guard guard(mutex_);
+    window_ = window;
+    return kept_ = std::move(made);
+}
+
 std::vector<float> flip_map(const ColourPicture& reference, const ColourPicture& test,
-                            double pixels_per_degree) {
+                            double pixels_per_degree, FlipReference* kept) {
     TRILENS_CHECK(reference.width == test.width && reference.height == test.height, "pictures of one size");
     TRILENS_CHECK(pixels_per_degree > 0, "some pixels per degree");
-    const std::size_t pixels =
-        static_cast<std::size_t>(reference.width) * static_cast<std::size_t>(reference.height);
-    std::vector<bool> is_finite(pixels);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        is_finite[i] = true;
-        for (const ColourPicture* picture : {&reference, &test})
-            is_finite[i] = is_finite[i] && std::isfinite(picture->r[i]) && std::isfinite(picture->g[i]) &&
-                           std::isfinite(picture->b[i]);
+    const std::size_t width = static_cast<std::size_t>(reference.width);
+    std::vector<float> errors(width * static_cast<std::size_t>(reference.height), 0.0f);
+    // A pixel whose filters read no pixel that differs has an error of exactly zero: both pictures hold the
+    // same numbers there, and make the same sums of them.
+    const PictureWindow differing = differing_window(reference, test);
+    if (differing.is_empty()) return errors;
+    const int reach = std::max(sensitivity_reach(pixels_per_degree), feature_reach(pixels_per_degree));
+    const PictureWindow measured = differing.grown(reach, reference);
+    const WindowPair pair(reference, test, rounded_outward(measured.grown(reach, reference), reference));
+    const std::vector<float> there = measure_window(pair, pixels_per_degree, kept);
+    const std::size_t columns = static_cast<std::size_t>(pair.window.x1 - pair.window.x0);
+    for (int y = measured.y0; y < measured.y1; ++y) {
+        const auto from = there.begin() +
+                          static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y - pair.window.y0) * columns);
+        std::copy(
+            from + (measured.x0 - pair.window.x0), from + (measured.x1 - pair.window.x0),
+            errors.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * width) + measured.x0);
     }
-    const Prepared a = prepare(reference, is_finite, pixels_per_degree),
-                   b = prepare(test, is_finite, pixels_per_degree);
-    std::vector<float> errors(pixels);
-    for (std::size_t i = 0; i < pixels; ++i)
-        errors[i] =
-            is_finite[i] ? static_cast<float>(error_at(a, b, i)) : std::numeric_limits<float>::quiet_NaN();
     return errors;
 }
 

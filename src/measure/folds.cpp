@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
+#include <utility>
+
+#include "base/parallel.h"
 
 namespace trilens {
 namespace {
@@ -79,14 +83,20 @@ std::vector<std::uint8_t> near_folds(const SeenField& field) {
                  x <= std::min(field.width - 1, column + kFoldReach); ++x)
                 near[field.index(x, y)] = 1;
     };
-    for (int row = 0; row < field.height; ++row) {
-        for (int column = 0; column < field.width; ++column) {
-            if (const std::optional<int> after = fold_after(field, column, row, true))
-                mark(column + *after, row);
-            if (const std::optional<int> after = fold_after(field, column, row, false))
-                mark(column, row + *after);
+    std::mutex mutex;
+    parallel_for(static_cast<std::size_t>(field.height), 16, [&](std::size_t first, std::size_t last) {
+        std::vector<std::pair<int, int>> folds;
+        for (int row = static_cast<int>(first); row < static_cast<int>(last); ++row) {
+            for (int column = 0; column < field.width; ++column) {
+                if (const std::optional<int> after = fold_after(field, column, row, true))
+                    folds.emplace_back(column + *after, row);
+                if (const std::optional<int> after = fold_after(field, column, row, false))
+                    folds.emplace_back(column, row + *after);
+            }
         }
-    }
+        const std::lock_guard guard(mutex);
+        for (const auto& [column, row] : folds) mark(column, row);
+    });
     return near;
 }
 

@@ -1,5 +1,7 @@
 #include "measure/patch.h"
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 
 namespace trilens {
@@ -27,14 +29,18 @@ struct Neighbourhood {
 /// Links never leave an object; whether they may leave a triangle is the piece's choice.
 Neighbourhood look_around(const SeenField& field, const PatchPlace& place, const Piece& piece) {
     Neighbourhood around;
-    for (int node = 0; node < 16; ++node) {
-        const int x = place.column - 1 + node % 4, y = place.row - 1 + node / 4;
-        if (!field.contains(x, y)) continue;
-        const std::size_t i = field.index(x, y);
-        if (!field.shows(i, piece)) continue;
-        around.allowed |= bit(node);
-        if (field.links[i] & SeenField::kRight) around.right |= bit(node);
-        if (field.links[i] & SeenField::kDown) around.down |= bit(node);
+    const int left = place.column - 1, top = place.row - 1;
+    const int first = std::max(0, -left), last = std::min(4, field.width - left);
+    for (int b = std::max(0, -top); b < std::min(4, field.height - top); ++b) {
+        const std::size_t row = static_cast<std::size_t>(top + b) * static_cast<std::size_t>(field.width);
+        for (int a = first; a < last; ++a) {
+            const std::size_t i = row + static_cast<std::size_t>(left + a);
+            if (!field.shows(i, piece)) continue;
+            const std::uint16_t here = bit(a + 4 * b);
+            around.allowed |= here;
+            if (field.links[i] & SeenField::kRight) around.right |= here;
+            if (field.links[i] & SeenField::kDown) around.down |= here;
+        }
     }
     around.right &= static_cast<std::uint16_t>(~kLastColumn);
     return around;
@@ -67,44 +73,87 @@ Nodes points_of(const SeenField& field, const PatchPlace& place, std::uint16_t m
 
 enum Kind { kNoEstimate, kConstant, kLinear, kParallelogram, kQuadratic };
 
+/// The nodes one, two and three steps from a node in one direction; kOutside where they leave the patch.
+using Ray = std::array<int, 3>;
+constexpr int kOutside = -1;
+
+constexpr int node_at(int a, int b) {
+    return a >= 0 && a < 4 && b >= 0 && b < 4 ? a + 4 * b : kOutside;
+}
+
+/// What a node's estimates rest on: the rays right, left, down and up, and of each of the four cells round it
+/// the neighbours across and along, and the corner opposite.
+struct Surroundings {
+    std::array<Ray, 4> rays{};
+    std::array<Ray, 4> cells{};
+};
+
+constexpr std::array<Surroundings, 16> all_surroundings() {
+    std::array<Surroundings, 16> all{};
+    constexpr int kWays[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    constexpr int kCells[4][2] = {{-1, -1}, {-1, 1}, {1, -1}, {1, 1}};
+    for (int node = 0; node < 16; ++node) {
+        const int a = node % 4, b = node / 4;
+        Surroundings& here = all[static_cast<std::size_t>(node)];
+        for (std::size_t k = 0; k < 4; ++k) {
+            for (int step = 1; step <= 3; ++step)
+                here.rays[k][static_cast<std::size_t>(step - 1)] =
+                    node_at(a + step * kWays[k][0], b + step * kWays[k][1]);
+            here.cells[k] = {node_at(a + kCells[k][0], b), node_at(a, b + kCells[k][1]),
+                             node_at(a + kCells[k][0], b + kCells[k][1])};
+        }
+    }
+    return all;
+}
+constexpr std::array<Surroundings, 16> kSurroundings = all_surroundings();
+
+/// How many nodes of a ray are known before the first that is not.
+int known_along(std::uint16_t known, const Ray& ray) {
+    int steps = 0;
+    while (steps < 3 && ray[static_cast<std::size_t>(steps)] != kOutside &&
+           has(known, ray[static_cast<std::size_t>(steps)]))
+        ++steps;
+    return steps;
+}
+
 /// The mean of all estimates of the best kind.
 struct Estimate {
     Kind kind = kNoEstimate;
     int count = 0;
     Vec3 sum{0};
 
-    void add(Kind of_kind, const Vec3& value) {
-        if (of_kind < kind) return;
-        if (of_kind > kind) *this = {of_kind, 0, Vec3(0)};
+    void add(const Vec3& value) {
         ++count;
         sum += value;
     }
 };
 
-Estimate estimate(const Nodes& nodes, std::uint16_t known, int a, int b) {
+Estimate estimate(const Nodes& nodes, std::uint16_t known, int node) {
+    const Surroundings& around = kSurroundings[static_cast<std::size_t>(node)];
+    const auto at = [&](int i) -> const Vec3& { return nodes[static_cast<std::size_t>(i)]; };
+    std::array<int, 4> steps{};
+    int most = 0;
+    for (std::size_t k = 0; k < 4; ++k) most = std::max(most, steps[k] = known_along(known, around.rays[k]));
+
     Estimate result;
-    const auto is_known = [&](int i, int j) {
-        return i >= 0 && i < 4 && j >= 0 && j < 4 && has(known, i + 4 * j);
-    };
-    const auto at = [&](int i, int j) -> const Vec3& { return nodes[static_cast<std::size_t>(i + 4 * j)]; };
-    for (const auto& [da, db] : {std::array{1, 0}, std::array{-1, 0}, std::array{0, 1}, std::array{0, -1}}) {
-        if (!is_known(a + da, b + db)) continue;
-        const Vec3& p = at(a + da, b + db);
-        if (!is_known(a + 2 * da, b + 2 * db)) {
-            result.add(kConstant, p);
-            continue;
+    if (most == 3) {
+        result.kind = kQuadratic;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const auto [p, q, r] = around.rays[k];
+            if (steps[k] == 3) result.add(3.0 * (at(p) - at(q)) + at(r));
         }
-        const Vec3& q = at(a + 2 * da, b + 2 * db);
-        if (is_known(a + 3 * da, b + 3 * db))
-            result.add(kQuadratic, 3.0 * (p - q) + at(a + 3 * da, b + 3 * db));
-        else
-            result.add(kLinear, 2.0 * p - q);
+        return result;
     }
-    for (const int da : {-1, 1}) {
-        for (const int db : {-1, 1}) {
-            if (is_known(a + da, b) && is_known(a, b + db) && is_known(a + da, b + db))
-                result.add(kParallelogram, at(a + da, b) + at(a, b + db) - at(a + da, b + db));
-        }
+    for (const auto& [across, along, corner] : around.cells) {
+        if (corner == kOutside || !has(known, across) || !has(known, along) || !has(known, corner)) continue;
+        result.kind = kParallelogram;
+        result.add(at(across) + at(along) - at(corner));
+    }
+    if (result.kind == kParallelogram || most == 0) return result;
+    result.kind = most == 2 ? kLinear : kConstant;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const auto [p, q, r] = around.rays[k];
+        if (steps[k] == most) result.add(most == 2 ? 2.0 * at(p) - at(q) : at(p));
     }
     return result;
 }
@@ -113,18 +162,21 @@ Estimate estimate(const Nodes& nodes, std::uint16_t known, int a, int b) {
 /// better.
 void extrapolate(Nodes& nodes, std::uint16_t& known, std::uint16_t wanted, Kind worst) {
     for (int pass = 0; pass < 4 && (known & wanted) != wanted; ++pass) {
-        Nodes next = nodes;
-        std::uint16_t next_known = known;
-        for (int node = 0; node < 16; ++node) {
-            if (has(known, node) || !has(wanted, node)) continue;
-            const Estimate found = estimate(nodes, known, node % 4, node / 4);
-            if (found.kind < worst) continue;
-            next[static_cast<std::size_t>(node)] = found.sum / static_cast<double>(found.count);
-            next_known |= bit(node);
+        std::uint16_t found = 0;
+        Nodes ring;
+        for (unsigned left = wanted & ~known; left; left &= left - 1) {
+            const int node = std::countr_zero(left);
+            const Estimate one = estimate(nodes, known, node);
+            if (one.kind < worst) continue;
+            ring[static_cast<std::size_t>(node)] = one.sum / static_cast<double>(one.count);
+            found |= bit(node);
         }
-        if (next_known == known) return;
-        nodes = next;
-        known = next_known;
+        if (!found) return;
+        for (unsigned left = found; left; left &= left - 1) {
+            const std::size_t node = static_cast<std::size_t>(std::countr_zero(left));
+            nodes[node] = ring[node];
+        }
+        known |= found;
     }
 }
 

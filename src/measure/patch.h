@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -49,7 +50,16 @@ inline constexpr double kOvershoot = 0.25;
 /// elsewhere; nor where the answer would rest on extrapolating a patch that is not smooth.
 std::optional<PatchHit> invert_patch(const Patch& patch, const Vec3& point, const Vec2& start);
 
-/// A box, world frame: for a point outside of it invert_patch has no answer, wherever it starts.
+/// Points, world frame: invert_patch has no answer, wherever it starts, for a point farther than `around`
+/// from their convex hull.
+struct PatchHull {
+    std::array<Vec3, 20> points{};
+    std::size_t count = 0;
+    double around = 0;
+};
+PatchHull hull_of(const Patch& patch);
+
+/// A box about the hull and what is as near to it.
 Box reach_of(const Patch& patch);
 
 }  // namespace trilens

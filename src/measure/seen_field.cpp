@@ -41,15 +41,6 @@ void link_line(const Line& line, std::uint8_t bit, std::vector<std::uint8_t>& li
 
 }  // namespace
 
-bool SeenField::shows_layer(std::size_t i) const {
-    if ((*object)[i] != kNone) return true;
-    return optic_of(i) != kNone && ((*x)[i] != 0 || (*y)[i] != 0 || (*z)[i] != 0);
-}
-
-bool SeenField::sees(std::size_t i) const {
-    return shows_layer(i) && std::isfinite((*x)[i]) && std::isfinite((*y)[i]) && std::isfinite((*z)[i]);
-}
-
 SeenPoint SeenField::seen_point(std::size_t i) const {
     const std::size_t columns = static_cast<std::size_t>(width);
     return {point(i),

@@ -1,6 +1,7 @@
 // What an image sees through its optics as a field on the screen: a point per pixel, in connected pieces.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -53,9 +54,14 @@ struct SeenField {
 
     /// Whether the pixel shows the layer: an object, or the environment through an optic. Its point may be no
     /// number.
-    bool shows_layer(std::size_t i) const;
+    bool shows_layer(std::size_t i) const {
+        if ((*object)[i] != kNone) return true;
+        return optic_of(i) != kNone && ((*x)[i] != 0 || (*y)[i] != 0 || (*z)[i] != 0);
+    }
     /// Whether the pixel shows the layer at a finite place.
-    bool sees(std::size_t i) const;
+    bool sees(std::size_t i) const {
+        return shows_layer(i) && std::isfinite((*x)[i]) && std::isfinite((*y)[i]) && std::isfinite((*z)[i]);
+    }
     SeenPoint seen_point(std::size_t i) const;
     /// Whether the pixel sees that piece at a finite place.
     bool shows(std::size_t i, const Piece& piece) const {

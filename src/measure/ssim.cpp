@@ -25,8 +25,35 @@ std::array<double, 2 * kReach + 1> window_weights() {
     return weights;
 }
 
+/// Columns x0 .. x1 - 1 and rows y0 .. y1 - 1, whose windows hold pixels that differ or are not finite. Any
+/// other pixel has a similarity of exactly 1: all moments of the two pictures are the same numbers, and so
+/// are the two sides of the fraction.
+struct Differing {
+    int x0, y0, x1 = 0, y1 = 0;
+
+    explicit Differing(const GreyPicture& a, const GreyPicture& b) : x0(a.width), y0(a.height) {
+        for (int y = 0; y < a.height; ++y) {
+            const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width);
+            const auto is_same = [&](int x) {
+                const std::size_t i = row + static_cast<std::size_t>(x);
+                return a.values[i] == b.values[i] && std::isfinite(a.values[i]);
+            };
+            int first = 0, last = a.width;
+            while (first < last && is_same(first)) ++first;
+            if (first == last) continue;
+            while (is_same(last - 1)) --last;
+            x0 = std::min(x0, first - kReach);
+            x1 = std::max(x1, last + kReach);
+            y0 = std::min(y0, y - kReach);
+            y1 = y + 1 + kReach;
+        }
+    }
+    bool holds(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+};
+
 struct Filter {
     const GreyPicture &a, &b;
+    const Differing& differing;
     std::array<double, 2 * kReach + 1> weights = window_weights();
 
     std::size_t index(int x, int y) const {
@@ -36,7 +63,7 @@ struct Filter {
     /// The window's horizontal half, for all pixels of a row.
     void filter_row(int y, std::vector<Moments>& row) const {
         row.assign(static_cast<std::size_t>(a.width), Moments{});
-        for (int x = 0; x < a.width; ++x) {
+        for (int x = std::max(0, differing.x0 - kReach); x < std::min(a.width, differing.x1 + kReach); ++x) {
             const double p = a.values[index(x, y)], q = b.values[index(x, y)];
             if (!std::isfinite(p) || !std::isfinite(q)) continue;
             const Moments here = {1, p, q, p * p, q * q, p * q};
@@ -68,11 +95,19 @@ void measure_rows(const Filter& filter, std::span<const std::uint8_t> counted, i
     int made = std::max(0, first - kReach);
     for (int y = first; y < last; ++y) {
         const int top = std::max(0, y - kReach), bottom = std::min(filter.a.height - 1, y + kReach);
-        for (; made <= bottom; ++made) filter.filter_row(made, kept[static_cast<std::size_t>(made % kKept)]);
+        const bool is_asked = y >= filter.differing.y0 && y < filter.differing.y1;
+        if (is_asked) made = std::max(made, top);
+        for (; is_asked && made <= bottom; ++made)
+            filter.filter_row(made, kept[static_cast<std::size_t>(made % kKept)]);
         for (int x = 0; x < filter.a.width; ++x) {
             const std::size_t i = filter.index(x, y);
             if (!counted[i] || !std::isfinite(filter.a.values[i]) || !std::isfinite(filter.b.values[i]))
                 continue;
+            sums[static_cast<std::size_t>(y)].pixels += 1;
+            if (!filter.differing.holds(x, y)) {
+                sums[static_cast<std::size_t>(y)].sum += 1;
+                continue;
+            }
             Moments total{};
             for (int row = top; row <= bottom; ++row) {
                 const double weight = filter.weights[static_cast<std::size_t>(row - y + kReach)];
@@ -81,7 +116,6 @@ void measure_rows(const Filter& filter, std::span<const std::uint8_t> counted, i
                 for (std::size_t m = 0; m < 6; ++m) total[m] += weight * part[m];
             }
             sums[static_cast<std::size_t>(y)].sum += similarity(total);
-            sums[static_cast<std::size_t>(y)].pixels += 1;
         }
     }
 }
@@ -94,7 +128,8 @@ double structural_similarity(const GreyPicture& a, const GreyPicture& b,
     TRILENS_CHECK(a.width == b.width && a.height == b.height, "pictures of one size");
     TRILENS_CHECK(a.values.size() == pixels && b.values.size() == pixels && counted.size() == pixels,
                   "one value per pixel");
-    const Filter filter{a, b};
+    const Differing differing(a, b);
+    const Filter filter{a, b, differing};
     std::vector<RowSum> sums(static_cast<std::size_t>(a.height));
     parallel_for(sums.size(), 64, [&](std::size_t first, std::size_t last) {
         measure_rows(filter, counted, static_cast<int>(first), static_cast<int>(last), sums);

@@ -14,6 +14,7 @@
 #include "sweep/machine.h"
 #include "sweep/measure_run.h"
 #include "sweep/run_files.h"
+#include "sweep/sweep_pictures.h"
 
 namespace trilens {
 namespace {
@@ -90,10 +91,10 @@ struct DrawnRun {
 };
 
 /// Renders and measures one run into `run`.
-DrawnRun draw_run(const RunJob& job, const Truth& truth, RunRecord& run) {
+DrawnRun draw_run(const RunJob& job, const KeptTruth& truth, RunRecord& run) {
     MetricValues times;
     DrawnRun drawn{draw_timed(job, times), {}};
-    MeasuredRun measured = measure_run(drawn.image, truth.image, job.plan.optics);
+    MeasuredRun measured = measure_run(drawn.image, truth.layers, job.plan.optics);
     drawn.diff = std::move(measured.diff);
     run.metrics = std::move(measured.metrics);
     run.displacement = std::move(measured.displacement);
@@ -106,12 +107,21 @@ DrawnRun draw_run(const RunJob& job, const Truth& truth, RunRecord& run) {
     return drawn;
 }
 
+/// Without room for them the report makes them of the run's files.
+void keep_pictures(const RunRecord& run, const RunImages& images, KeptPictures& pictures) {
+    try {
+        pictures.make(run, images);
+    } catch (const std::bad_alloc&) {
+        return;
+    }
+}
+
 }  // namespace
 
 std::optional<RunRecord> do_run(const RunJob& job) {
     RunRecord run;
     run.plan = job.plan;
-    std::shared_ptr<const Truth> truth;
+    std::shared_ptr<const KeptTruth> truth;
     // Without the truth that all runs share none can be done; one of its own is a part of the run.
     if (job.shares_one_truth)
         truth = job.truths.get(job.plan, job.may_wait);
@@ -122,8 +132,11 @@ std::optional<RunRecord> do_run(const RunJob& job) {
     clear_run(job.params.folder, job.plan);
     DrawnRun drawn;
     if (truth) attempt(run, [&] { drawn = draw_run(job, *truth, run); });
-    if (run.state == RunState::kDone)
-        return store_run(job.params.folder, std::move(run), drawn.image, drawn.diff);
+    if (run.state == RunState::kDone) {
+        run = store_run(job.params.folder, std::move(run), drawn.image, drawn.diff);
+        if (job.pictures) keep_pictures(run, {drawn.image, truth->image, drawn.diff}, *job.pictures);
+        return run;
+    }
     store_failure(job.params.folder, run);
     return run;
 }

@@ -8,13 +8,16 @@
 
 namespace trilens {
 
+class KeptPictures;
+
 struct RunJob {
     const SweepParams& params;
     const SweepCallbacks& callbacks;
     TruthStore& truths;
     const PlannedRun& plan;
-    bool shares_one_truth = false;  // with all runs: without it none can be done
-    bool may_wait = true;           // for a truth that another process traces
+    bool shares_one_truth = false;     // with all runs: without it none can be done
+    bool may_wait = true;              // for a truth that another process traces
+    KeptPictures* pictures = nullptr;  // where given, takes those of the run
 };
 
 /// The run as it is kept now, finished or failed; none where its truth is in other hands and it may not wait.

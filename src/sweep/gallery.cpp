@@ -52,7 +52,8 @@ GalleryEntry entry_of(const SweepSummary& summary) {
     }
     entry.text = point_text(run->plan.at) + ", optics: " + summary.manifest.subject.mesh;
     entry.metrics = facts_of(summary, *run);
-    entry.pictures = run_pictures(summary.folder, *run);
+    TruthPictures truths(summary.folder);
+    entry.pictures = run_pictures(summary.folder, *run, truths);
     return entry;
 }
 

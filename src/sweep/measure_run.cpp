@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <exception>
 #include <optional>
 #include <utility>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "measure/compare.h"
 #include "measure/difference.h"
 #include "measure/displacement.h"
@@ -59,7 +61,7 @@ bool sees_something(const Displacement& displacement) {
 }
 
 /// Each optic by itself; one that is on no pixel of either image is left out with a warning.
-void measure_optics(const Image& test, const Image& truth, const std::string& layer,
+void measure_optics(const Image& test, const ReferenceLayers& truth, const std::string& layer,
                     const std::vector<SweptOptic>& optics, MeasuredRun& run) {
     for (const SweptOptic& optic : optics) {
         DisplacementOptions options;
@@ -96,18 +98,34 @@ void take_worse(const MetricValues& layer, MetricValues& metrics) {
 
 }  // namespace
 
-MeasuredRun measure_run(const Image& test, const Image& truth, const std::vector<SweptOptic>& optics) {
+MeasuredRun measure_run(const Image& test, const ReferenceLayers& truth,
+                        const std::vector<SweptOptic>& optics) {
     MeasuredRun run;
-    run.metrics = colour_values(compare(truth, test));
-    run.diff = make_difference(truth, test);
-    for (const char* layer : kLayers) {
-        add_mismatches(test, truth, layer, run.metrics);
-        const std::optional<Displacement> displacement = measure_displacement(truth, test, layer);
-        if (!displacement || !sees_something(*displacement)) continue;
-        const MetricValues values = displacement_values(*displacement);
+    std::array<std::optional<Displacement>, kLayers.size()> displacement;
+    std::exception_ptr failure;  // counts where the colours could be compared
+    run_side_by_side({[&] {
+                          std::vector<float> flip = layer_flip(truth.image(), test, "", &truth.flip());
+                          run.metrics = colour_values(compare(truth.image(), test, {}, &flip));
+                          run.diff = make_difference(truth.image(), test, {}, std::move(flip));
+                      },
+                      [&] {
+                          try {
+                              for (std::size_t i = 0; i < kLayers.size(); ++i)
+                                  displacement[i] = measure_displacement(truth, test, kLayers[i]);
+                          } catch (...) {
+                              failure = std::current_exception();
+                          }
+                      }});
+    if (failure) std::rethrow_exception(failure);
+
+    for (std::size_t i = 0; i < kLayers.size(); ++i) {
+        const char* const layer = kLayers[i];
+        add_mismatches(test, truth.image(), layer, run.metrics);
+        if (!displacement[i] || !sees_something(*displacement[i])) continue;
+        const MetricValues values = displacement_values(*displacement[i]);
         take_worse(values, run.metrics);
         run.displacement.push_back({layer, "all", values});
-        add_shift(layer, *displacement, run.diff);
+        add_shift(layer, *displacement[i], run.diff);
         if (layer == kLayers[2]) continue;  // seen over no optic
         // A single optic is all optics.
         if (optics.size() == 1)

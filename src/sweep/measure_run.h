@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "measure/reference_layers.h"
 #include "sweep/results.h"
 
 namespace trilens {
@@ -17,7 +18,8 @@ struct MeasuredRun {
 };
 
 /// Compares `test` with `truth`. Throws InputError where they cannot be compared.
-MeasuredRun measure_run(const Image& test, const Image& truth, const std::vector<SweptOptic>& optics);
+MeasuredRun measure_run(const Image& test, const ReferenceLayers& truth,
+                        const std::vector<SweptOptic>& optics);
 
 /// The length of the displacement at each pixel of a diff image's data window.
 struct DisplacementMap {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -38,7 +40,8 @@ Facts run_facts(const RunRecord& run) {
     return facts;
 }
 
-ReportRun run_section(const std::string& folder, const RunRecord& run) {
+ReportRun run_section(const std::string& folder, const RunRecord& run, TruthPictures& truths,
+                      KeptPictures* kept) {
     ReportRun section;
     section.title = point_text(run.plan.at);
     section.warnings = run.warnings;
@@ -50,7 +53,9 @@ ReportRun run_section(const std::string& folder, const RunRecord& run) {
         section.error = "not done yet";
         return section;
     }
-    section.pictures = run_pictures(folder, run);
+    std::optional<std::vector<PagePicture>> made;
+    if (kept) made = kept->take(run.plan);
+    section.pictures = made ? std::move(*made) : run_pictures(folder, run, truths);
     section.facts = run_facts(run);
     return section;
 }
@@ -81,17 +86,18 @@ void remove_pictures(const std::string& folder) {
 
 }  // namespace
 
-void fill_runs(const SweepSummary& summary, std::size_t most_bytes, Report& report) {
+void fill_runs(const SweepSummary& summary, std::size_t most_bytes, Report& report, KeptPictures* kept) {
     const std::vector<RunRecord>& runs = summary.runs;
     report.runs.resize(runs.size());
     remove_pictures(summary.folder);
+    TruthPictures truths(summary.folder);
     std::size_t bytes = 0, embedded = 0;
     for (std::size_t from = 0; from < runs.size(); from += kBatch) {
         const std::size_t to = std::min(runs.size(), from + kBatch);
         // Decoding and encoding pictures is most of a report's time.
         parallel_for(to - from, 1, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = from + first; i < from + last; ++i) {
-                report.runs[i] = run_section(summary.folder, runs[i]);
+                report.runs[i] = run_section(summary.folder, runs[i], truths, kept);
                 report.runs[i].is_folded = runs.size() > kMostOpen;
                 report.runs[i].row = static_cast<int>(i);
             }

@@ -8,8 +8,12 @@
 
 namespace trilens {
 
+class KeptPictures;
+
 /// Adds sections of all runs; where their pictures would take more bytes in the page than `most_bytes`, these
-/// lie beside it, in the folder pictures, which is else removed. Throws OutputError.
-void fill_runs(const SweepSummary& summary, std::size_t most_bytes, Report& report);
+/// lie beside it, in the folder pictures, which is else removed. Pictures in `kept` are taken from there, all
+/// others made of the runs' files. Throws OutputError.
+void fill_runs(const SweepSummary& summary, std::size_t most_bytes, Report& report,
+               KeptPictures* kept = nullptr);
 
 }  // namespace trilens

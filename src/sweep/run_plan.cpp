@@ -15,6 +15,7 @@
 #include "sweep/file_lock.h"
 #include "sweep/machine.h"
 #include "sweep/memory_gate.h"
+#include "sweep/results_json.h"
 #include "sweep/run_files.h"
 #include "sweep/truth_store.h"
 
@@ -47,12 +48,14 @@ struct Workers {
     bool shares_one_truth;  // all runs of the plan
     TruthStore truths;
     MemoryGate gate;
+    KeptPictures* pictures;
     std::map<std::string, std::string> failures = {};  // id -> failure_stamp, as the folder was at the start
 
     std::atomic<std::size_t> next = 0;
     std::atomic<bool> stop = false;
     std::mutex mutex = {};  // of what follows, and of the callbacks of params
     std::vector<PlannedRun> busy = {};
+    std::map<std::string, RunRecord> done = {};  // by id
     std::size_t settled = 0;
     std::exception_ptr failure = {};
 
@@ -60,6 +63,16 @@ struct Workers {
         const std::lock_guard guard(mutex);
         if (params.on_run) params.on_run(run);
         params.progress(static_cast<double>(++settled) / static_cast<double>(mine.size()));
+    }
+
+    /// As its file says it: numbers that are not finite have no place there.
+    void keep(const RunRecord& run) {
+        if (run.state != RunState::kDone) return;
+        std::optional<RunRecord> read = parse_run(run_text(run), run.plan);
+        if (!read) return;
+        read->image_hash = run.image_hash;
+        const std::lock_guard guard(mutex);
+        done[run.plan.id] = std::move(*read);
     }
 
     /// False where the run's truth is in other hands. The caller holds the run's lock. A run that another
@@ -71,10 +84,11 @@ struct Workers {
         if (run.state != RunState::kDone && !is_tried) {
             const MemoryGate::Visit visit =
                 gate.enter(callbacks.memory ? callbacks.memory(plan) : 0, params.progress);
-            std::optional<RunRecord> done =
-                do_run({params, callbacks, truths, plan, shares_one_truth, may_wait});
-            if (!done) return false;
-            run = std::move(*done);
+            std::optional<RunRecord> drawn =
+                do_run({params, callbacks, truths, plan, shares_one_truth, may_wait, pictures});
+            if (!drawn) return false;
+            run = std::move(*drawn);
+            keep(run);
         }
         tell(run);
         return true;
@@ -129,8 +143,8 @@ struct Workers {
 
 }  // namespace
 
-void run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
-              const std::vector<PlannedRun>& plan) {
+std::map<std::string, RunRecord> run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
+                                          const std::vector<PlannedRun>& plan, KeptPictures* pictures) {
     const bool shares_one_truth =
         std::ranges::all_of(plan, [&](const PlannedRun& run) { return run.truth == plan[0].truth; });
     Workers workers{params,
@@ -138,7 +152,8 @@ void run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
                     own_part(plan, params.shard),
                     shares_one_truth,
                     {params.folder, callbacks.trace, params.progress},
-                    MemoryGate(memory_limit(params))};
+                    MemoryGate(memory_limit(params)),
+                    pictures};
     const std::size_t jobs = std::clamp<std::size_t>(static_cast<std::size_t>(std::max(1, params.jobs)), 1,
                                                      std::max<std::size_t>(1, workers.mine.size()));
     workers.truths.set_kept(jobs);
@@ -151,6 +166,7 @@ void run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
     for (std::thread& thread : threads) thread.join();
     if (workers.failure) std::rethrow_exception(workers.failure);
     params.progress(1);
+    return std::move(workers.done);
 }
 
 }  // namespace trilens

@@ -2,6 +2,9 @@
 #include "sweep/sweep.h"
 
 #include <cstddef>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -14,6 +17,7 @@
 #include "sweep/run_plan.h"
 #include "sweep/summary_latex.h"
 #include "sweep/sweep_folder.h"
+#include "sweep/sweep_pictures.h"
 #include "sweep/sweep_report.h"
 
 namespace trilens {
@@ -37,6 +41,29 @@ void write_tables(const SweepSummary& summary) {
     replace_text_file(summary.folder + "/summary.tex", summary_latex(summary));
 }
 
+/// `done`: runs by id whose files need not be read again.
+SweepSummary load_sweep(const std::string& folder, std::map<std::string, RunRecord> done) {
+    SweepSummary summary;
+    summary.folder = folder;
+    summary.manifest = read_manifest(folder + "/manifest.json");
+    const std::vector<PlannedRun> plan = read_plan(folder + "/plan.jsonl", summary.manifest.axes);
+    summary.runs.resize(plan.size());
+    parallel_for(plan.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const auto known = done.find(plan[i].id);
+            const bool is_same = known != done.end() && known->second.plan.hash == plan[i].hash;
+            summary.runs[i] = is_same ? std::move(known->second) : load_run(folder, plan[i]);
+        }
+    });
+    summary.fits = fit_runs(summary.manifest.axes, summary.runs);
+    return summary;
+}
+
+void write_report_files(const SweepSummary& summary, KeptPictures* pictures = nullptr) {
+    write_tables(summary);
+    write_sweep_report(summary, pictures);
+}
+
 }  // namespace
 
 void plan_sweep(const SweepParams& params, const SweepCallbacks& callbacks) {
@@ -46,32 +73,27 @@ void plan_sweep(const SweepParams& params, const SweepCallbacks& callbacks) {
 SweepSummary run_sweep(const SweepParams& params, const SweepCallbacks& callbacks) {
     const std::vector<PlannedRun> plan = plan_of(params, callbacks);
     const FileLock user = claim(params, plan);
+    const bool is_whole = params.shard.count == 1;
+    KeptPictures pictures(kMostBytesInPage);
+    std::map<std::string, RunRecord> done;
     try {
-        run_plan(params, callbacks, plan);
+        done = run_plan(params, callbacks, plan, is_whole ? &pictures : nullptr);
     } catch (const Interrupted&) {
-        if (params.shard.count == 1) write_tables(load_sweep(params.folder));
+        if (is_whole) write_tables(load_sweep(params.folder));
         throw;
     }
-    return params.shard.count == 1 ? report_sweep(params.folder) : load_sweep(params.folder);
+    SweepSummary summary = load_sweep(params.folder, std::move(done));
+    if (is_whole) write_report_files(summary, &pictures);
+    return summary;
 }
 
 SweepSummary load_sweep(const std::string& folder) {
-    SweepSummary summary;
-    summary.folder = folder;
-    summary.manifest = read_manifest(folder + "/manifest.json");
-    const std::vector<PlannedRun> plan = read_plan(folder + "/plan.jsonl", summary.manifest.axes);
-    summary.runs.resize(plan.size());
-    parallel_for(plan.size(), 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) summary.runs[i] = load_run(folder, plan[i]);
-    });
-    summary.fits = fit_runs(summary.manifest.axes, summary.runs);
-    return summary;
+    return load_sweep(folder, {});
 }
 
 SweepSummary report_sweep(const std::string& folder) {
     SweepSummary summary = load_sweep(folder);
-    write_tables(summary);
-    write_sweep_report(summary);
+    write_report_files(summary);
     return summary;
 }
 

@@ -20,8 +20,6 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kMostBytesInPage = 50'000'000;  // of pictures; more lie beside the page
-
 void leave_out_empty_columns(Report& report) {
     for (std::size_t column = report.table_columns.size(); column-- > 0;) {
         const auto is_empty = [&](const std::vector<std::string>& row) { return row[column].empty(); };
@@ -92,7 +90,7 @@ void write_plots(const SweepSummary& summary, Report& report) {
 
 }  // namespace
 
-void write_sweep_report(const SweepSummary& summary) {
+void write_sweep_report(const SweepSummary& summary, KeptPictures* kept) {
     Report report;
     const SweepSubject& subject = summary.manifest.subject;
     report.title = subject.title.empty() ? "Sweep of " + subject.scene : subject.title;
@@ -114,7 +112,7 @@ void write_sweep_report(const SweepSummary& summary) {
         "constant × n^−order fitted to the points. Runs that lost or miss "
         "more than a tenth of an optic's pixels take no part in its fit, nor does a plateau at the fine end.";
     fill_table(summary, report);
-    fill_runs(summary, kMostBytesInPage, report);
+    fill_runs(summary, kMostBytesInPage, report, kept);
     if (const std::string warning = timing_warning(summary); !warning.empty())
         report.warnings.push_back(warning);
     report.pictures_note +=

@@ -42,7 +42,7 @@ std::optional<Truth> read_truth(const std::string& file) {
 
 }  // namespace
 
-std::shared_ptr<const Truth> TruthStore::find(const std::string& hash) {
+std::shared_ptr<const KeptTruth> TruthStore::find(const std::string& hash) {
     const std::lock_guard guard(mutex_);
     for (const auto& [known, truth] : kept_)
         if (known == hash) return truth;
@@ -51,15 +51,15 @@ std::shared_ptr<const Truth> TruthStore::find(const std::string& hash) {
     return nullptr;
 }
 
-std::shared_ptr<const Truth> TruthStore::keep(const std::string& hash, Truth truth) {
-    auto shared = std::make_shared<const Truth>(std::move(truth));
+std::shared_ptr<const KeptTruth> TruthStore::keep(const std::string& hash, Truth truth) {
+    auto shared = std::make_shared<const KeptTruth>(std::move(truth));
     const std::lock_guard guard(mutex_);
     kept_.push_front({hash, shared});
     while (kept_.size() > kept_count_) kept_.pop_back();
     return shared;
 }
 
-std::shared_ptr<const Truth> TruthStore::trace(const PlannedRun& run, const std::string& file) {
+std::shared_ptr<const KeptTruth> TruthStore::trace(const PlannedRun& run, const std::string& file) {
     const Stopwatch watch;
     Truth traced;
     try {
@@ -78,7 +78,7 @@ std::shared_ptr<const Truth> TruthStore::trace(const PlannedRun& run, const std:
     return keep(run.truth, std::move(traced));
 }
 
-std::shared_ptr<const Truth> TruthStore::get(const PlannedRun& run, bool may_wait) {
+std::shared_ptr<const KeptTruth> TruthStore::get(const PlannedRun& run, bool may_wait) {
     if (auto known = find(run.truth)) return known;
     const std::string file = truth_file(folder_, run.truth);
     if (std::optional<Truth> kept = read_truth(file)) return keep(run.truth, std::move(*kept));

@@ -13,6 +13,7 @@
 
 #include "base/image.h"
 #include "base/progress.h"
+#include "measure/reference_layers.h"
 #include "sweep/results.h"
 
 namespace trilens {
@@ -20,6 +21,12 @@ namespace trilens {
 struct Truth {
     Image image;
     double seconds = 0;  // that tracing it took
+};
+
+/// A truth, and what measuring against it asks for again and again.
+struct KeptTruth : Truth {
+    explicit KeptTruth(Truth truth) : Truth(std::move(truth)), layers(image) {}
+    ReferenceLayers layers;
 };
 
 /// Thread-safe. Keeps the truths that were asked for last in memory.
@@ -31,21 +38,21 @@ class TruthStore {
     /// The truth of this run: read where it is, else traced and kept. While another process or thread traces
     /// it: waits, or gives null where `may_wait` is false. Throws what the tracing throws, again for each run
     /// of a truth that failed; OutputError; Interrupted.
-    std::shared_ptr<const Truth> get(const PlannedRun& run, bool may_wait = true);
+    std::shared_ptr<const KeptTruth> get(const PlannedRun& run, bool may_wait = true);
 
     /// How many truths stay in memory, at least 1.
     void set_kept(std::size_t count) { kept_count_ = count > 0 ? count : 1; }
 
   private:
-    std::shared_ptr<const Truth> find(const std::string& hash);
-    std::shared_ptr<const Truth> keep(const std::string& hash, Truth truth);
-    std::shared_ptr<const Truth> trace(const PlannedRun& run, const std::string& file);
+    std::shared_ptr<const KeptTruth> find(const std::string& hash);
+    std::shared_ptr<const KeptTruth> keep(const std::string& hash, Truth truth);
+    std::shared_ptr<const KeptTruth> trace(const PlannedRun& run, const std::string& file);
 
     std::string folder_;
     std::function<Image(const PlannedRun& run)> trace_;
     Progress progress_;
     std::mutex mutex_;  // of what follows
-    std::deque<std::pair<std::string, std::shared_ptr<const Truth>>> kept_;
+    std::deque<std::pair<std::string, std::shared_ptr<const KeptTruth>>> kept_;
     std::map<std::string, std::exception_ptr> failures_;  // by hash
     std::size_t kept_count_ = 1;
 };

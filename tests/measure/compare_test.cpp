@@ -131,6 +131,28 @@ TEST_CASE("metrics agree with their formulas, for any number of threads", "[meas
     }
 }
 
+TEST_CASE("where few pixels differ the similarity is the same mean over all", "[measure][compare]") {
+    std::mt19937 random(21);
+    for (int trial = 0; trial < 25; ++trial) {
+        const int width = 12 + static_cast<int>(random() % 40), height = 12 + static_cast<int>(random() % 40);
+        const Image a = noise(static_cast<unsigned>(trial), width, height);
+        Image b = a;
+        const std::size_t changes = random() % 4;
+        for (std::size_t k = 0; k < changes; ++k) {
+            float& value = b.find(random() % 2 ? "R" : "G")->floats()[random() % b.pixels()];
+            value = 1 - value;
+        }
+        std::vector<double> grey_a(a.pixels(), 0.0), grey_b(grey_a);
+        for (const auto& [name, weight] : {std::pair{"R", 0.2126}, {"G", 0.7152}, {"B", 0.0722}})
+            for (std::size_t i = 0; i < grey_a.size(); ++i) {
+                grey_a[i] += weight * static_cast<double>(a.find(name)->floats()[i]);
+                grey_b[i] += weight * static_cast<double>(b.find(name)->floats()[i]);
+            }
+        const double expected = direct_ssim(grey_a, grey_b, width, height);
+        CHECK(compare(a, b).metrics.ssim == Approx(expected).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("one NaN or infinity is a failure, wherever it is and even in both", "[measure][compare]") {
     const Image good = noise(4, 16, 16);
     CompareOptions lax;

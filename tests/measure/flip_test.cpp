@@ -2,7 +2,9 @@
 // implementation against it.
 #include "measure/flip.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <random>
 #include <vector>
@@ -108,4 +110,65 @@ TEST_CASE("FLIP has the same bits for any number of threads", "[measure][flip]")
     const std::vector<float> one = flip_map(a.picture(), b.picture());
     set_thread_count(0);
     CHECK(flip_map(a.picture(), b.picture()) == one);
+}
+
+TEST_CASE("where pictures agree nothing is measured, and elsewhere nothing changes by that",
+          "[measure][flip]") {
+    std::mt19937 random(6);
+    const auto below = [&](int limit) { return std::uniform_int_distribution<int>(0, limit - 1)(random); };
+    const auto random_film = [&](int width, int height) {
+        Film film(width, height, 0, 0, 0);
+        for (auto* channel : {&film.r, &film.g, &film.b})
+            for (float& v : *channel) v = std::uniform_real_distribution<float>(-0.1f, 1.2f)(random);
+        return film;
+    };
+    constexpr double kPerDegree = 20;
+    constexpr int kReach = 3;  // of the filters there, pixels
+    for (int trial = 0; trial < 60; ++trial) {
+        const Film a = random_film(18 + below(40), 18 + below(30));
+        Film patched = a;
+        const int x0 = below(a.width), y0 = below(a.height), x1 = x0 + 1 + below(6), y1 = y0 + 1 + below(6);
+        for (int y = y0; y < std::min(y1, a.height); ++y)
+            for (int x = x0; x < std::min(x1, a.width); ++x) {
+                const std::size_t i = static_cast<std::size_t>(y * a.width + x);
+                patched.g[i] = trial % 5 ? 1 - patched.g[i] : std::numeric_limits<float>::infinity();
+            }
+        // Two opposite corners that differ as well: then everything is measured.
+        Film everywhere = patched;
+        everywhere.r.front() += 0.5f;
+        everywhere.r.back() += 0.5f;
+        const std::vector<float> part = flip_map(a.picture(), patched.picture(), kPerDegree),
+                                 whole = flip_map(a.picture(), everywhere.picture(), kPerDegree);
+        std::size_t compared = 0;
+        for (int y = 0; y < a.height; ++y)
+            for (int x = 0; x < a.width; ++x) {
+                const bool first = x <= kReach && y <= kReach;
+                const bool last = x >= a.width - 1 - kReach && y >= a.height - 1 - kReach;
+                if (first || last) continue;
+                const std::size_t i = static_cast<std::size_t>(y * a.width + x);
+                const bool is_same = part[i] == whole[i] || (std::isnan(part[i]) && std::isnan(whole[i]));
+                if (!is_same) FAIL_CHECK("(" << x << ", " << y << "): " << part[i] << ", " << whole[i]);
+                ++compared;
+            }
+        CHECK(compared > 200);
+    }
+}
+
+TEST_CASE("what was made of a reference before serves the next test as well", "[measure][flip]") {
+    std::mt19937 random(7);
+    const Film a = noise(8);
+    FlipReference kept;
+    for (int trial = 0; trial < 40; ++trial) {
+        Film b = a;
+        const std::size_t changes = 1 + random() % 5;
+        for (std::size_t k = 0; k < changes; ++k) {
+            float& value = b.b[random() % b.b.size()];
+            value = random() % 9 ? 1 - value : std::numeric_limits<float>::quiet_NaN();
+        }
+        const std::vector<float> alone = flip_map(a.picture(), b.picture()),
+                                 again = flip_map(a.picture(), b.picture(), kFlipPixelsPerDegree, &kept);
+        for (std::size_t i = 0; i < alone.size(); ++i)
+            if (alone[i] != again[i] && !(std::isnan(alone[i]) && std::isnan(again[i])))
+                FAIL_CHECK("trial " << trial << ", pixel " << i << ": " << alone[i] << ", " << again[i]);
+    }
 }

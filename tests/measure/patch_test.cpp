@@ -1,9 +1,13 @@
 // Patches: where they show points, and where they cannot.
 #include "measure/patch.h"
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <random>
 
+#include "measure/patch_batch.h"
+#include "measure/plain_inversion.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -80,4 +84,77 @@ TEST_CASE("a patch that is a plane answers with the place itself", "[measure][di
     CHECK(hit->overshoot == 0);
     CHECK_FALSE(invert_patch(patch, {0.25, 0.75, 3.2}, {0.5, 0.5}));
     CHECK_FALSE(invert_patch(patch, {2.5, 0.75, 3}, {0.5, 0.5}));
+}
+
+namespace {
+
+bool same_bits(double a, double b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+/// A question to ask of a patch: mostly near it, sometimes of a patch that has collapsed or a point far away.
+struct Question {
+    Patch patch;
+    Vec3 point;
+    Vec2 start;
+};
+
+Question random_question(std::mt19937_64& random) {
+    std::uniform_real_distribution<double> share(-0.6, 1.6), start(0, 1);
+    std::normal_distribution<double> normal;
+    Question q{random_patch(random), {}, {start(random), start(random)}};
+    auto& n = q.patch.nodes;
+    switch (random() % 12) {
+        case 0:
+            n.fill(n[0]);
+            break;
+        case 1:
+            for (std::size_t i = 0; i < 16; ++i) n[i] = n[0] + static_cast<double>(i % 4) * (n[1] - n[0]);
+            break;
+        case 2:
+            for (std::size_t i = 0; i < 16; ++i) n[i] = n[i % 2];
+            break;
+        default:
+            break;
+    }
+    const double u = share(random), v = share(random), far = random() % 20 ? 1e-4 : 1e6;
+    q.point = (1 - u) * (1 - v) * n[5] + u * (1 - v) * n[6] + (1 - u) * v * n[9] + u * v * n[10] +
+              far * length(n[6] - n[5]) * Vec3(normal(random), normal(random), normal(random));
+    if (random() % 10 == 0) q.point = n[random() % 16];
+    return q;
+}
+
+}  // namespace
+
+TEST_CASE("patches inverted side by side answer as each alone in plain code, to the last bit",
+          "[measure][displacement]") {
+    std::mt19937_64 random(3);
+    std::size_t hits = 0, misses = 0, wrong = 0;
+    for (int round = 0; round < 12000; ++round) {
+        PatchBatch batch;
+        batch.count = 1 + random() % kPatchLanes;
+        std::array<Question, kPatchLanes> asked;
+        for (std::size_t lane = 0; lane < batch.count; ++lane) {
+            asked[lane] = random_question(random);
+            const Question& q = asked[lane];
+            batch.ask(lane, q.point, q.start, q.patch.supported);
+            for (std::size_t i = 0; i < 16; ++i) batch.set_node(lane, i, q.patch.nodes[i] - q.point);
+        }
+        invert_patches(batch);
+        for (std::size_t lane = 0; lane < batch.count; ++lane) {
+            const Question& q = asked[lane];
+            const auto expected = trilens_test::plain_inversion(q.patch, q.point, q.start);
+            (expected ? hits : misses) += 1;
+            if (batch.has_hit(lane) != expected.has_value()) ++wrong;
+            if (!expected || !batch.has_hit(lane)) continue;
+            wrong += !same_bits(batch.u.lane[lane], expected->uv.x) ||
+                     !same_bits(batch.v.lane[lane], expected->uv.y) ||
+                     !same_bits(batch.overshoot.lane[lane], expected->overshoot);
+        }
+        CHECK((batch.hits >> batch.count) == 0);
+    }
+    INFO(hits << " hits, " << misses << " misses");
+    CHECK(wrong == 0);
+    CHECK(hits > 8000);
+    CHECK(misses > 8000);
 }

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include "base/error.h"
+#include "base/files.h"
 #include "fake_scene.h"
 #include "report/html.h"
 #include "support/test.h"
@@ -41,4 +43,23 @@ TEST_CASE("sweep: pictures lie beside the page where they would make it too larg
     Report again;
     fill_runs(summary, 50'000'000, again);
     CHECK_FALSE(std::filesystem::exists(beside));
+}
+
+TEST_CASE("sweep: the report at its end is the one that its files make", "[sweep]") {
+    FakeSweep fake(scratch_dir("sweep_kept_pictures"), {1, 2, 4});
+    fake.truth_per_run = true;
+    fake.before_render = [](int n) {
+        if (n == 2) throw ComputationError("no picture today");
+    };
+    SweepSummary at_end = fake.run();
+    const std::string page = read_whole_file(fake.params.folder + "/report.html").value();
+    CHECK(page.find("data:image/png") != std::string::npos);
+    const SweepSummary from_files = report_sweep(fake.params.folder);
+    CHECK(page == read_whole_file(fake.params.folder + "/report.html").value());
+    REQUIRE(at_end.runs.size() == from_files.runs.size());
+    for (std::size_t i = 0; i < at_end.runs.size(); ++i) {
+        CHECK(at_end.runs[i].metrics == from_files.runs[i].metrics);
+        CHECK(at_end.runs[i].image_hash == from_files.runs[i].image_hash);
+        CHECK(at_end.runs[i].state == from_files.runs[i].state);
+    }
 }
