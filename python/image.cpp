@@ -33,7 +33,8 @@ py::array rgb_of(HeldImage& held, const std::string& layer) {
     const std::size_t pixels = held.image.pixels();
     std::vector<float> rgb(3 * pixels);
     for (std::size_t c = 0; c < 3; ++c) {
-        const Channel& channel = channel_of(held, prefix + "RGB"[c]);
+        const std::string name = prefix + "RGB"[c];
+        const Channel& channel = channel_of(held, name);
         if (channel.is_id()) throw UsageError("the channel " + channel.name + " holds ids, not colours");
         for (std::size_t p = 0; p < pixels; ++p) rgb[3 * p + c] = channel.floats()[p];
     }
