@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "paths/kappa.h"
+
 namespace trilens {
 namespace {
 
@@ -13,8 +15,6 @@ constexpr double kFilmReach = 1e-3;
 constexpr double kSoftened = 0.15;  // 0.1 to 0.3 differ by 10 % at the most
 /// A bundle that opens less than this, as a share of its patch seen head-on, is parallel but for rounding.
 constexpr double kNoSpread = 1e-9;
-/// A fold of the directions, or a focus of the bundle, would make corner rays endless or nothing.
-constexpr double kMostKappa = 50;
 
 Meeting meeting_at(const Looking& looking, const Place& place, const Vec3& incident, bool front) {
     return {looking.optic, normalize_or_zero(incident), place.point, place.normal, front};
@@ -185,8 +185,7 @@ void set_kappa(const Looking& looking, Look& look) {
         // the optics make parallel, where kappa would be infinite: directions so different in length along
         // one facet would cost an order of its error.
         const double softened = kSoftened * (after - before) / (after + before);
-        look.kappa[i] = std::clamp(std::cbrt(std::hypot(before, softened) / std::hypot(after, softened)),
-                                   1 / kMostKappa, kMostKappa);
+        look.kappa[i] = kappa_of(std::hypot(before, softened), std::hypot(after, softened));
     }
     if (!kept) look.beside.clear();
 }

@@ -2,17 +2,16 @@
 // 1999.
 #include "paths/mirror_chain.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/check.h"
+#include "paths/kappa.h"
 #include "reflect/mirror.h"
 
 namespace trilens {
 namespace {
 
 constexpr double kStep = 1e-5;     // of a face's parameters, for the normal's differences
-constexpr double kMostKappa = 50;  // as corner rays have it elsewhere
 constexpr double kDone = 1e-11;    // of the way to the point: a miss below this is none
 constexpr double kMostTurn = 0.2;  // radians that one step may go
 constexpr double kBehind = -1e-9;  // of the way: a point on the last mirror itself counts as before it
@@ -102,8 +101,7 @@ std::optional<Vec2> step_against(const ChainRay& of, const Vec3& point) {
 }  // namespace
 
 double ChainRay::kappa() const {
-    const double after = std::fabs(triple(ray.direction, direction_along[0], direction_along[1]));
-    return after > 0 ? std::clamp(std::cbrt(1 / after), 1 / kMostKappa, kMostKappa) : kMostKappa;
+    return kappa_of(1, std::fabs(triple(ray.direction, direction_along[0], direction_along[1])));
 }
 
 std::optional<ChainRay> chain_ray(const MirrorChain& chain, const Vec3& eye_direction) {

@@ -9,7 +9,7 @@ namespace trilens {
 
 class KeptPictures;
 
-constexpr std::size_t kMostBytesInPage = 50'000'000;  // of pictures; more lie beside the page
+inline constexpr std::size_t kMostBytesInPage = 50'000'000;  // of pictures; more lie beside the page
 
 /// Writes plots/*.svg and report.html into summary.folder. Pictures that cannot be read are named in their
 /// place with the reason; those in `kept` are not read. Throws OutputError.
