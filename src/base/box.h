@@ -23,6 +23,11 @@ struct Box {
     }
     /// Lengths of the sides; zero for an empty box.
     Vec3 size() const { return glm::max(high - low, Vec3(0)); }
+    /// Of its surface.
+    double half_area() const {
+        const Vec3 side = size();
+        return side.x * side.y + side.y * side.z + side.z * side.x;
+    }
 };
 
 }  // namespace trilens

@@ -18,43 +18,74 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kSamplesPerTask = 256;
+constexpr std::size_t kTrianglesPerTask = 4096;
 
-/// A triangle that can be seen; its corners stand here, one cache line and a bit, and not behind indices.
-struct Target {
-    std::array<Vec3, 3> corner;
-    Id triangle = kNone;
-    Id object = kNone, primitive = kNone;
-
-    IdTriple order() const { return {object, primitive, triangle}; }
+/// Triangles that share a box: one, or two that follow each other in the scene and lie close.
+struct Group {
+    Id first = kNone;
+    Id count = 0;
 };
 
-std::vector<Target> make_targets(const TriangleScene& scene) {
-    std::vector<Target> targets;
-    targets.reserve(scene.size());
-    for (std::size_t i = 0; i < scene.size(); ++i) {
-        Target target;
-        for (int k = 0; k < 3; ++k) {
-            TRILENS_CHECK(scene.triangles[i][k] < scene.points.size(),
-                          "a corner must be a point of the scene");
-            target.corner[k] = scene.points[scene.triangles[i][k]];
-        }
-        if (has_no_area(target.corner)) continue;
-        target.triangle = static_cast<Id>(i);
-        target.object = scene.object[i];
-        target.primitive = scene.primitive[i];
-        targets.push_back(target);
-    }
-    return targets;
+std::array<Vec3, 3> corners_of(const TriangleScene& scene, std::size_t triangle) {
+    const IdTriple& corner = scene.triangles[triangle];
+    return {scene.points[corner[0]], scene.points[corner[1]], scene.points[corner[2]]};
 }
 
-std::vector<Box> make_boxes(const std::vector<Target>& targets) {
+Box box_of(const std::array<Vec3, 3>& corner) {
+    const auto& [a, b, c] = corner;
+    return {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
+}
+
+/// Whether two triangles are met in fewer steps in one box: a box costs a ray about as much as a triangle,
+/// and is met as often as its surface is large.
+bool share_a_box(const Box& a, const Box& b, const Box& both) {
+    return 3 * both.half_area() <= 2 * (a.half_area() + b.half_area());
+}
+
+struct Groups {
+    std::vector<Group> groups;
     std::vector<Box> boxes;
-    boxes.reserve(targets.size());
-    for (const Target& target : targets) {
-        const auto& [a, b, c] = target.corner;
-        boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
+
+    /// Adds the triangles [first, last) that can be seen.
+    void add(const TriangleScene& scene, std::size_t first, std::size_t last) {
+        Box before;  // of the triangle before, where its group has room
+        bool open = false;
+        for (std::size_t i = first; i < last; ++i) {
+            const std::array<Vec3, 3> corner = corners_of(scene, i);
+            const bool seen = !has_no_area(corner);
+            const Box box = seen ? box_of(corner) : Box{};
+            Box both = before;
+            both.include(box);
+            if (seen && open && share_a_box(before, box, both)) {
+                groups.back().count = 2;
+                boxes.back() = both;
+                open = false;
+                continue;
+            }
+            if (seen) groups.push_back({static_cast<Id>(i), 1}), boxes.push_back(box);
+            before = box, open = seen;
+        }
     }
-    return boxes;
+};
+
+Groups group_triangles(const TriangleScene& scene) {
+    for (const IdTriple& triangle : scene.triangles)
+        for (const Id corner : triangle)
+            TRILENS_CHECK(corner < scene.points.size(), "a corner must be a point of the scene");
+    // Stretches of one length whatever the number of threads: the same groups.
+    std::vector<Groups> stretches((scene.size() + kTrianglesPerTask - 1) / kTrianglesPerTask);
+    parallel_for(stretches.size(), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t k = from; k < to; ++k)
+            stretches[k].add(scene, k * kTrianglesPerTask,
+                             std::min(scene.size(), (k + 1) * kTrianglesPerTask));
+    });
+    Groups all;
+    for (Groups& stretch : stretches) {
+        all.groups.insert(all.groups.end(), stretch.groups.begin(), stretch.groups.end());
+        all.boxes.insert(all.boxes.end(), stretch.boxes.begin(), stretch.boxes.end());
+        stretch = {};
+    }
+    return all;
 }
 
 /// The largest t that is one depth with `t` (which is >= 0 or just below).
@@ -65,62 +96,72 @@ double tie_end(double t) {
 }  // namespace
 
 struct Tracer::Data {
-    std::vector<Target> targets;
+    std::shared_ptr<const TriangleScene> scene;
+    std::vector<Group> groups;
     BoxTree tree;
 
-    Data(std::vector<Target> seen, const std::string& isa)
-        : targets(std::move(seen)), tree(make_boxes(targets), isa) {}
+    Data(std::shared_ptr<const TriangleScene> triangles, Groups grouped, const std::string& isa)
+        : scene(std::move(triangles)), groups(std::move(grouped.groups)), tree(grouped.boxes, isa) {}
 
-    /// Calls use(target, hit) for hits with t >= t_min; it returns the t beyond which hits no longer matter.
+    IdTriple order(Id triangle) const {
+        return {scene->object[triangle], scene->primitive[triangle], triangle};
+    }
+
+    /// Calls use(triangle, hit) for hits with t >= t_min; it returns the t beyond which hits no longer matter.
     template <typename Use>
     void for_each_hit(const Ray& ray, double t_min, double t_max, Use&& use) const {
         const ShearedRay sheared(ray);
         double t_far = t_max;
         tree.visit(ray, t_min, t_max, [&](Id index) {
-            const Target& target = targets[index];
-            const std::optional<TriangleHit> hit = sheared.meet(target.corner);
-            if (hit && hit->t >= t_min && hit->t <= t_far) t_far = use(target, *hit);
+            const Group& group = groups[index];
+            for (Id triangle = group.first; triangle < group.first + group.count; ++triangle) {
+                const std::optional<TriangleHit> hit = sheared.meet(corners_of(*scene, triangle));
+                if (hit && hit->t >= t_min && hit->t <= t_far) t_far = use(triangle, *hit);
+            }
             return t_far;
         });
     }
 };
 
-Tracer::Tracer(const TriangleScene& scene, const std::string& isa) {
-    TRILENS_CHECK(scene.object.size() == scene.size() && scene.primitive.size() == scene.size(),
+Tracer::Tracer(std::shared_ptr<const TriangleScene> scene, const std::string& isa) {
+    TRILENS_CHECK(scene->object.size() == scene->size() && scene->primitive.size() == scene->size(),
                   "one object and one primitive per triangle");
-    data_ = std::make_unique<Data>(make_targets(scene), isa);
+    Groups grouped = group_triangles(*scene);
+    data_ = std::make_unique<Data>(std::move(scene), std::move(grouped), isa);
 }
+Tracer::Tracer(TriangleScene scene, const std::string& isa)
+    : Tracer(std::make_shared<const TriangleScene>(std::move(scene)), isa) {}
 Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;
 Tracer& Tracer::operator=(Tracer&&) noexcept = default;
 
 Hit Tracer::first_hit(const Ray& ray, double t_min) const {
     // The smallest t, and whether any other hit came as near as a tie on the way there.
-    const Target* seen = nullptr;
+    Id seen = kNone;
     TriangleHit first{kInfinity, {}};
     bool tie = false;
-    data_->for_each_hit(ray, t_min, kInfinity, [&](const Target& target, const TriangleHit& hit) {
-        tie = tie || (seen && tie_end(std::min(hit.t, first.t)) >= std::max(hit.t, first.t));
-        if (hit.t < first.t) first = hit, seen = &target;
+    data_->for_each_hit(ray, t_min, kInfinity, [&](Id triangle, const TriangleHit& hit) {
+        tie = tie || (seen != kNone && tie_end(std::min(hit.t, first.t)) >= std::max(hit.t, first.t));
+        if (hit.t < first.t) first = hit, seen = triangle;
         return tie_end(first.t);
     });
-    if (!seen) return {};
+    if (seen == kNone) return {};
 
     // Among all within the tie of the smallest, the one that comes first in the scene: no order of visits
     // shows.
     if (tie) {
         const double t_end = tie_end(first.t);
-        data_->for_each_hit(ray, t_min, t_end, [&](const Target& target, const TriangleHit& hit) {
-            if (target.order() < seen->order()) first = hit, seen = &target;
+        data_->for_each_hit(ray, t_min, t_end, [&](Id triangle, const TriangleHit& hit) {
+            if (data_->order(triangle) < data_->order(seen)) first = hit, seen = triangle;
             return t_end;
         });
     }
-    return {seen->triangle, first.t, first.barycentric};
+    return {seen, first.t, first.barycentric};
 }
 
 bool Tracer::occluded(const Ray& ray, double t_min, double t_max) const {
     bool found = false;
-    data_->for_each_hit(ray, t_min, t_max, [&](const Target&, const TriangleHit& hit) {
+    data_->for_each_hit(ray, t_min, t_max, [&](Id, const TriangleHit& hit) {
         found = found || (hit.t > t_min && hit.t < t_max);
         return found ? -kInfinity : t_max;
     });

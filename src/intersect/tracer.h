@@ -12,7 +12,7 @@
 
 namespace trilens {
 
-/// A copy of the triangles in an Embree scene (ROBUST). Embree's tree finds the candidates in float, none too
+/// Triangles under an Embree tree (ROBUST). Embree's tree finds the candidates in float, none too
 /// few; each is met in double on the original triangle (triangle_hit.h). So hits depend neither on the
 /// instruction set nor on the number of threads, and triangles that share an edge leave no gap. Triangles
 /// without area, or with coordinates that are not finite, are never seen. Promised for origins within 1e8
@@ -20,8 +20,11 @@ namespace trilens {
 class Tracer {
   public:
     /// `isa`: Embree's instruction set ("sse2", "sse4.2", "avx", "avx2", "avx512"), or empty for the best of
-    /// this machine. Throws ComputationError where Embree fails.
-    explicit Tracer(const TriangleScene& scene, const std::string& isa = "");
+    /// this machine. The triangles are shared, not copied, and stay as they are while the tracer lives.
+    /// Throws ComputationError where Embree fails.
+    explicit Tracer(std::shared_ptr<const TriangleScene> scene, const std::string& isa = "");
+    /// Keeps the triangles for itself.
+    explicit Tracer(TriangleScene scene, const std::string& isa = "");
     ~Tracer();
     Tracer(Tracer&&) noexcept;
     Tracer& operator=(Tracer&&) noexcept;

@@ -82,7 +82,11 @@ const PreparedScene& prepared_objects(const World& world) {
 }
 
 const Tracer& object_tracer(const World& world) {
-    return world.geometry->objects->tracer.get([&] { return std::make_unique<Tracer>(world.objects); });
+    return world.geometry->objects->tracer.get([&] {
+        // The world's own triangles, which stay in place as long as what is built of them.
+        const std::shared_ptr<const TriangleScene> in_place(std::shared_ptr<void>(), &world.objects);
+        return std::make_unique<Tracer>(in_place);
+    });
 }
 
 const LimitTracer& limit_tracer(const World& world, std::size_t optic) {
