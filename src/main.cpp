@@ -11,7 +11,7 @@ namespace {
 /// being given back to the system and cleared by it anew (a fifth of the time of a picture).
 void keep_freed_memory() {
 #if defined(__GLIBC__)
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_MMAP_THRESHOLD, 12 << 20);
     mallopt(M_TRIM_THRESHOLD, 512 << 20);
 #endif
 }

@@ -107,7 +107,8 @@ struct Tracer::Data {
         return {scene->object[triangle], scene->primitive[triangle], triangle};
     }
 
-    /// Calls use(triangle, hit) for hits with t >= t_min; it returns the t beyond which hits no longer matter.
+    /// Calls use(triangle, hit) for hits with t >= t_min; it returns the t beyond which hits no longer
+    /// matter.
     template <typename Use>
     void for_each_hit(const Ray& ray, double t_min, double t_max, Use&& use) const {
         const ShearedRay sheared(ray);

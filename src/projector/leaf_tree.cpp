@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -13,7 +15,8 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kTogether = 4096;  // triangles that are worth a thread
+constexpr std::size_t kTogether = 4096;   // triangles that are worth a thread
+constexpr std::size_t kWorthBins = 1024;  // so many are better cut by bins first
 
 struct FloatBox {
     std::array<float, 3> low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
@@ -26,12 +29,19 @@ struct FloatBox {
     }
 };
 
-float below(double v) {
-    return std::nextafterf(static_cast<float>(v), -INFINITY);
+/// The float after `f`, which is finite, upwards.
+float next_above(float f) {
+    if (f == 0) return std::numeric_limits<float>::denorm_min();
+    const auto bits = std::bit_cast<std::uint32_t>(f);
+    return std::bit_cast<float>(f > 0 ? bits + 1 : bits - 1);
 }
 
 float above(double v) {
-    return std::nextafterf(static_cast<float>(v), INFINITY);
+    return next_above(static_cast<float>(v));
+}
+
+float below(double v) {
+    return -above(-v);
 }
 
 struct Range {
@@ -40,9 +50,30 @@ struct Range {
     std::size_t size() const { return last - first; }
 };
 
+/// A part of the tree: what its children name is counted from its own beginning.
+struct Part {
+    std::vector<WideNode> nodes;
+    std::vector<Range> leaves;  // of the order
+    std::int32_t root = 0;
+    FloatBox box;
+};
+
+void append(const Part& part, Part& all) {
+    const auto node_offset = static_cast<std::int32_t>(all.nodes.size());
+    const auto leaf_offset = static_cast<std::int32_t>(all.leaves.size());
+    for (WideNode node : part.nodes) {
+        for (std::uint32_t lane = 0; lane < node.count; ++lane)
+            node.child[lane] += node.child[lane] < 0 ? -leaf_offset : node_offset;
+        all.nodes.push_back(node);
+    }
+    all.leaves.insert(all.leaves.end(), part.leaves.begin(), part.leaves.end());
+}
+
 class Builder {
   public:
-    Builder(std::size_t count, const BoxOf& box_of) : items_(count), box_(count) { take_boxes(box_of); }
+    Builder(std::size_t count, const BoxOf& box_of) : items_(count), scratch_(count), box_(count) {
+        take_boxes(box_of);
+    }
     LeafTree build(std::vector<Id>& order);
 
   private:
@@ -51,12 +82,13 @@ class Builder {
         Id triangle = 0;
     };
     void take_boxes(const BoxOf& box_of);
-    FloatBox bounds(const Range& range) const;
+    void gather_around(const Range& range, std::size_t place, std::size_t axis, Range& among);
     std::size_t halve(const Range& range, std::size_t unit);
-    std::int32_t add_leaf(const Range& range);
-    std::int32_t add(const Range& range);
+    std::vector<Range> cut(const Range& range);
+    Part make_leaf(const Range& range) const;
+    Part make(const Range& range);
 
-    std::vector<Item> items_;
+    std::vector<Item> items_, scratch_;
     std::vector<FloatBox> box_;  // by triangle
     LeafTree tree_;
 };
@@ -81,10 +113,33 @@ void Builder::take_boxes(const BoxOf& box_of) {
     });
 }
 
-FloatBox Builder::bounds(const Range& range) const {
-    FloatBox box;
-    for (std::size_t i = range.first; i < range.last; ++i) box.include(box_[items_[i].triangle]);
-    return box;
+/// Orders a large range roughly along the axis, in three parts: what lies in the middle one, `among`, is
+/// little and has the item that belongs at `place`.
+void Builder::gather_around(const Range& range, std::size_t place, std::size_t axis, Range& among) {
+    float low = INFINITY, high = -INFINITY;
+    for (std::size_t i = range.first; i < range.last; ++i) {
+        low = std::min(low, items_[i].middle[axis]);
+        high = std::max(high, items_[i].middle[axis]);
+    }
+    constexpr std::size_t kBins = 256;
+    const float scale = static_cast<float>(kBins - 1) / (high - low);
+    if (!(scale > 0) || !std::isfinite(scale)) return;
+    const auto bin_of = [&](const Item& item) {
+        return static_cast<std::size_t>((item.middle[axis] - low) * scale);
+    };
+    std::array<std::size_t, kBins + 1> bin{};
+    for (std::size_t i = range.first; i < range.last; ++i) ++bin[bin_of(items_[i])];
+    std::size_t middle = 0, before = range.first;
+    while (before + bin[middle] <= place) before += bin[middle++];
+
+    std::array<std::size_t, 3> next{range.first, before, before + bin[middle]};
+    among = {before, before + bin[middle]};
+    for (std::size_t i = range.first; i < range.last; ++i) {
+        const std::size_t b = bin_of(items_[i]);
+        scratch_[next[std::size_t{b >= middle} + std::size_t{b > middle}]++] = items_[i];
+    }
+    std::copy_n(scratch_.begin() + static_cast<std::ptrdiff_t>(range.first), range.size(),
+                items_.begin() + static_cast<std::ptrdiff_t>(range.first));
 }
 
 /// Cuts the range across its longest side, near the middle, so that the first part is a multiple of `unit`
@@ -103,68 +158,95 @@ std::size_t Builder::halve(const Range& range, std::size_t unit) {
     }
     std::size_t half = (range.size() / 2 + unit - 1) / unit * unit;
     if (half == 0 || half >= range.size()) half = range.size() / 2;
-    const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(range.first);
-    std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(half),
-                     items_.begin() + static_cast<std::ptrdiff_t>(range.last),
-                     [axis](const Item& a, const Item& b) {
-                         return std::pair(a.middle[axis], a.triangle) < std::pair(b.middle[axis], b.triangle);
-                     });
-    return range.first + half;
+
+    const std::size_t place = range.first + half;
+    Range among = range;
+    if (range.size() > kWorthBins) gather_around(range, place, axis, among);
+    const auto at = [&](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(among.first), at(place), at(among.last), [axis](const Item& a, const Item& b) {
+        return std::pair(a.middle[axis], a.triangle) < std::pair(b.middle[axis], b.triangle);
+    });
+    return place;
 }
 
-std::int32_t Builder::add_leaf(const Range& range) {
-    Leaf leaf{};
-    leaf.count = static_cast<std::uint32_t>(range.size());
-    for (std::size_t lane = 0; lane < range.size(); ++lane)
-        leaf.triangle[lane] = static_cast<Id>(range.first + lane);
-    tree_.leaves.push_back(leaf);
-    return ~static_cast<std::int32_t>(tree_.leaves.size() - 1);
-}
-
-std::int32_t Builder::add(const Range& range) {
-    if (range.size() <= kLanes) return add_leaf(range);
-    std::size_t capacity = kLanes;  // of a child: a full subtree
+/// Up to 16 parts of a range of more than 16, all but the last full subtrees.
+std::vector<Range> Builder::cut(const Range& range) {
+    std::size_t capacity = kLanes;
     while (capacity * kLanes < range.size()) capacity *= kLanes;
-
     std::vector<Range> parts{range};
     for (bool again = true; again;) {
-        again = false;
+        std::vector<std::size_t> middle(parts.size());
+        parallel_for(parts.size(), std::max<std::size_t>(1, kTogether / capacity),
+                     [&](std::size_t first, std::size_t last) {
+                         for (std::size_t i = first; i < last; ++i)
+                             if (parts[i].size() > capacity) middle[i] = halve(parts[i], capacity);
+                     });
         std::vector<Range> next;
-        for (const Range& part : parts) {
-            if (part.size() <= capacity) {
-                next.push_back(part);
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            if (parts[i].size() <= capacity) {
+                next.push_back(parts[i]);
                 continue;
             }
-            const std::size_t middle = halve(part, capacity);
-            next.push_back({part.first, middle});
-            next.push_back({middle, part.last});
-            again = true;
+            next.push_back({parts[i].first, middle[i]});
+            next.push_back({middle[i], parts[i].last});
         }
+        again = next.size() > parts.size();
         parts = std::move(next);
     }
+    return parts;
+}
 
-    const std::size_t id = tree_.nodes.size();
-    tree_.nodes.emplace_back();
+Part Builder::make_leaf(const Range& range) const {
+    Part part{{}, {range}, ~std::int32_t{0}, {}};
+    for (std::size_t i = range.first; i < range.last; ++i) part.box.include(box_[items_[i].triangle]);
+    return part;
+}
+
+Part Builder::make(const Range& range) {
+    if (range.size() <= kLanes) return make_leaf(range);
+    const std::vector<Range> ranges = cut(range);
+    std::vector<Part> children(ranges.size());
+    parallel_for(ranges.size(), std::max<std::size_t>(1, kTogether * ranges.size() / range.size()),
+                 [&](std::size_t first, std::size_t last) {
+                     for (std::size_t i = first; i < last; ++i) children[i] = make(ranges[i]);
+                 });
+
+    Part part;
+    part.nodes.emplace_back();
     WideNode node{};
-    node.count = static_cast<std::uint32_t>(parts.size());
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const FloatBox box = lane < parts.size() ? bounds(parts[lane]) : FloatBox{};
+    node.count = static_cast<std::uint32_t>(children.size());
+    for (std::size_t lane = 0; lane < children.size(); ++lane) {
+        const Part& child = children[lane];
         for (std::size_t k = 0; k < 3; ++k) {
-            node.low[k][lane] = lane < parts.size() ? box.low[k] : 0;
-            node.high[k][lane] = lane < parts.size() ? box.high[k] : 0;
+            node.low[k][lane] = child.box.low[k];
+            node.high[k][lane] = child.box.high[k];
         }
-        if (lane < parts.size()) node.child[lane] = add(parts[lane]);
+        node.child[lane] = child.root < 0 ? ~static_cast<std::int32_t>(part.leaves.size())
+                                          : static_cast<std::int32_t>(part.nodes.size());
+        append(child, part);
+        part.box.include(child.box);
     }
-    tree_.nodes[id] = node;
-    return static_cast<std::int32_t>(id);
+    part.nodes.front() = node;
+    return part;
 }
 
 LeafTree Builder::build(std::vector<Id>& order) {
     if (items_.empty()) return {};
-    tree_.leaves.reserve(items_.size() / kLanes + 16);
-    tree_.root = add({0, items_.size()});
+    Part all = make({0, items_.size()});
+    tree_.root = all.root;
+    tree_.nodes = std::move(all.nodes);
     order.resize(items_.size());
     for (std::size_t i = 0; i < items_.size(); ++i) order[i] = items_[i].triangle;
+    std::vector<Item>().swap(items_);
+    std::vector<Item>().swap(scratch_);
+    std::vector<FloatBox>().swap(box_);
+    tree_.leaves.resize(all.leaves.size());
+    for (std::size_t i = 0; i < all.leaves.size(); ++i) {
+        Leaf& leaf = tree_.leaves[i];
+        leaf.count = static_cast<std::uint32_t>(all.leaves[i].size());
+        for (std::size_t lane = 0; lane < leaf.count; ++lane)
+            leaf.triangle[lane] = static_cast<Id>(all.leaves[i].first + lane);
+    }
     return std::move(tree_);
 }
 

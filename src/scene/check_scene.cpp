@@ -32,13 +32,16 @@ class SceneCheck {
     void meshes() const;
 
   private:
+    [[noreturn]] void fail(const std::string& place, const std::string& message) const {
+        throw InputError(scene_title(scene_), place, message);
+    }
     void require(bool holds, const std::string& place, const std::string& message) const {
-        if (!holds) throw InputError(scene_title(scene_), place, message);
+        if (!holds) fail(place, message);
     }
     template <typename T>
     void finite(const std::vector<T>& values, const std::string& place) const {
         for (std::size_t i = 0; i < values.size(); ++i)
-            require(is_finite(values[i]), place + "/" + std::to_string(i), "is not finite");
+            if (!is_finite(values[i])) fail(place + "/" + std::to_string(i), "is not finite");
     }
     void texture(const Texture* texture, const std::string& place) const {
         if (!texture) return;
@@ -93,11 +96,11 @@ void SceneCheck::object(const ObjectMesh& mesh, const std::string& place) const 
     finite(mesh.points, place + "/points");
     for (std::size_t t = 0; t < count; ++t)
         for (const Id corner : mesh.triangles[t])
-            require(corner < mesh.points.size(), place + "/triangles/" + std::to_string(t),
-                    "has a corner that is no point");
+            if (corner >= mesh.points.size())
+                fail(place + "/triangles/" + std::to_string(t), "has a corner that is no point");
     require(mesh.material.size() == count, place + "/material", "needs one material per triangle");
     for (const Id material : mesh.material)
-        require(material < scene_.materials.size(), place + "/material", "names no material of the scene");
+        if (material >= scene_.materials.size()) fail(place + "/material", "names no material of the scene");
     require(mesh.uvs.empty() || mesh.uvs.size() == count, place + "/uvs",
             "needs one entry per triangle, or none");
     require(mesh.normals.empty() || mesh.normals.size() == count, place + "/normals",
