@@ -22,6 +22,9 @@ double difference_of_products(double a, double b, double c, double d) {
 /// The real t with c[0] + 2 c[1] t + c[2] t^2 = 0, ascending; infinite where there are fewer.
 std::array<double, 2> solve(const std::array<double, 3>& c) {
     constexpr double kNever = HUGE_VAL;
+    // Most rays miss by more than the four roundings of the plain difference: they need no exact one.
+    const double square = c[1] * c[1], product = c[0] * c[2];
+    if (square - product < -1e-15 * (square + std::fabs(product))) return {kNever, kNever};
     const double discriminant = difference_of_products(c[1], c[1], c[0], c[2]);
     if (!(discriminant >= 0)) return {kNever, kNever};
 

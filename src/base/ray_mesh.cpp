@@ -30,19 +30,4 @@ FacetWeights facet_weights(const RayMesh& mesh, std::size_t facet) {
     return {inverse, false};
 }
 
-Ray interpolated_ray(const RayMesh& mesh, std::size_t facet, const Vec3& weights) {
-    const IdTriple& corner = mesh.facets[facet];
-    Ray ray;
-    for (int k = 0; k < 3; ++k) {
-        ray.origin += weights[k] * mesh.rays[corner[k]].origin;
-        ray.direction += weights[k] * mesh.rays[corner[k]].direction;
-    }
-    return ray;
-}
-
-Ray sample_ray(const RayMesh& mesh, std::size_t facet, const FacetWeights& weights, const Vec2& at) {
-    const Vec3 e = weights.unnormalised(at.x, at.y);
-    return interpolated_ray(mesh, facet, e / (e.x + e.y + e.z));
-}
-
 }  // namespace trilens

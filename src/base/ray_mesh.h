@@ -35,10 +35,22 @@ struct FacetWeights {
 FacetWeights facet_weights(const RayMesh& mesh, std::size_t facet);
 
 /// The facet's ray for weights that sum to 1: origin and direction interpolated linearly.
-Ray interpolated_ray(const RayMesh& mesh, std::size_t facet, const Vec3& weights);
+inline Ray interpolated_ray(const RayMesh& mesh, std::size_t facet, const Vec3& weights) {
+    const IdTriple& corner = mesh.facets[facet];
+    Ray ray;
+    for (int k = 0; k < 3; ++k) {
+        const Ray& at_corner = mesh.rays[corner[static_cast<std::size_t>(k)]];
+        ray.origin += weights[k] * at_corner.origin;
+        ray.direction += weights[k] * at_corner.direction;
+    }
+    return ray;
+}
 
 /// The facet's ray through the screen position `at` (pixels from the film's top left). `weights`: the facet's
 /// own, not edge-on.
-Ray sample_ray(const RayMesh& mesh, std::size_t facet, const FacetWeights& weights, const Vec2& at);
+inline Ray sample_ray(const RayMesh& mesh, std::size_t facet, const FacetWeights& weights, const Vec2& at) {
+    const Vec3 e = weights.unnormalised(at.x, at.y);
+    return interpolated_ray(mesh, facet, e / (e.x + e.y + e.z));
+}
 
 }  // namespace trilens

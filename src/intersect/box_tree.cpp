@@ -85,13 +85,17 @@ LocalFrame make_frame(std::span<const Box> boxes, const std::vector<Id>& group) 
 
 LocalRay make_local(const LocalFrame& frame, const Ray& ray, double t_min, double t_max) {
     LocalRay local;
-    local.direction = normalize_or_zero(ray.direction);
+    // Lengths that squares cannot hold take the slow way.
+    const double squared = dot(ray.direction, ray.direction);
+    const bool usual = squared > 1e-280 && squared < 1e280;
+    local.direction = usual ? ray.direction * (1 / std::sqrt(squared)) : normalize_or_zero(ray.direction);
     const double speed = dot(local.direction, ray.direction) * frame.scale;
     const Vec3 origin = frame.from_world(ray.origin);
     if (!(speed > 0) || !std::isfinite(speed) || !std::isfinite(dot(origin, origin))) return local;
 
     // The stretch of the ray inside the scene's ball, with room for rounding of far origins.
-    const double radius = 1 + 8 * kBoxMargin + 1e-14 * length(origin);
+    const double far = std::fabs(origin.x) + std::fabs(origin.y) + std::fabs(origin.z);
+    const double radius = 1 + 8 * kBoxMargin + 1e-14 * far;
     const double s_nearest = -dot(origin, local.direction);
     const Vec3 nearest = origin + s_nearest * local.direction;
     const double half_chord_2 = radius * radius - dot(nearest, nearest);

@@ -7,6 +7,7 @@ namespace trilens {
 namespace {
 
 int wrap(long index, int size) {
+    if (index >= 0 && index < size) return static_cast<int>(index);  // mostly, and a division is slow
     const long rest = index % size;
     return static_cast<int>(rest < 0 ? rest + size : rest);
 }
