@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -77,7 +78,16 @@ void prepare_scene(State& state) {
     for (auto step : state) benchmark::DoNotOptimize(PreparedScene(scene));
     count(state, scene.size());
 }
-BENCHMARK(prepare_scene)->Arg(972)->Arg(99372)->Unit(benchmark::kMillisecond);
+BENCHMARK(prepare_scene)->Arg(972)->Arg(99372)->Arg(1002252)->Unit(benchmark::kMillisecond);
+
+/// Embree's tree over the same triangles.
+void prepare_rays(State& state) {
+    const auto scene = std::make_shared<const TriangleScene>(
+        trilens_bench::workload("room", static_cast<double>(state.range(0))));
+    for (auto step : state) benchmark::DoNotOptimize(Tracer{scene});
+    count(state, scene->size());
+}
+BENCHMARK(prepare_rays)->Arg(972)->Arg(99372)->Arg(1002252)->Unit(benchmark::kMillisecond);
 
 /// All images of points in a sphere, proven.
 void search_images(State& state) {
