@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <memory>
 
 #include "base/error.h"
 #include "random_scene.h"
@@ -211,6 +212,35 @@ TEST_CASE("every instruction set and every number of threads gives the same bits
         REQUIRE(same_bits(hit, alone.first_hit(ray)));
     }
     CHECK(seen > 2000);
+}
+
+TEST_CASE("neighbours that share a box are seen as if each stood alone, whoever holds the triangles") {
+    // A mesh in its own order, where neighbours follow each other, with triangles without area between them;
+    // and the same in any order.
+    Random random(15);
+    TriangleScene in_order = sphere_of_triangles(16, Vec3(0.2, -0.1, 0.4), 2);
+    for (std::size_t i = 0; i < in_order.size(); i += 5) in_order.triangles[i][1] = in_order.triangles[i][0];
+    TriangleScene shuffled = in_order;
+    for (std::size_t i = shuffled.size(); i > 1; --i) {
+        const std::size_t k = random.below(i);
+        std::swap(shuffled.triangles[i - 1], shuffled.triangles[k]);
+        std::swap(shuffled.primitive[i - 1], shuffled.primitive[k]);
+    }
+    const Tracer own(in_order), shared(std::make_shared<const TriangleScene>(in_order)), other(shuffled);
+    int seen = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const Ray ray{random.in_box(2.5), random.direction()};
+        const Hit hit = own.first_hit(ray), any_order = other.first_hit(ray);
+        REQUIRE(same_bits(hit, shared.first_hit(ray)));
+        REQUIRE(hit.seen() == any_order.seen());
+        CHECK(own.occluded(ray, 0, 1) == other.occluded(ray, 0, 1));
+        if (!hit.seen()) continue;
+        ++seen;
+        CHECK(in_order.primitive[hit.triangle] == shuffled.primitive[any_order.triangle]);
+        CHECK(hit.t == any_order.t);
+        CHECK(hit.barycentric == any_order.barycentric);
+    }
+    CHECK(seen > 1000);
 }
 
 TEST_CASE("t_min leaves out what is nearer and keeps what is there") {

@@ -1,6 +1,9 @@
 // The wide tree: every triangle in one leaf, inside every box above it; a leaf's floats are its corners.
 #include "projector/leaf_tree.h"
 
+#include <memory>
+
+#include "base/parallel.h"
 #include "projector/prepared_scene.h"
 #include "random_cases.h"
 #include "support/test.h"
@@ -71,11 +74,37 @@ TEST_CASE("every triangle is in one leaf, inside all boxes above it") {
 }
 
 TEST_CASE("triangles that all coincide still make a tree") {
+    constexpr int kCount = 5000;
     TriangleScene scene;
-    for (int i = 0; i < 1000; ++i) add_triangle(scene, {0, 0, 1}, {1, 0, 1}, {0, 1, 1});
+    for (int i = 0; i < kCount; ++i) add_triangle(scene, {0, 0, 1}, {1, 0, 1}, {0, 1, 1});
     const PreparedScene prepared(scene);
     Count count;
     count.seen.resize(scene.size(), 0);
     visit(prepared.data(), prepared.data().leaves.root, {}, count);
-    CHECK(std::count(count.seen.begin(), count.seen.end(), 1) == 1000);
+    CHECK(std::count(count.seen.begin(), count.seen.end(), 1) == kCount);
+}
+
+TEST_CASE("any number of threads makes the same tree") {
+    Random random(32);
+    const TriangleScene scene = random_triangles(random, random_frame(random), 40000);
+    std::vector<std::unique_ptr<PreparedScene>> made;
+    for (const int threads : {1, 2, 5}) {
+        set_thread_count(threads);
+        made.push_back(std::make_unique<PreparedScene>(scene));
+    }
+    set_thread_count(0);
+    const PreparedScene::Data& one = made.front()->data();
+    for (const auto& prepared : made) {
+        const PreparedScene::Data& other = prepared->data();
+        CHECK(other.leaves.root == one.leaves.root);
+        REQUIRE(other.leaves.nodes.size() == one.leaves.nodes.size());
+        for (std::size_t i = 0; i < one.leaves.nodes.size(); ++i) {
+            const WideNode &a = one.leaves.nodes[i], &b = other.leaves.nodes[i];
+            REQUIRE(std::equal(&a.low[0][0], &a.low[0][0] + 3 * kLanes, &b.low[0][0]));
+            REQUIRE(std::equal(&a.high[0][0], &a.high[0][0] + 3 * kLanes, &b.high[0][0]));
+            REQUIRE(std::equal(a.child, a.child + kLanes, b.child));
+        }
+        for (std::size_t i = 0; i < one.size(); ++i)
+            REQUIRE(other.triangles[i].triangle() == one.triangles[i].triangle());
+    }
 }
