@@ -1,7 +1,8 @@
 #include "answer/projections.h"
 
+#include <charconv>
+
 #include "answer/values.h"
-#include "terminal/format.h"
 
 namespace trilens {
 namespace {
@@ -27,11 +28,37 @@ Json image_json(const Renderer& renderer, const WorldImage& image) {
     return fields;
 }
 
-std::string text_line(const Renderer& renderer, std::size_t point, const WorldImage& image) {
-    return fmt::format("{},{:.9f},{:.9f},{:.12g},{},{},{},{:d},{:d},{:d}\n", point, image.pixel.x,
-                       image.pixel.y, image.t, path_name(image.path), optic_name(renderer, image),
-                       image.facet == kNone ? "" : std::to_string(image.facet), image.inside, image.visible,
-                       image.refined);
+/// Room for a number, however long: a double before its point has 309 digits at most.
+constexpr std::size_t kNumberRoom = 330;
+
+void add_number(std::string& text, double value, std::chars_format format, int digits) {
+    char room[kNumberRoom];
+    const auto end = std::to_chars(room, room + kNumberRoom, value, format, digits);
+    text.append(room, end.ptr);
+    text += ',';
+}
+
+void add_count(std::string& text, std::size_t value) {
+    char room[kNumberRoom];
+    text.append(room, std::to_chars(room, room + kNumberRoom, value).ptr);
+    text += ',';
+}
+
+void add_line(std::string& text, const Renderer& renderer, std::size_t point, const WorldImage& image) {
+    add_count(text, point);
+    add_number(text, image.pixel.x, std::chars_format::fixed, 9);
+    add_number(text, image.pixel.y, std::chars_format::fixed, 9);
+    add_number(text, image.t, std::chars_format::general, 12);
+    text += path_name(image.path);
+    text += ',';
+    if (image.optic != kNone) text += renderer.scene().meshes[image.object].name;
+    text += ',';
+    if (image.facet == kNone)
+        text += ',';
+    else
+        add_count(text, image.facet);
+    for (const bool flag : {image.inside, image.visible, image.refined}) text += flag ? "1," : "0,";
+    text.back() = '\n';
 }
 
 }  // namespace
@@ -52,8 +79,12 @@ Json points_json(const Renderer& renderer, std::span<const Vec3> points,
 
 std::string points_text(const Renderer& renderer, std::span<const PointProjection> images) {
     std::string text = "point,x,y,t,path,optic,facet,inside,visible,refined\n";
+    std::size_t lines = 0;
+    for (const PointProjection& point : images) lines += point.images.size();
+    constexpr std::size_t kUsualLine = 80;
+    text.reserve(text.size() + kUsualLine * lines);
     for (std::size_t p = 0; p < images.size(); ++p)
-        for (const WorldImage& image : images[p].images) text += text_line(renderer, p, image);
+        for (const WorldImage& image : images[p].images) add_line(text, renderer, p, image);
     return text;
 }
 

@@ -16,6 +16,8 @@ struct LinearCamera {
         screen_w{0};    // rows of the map: (x w, y w, w) = rows . (point, 1); w is the depth
                         // along the view axis from `eye` for perspective, 1 for parallel
     Vec3 view_axis{0};  // of oblique cameras: unit; zero where it is view_direction
+
+    bool operator==(const LinearCamera&) const = default;
 };
 
 /// Homogeneous screen position (x w, y w, w) of a world point; x, y in pixels from the film's top left.

@@ -6,57 +6,38 @@
 #include <optional>
 
 #include "base/halve_points.h"
-#include "camera/specular_walk.h"
+#include "camera/specular_group.h"
 
 namespace trilens {
 namespace {
 
-/// So few points are walked one after the other.
-constexpr std::size_t kFewPoints = 8;
+/// So few points are walked side by side.
+constexpr std::size_t kFewPoints = kPointLanes;
 /// A part of the surface is halved while it leaves more open than this many times what the points do.
 constexpr double kPartShare = 1;
 /// Cells whose normals turn less than this are asked the Newton operator, where their halves are at hand.
 constexpr double kNewtonTurn = 0.06;
 /// Cells whose normals turn less than this, or with a side shorter than that, are left to the walks of the
 /// points.
-constexpr double kFlatPart = 0.05, kSmallPart = 0x1p-10;
-/// A tree of more nodes (some 500 bytes each) grows no further.
+constexpr double kFlatPart = 0.05;
+constexpr double kSmallPart = 0x1p-10;
+/// A tree of more nodes (some 600 bytes each) grows no further, and one of more than so many is not kept.
 constexpr std::size_t kMostNodes = 1u << 16;
+constexpr std::size_t kMostKept = 1u << 13;
 
-class Batch {
-  public:
-    Batch(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query,
-          const SearchLimits& limits)
-        : surface_(surface),
-          cells_(cells),
-          limits_(limits),
-          tree_(surface, cells, query),
-          walk_(surface, *cells.bounder(), tree_, limits),
-          ball_(query) {}
+}  // namespace
 
-    std::vector<SpecularSearch> run(std::span<const Vec3> points);
-
-  private:
-    using Parts = std::vector<TreeNode*>;
-
-    void descend(std::span<std::size_t> some, const Parts& parts);
-    SpecularSearch search(const Vec3& point, const Parts& parts);
-    void sift(TreeNode& part, Parts& left);
-
-    const Surface& surface_;
-    const SurfaceCells& cells_;
-    const SearchLimits& limits_;
-    SpecularTree tree_;
-    SpecularWalk walk_;
-    SpecularQuery ball_;  // its point is the middle of the points that are sifted for
-    double radius_ = 0;
-    std::span<const Vec3> points_;
-    std::vector<SurfaceParameter> zeros_;  // of the last point
-    std::vector<SpecularSearch> found_;
-};
+SpecularBatch::SpecularBatch(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query,
+                             const SearchLimits& limits)
+    : surface_(surface),
+      cells_(cells),
+      limits_(limits),
+      tree_(surface, cells, query),
+      group_(surface, *cells.bounder(), tree_, query, limits),
+      ball_(query) {}
 
 /// Adds to `left` what may hold an image of any point of the ball.
-void Batch::sift(TreeNode& part, Parts& left) {
+void SpecularBatch::sift(TreeNode& part, Parts& left) {
     const PlaceTest test = test_place(ball_, part.place, part.view, radius_);
     if (test.empty) return;
     const bool is_last = part.bounds && (part.bounds->is_finest || part.place.normal_radius < kFlatPart ||
@@ -64,7 +45,7 @@ void Batch::sift(TreeNode& part, Parts& left) {
                                          part.box.high.y - part.box.low.y < kSmallPart);
     if (part.bounds && part.place.normal_radius <= (part.is_halved ? kNewtonTurn : kHopelessTurn)) {
         const Vec2 half = part.box.half();
-        const NewtonBounds newton = newton_bounds(ball_, *part.bounds, part.view, half, radius_);
+        const NewtonBounds newton = newton_bounds(tree_.terms_of(part), ball_.point, half, radius_);
         if (newton.known && leaves_cell(newton, half)) return;
     }
     if (is_last || !(test.by_place > kPartShare * test.by_points)) {
@@ -76,24 +57,28 @@ void Batch::sift(TreeNode& part, Parts& left) {
         if (half) sift(*half, left);
 }
 
-/// As a walk through the whole surface has it: where something stays undecided, by that walk, in a tree of
-/// its own that may grow deep.
-SpecularSearch Batch::search(const Vec3& point, const Parts& parts) {
+SpecularSearch SpecularBatch::search_whole(const Vec3& point) {
     SpecularQuery query = ball_;
     query.point = point;
-    if (tree_.size() < kMostNodes) {
-        std::optional<SpecularSearch> search = walk_.run_near(query, parts, zeros_);
-        zeros_ = walk_.zeros();
-        if (search) return std::move(*search);
-    }
+    if (tree_.size() < kMostNodes)
+        return SpecularWalk(surface_, *cells_.bounder(), tree_, limits_).run(query);
     SpecularTree tree(surface_, cells_, query);
-    SpecularWalk walk(surface_, *cells_.bounder(), tree, limits_);
-    SpecularSearch search = walk.run(query);
-    zeros_ = walk.zeros();
-    return search;
+    return SpecularWalk(surface_, *cells_.bounder(), tree, limits_).run(query);
 }
 
-void Batch::descend(std::span<std::size_t> some, const Parts& parts) {
+/// As a walk through the whole surface has it: where something stays undecided, by that walk.
+void SpecularBatch::search(std::span<const std::size_t> some, const Parts& parts) {
+    std::vector<std::optional<SpecularSearch>> found(some.size());
+    if (tree_.size() < kMostNodes) {
+        std::vector<Vec3> points;
+        for (const std::size_t p : some) points.push_back(points_[p]);
+        found = group_.run(points, parts);
+    }
+    for (std::size_t k = 0; k < some.size(); ++k)
+        found_[some[k]] = found[k] ? std::move(*found[k]) : search_whole(points_[some[k]]);
+}
+
+void SpecularBatch::descend(std::span<std::size_t> some, const Parts& parts) {
     const PointBall ball = ball_around(points_, some);
     ball_.point = ball.middle;
     radius_ = ball.radius;
@@ -105,26 +90,19 @@ void Batch::descend(std::span<std::size_t> some, const Parts& parts) {
         descend(some.subspan(half), left);
         return;
     }
-    for (const std::size_t p : some) found_[p] = search(points_[p], left);
+    search(some, left);
 }
 
-std::vector<SpecularSearch> Batch::run(std::span<const Vec3> points) {
+std::vector<SpecularSearch> SpecularBatch::run(std::span<const Vec3> points) {
+    if (tree_.size() > kMostKept) tree_.begin_anew();
     points_ = points;
-    found_.resize(points.size());
+    found_ = std::vector<SpecularSearch>(points.size());
     Parts whole;
     if (tree_.root()) whole.push_back(tree_.root());
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     if (!points.empty()) descend(order, whole);
     return std::move(found_);
-}
-
-}  // namespace
-
-std::vector<SpecularSearch> search_each(const Surface& surface, const SurfaceCells& cells,
-                                        const SpecularQuery& query, std::span<const Vec3> points,
-                                        const SearchLimits& limits) {
-    return Batch(surface, cells, query, limits).run(points);
 }
 
 }  // namespace trilens

@@ -5,13 +5,45 @@
 #include <vector>
 
 #include "camera/specular_cells.h"
+#include "camera/specular_group.h"
 #include "camera/specular_search.h"
 
 namespace trilens {
 
-/// SpecularSearcher::find_each, for a surface with bounds and a query with own normals.
-std::vector<SpecularSearch> search_each(const Surface& surface, const SurfaceCells& cells,
-                                        const SpecularQuery& query, std::span<const Vec3> points,
-                                        const SearchLimits& limits);
+/// Keeps what it learns of the surface from one list of points to the next. One thread each; surface and
+/// cells, which have bounds, must live longer.
+class SpecularBatch {
+  public:
+    /// For queries with own normals that differ from this in the point alone.
+    SpecularBatch(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query,
+                  const SearchLimits& limits);
+
+    /// SpecularSearcher::find_each.
+    std::vector<SpecularSearch> run(std::span<const Vec3> points);
+
+    /// Whether such queries are this batch's.
+    bool serves(SpecularQuery query, const SearchLimits& limits) const {
+        query.point = ball_.point;
+        return query == ball_ && limits == limits_;
+    }
+
+  private:
+    using Parts = std::vector<TreeNode*>;
+
+    void descend(std::span<std::size_t> some, const Parts& parts);
+    void search(std::span<const std::size_t> some, const Parts& parts);
+    SpecularSearch search_whole(const Vec3& point);
+    void sift(TreeNode& part, Parts& left);
+
+    const Surface& surface_;
+    const SurfaceCells& cells_;
+    const SearchLimits limits_;
+    SpecularTree tree_;
+    SpecularGroup group_;
+    SpecularQuery ball_;  // its point is the middle of the points that are sifted for
+    double radius_ = 0;
+    std::span<const Vec3> points_;
+    std::vector<SpecularSearch> found_;
+};
 
 }  // namespace trilens

@@ -10,11 +10,11 @@
 namespace trilens {
 namespace {
 
-/// From the ball of `from_radius` around `from`: the ways between two balls are those from the one's middle
-/// to a ball of both radii. False where the balls meet.
-bool sight_from(const Vec3& from, double from_radius, const PlaceBounds& place, Sight& sight) {
-    const Vec3 way = place.position - from;
-    const double distance = length(way), radius = place.position_radius + from_radius;
+/// The ways between two balls are those from the one's middle to a ball of both radii, `radius`. False where
+/// the balls meet.
+bool sight_from(const Vec3& from, double radius, const Vec3& to, Sight& sight) {
+    const Vec3 way = to - from;
+    const double distance = length(way);
     if (!(distance > radius)) return false;
     sight.by_distance = 1 / distance;
     sight.direction = way * sight.by_distance;
@@ -23,40 +23,12 @@ bool sight_from(const Vec3& from, double from_radius, const PlaceBounds& place, 
     return true;
 }
 
-struct Light {
-    Sight eye, point;
-    PathIndices n;
-    Vec3 bend{0};          // h at the middle
-    double bend_turn = 0;  // no h differs by more
-};
-
-/// None where the eye or a point may lie on the piece.
-bool light_over(const SpecularQuery& query, double point_radius, const PlaceBounds& place,
-                const EyeView& view, Light& light) {
-    if (!view.is_apart || !sight_from(query.point, point_radius, place, light.point)) return false;
-    light.eye = view.sight;
-    light.n = path_indices(query);
-    light.bend = light.n.eye * light.eye.direction + light.n.point * light.point.direction;
-    light.bend_turn = light.n.eye * light.eye.turn + light.n.point * light.point.turn;
-    return true;
-}
-
-/// A vector's length at the middle, and how much the vector changes.
-struct Size {
-    double length, radius;
-};
+using Reach = CellTerms::Reach;
 
 /// The most that (a . Q b) / d changes, Q the projection across a sight of distance d.
-double turning_radius(const Sight& sight, const Size& a, const Size& b) {
-    const double all_a = a.length + a.radius, all_b = b.length + b.radius;
-    return sight.stretch() * all_a * all_b +
-           sight.by_distance * (a.radius * all_b + a.length * (sight.sine * all_b + b.radius));
-}
-
-/// The most that an entry of the Hessian changes: a, b the tangents and `second` their second derivative.
-double entry_radius(const Light& light, const Size& a, const Size& b, const Size& second) {
-    return light.n.eye * turning_radius(light.eye, a, b) + light.n.point * turning_radius(light.point, a, b) +
-           light.bend_turn * (second.length + second.radius) + length(light.bend) * second.radius;
+double turning_radius(const Sight& sight, double stretch, const Reach& a, const Reach& b) {
+    return stretch * a.all * b.all +
+           sight.by_distance * (a.radius * b.all + a.length * (sight.sine * b.all + b.radius));
 }
 
 double largest_coordinate(const Vec3& v) {
@@ -68,16 +40,18 @@ Vec2 absolute_product(const Mat2& m, const Vec2& v) {
             std::fabs(m[0][1]) * v.x + std::fabs(m[1][1]) * v.y};
 }
 
+/// How h, or one of its parts, changes along a step: the direction of a sight turns by the step across it.
+Vec3 turned(const Sight& sight, double index, const Vec3& step) {
+    return index * sight.by_distance * (step - dot(sight.direction, step) * sight.direction);
+}
+
 /// What rounding leaves of the gradient at a zero, per length of the tangent.
-double rounding_of_law(const SpecularQuery& query, double point_radius, const Light& light,
-                       const Vec3& position) {
+double rounding_of_law(const CellTerms& terms, const Sight& sight, const Vec3& point, double point_radius) {
     constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
-    const double coordinate =
-        std::max({largest_coordinate(position), largest_coordinate(query.point) + point_radius,
-                  query.camera.parallel ? 0 : largest_coordinate(query.camera.eye)});
-    const double by_nearest = light.point.by_distance + (point_radius > 0 ? light.point.stretch() : 0);
-    return kRounding * (light.n.eye * (1 + coordinate * light.eye.by_distance) +
-                        light.n.point * (1 + coordinate * by_nearest));
+    const double coordinate = std::max(terms.coordinate, largest_coordinate(point) + point_radius);
+    const double by_nearest = sight.by_distance + (point_radius > 0 ? sight.stretch() : 0);
+    return kRounding * (terms.n.eye * (1 + coordinate * terms.eye_by_distance) +
+                        terms.n.point * (1 + coordinate * by_nearest));
 }
 
 }  // namespace
@@ -95,7 +69,7 @@ EyeView eye_view(const SpecularQuery& query, const PlaceBounds& place) {
         const Vec4& w = query.camera.screen_w;
         const double depth = screen_from_world(query.camera, place.position).z;
         view.is_behind = depth + length(Vec3(w)) * place.position_radius < 0;
-        view.is_apart = sight_from(query.camera.eye, 0, place, view.sight);
+        view.is_apart = sight_from(query.camera.eye, place.position_radius, place.position, view.sight);
     }
     // Where every direction may be a normal there are no sides.
     if (!view.is_apart || place.normal_radius >= 1) return view;
@@ -117,7 +91,9 @@ PlaceTest test_place(const SpecularQuery& query, const PlaceBounds& place, const
         return test;
     }
     Sight point;
-    if (!view.is_apart || !sight_from(query.point, point_radius, place, point)) return test;
+    if (!view.is_apart ||
+        !sight_from(query.point, point_radius + place.position_radius, place.position, point))
+        return test;
     if (view.knows_side) {
         const double cosine = dot(point.direction, place.normal);
         test.empty = !(std::fabs(cosine) <= point.turn + place.normal_radius) &&
@@ -138,30 +114,77 @@ PlaceTest test_place(const SpecularQuery& query, const PlaceBounds& place, const
     return test;
 }
 
-NewtonBounds newton_bounds(const SpecularQuery& query, const SurfaceBounds& bounds, const EyeView& view,
-                           const Vec2& half, double point_radius) {
+CellTerms cell_terms(const SpecularQuery& query, const SurfaceBounds& bounds, const EyeView& view) {
+    const auto reach = [](const Vec3& v, double radius) {
+        const double size = length(v);
+        return CellTerms::Reach{size, size + radius, radius};
+    };
+    const SurfacePoint& m = bounds.middle;
+    CellTerms terms;
+    terms.bounds = &bounds;
+    terms.is_apart = view.is_apart;
+    terms.u = reach(m.du, bounds.du_radius);
+    terms.v = reach(m.dv, bounds.dv_radius);
+    terms.uu = reach(m.duu, bounds.duu_radius);
+    terms.uv = reach(m.duv, bounds.duv_radius);
+    terms.vv = reach(m.dvv, bounds.dvv_radius);
+    terms.n = path_indices(query);
+    const Sight& eye = view.sight;
+    const double n = terms.n.eye, stretch = eye.stretch();
+    terms.eye_bend = n * eye.direction;
+    terms.eye_turn = n * eye.turn;
+    terms.eye_uu = n * turning_radius(eye, stretch, terms.u, terms.u);
+    terms.eye_uv = n * turning_radius(eye, stretch, terms.u, terms.v);
+    terms.eye_vv = n * turning_radius(eye, stretch, terms.v, terms.v);
+    terms.eye_change_u = turned(eye, n, m.du);
+    terms.eye_change_v = turned(eye, n, m.dv);
+    terms.eye_by_distance = eye.by_distance;
+    terms.coordinate = std::max(largest_coordinate(m.position),
+                                query.camera.parallel ? 0 : largest_coordinate(query.camera.eye));
+    return terms;
+}
+
+bool leaves_cell(const NewtonBounds& newton, const Vec2& half) {
+    for (int axis = 0; axis < 2; ++axis) {
+        const double reach =
+            half[axis] + newton.spread[axis] + newton.shift[axis] + newton.rounding[axis] + kCellBorder;
+        if (std::fabs(newton.step[axis]) > reach) return true;
+    }
+    return false;
+}
+
+NewtonBounds newton_bounds(const CellTerms& terms, const Vec3& point, const Vec2& half, double point_radius) {
     NewtonBounds result;
-    Light light;
-    if (!light_over(query, point_radius, place_of(bounds), view, light)) return result;
-    const SurfacePoint& middle = bounds.middle;
-    const Size u{length(middle.du), bounds.du_radius}, v{length(middle.dv), bounds.dv_radius};
-    const double uu = entry_radius(light, u, u, {length(middle.duu), bounds.duu_radius});
-    const double uv = entry_radius(light, u, v, {length(middle.duv), bounds.duv_radius});
-    const double vv = entry_radius(light, v, v, {length(middle.dvv), bounds.dvv_radius});
+    const SurfacePoint& middle = terms.bounds->middle;
+    Sight sight;
+    if (!terms.is_apart ||
+        !sight_from(point, point_radius + terms.bounds->position_radius, middle.position, sight))
+        return result;
+    const double n = terms.n.point, stretch = sight.stretch(), turn = terms.eye_turn + n * sight.turn;
+    const Vec3 bend = terms.eye_bend + n * sight.direction;
+    const double bend_size = length(bend);
+    const auto radius = [&](double eye, const Reach& a, const Reach& b, const Reach& second) {
+        return eye + n * turning_radius(sight, stretch, a, b) + turn * second.all + bend_size * second.radius;
+    };
+    const double uu = radius(terms.eye_uu, terms.u, terms.u, terms.uu);
+    const double uv = radius(terms.eye_uv, terms.u, terms.v, terms.uv);
+    const double vv = radius(terms.eye_vv, terms.v, terms.v, terms.vv);
     if (!std::isfinite(uu + uv + vv)) return result;
 
-    const SpecularPath path{light.eye.direction, light.point.direction, 1 / light.eye.by_distance,
-                            1 / light.point.by_distance, light.bend};
-    const Mat2 jacobian = path_hessian(query, path, middle);
-    result.inverse = glm::inverse(jacobian);
-    result.law = {dot(light.bend, middle.du), dot(light.bend, middle.dv)};
+    const Vec3 change_u = terms.eye_change_u + turned(sight, n, middle.du);
+    const Vec3 change_v = terms.eye_change_v + turned(sight, n, middle.dv);
+    const double mixed = dot(change_u, middle.dv) + dot(bend, middle.duv);
+    result.inverse = glm::inverse(Mat2(dot(change_u, middle.du) + dot(bend, middle.duu), mixed, mixed,
+                                       dot(change_v, middle.dv) + dot(bend, middle.dvv)));
+    result.law = {dot(bend, middle.du), dot(bend, middle.dv)};
     result.step = -(result.inverse * result.law);
-    const Vec2 change(uu * half.x + uv * half.y, uv * half.x + vv * half.y);
-    result.spread = absolute_product(result.inverse, change);
-    const double rounding = rounding_of_law(query, point_radius, light, middle.position);
-    result.rounding = absolute_product(result.inverse, rounding * Vec2(u.length, v.length));
-    const double turn = light.n.point * chord_of(point_radius * light.point.by_distance);
-    result.shift = absolute_product(result.inverse, turn * Vec2(u.length, v.length));
+    const Vec2 sizes(terms.u.length, terms.v.length);
+    result.spread = absolute_product(result.inverse, {uu * half.x + uv * half.y, uv * half.x + vv * half.y});
+    result.rounding =
+        absolute_product(result.inverse, rounding_of_law(terms, sight, point, point_radius) * sizes);
+    if (point_radius > 0)
+        result.shift =
+            absolute_product(result.inverse, n * chord_of(point_radius * sight.by_distance) * sizes);
     const Vec2 sum = result.step + result.spread + result.rounding + result.shift;
     result.known = std::isfinite(sum.x + sum.y);
     return result;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/surface.h"
+#include "camera/specular_law.h"
 #include "camera/specular_point.h"
 
 namespace trilens {
@@ -69,10 +70,38 @@ struct NewtonBounds {
     Vec2 law{0};         // at the middle
 };
 
-/// For the points within `point_radius` >= 0 of the query's point; `view` is eye_view of the cell's place,
-/// `half` half its sides. For own normals.
-NewtonBounds newton_bounds(const SpecularQuery& query, const SurfaceBounds& bounds, const EyeView& view,
-                           const Vec2& half, double point_radius = 0);
+/// In parameters: zeros this far outside of a cell count as on its border, so that neighbours leave no gap.
+inline constexpr double kCellBorder = 1e-12;
+
+/// Whether the Newton operator shows that the cell has no zero: both are of the cell with these half sides.
+bool leaves_cell(const NewtonBounds& newton, const Vec2& half);
+
+/// What newton_bounds works with that is the same for all points.
+struct CellTerms {
+    /// Of a tangent or second derivative: the length in the middle, the most anywhere, and how much it
+    /// changes.
+    struct Reach {
+        double length = 0, all = 0, radius = 0;
+    };
+
+    const SurfaceBounds* bounds = nullptr;  // must live longer
+    Reach u, v, uu, uv, vv;
+    PathIndices n;
+    bool is_apart = true;                       // EyeView's
+    Vec3 eye_bend{0};                           // the eye's part of h in the middle,
+    double eye_turn = 0;                        // and how much that changes
+    double eye_uu = 0, eye_uv = 0, eye_vv = 0;  // the eye's part of the radii of the Hessian's entries
+    Vec3 eye_change_u{0}, eye_change_v{0};      // how eye_bend changes along du and dv
+    double eye_by_distance = 0;
+    double coordinate = 0;  // the largest of eye and middle
+};
+
+/// `view` is eye_view of the cell's place.
+CellTerms cell_terms(const SpecularQuery& query, const SurfaceBounds& bounds, const EyeView& view);
+
+/// For the points within `point_radius` >= 0 of `point`; `half` is half the cell's sides. For own normals.
+NewtonBounds newton_bounds(const CellTerms& terms, const Vec3& point, const Vec2& half,
+                           double point_radius = 0);
 
 /// Works out inverse and step once more, with directions normalised to the last bit, where a zero is next
 /// looked for.

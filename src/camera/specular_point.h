@@ -26,6 +26,8 @@ struct SpecularQuery {
     bool own_normals =
         true;  // the surface's normals are along du x dv; false where a normal field overrides them
     ViewedSide viewed = ViewedSide::kEither;  // images on another side do not count
+
+    bool operator==(const SpecularQuery&) const = default;
 };
 
 /// A parameter position of a surface.

@@ -2,6 +2,7 @@
 #include "camera/specular_search.h"
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
 
 #include "base/check.h"
@@ -11,13 +12,42 @@
 
 namespace trilens {
 
+/// Batches that wait for more points: two queries of each of many threads.
+constexpr std::size_t kMostIdle = 64;
+
 struct SpecularSearcher::Impl {
     const Surface& surface;
     SurfaceCells cells;
+    std::mutex guard;
+    std::vector<std::unique_ptr<SpecularBatch>> idle;  // batches of earlier calls
+
+    std::unique_ptr<SpecularBatch> take(const SpecularQuery& query, const SearchLimits& limits);
+    void give_back(std::unique_ptr<SpecularBatch> batch);
 };
 
+std::unique_ptr<SpecularBatch> SpecularSearcher::Impl::take(const SpecularQuery& query,
+                                                            const SearchLimits& limits) {
+    {
+        const std::lock_guard lock(guard);
+        const auto found = std::find_if(idle.begin(), idle.end(),
+                                        [&](const auto& batch) { return batch->serves(query, limits); });
+        if (found != idle.end()) {
+            std::unique_ptr<SpecularBatch> batch = std::move(*found);
+            idle.erase(found);
+            return batch;
+        }
+    }
+    return std::make_unique<SpecularBatch>(surface, cells, query, limits);
+}
+
+void SpecularSearcher::Impl::give_back(std::unique_ptr<SpecularBatch> batch) {
+    const std::lock_guard lock(guard);
+    if (idle.size() == kMostIdle) idle.erase(idle.begin());
+    idle.push_back(std::move(batch));
+}
+
 SpecularSearcher::SpecularSearcher(const Surface& surface)
-    : impl_(new Impl{surface, SurfaceCells(surface)}) {}
+    : impl_(new Impl{surface, SurfaceCells(surface), {}, {}}) {}
 
 SpecularSearcher::~SpecularSearcher() = default;
 
@@ -68,8 +98,12 @@ std::vector<SpecularSearch> SpecularSearcher::find_each(const SpecularQuery& que
                                                         std::span<const Vec3> points,
                                                         const SearchLimits& limits) const {
     check(query, limits);
-    if (impl_->cells.bounder() && query.own_normals)
-        return search_each(impl_->surface, impl_->cells, query, points, limits);
+    if (impl_->cells.bounder() && query.own_normals) {
+        std::unique_ptr<SpecularBatch> batch = impl_->take(query, limits);
+        std::vector<SpecularSearch> found = batch->run(points);
+        impl_->give_back(std::move(batch));
+        return found;
+    }
     std::vector<SpecularSearch> found;
     SpecularQuery one = query;
     for (const Vec3& point : points) {

@@ -15,6 +15,8 @@ struct SearchLimits {
     double smallest_cell = 0x1p-20;    // side of the smallest cells, in a face's parameters; > 0
     std::size_t most_cells = 100'000;  // looked at for one query; the rest is then undecided
     int starts = 8;  // surfaces without bounds: refined from regular_starts(surface, starts), >= 1
+
+    bool operator==(const SearchLimits&) const = default;
 };
 
 /// What a search found.
@@ -62,7 +64,7 @@ class SpecularSearcher {
 
   private:
     struct Impl;
-    std::unique_ptr<const Impl> impl_;
+    const std::unique_ptr<Impl> impl_;
 };
 
 /// SpecularSearcher(surface).find(query, limits), for a single point.

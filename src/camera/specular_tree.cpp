@@ -3,8 +3,16 @@
 namespace trilens {
 
 SpecularTree::SpecularTree(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query)
-    : surface_(surface), cells_(cells), query_(query), faces_(surface.face_count()) {
-    if (!cells.groups().empty()) root_ = add_group(cells.groups().size() - 1);
+    : surface_(surface), cells_(cells), query_(query) {
+    begin_anew();
+}
+
+void SpecularTree::begin_anew() {
+    nodes_.clear();
+    fresh_.clear();
+    terms_.clear();
+    faces_.assign(surface_.face_count(), nullptr);
+    root_ = cells_.groups().empty() ? nullptr : add_group(cells_.groups().size() - 1);
 }
 
 TreeNode* SpecularTree::add(const PlaceBounds& place) {
@@ -42,6 +50,11 @@ TreeNode* SpecularTree::add_fresh(const CellBox& box) {
 TreeNode& SpecularTree::face(Id face) {
     if (!faces_[face]) faces_[face] = add_stored(face);
     return *faces_[face];
+}
+
+const CellTerms& SpecularTree::terms_of(TreeNode& cell) {
+    if (!cell.terms) cell.terms = &terms_.emplace_back(cell_terms(query_, *cell.bounds, cell.view));
+    return *cell.terms;
 }
 
 void SpecularTree::halve(TreeNode& node) {

@@ -16,8 +16,9 @@ struct TreeNode {
     EyeView view;
     CellBox box;                            // of a cell
     const SurfaceBounds* bounds = nullptr;  // of a cell; null for a group
-    std::size_t stored = 0;  // of a group: its index; of a cell: that of its stored halves, or 0
-    bool is_halved = false;  // whether `halves` is known
+    std::size_t stored = 0;            // of a group: its index; of a cell: that of its stored halves, or 0
+    const CellTerms* terms = nullptr;  // of a cell, where terms_of was asked
+    bool is_halved = false;            // whether `halves` is known
     TreeNode* halves[2] = {nullptr,
                            nullptr};  // null: has nothing of the face; a leaf group has its cell alone
 };
@@ -28,12 +29,16 @@ class SpecularTree {
     /// For all queries that differ from this in the point alone.
     SpecularTree(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query);
 
+    /// Forgets all nodes: none that it gave is valid after.
+    void begin_anew();
     /// The whole surface; null where there are no cells.
     TreeNode* root() const { return root_; }
     /// The cell of a whole face.
     TreeNode& face(Id face);
     /// Fills in the node's halves.
     void halve(TreeNode& node);
+    /// For a cell whose bounds leave the eye outside.
+    const CellTerms& terms_of(TreeNode& cell);
     std::size_t size() const { return nodes_.size(); }
 
   private:
@@ -48,6 +53,7 @@ class SpecularTree {
     const SpecularQuery query_;
     std::deque<TreeNode> nodes_;
     std::deque<SurfaceBounds> fresh_;
+    std::deque<CellTerms> terms_;
     std::vector<TreeNode*> faces_;
     TreeNode* root_ = nullptr;
 };

@@ -25,11 +25,6 @@ constexpr double kClearOfBorder = 1e-9;
 /// A cell that the operator shrinks to this share has one zero at most: for two zeros p and q of it, 0 = J (p
 /// - q), J a mean of the Jacobians between them, and no such mean is singular.
 constexpr double kAloneShare = 0.9;
-/// A search among so many cells is none of a point whose neighbour has the same images.
-constexpr std::size_t kMostNear = 2000;
-/// The cells for the Newton operator where all zeros are thought to be known and the halves are at hand:
-/// smaller than where one would be looked for, since what is left is excluded by its place more cheaply.
-constexpr double kTurnAround = 0.03;
 /// Newton steps from a neighbour's zero: enough to tell the cells that hold the zero.
 constexpr int kNearSteps = 2;
 
@@ -43,15 +38,6 @@ bool is_clear_of_border(const TreeNode& cell, const Vec2& uv) {
 }
 
 }  // namespace
-
-bool leaves_cell(const NewtonBounds& newton, const Vec2& half) {
-    for (int axis = 0; axis < 2; ++axis) {
-        const double reach =
-            half[axis] + newton.spread[axis] + newton.shift[axis] + newton.rounding[axis] + kBorder;
-        if (std::fabs(newton.step[axis]) > reach) return true;
-    }
-    return false;
-}
 
 bool SpecularWalk::in_domain(Id face, const Vec2& uv) const {
     return surface_.domain(face) == FaceDomain::kSquare || uv.x + uv.y <= 1 + kBorder;
@@ -116,16 +102,11 @@ SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoin
     return add_image({box.face, uv}, point) ? Verdict::kSettled : Verdict::kSplit;
 }
 
-bool SpecularWalk::is_last(const TreeNode& cell) const {
-    return cell.bounds->is_finest || largest(cell.box.high - cell.box.low) <= limits_.smallest_cell;
-}
-
-SpecularWalk::Verdict SpecularWalk::ask_newton(const TreeNode& cell) {
+SpecularWalk::Verdict SpecularWalk::ask_newton(TreeNode& cell) {
     share_ = HUGE_VAL;
-    const double turn = cell.is_halved ? turn_of_newton_ : kHopelessTurn;
-    if (cell.place.normal_radius > turn && !is_last(cell)) return Verdict::kSplit;
+    if (cell.place.normal_radius > kHopelessTurn && !is_last(cell)) return Verdict::kSplit;
     const Vec2 half = cell.box.half();
-    NewtonBounds newton = newton_bounds(query_, *cell.bounds, cell.view, half);
+    NewtonBounds newton = newton_bounds(tree_.terms_of(cell), query_.point, half);
     if (!newton.known) return Verdict::kSplit;
     if (leaves_cell(newton, half)) return Verdict::kEmpty;
     share_ = largest(newton.spread / half);
@@ -135,16 +116,8 @@ SpecularWalk::Verdict SpecularWalk::ask_newton(const TreeNode& cell) {
     return settle(cell.box, cell.bounds->middle, newton);
 }
 
-SpecularWalk::Verdict SpecularWalk::judge_cell(const TreeNode& cell) {
-    if (is_isolated(cell.box)) return Verdict::kEmpty;
-    const std::size_t zeros = zeros_.size(), images = result_.images.size();
-    Verdict verdict = ask_newton(cell);
-    if (verdict == Verdict::kSettled && is_near_) {
-        const SurfaceParameter zero = zeros_.back();
-        zeros_.resize(zeros);
-        result_.images.resize(images);
-        settle_again(zero);
-    }
+SpecularWalk::Verdict SpecularWalk::judge_cell(TreeNode& cell) {
+    const Verdict verdict = ask_newton(cell);
     if (verdict != Verdict::kSplit || !(is_last(cell) || result_.cells >= limits_.most_cells)) return verdict;
     undecided_.push_back({cell.box.face, cell.box.middle()});
     return Verdict::kEmpty;
@@ -161,26 +134,37 @@ void SpecularWalk::visit(TreeNode& node) {
 
 void SpecularWalk::visit_all(TreeNode& from) {
     waiting_.assign(1, &from);
-    while (!waiting_.empty() && !is_lost_) {
+    while (!waiting_.empty()) {
         TreeNode* next = waiting_.back();
         waiting_.pop_back();
         visit(*next);
-        is_lost_ = is_near_ && (is_lost_ || !undecided_.empty() || result_.cells >= kMostNear);
     }
 }
 
-bool SpecularWalk::is_isolated(const CellBox& box) const {
+bool SpecularWalk::has_settled(const CellBox& box) const {
     return std::any_of(isolated_.begin(), isolated_.end(),
                        [&](const CellBox& b) { return is_within(box, b); });
+}
+
+bool SpecularWalk::must_split(TreeNode& cell) {
+    const std::size_t zeros = zeros_.size(), images = result_.images.size();
+    const Verdict verdict = ask_newton(cell);
+    if (verdict == Verdict::kSettled) {
+        const SurfaceParameter zero = zeros_.back();
+        zeros_.resize(zeros);
+        result_.images.resize(images);
+        settle_again(zero);
+    }
+    return verdict == Verdict::kSplit;
 }
 
 /// The zero near `start`, by its cell.
 void SpecularWalk::settle_near(SurfaceParameter start) {
     for (int step = 0; step < kNearSteps; ++step) {
         const SurfacePoint point = surface_.eval(start.face, start.uv);
-        const Vec3 bend = specular_path(query_, point.position).bend;
-        start.uv -=
-            glm::inverse(path_hessian(query_, point)) * Vec2(dot(bend, point.du), dot(bend, point.dv));
+        const SpecularPath path = specular_path(query_, point.position);
+        start.uv -= glm::inverse(path_hessian(query_, path, point)) *
+                    Vec2(dot(path.bend, point.du), dot(path.bend, point.dv));
         const bool inside = start.uv.x >= 0 && start.uv.y >= 0 && start.uv.x <= 1 && start.uv.y <= 1;
         if (!inside || !in_domain(start.face, start.uv)) return;
     }
@@ -189,31 +173,38 @@ void SpecularWalk::settle_near(SurfaceParameter start) {
 
 /// A zero that was settled in a smaller cell than a search of the whole has it in: in that one.
 void SpecularWalk::settle_again(const SurfaceParameter& zero) {
-    if (is_isolated({zero.face, zero.uv, zero.uv})) return;
+    if (has_settled({zero.face, zero.uv, zero.uv})) return;
     const std::size_t known = zeros_.size();
-    turn_of_newton_ = kHopelessTurn;
     settle_at(zero);
-    turn_of_newton_ = kTurnAround;
     is_lost_ = is_lost_ || zeros_.size() == known;
 }
 
 /// Goes down through the cells that hold the place to the one where a search of the whole settles it, if
 /// there is, and notes the largest in which it stands alone.
 void SpecularWalk::settle_at(const SurfaceParameter& zero) {
-    if (is_isolated({zero.face, zero.uv, zero.uv})) return;
-    const TreeNode* alone = nullptr;
-    for (TreeNode* cell = &tree_.face(zero.face); cell;) {
+    if (has_settled({zero.face, zero.uv, zero.uv})) return;
+    TreeNode* alone = nullptr;
+    for (TreeNode* cell = &tree_.face(zero.face); cell; cell = half_around(*cell, zero.uv)) {
         const Verdict verdict = ask_newton(*cell);
         if (!alone && share_ <= kAloneShare) alone = cell;
-        if (verdict == Verdict::kSettled && is_clear_of_border(*cell, zeros_.back().uv))
-            isolated_.push_back(alone->box);
+        if (verdict == Verdict::kSettled) {
+            // A zero on the border is one of the neighbour too: which of the two is listed is for run to say.
+            if (is_clear_of_border(*cell, zeros_.back().uv))
+                isolated_.push_back(alone->box);
+            else
+                is_lost_ = true;
+        }
         if (verdict != Verdict::kSplit || is_last(*cell)) return;
-        tree_.halve(*cell);
-        const CellBox& first = halves_of(cell->box, cell->bounds->middle).first;
-        const int axis = first.high.x < cell->box.high.x ? 0 : 1;
-        if (!(std::fabs(zero.uv[axis] - first.high[axis]) > kClearOfBorder)) return;
-        cell = cell->halves[zero.uv[axis] > first.high[axis] ? 1 : 0];
     }
+}
+
+/// The half that holds a place; null where that is near the other.
+TreeNode* SpecularWalk::half_around(TreeNode& cell, const Vec2& uv) {
+    tree_.halve(cell);
+    const CellBox& first = cell.halves[0]->box;
+    const int axis = first.high.x < cell.box.high.x ? 0 : 1;
+    if (!(std::fabs(uv[axis] - first.high[axis]) > kClearOfBorder)) return nullptr;
+    return cell.halves[uv[axis] > first.high[axis] ? 1 : 0];
 }
 
 void SpecularWalk::refine_undecided() {
@@ -224,11 +215,9 @@ void SpecularWalk::refine_undecided() {
             result_.images.push_back(*image);
 }
 
-void SpecularWalk::begin(const SpecularQuery& query, bool is_near) {
+void SpecularWalk::begin(const SpecularQuery& query) {
     query_ = query;
-    is_near_ = is_near;
     is_lost_ = false;
-    turn_of_newton_ = kHopelessTurn;
     undecided_.clear();
     zeros_.clear();
     isolated_.clear();
@@ -243,21 +232,18 @@ SpecularSearch SpecularWalk::end() {
 }
 
 SpecularSearch SpecularWalk::run(const SpecularQuery& query) {
-    begin(query, false);
+    begin(query);
     if (tree_.root()) visit_all(*tree_.root());
     return end();
 }
 
-std::optional<SpecularSearch> SpecularWalk::run_near(const SpecularQuery& query,
-                                                     std::span<TreeNode* const> parts,
-                                                     std::span<const SurfaceParameter> near) {
-    begin(query, true);
+void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const SurfaceParameter> near) {
+    begin(query);
     for (const SurfaceParameter& start : near) settle_near(start);
-    turn_of_newton_ = kTurnAround;
-    for (TreeNode* part : parts) {
-        visit_all(*part);
-        if (is_lost_) return std::nullopt;
-    }
+}
+
+std::optional<SpecularSearch> SpecularWalk::end_near() {
+    if (is_lost_) return std::nullopt;
     return end();
 }
 

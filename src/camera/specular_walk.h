@@ -1,6 +1,7 @@
 // The walk of one query through a surface's cells, from the whole or from what is left of it.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -13,12 +14,6 @@ namespace trilens {
 
 /// Over a cell whose normals turn by more than this the Newton operator decides nothing, and is not asked.
 inline constexpr double kHopelessTurn = 0.25;
-/// In parameters: zeros this far outside of a cell count as on its border, so that neighbours leave no gap.
-inline constexpr double kCellBorder = 1e-12;
-
-/// Whether the Newton operator shows that the cell has no zero: both are of the cell with these half sides.
-bool leaves_cell(const NewtonBounds& newton, const Vec2& half);
-
 /// Branch and bound for one query after the other, all of one tree. One thread each; surface, bounder and
 /// tree must live longer.
 class SpecularWalk {
@@ -30,23 +25,41 @@ class SpecularWalk {
     /// Searches the whole surface.
     SpecularSearch run(const SpecularQuery& query);
 
-    /// The same list sooner, from `parts`, which are taken to hold every image, and `near`, zeros of the law
-    /// for a point close by. None where something stays undecided, or a zero lies on the border of a cell.
-    std::optional<SpecularSearch> run_near(const SpecularQuery& query, std::span<TreeNode* const> parts,
-                                           std::span<const SurfaceParameter> near);
+    /// Begins a search that ends sooner, with `near`, zeros of the law for a point close by. What it settles
+    /// has the bits that run has; the caller goes through the cells, by `has_settled` and `must_split`.
+    void begin_near(const SpecularQuery& query, std::span<const SurfaceParameter> near);
+    /// Whether the cell, with all that it holds, has no zero but those that are settled.
+    bool has_settled(const CellBox& box) const;
+    std::span<const CellBox> settled() const { return isolated_; }
+    /// Of a cell in which the Newton operator decides: whether it has to be halved.
+    bool must_split(TreeNode& cell);
+    /// Notes that so many cells were looked at.
+    void look(std::size_t cells) { result_.cells += cells; }
+    /// Gives up: end_near then has no answer.
+    void lose() { is_lost_ = true; }
+    bool is_lost() const { return is_lost_; }
+    /// The same list as from run, if all cells that are left have been looked at; none where something stayed
+    /// undecided, or a zero lies on the border of a cell.
+    std::optional<SpecularSearch> end_near();
 
     /// The zeros of the law that the last run settled, of images or not.
     const std::vector<SurfaceParameter>& zeros() const { return zeros_; }
 
+    /// Whether a cell is not halved any more.
+    bool is_last(const TreeNode& cell) const {
+        const Vec2 sides = cell.box.high - cell.box.low;
+        return cell.bounds->is_finest || std::max(sides.x, sides.y) <= limits_.smallest_cell;
+    }
+
   private:
     enum class Verdict { kEmpty, kSettled, kSplit };
 
-    void begin(const SpecularQuery& query, bool is_near);
+    void begin(const SpecularQuery& query);
     SpecularSearch end();
     void visit_all(TreeNode& from);
     void visit(TreeNode& node);
-    Verdict judge_cell(const TreeNode& cell);
-    Verdict ask_newton(const TreeNode& cell);
+    Verdict judge_cell(TreeNode& cell);
+    Verdict ask_newton(TreeNode& cell);
     Verdict settle(const CellBox& box, const SurfacePoint& middle, const NewtonBounds& newton);
     bool add_image(const SurfaceParameter& zero, const SurfacePoint& point);
     SurfacePoint point_at(Id face, const Vec2& uv) const;
@@ -55,17 +68,15 @@ class SpecularWalk {
     void settle_near(SurfaceParameter start);
     void settle_at(const SurfaceParameter& zero);
     void settle_again(const SurfaceParameter& zero);
-    bool is_isolated(const CellBox& box) const;
-    bool is_last(const TreeNode& cell) const;
+    TreeNode* half_around(TreeNode& cell, const Vec2& uv);
 
     const Surface& surface_;
     const SurfaceBounder& bounder_;
     SpecularTree& tree_;
     SearchLimits limits_;
     SpecularQuery query_;
-    double turn_of_newton_ = 0;  // cells whose normals turn by less are for the Newton operator
-    double share_ = 0;           // to which the Newton operator shrinks the cell asked last
-    bool is_near_ = false, is_lost_ = false;
+    double share_ = 0;  // to which the Newton operator shrinks the cell asked last
+    bool is_lost_ = false;
     std::vector<TreeNode*> waiting_;
     std::vector<SurfaceParameter> undecided_, zeros_;
     std::vector<CellBox> isolated_;  // each with one zero at most, which is settled

@@ -72,7 +72,8 @@ Count exclude_images(Draw& draw, const Surface& surface, const SpecularQuery& fr
         const EyeView view = eye_view(query, place);
         ++count.images;
         count.lost += test_place(query, place, view, reach).empty;
-        const NewtonBounds newton = newton_bounds(query, bounds, view, box.half(), reach);
+        const NewtonBounds newton =
+            newton_bounds(cell_terms(query, bounds, view), query.point, box.half(), reach);
         count.known += newton.known;
         count.outside += newton.known && leaves_cell(newton, box.half());
 
@@ -151,14 +152,14 @@ TEST_CASE("where the Newton operator shrinks a cell there is one zero of the law
                 ++pairs;
                 const SurfaceBounds bounds = bounder->bounds(a.face, min(a.uv, b.uv), max(a.uv, b.uv));
                 const Vec2 half = 0.5 * (max(a.uv, b.uv) - min(a.uv, b.uv));
-                const NewtonBounds newton =
-                    newton_bounds(query, bounds, eye_view(query, place_of(bounds)), half);
+                const NewtonBounds newton = newton_bounds(
+                    cell_terms(query, bounds, eye_view(query, place_of(bounds))), query.point, half);
                 alone += newton.known && newton.spread.x < half.x && newton.spread.y < half.y;
             }
             const CellBox small{a.face, max(a.uv - 1e-3, Vec2(0)), min(a.uv + 1e-3, Vec2(1))};
             const SurfaceBounds bounds = bounder->bounds(a.face, small.low, small.high);
-            const NewtonBounds newton =
-                newton_bounds(query, bounds, eye_view(query, place_of(bounds)), small.half());
+            const NewtonBounds newton = newton_bounds(
+                cell_terms(query, bounds, eye_view(query, place_of(bounds))), query.point, small.half());
             shrunk += newton.known && newton.spread.x < small.half().x && newton.spread.y < small.half().y;
         }
     }

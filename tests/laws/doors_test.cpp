@@ -76,7 +76,7 @@ std::map<std::string, Room> rooms() {
 const std::map<std::string, std::set<std::string>> kDoors{
     {"glm/", {"src/base/vec.h"}},
     {"tbb/", {"src/base/parallel.cpp"}},
-    {"hwy/", {"src/projector/kernel", "src/measure/patch_batch.cpp"}},
+    {"hwy/", {"src/projector/kernel", "src/measure/patch_batch.cpp", "src/camera/specular_lanes.cpp"}},
     {"oneapi/", {}},
     {"opensubdiv/", {"surfaces/"}},
     {"tiny_obj_loader.h", {}},

@@ -1,12 +1,16 @@
 // What is measured does not depend on the processor.
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "camera/specular_search.h"
 #include "measure/displacement.h"
 #include "measure/synthetic.h"
 #include "projector/kernel.h"
 #include "support/test.h"
+#include "surfaces/surfaces.h"
 
 using namespace trilens;
 using namespace trilens_test;
@@ -30,6 +34,38 @@ TEST_CASE("displacement has the same bits with every instruction set", "[laws][d
         CHECK(found.shift_y == first->shift_y);
         CHECK(found.state == first->state);
         CHECK(found.missing == first->missing);
+    }
+    CHECK(use_instruction_set(""));
+}
+
+TEST_CASE("the search for images has the same answers with every instruction set", "[laws][project]") {
+    const auto sphere = make_primitive_surface(Primitive{});
+    SpecularQuery query;
+    query.camera.eye = {0.3, 0.6, 4.4};
+    query.camera.screen_x = {1, 0, 0, 0};
+    query.camera.screen_y = {0, 1, 0, 0};
+    query.camera.screen_w = {0, 0, -1, 4.4};
+    std::vector<Vec3> points;
+    for (int k = 0; k < 2000; ++k)
+        points.push_back(Vec3(3 * std::sin(0.7 * k), 2 * std::cos(1.1 * k), 3 * std::sin(1.9 * k + 1)));
+    std::optional<std::vector<SpecularSearch>> first;
+    for (const std::string& set : kernel_instruction_sets()) {
+        REQUIRE(use_instruction_set(set));
+        const std::vector<SpecularSearch> found = SpecularSearcher(*sphere).find_each(query, points);
+        if (!first) first = found;
+        INFO(set);
+        std::size_t images = 0, different = 0;
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            const SpecularSearch &here = found[p], &there = (*first)[p];
+            images += here.images.size();
+            different += here.cells != there.cells || here.complete != there.complete ||
+                         !std::equal(here.images.begin(), here.images.end(), there.images.begin(),
+                                     there.images.end(), [](const SpecularPoint& a, const SpecularPoint& b) {
+                                         return a.pixel == b.pixel && a.t == b.t && a.at.uv == b.at.uv;
+                                     });
+        }
+        CHECK(images > points.size());
+        CHECK(different == 0);
     }
     CHECK(use_instruction_set(""));
 }

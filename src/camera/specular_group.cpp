@@ -1,0 +1,120 @@
+#include "camera/specular_group.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/check.h"
+
+namespace trilens {
+namespace {
+
+/// A search among so many cells is none of a point whose neighbour has the same images.
+constexpr std::size_t kMostNear = 20'000;
+/// The cells for the Newton operator where all zeros are thought to be known and the halves are at hand:
+/// smaller than where one would be looked for, since what is left is excluded by its place more cheaply.
+constexpr double kTurnAround = 0.03;
+
+template <typename Act>
+void for_each_lane(LaneBits lanes, Act act) {
+    for (; lanes != 0; lanes &= lanes - 1) act(static_cast<std::size_t>(std::countr_zero(lanes)));
+}
+
+}  // namespace
+
+SpecularGroup::SpecularGroup(const Surface& surface, const SurfaceBounder& bounder, SpecularTree& tree,
+                             const SpecularQuery& query, const SearchLimits& limits)
+    : tree_(tree), query_(query), walks_(kPointLanes, SpecularWalk(surface, bounder, tree, limits)) {}
+
+/// Each point begins where its neighbour ended.
+void SpecularGroup::settle(std::span<const Vec3> points) {
+    for (std::size_t lane = 0; lane < points.size(); ++lane) {
+        points_.set(lane, points[lane]);
+        query_.point = points[lane];
+        walks_[lane].begin_near(query_, zeros_);
+        if (walks_[lane].is_lost()) under_way_ &= ~(LaneBits{1} << lane);
+        if (walks_[lane].zeros().size() >= zeros_.size()) zeros_ = walks_[lane].zeros();
+    }
+    for (std::size_t lane = points.size(); lane < kPointLanes; ++lane) points_.set(lane, points.front());
+}
+
+void SpecularGroup::note_settled() {
+    settled_.clear();
+    for_each_lane(under_way_, [&](std::size_t lane) {
+        for (const CellBox& box : walks_[lane].settled()) {
+            const auto known = std::find_if(settled_.begin(), settled_.end(), [&](const Settled& other) {
+                return is_within(box, other.box) && is_within(other.box, box);
+            });
+            if (known == settled_.end())
+                settled_.push_back({box, LaneBits{1} << lane});
+            else
+                known->lanes |= LaneBits{1} << lane;
+        }
+    });
+}
+
+void SpecularGroup::lose(LaneBits lanes) {
+    for_each_lane(lanes, [&](std::size_t lane) { walks_[lane].lose(); });
+    under_way_ &= ~lanes;
+}
+
+/// Which of the lanes have to look at the cell's halves.
+LaneBits SpecularGroup::judge(TreeNode& cell, LaneBits lanes) {
+    const bool is_last = walks_.front().is_last(cell);
+    if (cell.place.normal_radius > (cell.is_halved ? kTurnAround : kHopelessTurn) && !is_last) return lanes;
+    if (!cell.view.is_apart) {
+        if (is_last) lose(lanes);
+        return is_last ? 0 : lanes;
+    }
+    const LaneQuestion question{query_.event == SpecularEvent::kReflect, path_indices(query_), points_,
+                                lanes};
+    const NewtonLanes newton = newton_lanes(question, tree_.terms_of(cell), cell.box.half());
+    lanes &= ~newton.leaves;
+    for_each_lane(lanes & newton.contracts, [&](std::size_t lane) {
+        if (!walks_[lane].must_split(cell)) lanes &= ~(LaneBits{1} << lane);
+        if (walks_[lane].is_lost()) lose(LaneBits{1} << lane);
+    });
+    if (newton.contracts != 0) note_settled();
+    if (is_last) lose(lanes);
+    return is_last ? 0 : lanes;
+}
+
+void SpecularGroup::visit(const Wait& wait) {
+    TreeNode& node = *wait.node;
+    LaneBits lanes = wait.lanes & under_way_;
+    for_each_lane(lanes, [&](std::size_t lane) { walks_[lane].look(1); });
+    if (node.bounds)
+        for (const Settled& settled : settled_)
+            if (is_within(node.box, settled.box)) lanes &= ~settled.lanes;
+    if (lanes == 0) return;
+    const LaneQuestion question{query_.event == SpecularEvent::kReflect, path_indices(query_), points_,
+                                lanes};
+    lanes &= ~empty_lanes(question, node.place, node.view);
+    if (lanes != 0 && node.bounds) lanes = judge(node, lanes);
+    if (lanes == 0) return;
+    tree_.halve(node);
+    for (TreeNode* half : {node.halves[1], node.halves[0]})
+        if (half) waiting_.push_back({half, lanes});
+}
+
+std::vector<std::optional<SpecularSearch>> SpecularGroup::run(std::span<const Vec3> points,
+                                                              std::span<TreeNode* const> parts) {
+    TRILENS_CHECK(!points.empty() && points.size() <= kPointLanes, "a group has a lane for each point");
+    under_way_ = static_cast<LaneBits>((std::uint64_t{1} << points.size()) - 1);
+    settle(points);
+    note_settled();
+    waiting_.clear();
+    for (TreeNode* part : parts) waiting_.push_back({part, under_way_});
+    std::size_t looked_at = 0;
+    while (!waiting_.empty() && under_way_ != 0) {
+        const Wait next = waiting_.back();
+        waiting_.pop_back();
+        visit(next);
+        if (++looked_at == kMostNear) lose(under_way_);
+    }
+    std::vector<std::optional<SpecularSearch>> found;
+    for (std::size_t lane = 0; lane < points.size(); ++lane) found.push_back(walks_[lane].end_near());
+    zeros_ = walks_[points.size() - 1].zeros();
+    return found;
+}
+
+}  // namespace trilens

@@ -1,0 +1,236 @@
+#include "camera/specular_lanes.h"
+
+#include <limits>
+
+#include "camera/specular_law.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "camera/specular_lanes.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace trilens::specular {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Sums and products one by one, never fused, so that every instruction set rounds alike.
+
+using Tag = hn::CappedTag<double, kPointLanes>;
+using Number = hn::Vec<Tag>;
+using Truth = hn::Mask<Tag>;
+inline constexpr Tag kTag;
+constexpr std::size_t kWidth = hn::MaxLanes(kTag);
+
+HWY_INLINE Number number(double x) {
+    return hn::Set(kTag, x);
+}
+HWY_INLINE Number scaled(double s, Number a) {
+    return hn::Mul(number(s), a);
+}
+
+struct Vector {
+    Number x, y, z;
+};
+HWY_INLINE Vector vector(const Vec3& v) {
+    return {number(v.x), number(v.y), number(v.z)};
+}
+HWY_INLINE Vector plus(const Vector& a, const Vector& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Vector minus(const Vector& a, const Vector& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vector times(Number s, const Vector& a) {
+    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
+HWY_INLINE Number inner(const Vector& a, const Vector& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+/// Sight from each lane's point to the place.
+struct Sights {
+    Truth apart;
+    Vector direction;
+    Number distance, by_distance, sine, turn;
+};
+
+HWY_INLINE Sights sights_of(const Vector& points, const Vec3& position, double radius) {
+    Sights sights;
+    const Vector way = minus(vector(position), points);
+    sights.distance = hn::Sqrt(inner(way, way));
+    sights.apart = hn::Gt(sights.distance, number(radius));
+    sights.by_distance = hn::Div(number(1), sights.distance);
+    sights.direction = times(sights.by_distance, way);
+    sights.sine = scaled(radius, sights.by_distance);
+    // chord_of.
+    sights.turn = hn::Mul(sights.sine, hn::Add(number(1), scaled(0.4143, hn::Mul(sights.sine, sights.sine))));
+    return sights;
+}
+
+HWY_INLINE Vector points_from(const PointLanes& points, std::size_t first) {
+    return {hn::Load(kTag, points.x + first), hn::Load(kTag, points.y + first),
+            hn::Load(kTag, points.z + first)};
+}
+
+HWY_INLINE LaneBits bits_of(Truth truth, std::size_t first) {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(kTag, truth, bits);
+    LaneBits all = bits[0];
+    if constexpr (kWidth > 8) all |= static_cast<LaneBits>(bits[1]) << 8;
+    return (all & ((LaneBits{1} << kWidth) - 1)) << first;
+}
+
+constexpr LaneBits kAllOfVector = (LaneBits{1} << kWidth) - 1;
+
+HWY_INLINE Truth empty_of(const LaneQuestion& question, const Vector& points, const PlaceBounds& place,
+                          const EyeView& view) {
+    const Sights sights = sights_of(points, place.position, place.position_radius);
+    const Vector normal = vector(place.normal);
+    const Number normal_radius = number(place.normal_radius);
+    Truth empty = hn::FirstN(kTag, 0);
+    if (view.knows_side) {
+        const Number cosine = inner(sights.direction, normal);
+        const Truth known = hn::Not(hn::Le(hn::Abs(cosine), hn::Add(sights.turn, normal_radius)));
+        const Truth reflects = hn::Gt(scaled(view.cosine, cosine), number(0));
+        empty = hn::And(known, question.reflects ? hn::Not(reflects) : reflects);
+    }
+    const PathIndices& n = question.n;
+    const Vector bend =
+        plus(times(number(n.eye), vector(view.sight.direction)), times(number(n.point), sights.direction));
+    const Number turn = hn::Add(number(n.eye * view.sight.turn), scaled(n.point, sights.turn));
+    const Vector across = minus(bend, times(inner(bend, normal), normal));
+    const Number size = hn::Sqrt(inner(bend, bend));
+    const Number most = hn::Add(turn, hn::Mul(hn::Add(size, turn), normal_radius));
+    empty = hn::Or(empty, hn::Gt(inner(across, across), hn::Mul(most, most)));
+    return hn::And(sights.apart, empty);
+}
+
+LaneBits empty_lanes_here(const LaneQuestion& question, const PlaceBounds& place, const EyeView& view) {
+    LaneBits empty = 0;
+    for (std::size_t first = 0; first < kPointLanes; first += kWidth)
+        if (question.asked >> first & kAllOfVector)
+            empty |= bits_of(empty_of(question, points_from(question.points, first), place, view), first);
+    return empty & question.asked;
+}
+
+struct Pair {
+    Number x, y;
+};
+
+struct Verdicts {
+    Truth leaves, contracts;
+};
+
+HWY_INLINE Number turning_radius(const Sights& point, Number stretch, const CellTerms::Reach& a,
+                                 const CellTerms::Reach& b) {
+    const Number along =
+        hn::Add(number(a.radius * b.all + a.length * b.radius), scaled(a.length * b.all, point.sine));
+    return hn::Add(scaled(a.all * b.all, stretch), hn::Mul(point.by_distance, along));
+}
+
+HWY_INLINE Verdicts newton_of(const CellTerms& cell, const Vector& points, const Vec2& half) {
+    const SurfacePoint& m = cell.bounds->middle;
+    const Sights point = sights_of(points, m.position, cell.bounds->position_radius);
+    const Vector bend = plus(vector(cell.eye_bend), times(number(cell.n.point), point.direction));
+    const Number bend_size = hn::Sqrt(inner(bend, bend));
+    const Number bend_turn = hn::Add(number(cell.eye_turn), scaled(cell.n.point, point.turn));
+    const Number stretch = hn::Div(hn::Mul(point.by_distance, point.sine), hn::Sub(number(1), point.sine));
+    const auto radius = [&](double eye, const CellTerms::Reach& a, const CellTerms::Reach& b,
+                            const CellTerms::Reach& second) {
+        const Number turning =
+            hn::Add(number(eye), scaled(cell.n.point, turning_radius(point, stretch, a, b)));
+        return hn::Add(turning, hn::Add(scaled(second.all, bend_turn), scaled(second.radius, bend_size)));
+    };
+    const Number uu = radius(cell.eye_uu, cell.u, cell.u, cell.uu);
+    const Number uv = radius(cell.eye_uv, cell.u, cell.v, cell.uv);
+    const Number vv = radius(cell.eye_vv, cell.v, cell.v, cell.vv);
+
+    // The Hessian in the middle, and its inverse.
+    const Vector du = vector(m.du), dv = vector(m.dv);
+    const Number share = scaled(cell.n.point, point.by_distance);
+    const auto change = [&](const Vec3& eye, const Vector& step) {
+        const Vector turned = minus(step, times(inner(point.direction, step), point.direction));
+        return plus(vector(eye), times(share, turned));
+    };
+    const Vector change_u = change(cell.eye_change_u, du), change_v = change(cell.eye_change_v, dv);
+    const Number a = hn::Add(inner(change_u, du), inner(bend, vector(m.duu)));
+    const Number b = hn::Add(inner(change_u, dv), inner(bend, vector(m.duv)));
+    const Number d = hn::Add(inner(change_v, dv), inner(bend, vector(m.dvv)));
+    const Number by_determinant = hn::Div(number(1), hn::Sub(hn::Mul(a, d), hn::Mul(b, b)));
+    const Number inverse_uu = hn::Mul(d, by_determinant), inverse_vv = hn::Mul(a, by_determinant);
+    const Number inverse_uv = hn::Neg(hn::Mul(b, by_determinant));
+    const auto product = [&](const Pair& of) {
+        return Pair{hn::Add(hn::Mul(hn::Abs(inverse_uu), of.x), hn::Mul(hn::Abs(inverse_uv), of.y)),
+                    hn::Add(hn::Mul(hn::Abs(inverse_uv), of.x), hn::Mul(hn::Abs(inverse_vv), of.y))};
+    };
+    const Pair law = {inner(bend, du), inner(bend, dv)};
+    const Pair step = {hn::Add(hn::Mul(inverse_uu, law.x), hn::Mul(inverse_uv, law.y)),
+                       hn::Add(hn::Mul(inverse_uv, law.x), hn::Mul(inverse_vv, law.y))};
+    const Pair spread = product(
+        {hn::Add(scaled(half.x, uu), scaled(half.y, uv)), hn::Add(scaled(half.x, uv), scaled(half.y, vv))});
+
+    // As rounding_of_law has it.
+    constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
+    const Number coordinate = hn::Max(
+        number(cell.coordinate), hn::Max(hn::Abs(points.x), hn::Max(hn::Abs(points.y), hn::Abs(points.z))));
+    const Number of_eye = scaled(cell.n.eye, hn::Add(number(1), scaled(cell.eye_by_distance, coordinate)));
+    const Number of_point = scaled(cell.n.point, hn::Add(number(1), hn::Mul(coordinate, point.by_distance)));
+    const Number rounding = scaled(kRounding, hn::Add(of_eye, of_point));
+    const Pair lost = product({scaled(cell.u.length, rounding), scaled(cell.v.length, rounding)});
+
+    const Number border = number(kCellBorder);
+    const auto leaves = [&](double side, Number at, Number wide, Number off) {
+        return hn::Gt(hn::Abs(at), hn::Add(hn::Add(number(side), wide), hn::Add(off, border)));
+    };
+    const Truth finite = hn::IsFinite(
+        hn::Add(hn::Add(hn::Add(step.x, step.y), hn::Add(spread.x, spread.y)), hn::Add(lost.x, lost.y)));
+    const Truth known = hn::And(point.apart, finite);
+    const Truth leaving = hn::And(
+        known, hn::Or(leaves(half.x, step.x, spread.x, lost.x), leaves(half.y, step.y, spread.y, lost.y)));
+    const Truth contracting =
+        hn::And(hn::Le(spread.x, number(0.5 * half.x)), hn::Le(spread.y, number(0.5 * half.y)));
+    const Truth inside =
+        hn::And(hn::Le(hn::Abs(step.x), number(half.x)), hn::Le(hn::Abs(step.y), number(half.y)));
+    return {leaving, hn::AndNot(leaving, hn::And(known, hn::And(contracting, inside)))};
+}
+
+NewtonLanes newton_lanes_here(const LaneQuestion& question, const CellTerms& cell, const Vec2& half) {
+    NewtonLanes result;
+    for (std::size_t first = 0; first < kPointLanes; first += kWidth) {
+        if (!(question.asked >> first & kAllOfVector)) continue;
+        const Verdicts verdicts = newton_of(cell, points_from(question.points, first), half);
+        result.leaves |= bits_of(verdicts.leaves, first);
+        result.contracts |= bits_of(verdicts.contracts, first);
+    }
+    result.leaves &= question.asked;
+    result.contracts &= question.asked;
+    return result;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace trilens::specular
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace trilens {
+namespace specular {
+HWY_EXPORT(empty_lanes_here);
+HWY_EXPORT(newton_lanes_here);
+}  // namespace specular
+
+LaneBits empty_lanes(const LaneQuestion& question, const PlaceBounds& place, const EyeView& view) {
+    using namespace specular;
+    if (view.is_behind) return question.asked;
+    // Where every direction may be a normal no light is excluded.
+    if (place.normal_radius >= 1 || !view.is_apart) return 0;
+    return HWY_DYNAMIC_DISPATCH(empty_lanes_here)(question, place, view);
+}
+
+NewtonLanes newton_lanes(const LaneQuestion& question, const CellTerms& cell, const Vec2& half) {
+    using namespace specular;
+    return HWY_DYNAMIC_DISPATCH(newton_lanes_here)(question, cell, half);
+}
+
+}  // namespace trilens
+#endif

@@ -1,0 +1,33 @@
+// What lies between two places: objects, and optics on their exact surfaces or as facets.
+#pragma once
+
+#include <cstddef>
+
+#include "render/frame.h"
+#include "render/world.h"
+
+namespace trilens {
+
+/// Asks for segments from place to place, world frame. A segment is free if what it meets lies at its ends.
+/// Thread-safe to read; world and frame must live longer.
+class Sightlines {
+  public:
+    /// `exact`: optics are their exact surfaces, else the frame's facets.
+    Sightlines(const World& world, const Frame& frame, bool exact)
+        : world_(world), frame_(frame), exact_(exact) {}
+
+    bool is_free_of_objects(const Vec3& from, const Vec3& to) const;
+    bool is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const;
+    /// Whether nothing at all lies between the camera and a place.
+    bool sees(const Vec3& from, const Vec3& to) const;
+    /// Whether light that leaves an optic at `from` comes to `to` without meeting another, or the same once
+    /// more.
+    bool goes_straight(const Vec3& from, const Vec3& to) const;
+
+  private:
+    const World& world_;
+    const Frame& frame_;
+    bool exact_;
+};
+
+}  // namespace trilens
