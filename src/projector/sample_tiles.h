@@ -25,7 +25,7 @@ struct alignas(64) SampleVector {
 /// Which samples a vector holds.
 struct VectorSamples {
     Id sample[kLanes];
-    std::uint32_t valid;  // bit k: lane k holds a sample
+    std::uint32_t valid;  // bit k: lane k holds a sample; those are the first lanes
 };
 
 /// Rectangles, in local coordinates, of 16 consecutive vectors of a tile; lanes without a vector are far

@@ -38,7 +38,7 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
             params.together = side == 2 ? 0 : 24;
             const SampleTiles tiles = make_sample_tiles(mesh, owned, grid, params);
             std::vector<int> seen(grid.size(), 0);
-            std::size_t misplaced = 0, outside = 0, wrong_slot = 0, foreign = 0, mixed = 0;
+            std::size_t misplaced = 0, outside = 0, wrong_slot = 0, foreign = 0, mixed = 0, not_first = 0;
             std::vector<std::size_t> owner(grid.size(), 0);
             for (std::size_t f = 0; f < mesh.facets.size(); ++f)
                 for (const Id s : owned.of(f)) owner[s] = f;
@@ -50,6 +50,7 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
                 for (std::uint32_t v = 0; v < tile.vectors; ++v) {
                     const SampleVector& vector = tiles.vectors[tile.first_vector + v];
                     const VectorSamples& ids = tiles.samples[tile.first_vector + v];
+                    not_first += (ids.valid & (ids.valid + 1)) != 0;
                     const VectorBoxes& box = tiles.boxes[tile.first_boxes + v / kLanes];
                     for (std::size_t k = 0; k < kLanes; ++k) {
                         outside += std::fabs(vector.u[k] - box.centre_u[v % kLanes]) > box.half_u[v % kLanes];
@@ -82,6 +83,7 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
                 for (std::uint32_t v = 0; v < group.vectors; ++v) {
                     const SampleVector& vector = tiles.vectors[group.first_vector + v];
                     const VectorSamples& ids = tiles.samples[group.first_vector + v];
+                    not_first += (ids.valid & (ids.valid + 1)) != 0;
                     for (std::size_t k = 0; k < kLanes; ++k) {
                         const Vec2 place =
                             (Vec2(vector.u[k], vector.v[k]) + 0.5) / double(side) + Vec2(grid.x0, grid.y0);
@@ -104,6 +106,7 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
             CHECK(outside == 0);
             CHECK(wrong_slot == 0);
             CHECK(foreign == 0);
+            CHECK(not_first == 0);
             std::size_t wrong = 0;
             for (const Id s : owned.sample) wrong += seen[s] != 1;
             CHECK(wrong == 0);
