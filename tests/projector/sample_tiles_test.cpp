@@ -24,14 +24,26 @@ Vec2 on_screen(const SampleTile& tile, const SampleGrid& grid, float u, float v)
     return frame.centre + Vec2(u, v) * frame.half;
 }
 
+/// Without every fifth sample: rows with gaps.
+FacetSamples without_some(const FacetSamples& owned) {
+    FacetSamples left{{0}, {}};
+    for (std::size_t f = 0; f + 1 < owned.first.size(); ++f) {
+        for (const Id s : owned.of(f))
+            if (s % 5 != 0) left.sample.push_back(s);
+        left.first.push_back(left.sample.size());
+    }
+    return left;
+}
+
 }  // namespace
 
 TEST_CASE("every owned sample is in one lane, whose place, box and slot are its own") {
     for (const int side : {1, 2, 3}) {
-        for (const int cells : {1, 7, 40}) {
+        for (const auto& [cells, gaps] :
+             {std::pair(1, false), {1, true}, {7, false}, {7, true}, {40, false}}) {
             const SampleGrid grid{-3, 11, 94, 80, side};
             const RayMesh mesh = flat_mesh(grid, cells);
-            const FacetSamples owned = rasterize_facets(mesh, grid);
+            const FacetSamples all = rasterize_facets(mesh, grid), owned = gaps ? without_some(all) : all;
             TileParams params;
             params.tile_side = 20;
             params.mixed_below = 30;
