@@ -143,6 +143,7 @@ class TileMaker {
     void add_mixed(const TilePlan& plan, std::size_t group, SampleTiles& tiles);
 
   private:
+    void number_mixed_facets(std::span<const MixedSample> samples);
     void add_tile(const RoughTile& rough, SampleTiles& tiles);
     bool place_rows(const RoughTile& rough, const SampleTile& tile);
     void list_rows(const SampleTile& tile);
@@ -156,7 +157,8 @@ class TileMaker {
     std::vector<Id> row_sample_;                   // likewise: at column 0, if every row is one run
     std::vector<std::uint8_t> column_, row_;       // of the tile, in the order of vectors
     std::vector<Id> sample_;                       // likewise
-    std::vector<std::uint32_t> mixed_facets_;      // of a group, in TilePlan::mixed_facets, ascending
+    std::vector<std::uint32_t> mixed_facets_;      // of a group, in TilePlan::mixed_facets, as they come
+    std::vector<std::uint16_t> mixed_places_;      // by sample of the group: its facet's, there
     std::vector<MixedExtent> mixed_extents_;       // likewise, of their samples in the group
 };
 
