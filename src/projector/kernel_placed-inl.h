@@ -1,4 +1,4 @@
-// What the samples of vectors surely see: placed in lanes, and written.
+// What the samples of vectors surely see: placed in lanes.
 // Included once per instruction set.
 #if defined(TRILENS_KERNEL_PLACED_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRILENS_KERNEL_PLACED_INL_H
@@ -7,61 +7,12 @@
 #define TRILENS_KERNEL_PLACED_INL_H
 #endif
 
-#include "projector/kernel_gather-inl.h"
-#include "projector/kernel_scene.h"
 #include "projector/kernel_spots-inl.h"
+#include "projector/kernel_write-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
-
-HWY_INLINE void set_lane(Placed& placed, std::size_t lane, const Hit& hit) {
-    placed.triangle[lane] = hit.triangle;
-    placed.t[lane] = hit.t;
-    placed.second[lane] = hit.barycentric.x;
-    placed.third[lane] = hit.barycentric.y;
-}
-HWY_NOINLINE void write_samples(const KernelScene& scene, std::uint32_t vector, const Placed& placed) {
-    const VectorSamples& samples = scene.tiles->samples[vector];
-    for (Each lane(samples.valid); lane; ++lane) {
-        const std::size_t k = *lane;
-        scene.hits[samples.sample[k]] = {
-            placed.triangle[k], placed.t[k], {placed.second[k], placed.third[k]}};
-    }
-}
-
-/// What float consumers get of a vector.
-struct PlacedFloats {
-    Floats t, second, third;
-    Words triangle;
-};
-
-HWY_INLINE PlacedFloats narrow(const Placed& placed) {
-    return {narrow(load_doubles(placed.t)), narrow(load_doubles(placed.second)),
-            narrow(load_doubles(placed.third)), load_words(placed.triangle)};
-}
-
-/// Lanes whose values place() gives too: trusted, and inside by more than doubles and floats round.
-HWY_INLINE Mask sound(const PlacedFloats& placed) {
-    constexpr float kInside = 1e-6f;
-    const Floats least_weight =
-        least(least(placed.second, placed.third), set(1.0f) - placed.second - placed.third);
-    return (least_weight > set(kInside)) & (absolute(placed.t) < set(kNever));
-}
-
-/// `floats`: of `placed`.
-HWY_INLINE void write_hits(const KernelScene& scene, std::uint32_t vector, const Placed& placed,
-                           const PlacedFloats& floats) {
-    if (!scene.vector_hits.empty()) {
-        // Past the caches: nobody here reads it again.
-        VectorHits& out = scene.vector_hits[vector];
-        stream_words(floats.triangle, out.triangle);
-        stream(floats.t, out.t);
-        stream(floats.second, out.u);
-        stream(floats.third, out.v);
-    }
-    if (!scene.hits.empty()) write_samples(scene, vector, placed);
-}
 
 /// Where the sure hits of a tile are placed.
 struct TilePlacing {

@@ -1,5 +1,6 @@
 // Vectors of facets with few samples: neighbours share a vector, whatever their facets.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,7 @@ namespace {
 constexpr int kCell = 4;  // samples along a cell's edge, and cells along a square's
 
 Vec2 position_of(const SampleGrid& grid, int column, int row) {
+    if (grid.side == 1) return {grid.x0 + (column + 0.5), grid.y0 + (row + 0.5)};
     return {grid.x0 + (column + 0.5) / grid.side, grid.y0 + (row + 0.5) / grid.side};
 }
 
@@ -42,6 +44,34 @@ void include_rays(const FacetRays& facet, const SampleGrid& grid, const MixedExt
         group.weight_terms = std::numeric_limits<double>::infinity();
 }
 
+/// Numbers the cells of a lattice that begins at (0, 0): square by square, `across` of them in a row, and
+/// inside a square there and back by rows.
+struct CellOrder {
+    std::size_t across;
+
+    static constexpr unsigned kSquare = kCell * kCell;
+
+    std::uint32_t of_cell(unsigned square_x, unsigned square_y, unsigned x, unsigned y) const {
+        static_assert((kCell & (kCell - 1)) == 0);
+        return static_cast<std::uint32_t>((square_y * across + square_x) * kSquare + y * kCell +
+                                          (y % 2 ? kCell - 1 - x : x));
+    }
+    std::uint32_t of(const LatticeSample& s) const {
+        const unsigned x = static_cast<unsigned>(s.column), y = static_cast<unsigned>(s.row);
+        return of_cell(x / kSquare, y / kSquare, x / kCell % kCell, y / kCell % kCell);
+    }
+    /// In the square of `s`: the cell next to another sample's.
+    std::uint32_t near(const LatticeSample& other, const LatticeSample& s) const {
+        const unsigned square_x = static_cast<unsigned>(s.column) / kSquare,
+                       square_y = static_cast<unsigned>(s.row) / kSquare;
+        const auto inside = [](int line, unsigned square) {
+            return static_cast<unsigned>(
+                std::clamp(line / kCell - static_cast<int>(square) * kCell, 0, kCell - 1));
+        };
+        return of_cell(square_x, square_y, inside(other.column, square_x), inside(other.row, square_y));
+    }
+};
+
 }  // namespace
 
 std::vector<TileGroup> sort_mixed(const SampleGrid& grid, const TileParams& params,
@@ -50,38 +80,30 @@ std::vector<TileGroup> sort_mixed(const SampleGrid& grid, const TileParams& para
     if (samples.empty()) return {};
     LatticeExtent all;
     LatticeWalk walk(grid);
-    for (const MixedSample& s : samples) all.include(walk.at(s.sample));
+    std::vector<LatticeSample> place(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        place[i] = walk.at(samples[i].sample);
+        all.include(place[i]);
+    }
+    for (LatticeSample& s : place) s = {s.column - all.x0, s.row - all.y0};
     const std::size_t across = static_cast<std::size_t>((all.x1 - all.x0) / (kCell * kCell) + 1),
                       down = static_cast<std::size_t>((all.y1 - all.y0) / (kCell * kCell) + 1);
-    // The square of (x, y), and in it the cell next to (near_x, near_y), there and back by rows.
-    const auto cell_of = [&](int x, int y, int near_x, int near_y) {
-        const int square_x = x / (kCell * kCell), square_y = y / (kCell * kCell);
-        const int cell_x = std::clamp(near_x / kCell - square_x * kCell, 0, kCell - 1),
-                  cell_y = std::clamp(near_y / kCell - square_y * kCell, 0, kCell - 1);
-        const std::size_t square =
-            static_cast<std::size_t>(square_y) * across + static_cast<std::size_t>(square_x);
-        return square * kCell * kCell +
-               static_cast<std::size_t>(cell_y * kCell + (cell_y % 2 ? kCell - 1 - cell_x : cell_x));
-    };
     std::vector<std::uint32_t> cell(samples.size()), next(across * down * kCell * kCell + 1, 0);
+    const CellOrder order{across};
     // Samples of one facet follow each other: those of small ones are put in one cell, so that few vectors
     // share a facet.
     for (std::size_t first = 0, last = 0; first < samples.size(); first = last) {
-        int x_sum = 0, y_sum = 0;
+        LatticeSample sum;
         for (; last < samples.size() && samples[last].facet == samples[first].facet; ++last) {
-            const LatticeSample at = walk.at(samples[last].sample);
-            x_sum += at.column - all.x0;
-            y_sum += at.row - all.y0;
+            sum.column += place[last].column;
+            sum.row += place[last].row;
+            cell[last] = order.of(place[last]);
         }
         const int count = static_cast<int>(last - first);
-        for (std::size_t i = first; i < last; ++i) {
-            const LatticeSample at = walk.at(samples[i].sample);
-            const int x = at.column - all.x0, y = at.row - all.y0;
-            const bool together = count <= static_cast<int>(params.together);
-            cell[i] = static_cast<std::uint32_t>(
-                cell_of(x, y, together ? x_sum / count : x, together ? y_sum / count : y));
-            ++next[cell[i] + 1];
-        }
+        const LatticeSample middle{sum.column / count, sum.row / count};
+        for (std::size_t i = first; i < last && last - first <= params.together; ++i)
+            cell[i] = order.near(middle, place[i]);
+        for (std::size_t i = first; i < last; ++i) ++next[cell[i] + 1];
     }
     for (std::size_t c = 1; c < next.size(); ++c) next[c] += next[c - 1];
     std::vector<MixedSample> sorted(samples.size());
@@ -98,16 +120,37 @@ std::vector<TileGroup> sort_mixed(const SampleGrid& grid, const TileParams& para
     return groups;
 }
 
+/// Numbers the facets of a group's samples as they come, in mixed_facets_, and names each sample's number in
+/// mixed_places_.
+void TileMaker::number_mixed_facets(std::span<const MixedSample> samples) {
+    // By the facet's last bits: its number, and those with the same bits after it.
+    constexpr std::size_t kEntries = 2 * kMixedSamples;
+    constexpr std::uint16_t kEmpty = 65535;
+    std::array<std::uint16_t, kEntries> number;
+    number.fill(kEmpty);
+    mixed_facets_.clear();
+    mixed_places_.resize(samples.size());
+    std::uint16_t last = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const std::uint32_t facet = samples[i].facet;
+        if (i == 0 || facet != samples[i - 1].facet) {
+            std::size_t at = facet % kEntries;
+            while (number[at] != kEmpty && mixed_facets_[number[at]] != facet) at = (at + 1) % kEntries;
+            if (number[at] == kEmpty) {
+                number[at] = static_cast<std::uint16_t>(mixed_facets_.size());
+                mixed_facets_.push_back(facet);
+            }
+            last = number[at];
+        }
+        mixed_places_[i] = last;
+    }
+}
+
 void TileMaker::add_mixed(const TilePlan& plan, std::size_t number, SampleTiles& tiles) {
     const std::size_t count = plan.mixed_groups[number].count;
     const std::span<const MixedSample> samples =
         std::span(plan.mixed).subspan(plan.mixed_groups[number].first, count);
-    mixed_facets_.clear();
-    for (const MixedSample& s : samples)
-        if (mixed_facets_.empty() || mixed_facets_.back() != s.facet) mixed_facets_.push_back(s.facet);
-    std::sort(mixed_facets_.begin(), mixed_facets_.end());
-    mixed_facets_.erase(std::unique(mixed_facets_.begin(), mixed_facets_.end()), mixed_facets_.end());
-
+    number_mixed_facets(samples);
     MixedGroup group;
     group.first_vector = static_cast<std::uint32_t>(tiles.vectors.size());
     group.vectors = static_cast<std::uint32_t>((count + kLanes - 1) / kLanes);
@@ -121,29 +164,26 @@ void TileMaker::add_mixed(const TilePlan& plan, std::size_t number, SampleTiles&
     mixed_extents_.assign(mixed_facets_.size(), {});
 
     LatticeWalk walk(*grid_);
-    std::size_t place = 0;
-    for (std::size_t i = 0; i < group.vectors * kLanes; ++i) {
-        const std::size_t lane = i % kLanes;
-        const MixedSample& s = samples[std::min(i, count - 1)];
-        if (lane == 0) {
-            tiles.vectors.emplace_back();
-            tiles.lanes.emplace_back();
-            tiles.samples.emplace_back().valid = (1u << std::min(kLanes, count - i)) - 1;
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        const std::size_t own = std::min(kLanes, count - first);
+        SampleVector& vector = tiles.vectors.emplace_back();
+        LaneFacets& lanes = tiles.lanes.emplace_back();
+        VectorSamples& ids = tiles.samples.emplace_back();
+        ids.valid = (1u << own) - 1;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const std::size_t i = first + std::min(lane, own - 1);
+            const LatticeSample at = walk.at(samples[i].sample);
+            const std::size_t place = mixed_places_[i];
+            const FacetRays& rays = tiles.rays[first_rays + place];
+            const Vec2 from = position_of(*grid_, at.column, at.row) - rays.screen;
+            MixedExtent& extent = mixed_extents_[place];
+            extent.extent.include(at);
+            extent.least_weight = std::min(extent.least_weight, rays.rays.weight_at(from.x, from.y));
+            vector.u[lane] = static_cast<float>(at.column);
+            vector.v[lane] = static_cast<float>(at.row);
+            lanes.rays[lane] = static_cast<Id>(first_rays + place);
+            ids.sample[lane] = samples[i].sample;
         }
-        if (mixed_facets_[place] != s.facet)
-            place = static_cast<std::size_t>(
-                std::lower_bound(mixed_facets_.begin(), mixed_facets_.end(), s.facet) -
-                mixed_facets_.begin());
-        const LatticeSample at = walk.at(s.sample);
-        const FacetRays& rays = tiles.rays[first_rays + place];
-        const Vec2 from = position_of(*grid_, at.column, at.row) - rays.screen;
-        MixedExtent& extent = mixed_extents_[place];
-        extent.extent.include(at);
-        extent.least_weight = std::min(extent.least_weight, rays.rays.weight_at(from.x, from.y));
-        tiles.vectors.back().u[lane] = static_cast<float>(at.column);
-        tiles.vectors.back().v[lane] = static_cast<float>(at.row);
-        tiles.lanes.back().rays[lane] = static_cast<Id>(first_rays + place);
-        tiles.samples.back().sample[lane] = s.sample;
     }
     for (std::size_t f = 0; f < mixed_facets_.size(); ++f)
         include_rays(tiles.rays[first_rays + f], *grid_, mixed_extents_[f], group);

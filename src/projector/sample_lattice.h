@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 
 #include "base/ids.h"
 #include "base/sample_grid.h"
@@ -53,5 +54,38 @@ class LatticeWalk {
     Id width_, side_, per_pixel_;
     Id row_ = 0, row_start_ = 0;  // of pixels; the row's first pixel
 };
+
+/// Neighbours in a row: `sample` at `first`, and the count - 1 after it.
+struct LatticeRun {
+    LatticeSample first;
+    int count = 1;
+    Id sample = 0;
+
+    LatticeSample last() const { return {first.column + count - 1, first.row}; }
+};
+
+/// Calls body for runs of all the samples, which ascend. Where each pixel is one sample and the samples are
+/// many, the runs are as long as they can be, and found by their ends; else each sample is one.
+template <typename Body>
+void for_each_run(const SampleGrid& grid, std::span<const Id> samples, const Body& body) {
+    constexpr std::size_t kMany = 100;  // measured
+    LatticeWalk walk(grid);
+    const bool long_runs = grid.side == 1 && samples.size() >= kMany;
+    std::size_t count = 1;
+    for (std::size_t i = 0; i < samples.size(); i += count) {
+        LatticeRun run{walk.at(samples[i]), 1, samples[i]};
+        if (long_runs) {
+            const std::size_t most =
+                std::min(samples.size() - i, static_cast<std::size_t>(grid.width() - run.first.column));
+            const auto follow = [&](std::size_t n) { return samples[i + n - 1] - samples[i] == n - 1; };
+            // A row is about as long as the one before.
+            count = std::min(count, most);
+            while (!follow(count)) --count;
+            while (count < most && follow(count + 1)) ++count;
+            run.count = static_cast<int>(count);
+        }
+        body(run);
+    }
+}
 
 }  // namespace trilens

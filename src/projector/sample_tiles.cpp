@@ -40,8 +40,10 @@ double spread_of(const FacetOnScreen& facet) {
 
 void TileCutter::add_facet(const FacetOnScreen& facet, std::span<const Id> samples) {
     LatticeExtent all;
-    LatticeWalk over_all(grid_);
-    for (const Id s : samples) all.include(over_all.at(s));
+    for_each_run(grid_, samples, [&](const LatticeRun& run) {
+        all.include(run.first);
+        all.include(run.last());
+    });
     // Most facets: nothing to divide, whatever their spread.
     if (all.x1 - all.x0 < side_ && all.y1 - all.y0 < side_) {
         tiles.push_back({facet, samples, all, true});

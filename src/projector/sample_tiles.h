@@ -25,7 +25,7 @@ struct alignas(64) SampleVector {
 /// Which samples a vector holds.
 struct VectorSamples {
     Id sample[kLanes];
-    std::uint32_t valid;  // bit k: lane k holds a sample
+    std::uint32_t valid;  // bit k: lane k holds a sample; those are the first lanes
 };
 
 /// Rectangles, in local coordinates, of 16 consecutive vectors of a tile; lanes without a vector are far
@@ -143,18 +143,22 @@ class TileMaker {
     void add_mixed(const TilePlan& plan, std::size_t group, SampleTiles& tiles);
 
   private:
+    void number_mixed_facets(std::span<const MixedSample> samples);
     void add_tile(const RoughTile& rough, SampleTiles& tiles);
-    void place_samples(const RoughTile& rough, SampleTile& tile);
-    void sort_by_bands(const SampleTile& tile);
+    bool place_rows(const RoughTile& rough, const SampleTile& tile);
+    void list_rows(const SampleTile& tile);
+    void list_cells(const RoughTile& rough, const SampleTile& tile);
     void add_vector(const SampleTile& tile, std::size_t first, std::size_t count, SampleTiles& tiles);
 
     const SampleGrid* grid_;
     std::vector<Id> cells_;  // samples by band, column and row
     std::vector<std::uint32_t> band_ends_;
-    std::vector<int> first_column_, last_column_;  // by row of the tile
-    std::vector<std::int32_t> column_, row_;       // in the order of vectors
+    std::vector<int> first_column_, last_column_;  // by row of the tile, and of three empty rows after it
+    std::vector<Id> row_sample_;                   // likewise: at column 0, if every row is one run
+    std::vector<std::uint8_t> column_, row_;       // of the tile, in the order of vectors
     std::vector<Id> sample_;                       // likewise
-    std::vector<std::uint32_t> mixed_facets_;      // of a group, in TilePlan::mixed_facets, ascending
+    std::vector<std::uint32_t> mixed_facets_;      // of a group, in TilePlan::mixed_facets, as they come
+    std::vector<std::uint16_t> mixed_places_;      // by sample of the group: its facet's, there
     std::vector<MixedExtent> mixed_extents_;       // likewise, of their samples in the group
 };
 

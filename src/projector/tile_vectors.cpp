@@ -1,5 +1,6 @@
 // The tiles of a batch: each tile's samples in vectors of neighbours, by bands of rows.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "projector/sample_tiles.h"
@@ -32,7 +33,7 @@ void bound_weights(const FacetOnScreen& facet, const SampleGrid& grid, const Row
         tile.high = std::max(tile.high, sum);
         return true;
     };
-    for (std::size_t r = 0; r < rows.first_column.size(); ++r) {
+    for (std::size_t r = 0; r < static_cast<std::size_t>(tile.height); ++r) {
         const int first = rows.first_column[r], last = rows.last_column[r],
                   row = tile.row + static_cast<int>(r);
         if (first > last) continue;
@@ -42,31 +43,93 @@ void bound_weights(const FacetOnScreen& facet, const SampleGrid& grid, const Row
     }
 }
 
+/// A vector's columns or rows in its tile.
+using Lines = std::array<std::uint8_t, kLanes>;
+static_assert(kLargestTile <= 255);
+
+/// From lines to local coordinates.
+struct LocalScale {
+    explicit LocalScale(int lines)
+        : middle(static_cast<float>(lines - 1) / 2), scale(1 / std::max(0.5f, middle)) {}
+    float at(std::uint8_t line) const { return (static_cast<float>(line) - middle) * scale; }
+
+    float middle, scale;
+};
+
+/// What the lines span, in one lane of a tile's boxes.
+void put_range(const Lines& lines, const LocalScale& local, float& centre, float& half) {
+    constexpr float kRound = 1e-6f;
+    std::uint8_t first = lines[0], last = lines[0];
+    for (const std::uint8_t line : lines) first = std::min(first, line);
+    for (const std::uint8_t line : lines) last = std::max(last, line);
+    const float low = local.at(first), high = local.at(last);
+    centre = (low + high) / 2;
+    half = (high - low) / 2 + kRound;
+}
+
 }  // namespace
 
-/// Fills cells_ and the rows' ends.
-void TileMaker::place_samples(const RoughTile& rough, SampleTile& tile) {
-    const std::size_t width = static_cast<std::size_t>(tile.width),
-                      height = static_cast<std::size_t>(tile.height);
-    cells_.assign((height + kBand - 1) / kBand * kBand * width, kNone);
-    first_column_.assign(height, tile.width);
-    last_column_.assign(height, -1);
+/// Fills the rows' ends. Returns whether every row is one run.
+bool TileMaker::place_rows(const RoughTile& rough, const SampleTile& tile) {
+    const std::size_t height = static_cast<std::size_t>(tile.height);
+    first_column_.assign(height + kBand - 1, tile.width);
+    last_column_.assign(height + kBand - 1, -1);
+    row_sample_.assign(height + kBand - 1, 0);
+    bool whole_rows = grid_->side == 1;
+    for_each_run(*grid_, rough.samples, [&](const LatticeRun& run) {
+        const int x = run.first.column - tile.column;
+        const std::size_t y = static_cast<std::size_t>(run.first.row - tile.row);
+        whole_rows = whole_rows && (last_column_[y] < 0 || last_column_[y] == x - 1);
+        first_column_[y] = std::min(first_column_[y], x);
+        last_column_[y] = std::max(last_column_[y], x + run.count - 1);
+        row_sample_[y] = run.sample - static_cast<Id>(x);
+    });
+    return whole_rows;
+}
+
+/// The samples as a list: by bands, in each by columns, in each by rows; where each band ends. Every row is
+/// one run.
+void TileMaker::list_rows(const SampleTile& tile) {
+    // What is written without a sample is overwritten by the next one.
+    const std::size_t room = tile.samples + kLanes;
+    column_.resize(room);
+    row_.resize(room);
+    sample_.resize(room);
+    band_ends_.clear();
+    std::uint32_t count = 0;
+    for (int y = 0; y < tile.height; y += kBand) {
+        const int* first = &first_column_[static_cast<std::size_t>(y)];
+        const int* last = &last_column_[static_cast<std::size_t>(y)];
+        const Id* sample = &row_sample_[static_cast<std::size_t>(y)];
+        const int begin = *std::min_element(first, first + kBand),
+                  end = *std::max_element(last, last + kBand);
+        const int all_begin = *std::max_element(first, first + kBand),
+                  all_end = *std::min_element(last, last + kBand);
+        for (int x = begin; x <= end; ++x) {
+            const bool all = x >= all_begin && x <= all_end;
+            for (int k = 0; k < kBand; ++k) {
+                const std::uint32_t at = all ? count + static_cast<std::uint32_t>(k) : count;
+                column_[at] = static_cast<std::uint8_t>(x);
+                row_[at] = static_cast<std::uint8_t>(y + k);
+                sample_[at] = sample[k] + static_cast<Id>(x);
+                count += !all && x >= first[k] && x <= last[k];
+            }
+            if (all) count += kBand;
+        }
+        band_ends_.push_back(count);
+    }
+}
+
+/// The same list, whatever the rows.
+void TileMaker::list_cells(const RoughTile& rough, const SampleTile& tile) {
+    cells_.assign(static_cast<std::size_t>((tile.height + kBand - 1) / kBand * kBand * tile.width), kNone);
     LatticeWalk walk(*grid_);
     for (const Id s : rough.samples) {
         const LatticeSample at = walk.at(s);
         const int x = at.column - tile.column, y = at.row - tile.row;
         cells_[static_cast<std::size_t>((y / kBand * tile.width + x) * kBand + y % kBand)] = s;
-        int& first = first_column_[static_cast<std::size_t>(y)];
-        int& last = last_column_[static_cast<std::size_t>(y)];
-        first = std::min(first, x);
-        last = std::max(last, x);
     }
-}
-
-/// cells_ as a list: by bands, in each by columns, in each by rows; where each band ends.
-void TileMaker::sort_by_bands(const SampleTile& tile) {
-    // Every cell is written; those without a sample are overwritten by the next one.
-    const std::size_t room = tile.samples + 1;
+    const std::size_t room = tile.samples + kLanes;
     column_.resize(room);
     row_.resize(room);
     sample_.resize(room);
@@ -76,8 +139,8 @@ void TileMaker::sort_by_bands(const SampleTile& tile) {
     for (int y = 0; y < tile.height; y += kBand) {
         for (int x = 0; x < tile.width; ++x) {
             for (int k = 0; k < kBand; ++k, ++cell) {
-                column_[count] = x;
-                row_[count] = y + k;
+                column_[count] = static_cast<std::uint8_t>(x);
+                row_[count] = static_cast<std::uint8_t>(y + k);
                 sample_[count] = *cell;
                 count += *cell != kNone;
             }
@@ -88,30 +151,26 @@ void TileMaker::sort_by_bands(const SampleTile& tile) {
 
 void TileMaker::add_vector(const SampleTile& tile, std::size_t first, std::size_t count, SampleTiles& tiles) {
     const std::size_t number = tiles.vectors.size() - tile.first_vector;
-    const float middle_x = static_cast<float>(tile.width - 1) / 2,
-                middle_y = static_cast<float>(tile.height - 1) / 2;
-    const float scale_u = 1 / std::max(0.5f, middle_x), scale_v = 1 / std::max(0.5f, middle_y);
-    std::int32_t x[kLanes], y[kLanes];
+    // There is room for a whole vector after the last sample.
+    Lines x, y;
     VectorSamples& ids = tiles.samples.emplace_back();
     ids.valid = (1u << count) - 1;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const std::size_t from = first + std::min(lane, count - 1);
-        x[lane] = column_[from];
-        y[lane] = row_[from];
-        ids.sample[lane] = sample_[from];
+    std::copy_n(&column_[first], kLanes, x.begin());
+    std::copy_n(&row_[first], kLanes, y.begin());
+    std::copy_n(&sample_[first], kLanes, ids.sample);
+    for (std::size_t lane = count; lane < kLanes; ++lane) {
+        x[lane] = x[count - 1];
+        y[lane] = y[count - 1];
+        ids.sample[lane] = ids.sample[count - 1];
     }
-    std::uint16_t* slot = &tiles.slot[tile.first_slot];
+    std::uint16_t* const slot = &tiles.slot[tile.first_slot];
     for (std::size_t lane = 0; lane < count; ++lane)
         slot[y[lane] * tile.width + x[lane]] = static_cast<std::uint16_t>(number * kLanes + lane);
 
+    const LocalScale across(tile.width), down(tile.height);
     SampleVector& vector = tiles.vectors.emplace_back();
-    std::int32_t x0 = x[0], x1 = x[0], y0 = y[0], y1 = y[0];
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        vector.u[lane] = (static_cast<float>(x[lane]) - middle_x) * scale_u;
-        vector.v[lane] = (static_cast<float>(y[lane]) - middle_y) * scale_v;
-        x0 = std::min(x0, x[lane]), x1 = std::max(x1, x[lane]);
-        y0 = std::min(y0, y[lane]), y1 = std::max(y1, y[lane]);
-    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane) vector.u[lane] = across.at(x[lane]);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) vector.v[lane] = down.at(y[lane]);
     if (number % kLanes == 0) {
         VectorBoxes empty{};
         std::fill_n(empty.centre_u, kLanes, 1e9f);
@@ -119,15 +178,8 @@ void TileMaker::add_vector(const SampleTile& tile, std::size_t first, std::size_
         tiles.boxes.push_back(empty);
     }
     VectorBoxes& boxes = tiles.boxes.back();
-    constexpr float kRound = 1e-6f;
-    const float lu = (static_cast<float>(x0) - middle_x) * scale_u,
-                hu = (static_cast<float>(x1) - middle_x) * scale_u,
-                lv = (static_cast<float>(y0) - middle_y) * scale_v,
-                hv = (static_cast<float>(y1) - middle_y) * scale_v;
-    boxes.centre_u[number % kLanes] = (lu + hu) / 2;
-    boxes.centre_v[number % kLanes] = (lv + hv) / 2;
-    boxes.half_u[number % kLanes] = (hu - lu) / 2 + kRound;
-    boxes.half_v[number % kLanes] = (hv - lv) / 2 + kRound;
+    put_range(x, across, boxes.centre_u[number % kLanes], boxes.half_u[number % kLanes]);
+    put_range(y, down, boxes.centre_v[number % kLanes], boxes.half_v[number % kLanes]);
 }
 
 void TileMaker::add_tile(const RoughTile& rough, SampleTiles& tiles) {
@@ -144,11 +196,14 @@ void TileMaker::add_tile(const RoughTile& rough, SampleTiles& tiles) {
     tile.height = rough.extent.y1 - rough.extent.y0 + 1;
     tile.first_slot = tiles.slot.size();
     tiles.slot.resize(tile.first_slot + static_cast<std::size_t>(tile.width * tile.height), kNoSlot);
-    place_samples(rough, tile);
+    const bool whole_rows = place_rows(rough, tile);
     bound_weights(rough.facet, *grid_, {first_column_, last_column_}, tile);
 
     // A vector ends with its band, unless the tile is so small that this would waste lanes.
-    sort_by_bands(tile);
+    if (whole_rows)
+        list_rows(tile);
+    else
+        list_cells(rough, tile);
     if (tile.samples <= 4 * kLanes) band_ends_.assign(1, tile.samples);
     std::size_t first = 0;
     for (const std::uint32_t end : band_ends_) {
