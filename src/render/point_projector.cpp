@@ -203,7 +203,8 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, co
         const Vec3& eye = view->origin;
         if (searches_surfaces() && one.refined && !sight_.is_free_of_optic(eye, one.from, path.optic))
             continue;
-        if (world_.scene.render.max_depth > 0 && !sight_.goes_straight(one.from, point)) continue;
+        const Id on_facet = one.refined ? kNone : path.optic;
+        if (world_.scene.render.max_depth > 0 && !sight_.goes_straight(one.from, point, on_facet)) continue;
         const double t =
             camera_.near_depth + dot(one.from - eye, view->direction) / dot(view->direction, view->direction);
         WorldImage image;
@@ -218,7 +219,7 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, co
         image.refined = one.refined;
         image.inside = on_film(image.pixel);
         image.visible = request_.visibility && image.inside && is_between_planes(t) &&
-                        sight_.is_free_of_objects(one.from, point) && sight_.sees(eye, one.from);
+                        sight_.is_free_of_objects(one.from, point) && sight_.sees(eye, one.from, on_facet);
         if (request_.derivatives && image.refined) differentiate(image, point);
         result.images.push_back(std::move(image));
     }

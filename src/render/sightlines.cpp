@@ -14,26 +14,32 @@ bool Sightlines::is_free_of_objects(const Vec3& from, const Vec3& to) const {
     return !object_tracer(world_).occluded({from, to - from}, kFreeShare, 1 - kFreeShare);
 }
 
-bool Sightlines::is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const {
-    const Ray segment{from, to - from};
-    if (!exact_) return !frame_.optics[optic].facets->tracer().occluded(segment, kFreeShare, 1 - kFreeShare);
+bool Sightlines::is_free_of_facets(const Ray& segment, std::size_t optic) const {
+    return !frame_.optics[optic].facets->tracer().occluded(segment, kFreeShare, 1 - kFreeShare);
+}
+
+bool Sightlines::is_free_of_surface(const Ray& segment, std::size_t optic) const {
     const std::optional<SurfaceHit> hit = limit_tracer(world_, optic).first_hit(segment, kFreeShare);
     return !hit || hit->t >= 1 - kFreeShare;
 }
 
-bool Sightlines::sees(const Vec3& from, const Vec3& to) const {
+bool Sightlines::is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const {
+    const Ray segment{from, to - from};
+    return exact_ ? is_free_of_surface(segment, optic) : is_free_of_facets(segment, optic);
+}
+
+bool Sightlines::sees(const Vec3& from, const Vec3& to, Id on_facet) const {
     if (!is_free_of_objects(from, to)) return false;
+    const Ray segment{from, to - from};
     for (std::size_t i = 0; i < world_.optics.size(); ++i)
-        if (!is_free_of_optic(from, to, i)) return false;
+        if (i == on_facet ? !is_free_of_facets(segment, i) : !is_free_of_optic(from, to, i)) return false;
     return true;
 }
 
-bool Sightlines::goes_straight(const Vec3& from, const Vec3& to) const {
+bool Sightlines::goes_straight(const Vec3& from, const Vec3& to, Id on_facet) const {
     const Ray segment{from, to - from};
-    for (std::size_t i = 0; i < world_.optics.size(); ++i) {
-        const std::optional<SurfaceHit> hit = limit_tracer(world_, i).first_hit(segment, kFreeShare);
-        if (hit && hit->t < 1 - kFreeShare) return false;
-    }
+    for (std::size_t i = 0; i < world_.optics.size(); ++i)
+        if (i == on_facet ? !is_free_of_facets(segment, i) : !is_free_of_surface(segment, i)) return false;
     return true;
 }
 

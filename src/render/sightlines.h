@@ -18,13 +18,19 @@ class Sightlines {
 
     bool is_free_of_objects(const Vec3& from, const Vec3& to) const;
     bool is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const;
-    /// Whether nothing at all lies between the camera and a place.
-    bool sees(const Vec3& from, const Vec3& to) const;
+
+    /// Whether nothing at all lies between the camera and a place. `on_facet`: the optic on whose facet the
+    /// place lies, off the exact surface: that optic is its facets then; kNone: there is none.
+    bool sees(const Vec3& from, const Vec3& to, Id on_facet = kNone) const;
+
     /// Whether light that leaves an optic at `from` comes to `to` without meeting another, or the same once
-    /// more.
-    bool goes_straight(const Vec3& from, const Vec3& to) const;
+    /// more; `on_facet` as above, of `from`.
+    bool goes_straight(const Vec3& from, const Vec3& to, Id on_facet = kNone) const;
 
   private:
+    bool is_free_of_facets(const Ray& segment, std::size_t optic) const;
+    bool is_free_of_surface(const Ray& segment, std::size_t optic) const;
+
     const World& world_;
     const Frame& frame_;
     bool exact_;

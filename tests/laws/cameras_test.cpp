@@ -285,6 +285,53 @@ TEST_CASE("what project names, the exact rays see, through every camera") {
     CHECK(refined > 30);
 }
 
+TEST_CASE("what a picture shows in a mirror, project finds there, through every camera") {
+    const auto world = room(160, 120, 16);
+    REQUIRE(world->scene.render.max_depth > 0);
+    std::size_t asked = 0;
+    for (std::size_t c = 0; c < world->scene.cameras.size(); ++c) {
+        const SampleViews shown = look(*world, c, Engine::kExact);
+        // Well inside what the mirror shows: every 23rd sample whose neighbours see the same triangle in it.
+        std::vector<Vec3> points;
+        std::vector<Vec2> pixels;
+        const auto seen_at = [&](std::size_t s) {
+            const PathEnd* end = shown.find(shown.samples[s], Path::kReflect);
+            return end && end->step_count == 1 ? end->hit.triangle : kNone;
+        };
+        for (std::size_t s = 161; s + 161 < shown.samples.size(); s += 23) {
+            const Id triangle = seen_at(s);
+            if (triangle == kNone || seen_at(s - 161) != triangle || seen_at(s - 159) != triangle ||
+                seen_at(s + 159) != triangle || seen_at(s + 161) != triangle)
+                continue;
+            const Vec2 pixel(static_cast<double>(s % 160) + 0.5, static_cast<double>(s / 160) + 0.5);
+            // Where several views blend, the optic's grid lies on the film more than once, and is drawn once.
+            const bool blends = world->scene.cameras[c].name == "several" &&
+                                std::fabs(std::fabs(pixel.x - 80) - 0.2 * 160) <= 0.05 * 160;
+            if (blends) continue;
+            points.push_back(position(world->objects, shown.find(shown.samples[s], Path::kReflect)->hit));
+            pixels.push_back(pixel);
+        }
+        asked += points.size();
+        for (const bool refine : {true, false}) {
+            ProjectRequest request;
+            request.frame.camera = c;
+            request.refine = refine;
+            if (!refine) request.search = ImageSearch::kFacets;
+            const auto found = project_points(*world, request, points);
+            for (std::size_t p = 0; p < points.size(); ++p) {
+                INFO(world->scene.cameras[c].name << " refine " << refine << " pixel " << pixels[p].x << " "
+                                                  << pixels[p].y);
+                const auto& images = found[p].images;
+                CHECK(std::any_of(images.begin(), images.end(), [&](const WorldImage& image) {
+                    return image.path == Path::kReflect && image.visible &&
+                           length(image.pixel - pixels[p]) < 3;
+                }));
+            }
+        }
+    }
+    CHECK(asked > 500);
+}
+
 TEST_CASE("beyond a fisheye's circle there is nothing: no ray, alpha 0, black") {
     const auto world = room(160, 120, 6);
     const std::size_t fisheye = camera_named(*world, "fisheye");
