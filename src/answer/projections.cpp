@@ -1,5 +1,7 @@
 #include "answer/projections.h"
 
+#include <trilens/text.h>
+
 #include <charconv>
 
 #include "answer/values.h"
@@ -51,7 +53,7 @@ void add_line(std::string& text, const Renderer& renderer, std::size_t point, co
     add_number(text, image.t, std::chars_format::general, 12);
     text += path_name(image.path);
     text += ',';
-    if (image.optic != kNone) text += renderer.scene().meshes[image.object].name;
+    if (image.optic != kNone) text += csv_text(renderer.scene().meshes[image.object].name);
     text += ',';
     if (image.facet == kNone)
         text += ',';

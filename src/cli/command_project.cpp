@@ -16,7 +16,7 @@ struct ProjectOptions {
     SceneOptions scene;
     std::vector<std::string> point;
     std::string points;
-    std::string search = "complete";
+    std::string search;  // empty: complete, but for --refine none
     std::string refine = "exact";
     bool no_visibility = false, derivatives = false;
 };
@@ -40,9 +40,11 @@ Answer run(const ProjectOptions& options, Console& console) {
     const Renderer renderer = load_renderer(options.scene, console);
     ProjectRequest request;
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
-    request.search = options.search == "complete" ? ImageSearch::kComplete : ImageSearch::kFacets;
     request.refine = options.refine == "exact";
-    if (!request.refine) request.search = ImageSearch::kFacets;
+    if (!request.refine && options.search == "complete")
+        throw UsageError("--refine none leaves images as the facets have them: it goes with --search facets");
+    request.search =
+        !request.refine || options.search == "facets" ? ImageSearch::kFacets : ImageSearch::kComplete;
     request.visibility = !options.no_visibility;
     request.derivatives = options.derivatives;
     const Stopwatch watch;
@@ -54,8 +56,9 @@ Answer run(const ProjectOptions& options, Console& console) {
     if (open > 0)
         console.warn(fmt::format("{} of {} points may have images that are not listed{}", open, points.size(),
                                  request.search == ImageSearch::kFacets
-                                     ? "; --search complete looks for all"
-                                     : " (near a caustic, on the optic itself, or in overridden normals)"));
+                                     ? "; --search complete with --refine exact looks for all"
+                                     : " (near a caustic, on the optic itself, in overridden normals, over "
+                                       "several optics, or through a camera without one eye)"));
     Answer answer;
     answer.fields["seconds"] = seconds;
     answer.fields["incomplete"] = open;

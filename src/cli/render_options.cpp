@@ -150,6 +150,11 @@ void check_options(const RenderOptions& options, const std::string& format, cons
     if (is_vector(format) && options.max_error >= 0)
         throw UsageError("--max-error is for pictures of pixels; an ." + format +
                          " shows the facets undivided");
+    if (options.max_error >= 0 && (options.engine == "envmap" || options.engine == "planar"))
+        throw UsageError("--max-error divides the facets of the exact engine, not of --engine " +
+                         options.engine);
+    if (!options.scene.aov.empty() && !format.empty() && format != "exr")
+        throw UsageError("--aov is for .exr outputs: an ." + format + " has no layers");
     if (options.frames.asks() && (is_vector(format) || !options.pixel.empty()))
         throw UsageError("--frames and --turntable are for .exr, .png and .apng outputs");
     if (options.maps_tones() && format != "png" && format != "apng")

@@ -102,6 +102,13 @@ std::string escape_markup(std::string_view text) {
     return out;
 }
 
+std::string csv_text(std::string_view text) {
+    if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
 std::string json_text(std::string_view text) {
     std::string out = "\"";
     while (!text.empty()) {

@@ -28,6 +28,9 @@ std::string json_text(std::string_view text);
 /// `text` for LaTeX, in text mode: its ten special characters escaped.
 std::string latex_text(std::string_view text);
 
+/// `text` as a cell of a CSV table: quoted as RFC 4180 has it where it holds commas, quotes or line ends.
+std::string csv_text(std::string_view text);
+
 /// RFC 4648 base64, padded, on one line.
 std::string base64_text(std::span<const unsigned char> bytes);
 

@@ -32,16 +32,9 @@ constexpr std::array kDisplacementColumns = {
     "disp_max_px",     "disp_pixels",  "disp_lost",     "disp_mean_off_folds_px",
     "disp_near_folds", "disp_missing", "disp_coverage", "disp_beyond_radius"};
 
-std::string cell(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
-}
-
 std::string row(const std::vector<std::string>& cells) {
     std::string line;
-    for (std::size_t i = 0; i < cells.size(); ++i) line += (i ? "," : "") + cell(cells[i]);
+    for (std::size_t i = 0; i < cells.size(); ++i) line += (i ? "," : "") + csv_text(cells[i]);
     return line + "\n";
 }
 

@@ -83,6 +83,25 @@ TEST_CASE("every kind of bad option is told in one line with what the option tak
     check_usage("info --progress loud", {"--progress takes auto, bar, plain, json or none"});
 }
 
+TEST_CASE("options that would do nothing are refused, each with its reason", "[cli][usage]") {
+    const std::string scene = write_file(scratch_dir("cli_usage_idle"), "room.json", small_scene());
+    check_usage("trace " + scene + " -o out.exr --grid screen", {"--grid", "--surface facets"});
+    check_usage("render " + scene + " -o out.exr --engine envmap --max-error 1", {"--max-error", "envmap"});
+    for (const char* ending : {"png", "svg", "obj"})
+        check_usage("render " + scene + " -o out." + ending + " --aov all", {"--aov", ".exr", ending});
+    check_usage("project " + scene + " --point 0,0,3 --search complete --refine none",
+                {"--refine none", "--search facets"});
+}
+
+TEST_CASE("project's table quotes the names of optics", "[cli]") {
+    const std::string folder = scratch_dir("cli_project_names");
+    const std::string scene =
+        write_file(folder, "room.json", replaced(small_scene(), R"("name": "ball")", R"("name": "a,\"b\"")"));
+    const CommandRun run = run_trilens("project " + scene + " --point 2,0,3");
+    CHECK(run.exit_code == 0);
+    CHECK(run.out.find(R"(,reflect,"a,""b""",)") != std::string::npos);
+}
+
 TEST_CASE("values that look like options, and groups of short ones, are read", "[cli][usage]") {
     const std::string folder = scratch_dir("cli_usage_values");
     const std::string scene = write_file(folder, "room.json", small_scene());

@@ -53,6 +53,15 @@ TEST_CASE("sweep: escaped markup is well formed whatever the bytes, and text sur
     CHECK(escape_markup("\xED\xA0\x80") == "\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD");  // surrogate
 }
 
+TEST_CASE("sweep: cells of a table are quoted as in RFC 4180") {
+    CHECK(csv_text("ball") == "ball");
+    CHECK(csv_text("") == "");
+    CHECK(csv_text("a b") == "a b");
+    CHECK(csv_text("a,b") == "\"a,b\"");
+    CHECK(csv_text("say \"b\"") == "\"say \"\"b\"\"\"");
+    CHECK(csv_text("two\nlines") == "\"two\nlines\"");
+}
+
 TEST_CASE("sweep: base64 as in RFC 4648 section 10") {
     const auto encode = [](const std::string& text) {
         return base64_text(std::vector<unsigned char>(text.begin(), text.end()));
