@@ -1,6 +1,9 @@
 #include "image/exr_chunk.h"
 
 #include <isa-l/igzip_lib.h>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 #include <cstdint>
 #include <cstring>
@@ -15,6 +18,24 @@ namespace {
 constexpr std::uint32_t kLevel = 2;
 constexpr std::uint32_t kLevelBytes = ISAL_DEF_LVL2_DEFAULT;
 
+/// Clears the upper halves of the vector registers. ISA-L leaves them as they are, and while they are not
+/// empty every older vector instruction waits for what its target held before: numeric code after a file was
+/// up to three times slower.
+#if defined(__x86_64__)
+__attribute__((target("avx"))) void clear_upper_halves() {
+    _mm256_zeroupper();
+}
+#endif
+
+struct UpperHalves {
+    ~UpperHalves() {
+#if defined(__x86_64__)
+        static const bool has_any = __builtin_cpu_supports("avx");
+        if (has_any) clear_upper_halves();
+#endif
+    }
+};
+
 /// What one thread deflates with, far too large for its stack.
 struct Deflater {
     isal_zstream stream;
@@ -23,6 +44,7 @@ struct Deflater {
 
 /// How many bytes of `to` the zlib stream of `from` takes; 0 when it does not fit.
 std::size_t deflate(std::vector<unsigned char>& from, std::vector<unsigned char>& to) {
+    const UpperHalves cleared;
     thread_local const auto deflater = std::make_unique<Deflater>();
     isal_zstream& stream = deflater->stream;
     isal_deflate_init(&stream);
@@ -41,6 +63,7 @@ std::size_t deflate(std::vector<unsigned char>& from, std::vector<unsigned char>
 
 /// Whether the zlib stream `from` is whole and fills `to`.
 bool inflate(std::span<unsigned char> from, std::vector<unsigned char>& to) {
+    const UpperHalves cleared;
     thread_local const auto state = std::make_unique<inflate_state>();
     isal_inflate_init(state.get());
     state->crc_flag = ISAL_ZLIB;
