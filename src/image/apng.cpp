@@ -7,61 +7,23 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "image/png_chunk.h"
 
 namespace trilens {
 namespace {
 
-using Bytes = std::vector<unsigned char>;
-
-constexpr std::array<unsigned char, 8> kSignature{0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a};
 constexpr std::size_t kAroundData = 12;  // of a chunk: length, type and checksum
 
-void put32(Bytes& bytes, std::uint32_t value) {
-    for (const int shift : {24, 16, 8, 0}) bytes.push_back(static_cast<unsigned char>(value >> shift));
-}
 void put16(Bytes& bytes, std::uint32_t value) {
     for (const int shift : {8, 0}) bytes.push_back(static_cast<unsigned char>(value >> shift));
 }
-std::uint32_t read32(std::span<const unsigned char> bytes) {
-    return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 |
-           bytes[3];
-}
-
-/// The checksum of PNG's chunks (ISO 3309, the polynomial of its annex on CRC), byte by byte.
-std::uint32_t checksum(std::span<const unsigned char> bytes) {
-    static const std::array<std::uint32_t, 256> table = [] {
-        std::array<std::uint32_t, 256> sums{};
-        for (std::uint32_t byte = 0; byte < 256; ++byte) {
-            sums[byte] = byte;
-            for (int bit = 0; bit < 8; ++bit)
-                sums[byte] = (sums[byte] & 1) ? 0xedb88320u ^ (sums[byte] >> 1) : sums[byte] >> 1;
-        }
-        return sums;
-    }();
-    std::uint32_t sum = 0xffffffffu;
-    for (const unsigned char byte : bytes) sum = table[(sum ^ byte) & 0xff] ^ (sum >> 8);
-    return ~sum;
-}
-
-struct Chunk {
-    std::string_view type;
-    std::span<const unsigned char> data;
-};
-
-void put_chunk(Bytes& file, const Chunk& chunk) {
-    put32(file, static_cast<std::uint32_t>(chunk.data.size()));
-    const std::size_t first = file.size();
-    file.insert(file.end(), chunk.type.begin(), chunk.type.end());
-    file.insert(file.end(), chunk.data.begin(), chunk.data.end());
-    put32(file, checksum(std::span(file).subspan(first)));
-}
-
-std::vector<Chunk> chunks_of(std::span<const unsigned char> png) {
+std::vector<PngChunk> chunks_of(std::span<const unsigned char> png) {
     const auto damaged = [] { return InputError("animation", "", "a frame is no PNG, or a damaged one"); };
-    if (png.size() < kSignature.size() || !std::equal(kSignature.begin(), kSignature.end(), png.begin()))
+    if (png.size() < kPngSignature.size() ||
+        !std::equal(kPngSignature.begin(), kPngSignature.end(), png.begin()))
         throw damaged();
-    std::vector<Chunk> chunks;
-    for (std::size_t at = kSignature.size(); at < png.size();) {
+    std::vector<PngChunk> chunks;
+    for (std::size_t at = kPngSignature.size(); at < png.size();) {
         if (png.size() - at < kAroundData) throw damaged();
         const std::size_t size = read32(png.subspan(at));
         if (size > png.size() - at - kAroundData) throw damaged();
@@ -111,37 +73,37 @@ Bytes frame_control(std::uint32_t number, std::span<const unsigned char> header,
 std::vector<unsigned char> encode_apng(std::span<const std::vector<unsigned char>> pngs, double fps) {
     if (pngs.empty()) throw UsageError("an animation has at least one frame");
     const Delay delay = delay_of(fps);
-    const std::vector<Chunk> first = chunks_of(pngs[0]);
+    const std::vector<PngChunk> first = chunks_of(pngs[0]);
     const std::span<const unsigned char> header = first[0].data;
-    Bytes file(kSignature.begin(), kSignature.end());
-    for (const Chunk& chunk : first) {
+    Bytes file(kPngSignature.begin(), kPngSignature.end());
+    for (const PngChunk& chunk : first) {
         if (chunk.type == "IDAT") break;
-        put_chunk(file, chunk);
+        put_png_chunk(file, chunk);
         if (chunk.type != "IHDR") continue;
         Bytes control;
         put32(control, static_cast<std::uint32_t>(pngs.size()));
         put32(control, 0);  // again and again
-        put_chunk(file, {"acTL", control});
+        put_png_chunk(file, {"acTL", control});
     }
     std::uint32_t number = 0;
     for (std::size_t frame = 0; frame < pngs.size(); ++frame) {
-        const std::vector<Chunk> chunks = chunks_of(pngs[frame]);
+        const std::vector<PngChunk> chunks = chunks_of(pngs[frame]);
         if (!std::equal(header.begin(), header.end(), chunks[0].data.begin(), chunks[0].data.end()))
             throw InputError("animation", "", "the frames differ in size or kind");
-        put_chunk(file, {"fcTL", frame_control(number++, header, delay)});
-        for (const Chunk& chunk : chunks) {
+        put_png_chunk(file, {"fcTL", frame_control(number++, header, delay)});
+        for (const PngChunk& chunk : chunks) {
             if (chunk.type != "IDAT") continue;
             if (frame == 0) {
-                put_chunk(file, chunk);
+                put_png_chunk(file, chunk);
                 continue;
             }
             Bytes data;
             put32(data, number++);
             data.insert(data.end(), chunk.data.begin(), chunk.data.end());
-            put_chunk(file, {"fdAT", data});
+            put_png_chunk(file, {"fdAT", data});
         }
     }
-    put_chunk(file, {"IEND", {}});
+    put_png_chunk(file, {"IEND", {}});
     return file;
 }
 

@@ -1,56 +1,12 @@
 #include "image/exr_chunk.h"
 
-#include <isa-l/igzip_lib.h>
-
 #include <cstdint>
 #include <cstring>
-#include <memory>
 
-#include "base/check.h"
+#include "image/zlib_stream.h"
 
 namespace trilens {
 namespace {
-
-/// Of ISA-L's levels: the densest that costs no more than the one below it.
-constexpr std::uint32_t kLevel = 2;
-constexpr std::uint32_t kLevelBytes = ISAL_DEF_LVL2_DEFAULT;
-
-/// What one thread deflates with, far too large for its stack.
-struct Deflater {
-    isal_zstream stream;
-    std::vector<unsigned char> tables = std::vector<unsigned char>(kLevelBytes);
-};
-
-/// How many bytes of `to` the zlib stream of `from` takes; 0 when it does not fit.
-std::size_t deflate(std::vector<unsigned char>& from, std::vector<unsigned char>& to) {
-    thread_local const auto deflater = std::make_unique<Deflater>();
-    isal_zstream& stream = deflater->stream;
-    isal_deflate_init(&stream);
-    stream.level = kLevel;
-    stream.level_buf = deflater->tables.data();
-    stream.level_buf_size = kLevelBytes;
-    stream.gzip_flag = IGZIP_ZLIB;
-    stream.end_of_stream = 1;
-    stream.next_in = from.data();
-    stream.avail_in = static_cast<std::uint32_t>(from.size());
-    stream.next_out = to.data();
-    stream.avail_out = static_cast<std::uint32_t>(to.size());
-    TRILENS_CHECK(isal_deflate(&stream) == COMP_OK, "the stream is set up as the library asks");
-    return stream.internal_state.state == ZSTATE_END ? stream.total_out : 0;
-}
-
-/// Whether the zlib stream `from` is whole and fills `to`.
-bool inflate(std::span<unsigned char> from, std::vector<unsigned char>& to) {
-    thread_local const auto state = std::make_unique<inflate_state>();
-    isal_inflate_init(state.get());
-    state->crc_flag = ISAL_ZLIB;
-    state->next_in = from.data();
-    state->avail_in = static_cast<std::uint32_t>(from.size());
-    state->next_out = to.data();
-    state->avail_out = static_cast<std::uint32_t>(to.size());
-    return isal_inflate_stateless(state.get()) == ISAL_DECOMP_OK && state->block_state == ISAL_BLOCK_FINISH &&
-           state->total_out == to.size();
-}
 
 /// What a difference of nothing is written as.
 constexpr unsigned kDifferenceBias = 128;

@@ -11,21 +11,18 @@
 
 #include "base/error.h"
 #include "base/file_bytes.h"
-#include "image/library_reason.h"
+#include "image/png_chunk.h"
 #include "image/srgb.h"
+#include "image/zlib_stream.h"
 
 namespace trilens {
 namespace {
 
-constexpr std::array<unsigned char, 8> kSignature{0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a};
-
 /// Deflate shrinks nothing more than this (RFC 1951): a header that claims more is damaged or hostile.
 constexpr std::size_t kLargestCompression = 1032;
 
-std::uint32_t read32(std::span<const unsigned char> bytes) {
-    return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 |
-           bytes[3];
-}
+/// The length of a chunk is below 2^31 (5.3).
+constexpr std::size_t kMostInChunk = 0x7fffffff;
 
 /// 1 / 2.2 as a gAMA chunk says it, which files of sRGB hold (11.3.2).
 constexpr std::uint32_t kGamma = 45455;
@@ -33,7 +30,8 @@ constexpr std::uint32_t kGamma = 45455;
 /// Whether the chunks before the pixels (PNG, Third Edition, W3C, 5.2 and 11) are those of an ordinary file.
 bool is_ordinary(std::span<const unsigned char> png) {
     constexpr std::size_t kHeader = 8 + 8 + 13 + 4;
-    if (png.size() < kHeader || !std::equal(kSignature.begin(), kSignature.end(), png.begin())) return false;
+    if (png.size() < kHeader || !std::equal(kPngSignature.begin(), kPngSignature.end(), png.begin()))
+        return false;
     const std::uint64_t width = read32(png.subspan(16)), height = read32(png.subspan(20));
     const unsigned char depth = png[24], interlaced = png[28];
     if (depth > 8 || interlaced) return false;
@@ -98,9 +96,9 @@ std::shared_ptr<const Texture> decode_ordinary_png(std::span<const unsigned char
 std::shared_ptr<const Texture> read_ordinary_png(const std::string& file) {
     const std::size_t size = readable_size(file);
     std::ifstream in(file, std::ios::binary);
-    std::array<unsigned char, kSignature.size()> start{};
+    std::array<unsigned char, kPngSignature.size()> start{};
     in.read(reinterpret_cast<char*>(start.data()), start.size());
-    if (!in || start != kSignature) return nullptr;
+    if (!in || start != kPngSignature) return nullptr;
     std::vector<unsigned char> bytes(size);
     in.seekg(0);
     in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
@@ -109,17 +107,33 @@ std::shared_ptr<const Texture> read_ordinary_png(const std::string& file) {
 
 std::vector<unsigned char> encode_stored_png(const std::string& name, int width, int height,
                                              std::span<const unsigned char> stored) {
-    PngImage png;
-    png.image.width = static_cast<png_uint_32>(width);
-    png.image.height = static_cast<png_uint_32>(height);
-    png.image.format = PNG_FORMAT_RGB;
-    png.image.flags = PNG_IMAGE_FLAG_FAST;
-    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png.image);
-    std::vector<unsigned char> bytes(size);
-    if (!png_image_write_to_memory(&png.image, bytes.data(), &size, 0, stored.data(), 0, nullptr))
-        throw OutputError(name, "cannot be encoded: " + library_reason(png.image.message));
-    bytes.resize(size);
-    return bytes;
+    constexpr unsigned char kDepth = 8, kColours = 2, kPerceptual = 0, kNoFilter = 0, kUp = 2;
+    const std::size_t row = 3 * static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
+    // Each byte as its difference from the one above.
+    Bytes lines((row + 1) * rows);
+    for (std::size_t y = 0; y < rows; ++y) {
+        unsigned char* const to = &lines[y * (row + 1)];
+        const unsigned char *const from = &stored[y * row], *const above = from - (y > 0 ? row : 0);
+        to[0] = y > 0 ? kUp : kNoFilter;
+        for (std::size_t i = 0; i < row; ++i)
+            to[i + 1] = static_cast<unsigned char>(from[i] - (y > 0 ? above[i] : 0));
+    }
+    // Where nothing shrinks deflate stores: five bytes for a block of at most 65,535 (RFC 1951, 3.2.4).
+    constexpr std::size_t kAround = 64, kLeastBlock = 4096, kOfBlock = 5;
+    Bytes packed(lines.size() + kAround + kOfBlock * (lines.size() / kLeastBlock));
+    packed.resize(deflate(lines, packed));
+    if (packed.empty() || packed.size() > kMostInChunk) throw OutputError(name, "is too large for a PNG");
+
+    Bytes header;
+    put32(header, static_cast<std::uint32_t>(width));
+    put32(header, static_cast<std::uint32_t>(height));
+    header.insert(header.end(), {kDepth, kColours, 0, 0, 0});
+    Bytes file(kPngSignature.begin(), kPngSignature.end());
+    put_png_chunk(file, {"IHDR", header});
+    put_png_chunk(file, {"sRGB", std::array{kPerceptual}});
+    put_png_chunk(file, {"IDAT", packed});
+    put_png_chunk(file, {"IEND", {}});
+    return file;
 }
 
 }  // namespace trilens

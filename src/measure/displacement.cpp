@@ -35,7 +35,7 @@ Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8
     const SeenField& field = finder.test().field;
     Displacement result = nothing_shown(mask.size());
     std::vector<std::uint8_t> is_beyond(mask.size(), 0);
-    parallel_for(mask.size(), 512, [&](std::size_t first, std::size_t last) {
+    parallel_for(mask.size(), 8192, [&](std::size_t first, std::size_t last) {
         std::vector<SeenPoint> wanted;
         std::vector<std::size_t> pixels;
         for (std::size_t i = first; i < last; ++i) {

@@ -86,25 +86,18 @@ Image draw_timed(const RunJob& job, MetricValues& metrics) {
     return image;
 }
 
-struct DrawnRun {
-    Image image, diff;
-};
-
-/// Renders and measures one run into `run`.
-DrawnRun draw_run(const RunJob& job, const KeptTruth& truth, RunRecord& run) {
-    MetricValues times;
-    DrawnRun drawn{draw_timed(job, times), {}};
-    MeasuredRun measured = measure_run(drawn.image, truth.layers, job.plan.optics);
-    drawn.diff = std::move(measured.diff);
+/// Measures a picture into `run`, which has its times, and returns what it differs in.
+Image measure(const RunJob& job, const KeptTruth& truth, const Image& image, RunRecord& run) {
+    MeasuredRun measured = measure_run(image, truth.layers, job.plan.optics);
+    measured.metrics.merge(run.metrics);
     run.metrics = std::move(measured.metrics);
     run.displacement = std::move(measured.displacement);
     run.warnings = std::move(measured.warnings);
-    run.metrics.merge(times);
     run.metrics["t_trace_s"] = truth.seconds;
-    run.metrics["width"] = drawn.image.width;
-    run.metrics["height"] = drawn.image.height;
-    if (const std::optional<double> facets = facet_count(drawn.image)) run.metrics["facets"] = *facets;
-    return drawn;
+    run.metrics["width"] = image.width;
+    run.metrics["height"] = image.height;
+    if (const std::optional<double> facets = facet_count(image)) run.metrics["facets"] = *facets;
+    return std::move(measured.diff);
 }
 
 /// Without room for them the report makes them of the run's files.
@@ -130,13 +123,25 @@ std::optional<RunRecord> do_run(const RunJob& job) {
     if (!truth && run.error.empty()) return std::nullopt;
 
     clear_run(job.params.folder, job.plan);
-    DrawnRun drawn;
-    if (truth) attempt(run, [&] { drawn = draw_run(job, *truth, run); });
+    Image image, diff;
+    std::string image_hash;
+    if (truth) attempt(run, [&] { image = draw_timed(job, run.metrics); });
     if (run.state == RunState::kDone) {
-        run = store_run(job.params.folder, std::move(run), drawn.image, drawn.diff);
-        if (job.pictures) keep_pictures(run, {drawn.image, truth->image, drawn.diff}, *job.pictures);
+        run.metrics["t_write_s"] = store_image(job.params.folder, job.plan, image);
+        // What is timed had the machine to itself; from here on all is done side by side.
+        run_side_by_side({[&] { attempt(run, [&] { diff = measure(job, *truth, image, run); }); },
+                          [&] { image_hash = hash_of_image(job.params.folder, job.plan); }});
+    }
+    if (run.state == RunState::kDone) {
+        run.image_hash = std::move(image_hash);
+        run_side_by_side({[&] { store_run(job.params.folder, run, diff); },
+                          [&] {
+                              if (job.pictures)
+                                  keep_pictures(run, {image, truth->image, diff}, *job.pictures);
+                          }});
         return run;
     }
+    run.metrics.clear();
     store_failure(job.params.folder, run);
     return run;
 }

@@ -25,11 +25,15 @@ std::optional<std::string> file_hash(const std::string& file) {
     return hash_text(*bytes);
 }
 
-/// The text of DONE: the run's hash, then each file with its own; none where a file is missing.
-std::optional<std::string> done_text(const std::string& folder, const PlannedRun& plan) {
+/// The text of DONE: the run's hash, then each file with its own, of which that of the picture may be known;
+/// none where a file is missing.
+std::optional<std::string> done_text(const std::string& folder, const PlannedRun& plan,
+                                     const std::string& image_hash = "") {
     std::string text = plan.hash + "\n";
     for (const char* name : kFiles) {
-        const std::optional<std::string> hash = file_hash(run_folder(folder, plan.id) + "/" + name);
+        const bool is_known = name == kFiles.front() && !image_hash.empty();
+        const std::optional<std::string> hash =
+            is_known ? image_hash : file_hash(run_folder(folder, plan.id) + "/" + name);
         if (!hash) return std::nullopt;
         text += *hash + " " + name + "\n";
     }
@@ -80,20 +84,27 @@ void clear_run(const std::string& folder, const PlannedRun& plan) {
     remove_file(home + "/DONE");
 }
 
-RunRecord store_run(const std::string& folder, RunRecord run, const Image& image, const Image& diff) {
-    const std::string home = run_folder(folder, run.plan.id);
+double store_image(const std::string& folder, const PlannedRun& plan, const Image& image) {
     const Stopwatch watch;
-    write_exr(home + "/image.exr", image);
-    run.metrics["t_write_s"] = watch.seconds();
+    write_exr(run_folder(folder, plan.id) + "/" + kFiles.front(), image);
+    return watch.seconds();
+}
+
+std::string hash_of_image(const std::string& folder, const PlannedRun& plan) {
+    const std::string file = run_folder(folder, plan.id) + "/" + kFiles.front();
+    const std::optional<std::string> hash = file_hash(file);
+    if (!hash) throw OutputError(file, "what was written cannot be read back");
+    return *hash;
+}
+
+void store_run(const std::string& folder, const RunRecord& run, const Image& diff) {
+    const std::string home = run_folder(folder, run.plan.id);
     write_exr(home + "/diff.exr", diff);
-    run.state = RunState::kDone;
     replace_text_file(home + "/metrics.json", run_text(run));
-    const std::optional<std::string> done = done_text(folder, run.plan);
+    const std::optional<std::string> done = done_text(folder, run.plan, run.image_hash);
     if (!done) throw OutputError(home, "what was written cannot be read back");
     replace_text_file(home + "/DONE", *done);
     remove_file(home + "/error.json");
-    run.image_hash = image_hash_in(*done);
-    return run;
 }
 
 void store_failure(const std::string& folder, const RunRecord& run) {

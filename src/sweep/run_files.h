@@ -23,9 +23,16 @@ RunRecord load_run(const std::string& folder, const PlannedRun& plan);
 /// so that who sums up meanwhile does not miss the run. Throws OutputError.
 void clear_run(const std::string& folder, const PlannedRun& plan);
 
-/// Writes the images, metrics.json and last DONE, then forgets an earlier failure; returns the record with
-/// its image_hash. Throws OutputError.
-RunRecord store_run(const std::string& folder, RunRecord run, const Image& image, const Image& diff);
+/// Writes the run's picture and returns the seconds that took. The run is not finished by it. Throws
+/// OutputError.
+double store_image(const std::string& folder, const PlannedRun& plan, const Image& image);
+
+/// The hash of the picture that store_image wrote. Throws OutputError where it cannot be read back.
+std::string hash_of_image(const std::string& folder, const PlannedRun& plan);
+
+/// Writes the difference, metrics.json and last DONE, then forgets an earlier failure. `run.image_hash` is
+/// hash_of_image. Throws OutputError.
+void store_run(const std::string& folder, const RunRecord& run, const Image& diff);
 
 /// Writes error.json. Throws OutputError.
 void store_failure(const std::string& folder, const RunRecord& run);

@@ -86,7 +86,7 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"OpenEXR/", {"src/image/exr_"}},
     {"Imf", {"src/image/exr_"}},
     {"Iex", {"src/image/exr_"}},
-    {"isa-l/", {"src/image/exr_chunk.cpp"}},
+    {"isa-l/", {"src/image/zlib_stream.cpp"}},
     {"png.h", {"src/image/png_file.cpp"}},
     {"embree", {"src/intersect/"}},
     {"CLI/", {"src/terminal/parse.cpp"}},
