@@ -24,9 +24,10 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/trilens-config-version.cm
 install(FILES ${PROJECT_BINARY_DIR}/trilens-config.cmake ${PROJECT_BINARY_DIR}/trilens-config-version.cmake
   DESTINATION ${package_folder})
 
-set(pc_library trilens)
+# The program stands on the core: a client calls functions of both, so both are named.
+set(pc_libraries "-ltrilens -ltrilens_core")
 if(TRILENS_CORE_ONLY)
-  set(pc_library trilens_core)
+  set(pc_libraries "-ltrilens_core")
 endif()
 configure_file(${CMAKE_CURRENT_LIST_DIR}/trilens.pc.in ${PROJECT_BINARY_DIR}/trilens.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/trilens.pc DESTINATION lib/pkgconfig)

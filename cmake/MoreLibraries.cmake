@@ -1,13 +1,15 @@
 # The libraries beyond the core. Debian 12 and 13 differ in versions and in target names.
 find_package(OpenSubdiv REQUIRED MODULE)  # Debian's own config names a static library that it does not ship
 find_package(nlohmann_json REQUIRED CONFIG)
-find_package(tinyobjloader REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(OpenEXR 3.1 REQUIRED CONFIG)
 find_package(Isal REQUIRED MODULE)
 find_package(PNG REQUIRED)
 find_package(OpenImageIO REQUIRED CONFIG)
 find_package(TinyGLTF REQUIRED CONFIG)
+if(TRILENS_TESTS)
+  find_package(tinyobjloader REQUIRED CONFIG)  # reads OBJ files a second time
+endif()
 
 # Embree 4 (Debian 13) or 3 (Debian 12).
 find_package(embree 4 QUIET CONFIG)

@@ -27,7 +27,8 @@ inline constexpr double kFarthestRoot = 1e100;
 /// parity and every sign change of the polynomial is one root of odd multiplicity. Roots so close that
 /// rounding of the coefficients in their last bit could merge them (a relative distance of about 1e-8, or
 /// 1e-5 for three) may be returned as one multiple root, and an extremum that misses zero by no more than
-/// that may be returned as a double root. Coefficients must be finite.
+/// that may be returned as a double root. None where a coefficient is not
+/// finite.
 RealRoots real_roots(const std::array<double, 4>& c);
 
 }  // namespace trilens

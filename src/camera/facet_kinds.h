@@ -13,10 +13,11 @@ namespace trilens {
 
 /// The kind that a facet's three corner rays make between planes across `axis` (world frame, any length), or,
 /// where that is zero or one of the rays does not go its way, across the mean of their unit directions. None
-/// where the facet has no rays, two of them are one, or they go opposite ways.
+/// where the facet has no rays, two of them are one, or they go opposite ways. Throws
+/// InputError (place "facet") for a facet that the mesh does not have, or whose corners it does not have.
 std::optional<GeneralLinearKind> facet_kind(const RayMesh& mesh, std::size_t facet, const Vec3& axis = {});
 
-/// How many facets of a mesh are of which kind.
+/// How many facets of a mesh are of which kind. What counts them throws InputError as check_ray_mesh does.
 struct FacetKinds {
     std::array<std::size_t, kGeneralLinearKindCount> of_kind{};  // by GeneralLinearKind
     std::size_t without = 0;                                     // of no kind

@@ -36,6 +36,7 @@ FilmAxes make_film_axes(const Placement& look_at, const CameraSite& site) {
 
 void require_film(double width, double height, const CameraSite& site) {
     if (!(width >= 1 && height >= 1)) site.reject("film", "width and height must be at least one pixel");
+    if (!std::isfinite(width) || !std::isfinite(height)) site.reject("film", "width or height is not finite");
 }
 
 }  // namespace trilens

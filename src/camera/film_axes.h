@@ -32,7 +32,7 @@ struct CameraSite {
 /// is not finite.
 FilmAxes make_film_axes(const Placement& look_at, const CameraSite& site = {});
 
-/// Throws InputError (field "film") for a film without pixels.
+/// Throws InputError (field "film") for a film without pixels or without end.
 void require_film(double width, double height, const CameraSite& site = {});
 
 bool is_finite_vector(const Vec3& v);

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <string>
 
-#include "base/check.h"
 #include "base/error.h"
 
 namespace trilens {
@@ -27,7 +26,8 @@ Vec3 linear_part(const Vec4& row) {
 /// The p with rows . p = values, by Cramer's rule.
 Vec3 solve_rows(const Vec3& row_x, const Vec3& row_y, const Vec3& row_z, const Vec3& values) {
     const double determinant = triple(row_x, row_y, row_z);
-    TRILENS_CHECK(determinant != 0, "a linear camera's map must have full rank");
+    if (!(std::fabs(determinant) > 0) || !std::isfinite(determinant))
+        reject("camera", "its map from the world to the film has no inverse");
     return (values.x * cross(row_y, row_z) + values.y * cross(row_z, row_x) +
             values.z * cross(row_x, row_y)) /
            determinant;
@@ -101,11 +101,15 @@ Ray film_ray(const LinearCamera& camera, const Vec2& at) {
 }
 
 RayMesh make_camera_mesh(const LinearCamera& camera, double width, double height, double from) {
-    TRILENS_CHECK(width > 0 && height > 0, "a film has pixels");
+    if (!(width > 0 && height > 0) || !std::isfinite(width) || !std::isfinite(height))
+        reject("film", "width and height must be positive numbers of pixels");
+    if (!std::isfinite(from)) reject("from", "is not finite");
     RayMesh mesh;
     for (const Vec2& corner : {Vec2(0, 0), Vec2(width, 0), Vec2(width, height), Vec2(0, height)}) {
         Ray ray = film_ray(camera, corner);
         if (from != 0) ray.origin += from * ray.direction;
+        if (!is_finite_vector(ray.origin) || !is_finite_vector(ray.direction))
+            reject("camera", "a ray of the film's corners is not finite");
         mesh.rays.push_back(ray);
         mesh.screen.emplace_back(corner, 1);
     }

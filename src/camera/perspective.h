@@ -45,12 +45,15 @@ LinearCamera make_orthographic(const OrthographicParams& params);
 /// Transformations, 1978). Throws as make_orthographic (places "angle", "scale" likewise).
 LinearCamera make_oblique(const ObliqueParams& params);
 
-/// The ray of a film place, pixels from the top left, with a direction of unit depth.
+/// The ray of a film place, pixels from the top left, with a direction of unit depth. Throws InputError
+/// (place "camera") where the camera's map has no inverse, as that of a default LinearCamera.
 Ray film_ray(const LinearCamera& camera, const Vec2& at);
 
 /// The film [0, width] x [0, height] in pixels as two facets with affine screens (w = 1). Each ray's
 /// direction has unit depth along the view axis, so t is the planar depth (the Z layer): from the eye for
 /// perspective, from the plane through `eye` for parallel cameras. Rays begin at the depth `from` there.
+/// Throws InputError: place "film" for a film without pixels, "from" for a depth that is not finite, "camera"
+/// for a camera without finite rays (film_ray).
 RayMesh make_camera_mesh(const LinearCamera& camera, double width, double height, double from = 0);
 
 /// A camera given corner by corner (the thesis' projections are such). One entry per corner, `triangles`

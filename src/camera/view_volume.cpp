@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "base/check.h"
-
 namespace trilens {
 namespace {
 
@@ -53,6 +51,14 @@ Vec3 direction_of_projection(const ViewVolume& volume) {
 Mat4 shear(const ViewVolume& volume) {
     const Vec3 dop = direction_of_projection(volume);
     return of_rows({1, 0, -dop.x / dop.z, 0}, {0, 1, -dop.y / dop.z, 0}, {0, 0, 1, 0}, {0, 0, 0, 1});
+}
+
+/// Throws InputError where the volume is none with two clipping planes, its rays taken as parallel or not.
+void check_clipped(ViewVolume volume, bool parallel) {
+    volume.parallel = parallel;
+    check_view_volume(volume);
+    if (!std::isfinite(volume.front)) CameraSite().reject("front", "a normalising matrix needs this plane");
+    if (!std::isfinite(volume.back)) CameraSite().reject("back", "a normalising matrix needs this plane");
 }
 
 Vec4 row_through(const Vec3& direction, const Vec3& origin) {
@@ -121,7 +127,7 @@ LinearCamera make_view_volume(const ViewVolume& volume, const FilmSize& film, co
 }
 
 Mat4 npar(const ViewVolume& volume) {
-    TRILENS_CHECK(std::isfinite(volume.front) && std::isfinite(volume.back), "npar needs both planes");
+    check_clipped(volume, true);
     const auto& [umin, umax, vmin, vmax] = volume.window;
     const Mat4 t = translation({-0.5 * (umax + umin), -0.5 * (vmax + vmin), -volume.front});
     const Mat4 s = scaling({2 / (umax - umin), 2 / (vmax - vmin), 1 / (volume.front - volume.back)});
@@ -129,7 +135,7 @@ Mat4 npar(const ViewVolume& volume) {
 }
 
 Mat4 nper(const ViewVolume& volume) {
-    TRILENS_CHECK(std::isfinite(volume.front) && std::isfinite(volume.back), "nper needs both planes");
+    check_clipped(volume, false);
     const auto& [umin, umax, vmin, vmax] = volume.window;
     const double vrp_z = -volume.prp.z;  // of the vrp, after the prp has moved to the origin
     const Mat4 s = scaling({2 * vrp_z / ((umax - umin) * (vrp_z + volume.back)),
@@ -138,11 +144,13 @@ Mat4 nper(const ViewVolume& volume) {
 }
 
 double nper_front(const ViewVolume& volume) {
+    check_clipped(volume, false);
     return -(volume.front - volume.prp.z) / (volume.back - volume.prp.z);
 }
 
 Mat4 parallel_from_perspective(double z_min) {
-    TRILENS_CHECK(z_min > -1 && z_min < 0, "the front plane lies between the eye and the back plane");
+    if (!(z_min > -1 && z_min < 0))
+        CameraSite().reject("z_min", "the front plane lies between the eye and the back plane: in (-1, 0)");
     return of_rows({1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1 / (1 + z_min), -z_min / (1 + z_min)}, {0, 0, -1, 0});
 }
 

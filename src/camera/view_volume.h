@@ -26,19 +26,22 @@ struct DepthRange {
 };
 DepthRange depth_range(const ViewVolume& volume);
 
-/// Npar: world to the canonical parallel volume -1 <= x, y <= 1, -1 <= z <= 0 (front plane at z = 0). Needs
-/// finite front and back. S_par T_par SH_par R T(-vrp) (Foley et al., Computer Graphics, section 6.5.1).
+/// Npar: world to the canonical parallel volume -1 <= x, y <= 1, -1 <= z <= 0 (front plane at z = 0). S_par
+/// T_par SH_par R T(-vrp) (Foley et al., Computer Graphics, section 6.5.1). Throws InputError as
+/// check_view_volume does for a parallel volume, and (places "front", "back") where one of the planes is not
+/// finite, as in a default ViewVolume.
 Mat4 npar(const ViewVolume& volume);
 
 /// Nper: world to the canonical perspective volume -z >= |x|, |y|, -1 <= z <= z_min (section 6.5.2).
-/// S_per SH_per T(-prp) R T(-vrp).
+/// S_per SH_per T(-prp) R T(-vrp). Throws as npar, for a perspective volume.
 Mat4 nper(const ViewVolume& volume);
 
-/// z of the front plane after nper, in (-1, 0).
+/// z of the front plane after nper, in (-1, 0). Throws as nper.
 double nper_front(const ViewVolume& volume);
 
 /// From the canonical perspective to the canonical parallel volume, in homogeneous coordinates (section
-/// 6.5.4): what makes one clipper serve both. `z_min`: nper_front.
+/// 6.5.4): what makes one clipper serve both. `z_min`: nper_front. Throws InputError unless it is in
+/// (-1, 0).
 Mat4 parallel_from_perspective(double z_min);
 
 /// The part of a polygon inside the canonical parallel volume -w <= x, y <= w, -w <= z <= 0, corners

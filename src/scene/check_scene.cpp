@@ -3,9 +3,11 @@
 #include <cmath>
 #include <string>
 
+#include "base/check_data.h"
 #include "base/error.h"
 
 namespace trilens {
+static_assert(kLargestCoordinate == kLargestNumber);
 namespace {
 
 bool is_finite(double x) {

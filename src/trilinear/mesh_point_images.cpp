@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "base/box.h"
+#include "base/check_data.h"
+#include "base/error.h"
 #include "base/parallel.h"
 
 namespace trilens {
@@ -34,6 +36,7 @@ Vec3 mean_direction(const RayMesh& mesh, Id facet) {
 }  // namespace
 
 MeshPointImages::MeshPointImages(const RayMesh& mesh) : corners_(mesh.facets), screen_(mesh.screen) {
+    check_ray_mesh(mesh);
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         if (mesh.has_rays(f)) facet_.push_back(static_cast<Id>(f));
     }
@@ -138,6 +141,7 @@ bool MeshPointImages::same_image(const MeshPointImage& a, const MeshPointImage& 
 }
 
 void MeshPointImages::append(const Vec3& point, std::vector<MeshPointImage>& images) const {
+    if (!is_coordinate(point)) throw InputError("", "point", "is not finite, or too large");
     const std::size_t first_new = images.size();
     for (std::uint32_t n = 0; n < node_.size();) {
         const Node& node = node_[n];

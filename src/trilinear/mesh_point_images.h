@@ -33,11 +33,13 @@ struct PointImageLists {
 /// A RayMesh made ready to image points. Copies what it needs.
 class MeshPointImages {
   public:
+    /// Throws InputError as check_ray_mesh does.
     explicit MeshPointImages(const RayMesh& mesh);
 
     /// All images of a world point with t >= 0 inside their facet (borders: see point_images). An image on an
     /// edge or corner that facets share is listed once, with the smallest facet. Images behind the camera
-    /// (screen w <= 0) are left out.
+    /// (screen w <= 0) are left out. Throws InputError for a point that is not finite or beyond
+    /// kLargestNumber (base/check_data.h).
     std::vector<MeshPointImage> images(const Vec3& point) const;
 
     /// The same for many points, in parallel.

@@ -200,7 +200,7 @@ TEST_CASE("the caustic of crossed slits are the slits; of an eye and a flat mirr
 }
 
 TEST_CASE("the command writes caustics as an OBJ, and the shipped one is what it writes", "[laws]") {
-    const std::string folder = ".";
+    const std::string folder = scratch_dir("caustic_of_cup");
     const std::string file = folder + "/caustic_of_cup.obj";
     const CommandRun run =
         run_trilens("render " + cup() +

@@ -19,7 +19,8 @@ void note_skip(const std::string& test, const std::string& why);
 inline std::string source_dir() {
     return TRILENS_SOURCE_DIR;
 }
-/// Cages and models that are not part of the project; may be missing: see data_missing.
+/// Cages and models that are not part of the project, as CMake's TRILENS_DATA_DIR names them; empty or missing
+/// where there are none: see data_missing.
 inline std::string data_dir() {
     return TRILENS_DATA_DIR;
 }
@@ -39,4 +40,4 @@ std::string scratch_dir(const std::string& name);
 
 /// Skips where a file of the outside data is missing.
 #define TRILENS_NEEDS_DATA(relative) \
-    if (trilens_test::data_missing(relative)) TRILENS_SKIP(std::string("needs data/") + (relative))
+    if (trilens_test::data_missing(relative)) TRILENS_SKIP(std::string("needs ") + (relative) + " of TRILENS_DATA_DIR")

@@ -22,7 +22,7 @@ void note_skip(const std::string& test, const std::string& why) {
 }
 
 bool data_missing(const std::string& relative) {
-    return !std::filesystem::exists(data_dir() + "/" + relative);
+    return data_dir().empty() || !std::filesystem::exists(data_dir() + "/" + relative);
 }
 
 std::string scratch_dir(const std::string& name) {

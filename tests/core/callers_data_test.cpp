@@ -1,0 +1,293 @@
+// What callers hand to the core: errors come of it where it is no data, and nothing else does.
+#include "support/callers_data.h"
+
+#include <vector>
+
+#include "camera/camera.h"
+#include "camera/facet_kinds.h"
+#include "camera/view_volume.h"
+#include "core/ray_mesh.h"
+#include "support/test.h"
+#include "trilinear/beam.h"
+#include "trilinear/point_images.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+const std::vector<Vec3> kOddVectors = [] {
+    std::vector<Vec3> all;
+    for (const double x : kOddNumbers) {
+        all.emplace_back(x, 0, 0);
+        all.emplace_back(x);
+        all.emplace_back(1, -2, x);
+    }
+    return all;
+}();
+
+RayMesh film_of_4() {
+    return make_camera_mesh(make_perspective({{}, 40, 4, 4}), 4, 4);
+}
+
+TriangleScene one_triangle() {
+    TriangleScene scene;
+    scene.points = {{-1, -1, -1}, {1, -1, -1}, {0, 1, -1}};
+    scene.triangles = {{0, 1, 2}};
+    scene.object = scene.primitive = {0};
+    return scene;
+}
+
+SurfaceGrid one_facet() {
+    SurfaceGrid grid;
+    grid.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    grid.corner_point = {0, 1, 2};
+    grid.corner_normal = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    grid.facets = {{0, 1, 2}};
+    return grid;
+}
+
+/// RayMeshes that are none, or that only look like it.
+std::vector<RayMesh> odd_meshes() {
+    std::vector<RayMesh> all(1);
+    const auto add = [&](const auto& change) { change(all.emplace_back(film_of_4())); };
+    for (const Vec3& v : kOddVectors) {
+        add([&](RayMesh& mesh) { mesh.rays[0].origin = v; });
+        add([&](RayMesh& mesh) { mesh.rays[1].direction = v; });
+        add([&](RayMesh& mesh) { mesh.screen[2] = v; });
+        add([&](RayMesh& mesh) {
+            for (Ray& ray : mesh.rays) ray = {v, v};
+        });
+    }
+    add([](RayMesh& mesh) { mesh.rays.clear(); });
+    add([](RayMesh& mesh) { mesh.screen.pop_back(); });
+    add([](RayMesh& mesh) { mesh.facets[1] = {0, 1, 99}; });
+    add([](RayMesh& mesh) { mesh.facets[1] = {0, kNone, 1}; });
+    add([](RayMesh& mesh) { mesh.facets[1] = {kNone, kNone, kNone}; });
+    add([](RayMesh& mesh) { mesh.facets[1] = {1, 1, 1}; });
+    return all;
+}
+
+std::vector<CameraDescription> odd_descriptions(CameraType type) {
+    CameraDescription plain;
+    plain.type = type;
+    std::vector<CameraDescription> all{plain};
+    const auto add = [&](const auto& change) { change(all.emplace_back(plain)); };
+    for (const Vec3& v : kOddVectors) {
+        add([&](CameraDescription& c) { c.eye = v; });
+        add([&](CameraDescription& c) { c.up = v; });
+        add([&](CameraDescription& c) { c.travel = v; });
+        add([&](CameraDescription& c) { c.center = v, c.ground_normal = v; });
+        add([&](CameraDescription& c) { c.slits[0] = {v, v}, c.placed_rays[2] = {v, v, {}}; });
+        add([&](CameraDescription& c) { c.points = c.directions = {v, v, v}, c.triangles = {{0, 1, 2}}; });
+        add([&](CameraDescription& c) { c.view_volume.vpn = v; });
+        add([&](CameraDescription& c) { c.view_volume.prp = v; });
+    }
+    for (const double x : kOddNumbers) {
+        add([&](CameraDescription& c) { c.yfov = c.hfov = c.vfov = c.fov = c.context_fov = x; });
+        add([&](CameraDescription& c) { c.ymag = c.scale = c.radius = c.bend = c.blend = x; });
+        add([&](CameraDescription& c) { c.shift = {x, x}, c.angle = x; });
+        add([&](CameraDescription& c) { c.near_depth = x; });
+        add([&](CameraDescription& c) { c.far_depth = x; });
+        add([&](CameraDescription& c) { c.window = c.detail = c.view_volume.window = {x, 1, x, 1}; });
+        add([&](CameraDescription& c) { c.tolerance = x; });
+        add([&](CameraDescription& c) { c.lens.fx = x, c.lens.distortion = {x, x, x, x}; });
+        add([&](CameraDescription& c) { c.view_volume.front = x; });
+    }
+    for (const int n : kOddInts) add([&](CameraDescription& c) { c.facets = n; });
+    add([](CameraDescription& c) { c.lens.distortion = {1}; });
+    add([](CameraDescription& c) { c.screen = {{0, 0}, {1, 0}, {0, 1}}, c.triangles = {{0, 1, 7}}; });
+    add([&](CameraDescription& c) { c.views = {{plain, {1, 0, 0, 0}}, {plain, {kNaN, 0, 1, 1}}}; });
+    for (CameraDescription& c : all)
+        if (c.facets == 0 && c.tolerance == 0) c.facets = 2;
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("a window of samples that is none, or too many, is refused by its name", "[core]") {
+    const RayMesh mesh = film_of_4();
+    const TriangleScene scene = one_triangle();
+    constexpr int kLeast = -2147483647 - 1, kMost = 2147483647;
+    for (const SampleGrid& grid :
+         {SampleGrid{0, 0, 64, 48, 65536}, SampleGrid{0, 0, 50000, 1, 50000}, SampleGrid{0, 0, 1, 1, 46341},
+          SampleGrid{kLeast, 0, kMost, 1, 1}, SampleGrid{0, kLeast, 1, kMost, 1},
+          SampleGrid{0, 0, 65536, 65536, 1}, SampleGrid{0, 0, 0, 0, 1}, SampleGrid{0, 0, 4, 4, 0},
+          SampleGrid{0, 0, 4, 4, -3}, SampleGrid{4, 0, 0, 4, 1}, SampleGrid{kMost - 1, 0, kMost, 1, 1}}) {
+        CAPTURE(grid.x0, grid.y0, grid.x1, grid.y1, grid.side);
+        CHECK(refusal([&] { draw_through(mesh, scene, grid); }).rfind("grid: ", 0) == 0);
+    }
+    CHECK(draw_through(mesh, scene, {0, 0, 4, 4, 3}).size() == 144);
+    // Far from the film there are samples too, which no facet covers.
+    for (const Hit& hit : draw_through(mesh, scene, {-kFarthestPixel, 0, -kFarthestPixel + 2, 2, 1}))
+        CHECK_FALSE(hit.seen());
+}
+
+TEST_CASE("a camera without film or rays is refused, and so are matrices of a volume without planes",
+          "[core]") {
+    const LinearCamera camera = make_perspective({});
+    for (const double size : {0.0, -1.0, kNaN, kInfinity}) {
+        CHECK(refusal([&] { make_camera_mesh(camera, size, 480); }).rfind("film: ", 0) == 0);
+        CHECK(refusal([&] { make_camera_mesh(camera, 4, size); }).rfind("film: ", 0) == 0);
+    }
+    CHECK(refusal([&] { make_camera_mesh(camera, 4, 4, kNaN); }).rfind("from: ", 0) == 0);
+    CHECK(refusal([] { make_camera_mesh({}, 640, 480); }).rfind("camera: ", 0) == 0);
+    CHECK(refusal([] { film_ray({}, {0, 0}); }).rfind("camera: ", 0) == 0);
+    LinearCamera odd = camera;
+    odd.screen_x.x = kNaN;
+    CHECK(refusal([&] { make_camera_mesh(odd, 640, 480); }).rfind("camera: ", 0) == 0);
+
+    const ViewVolume open;
+    CHECK(refusal([&] { npar(open); }).rfind("front: ", 0) == 0);
+    CHECK(refusal([&] { nper(open); }).rfind("front: ", 0) == 0);
+    CHECK(refusal([&] { nper_front(open); }).rfind("front: ", 0) == 0);
+    ViewVolume half;
+    half.front = 0.5;
+    CHECK(refusal([&] { npar(half); }).rfind("back: ", 0) == 0);
+    for (const double z : {-1.0, 0.0, 0.5, kNaN})
+        CHECK(refusal([&] { parallel_from_perspective(z); }).rfind("z_min: ", 0) == 0);
+}
+
+TEST_CASE("meshes that are none are refused wherever rays are looked through", "[core]") {
+    std::size_t refused = 0;
+    for (const RayMesh& mesh : odd_meshes()) {
+        only_errors("draw_through", [&] { draw_through(mesh, one_triangle(), {0, 0, 4, 4, 2}); });
+        only_errors("MeshPointImages", [&] {
+            const MeshPointImages images(mesh);
+            images.images(Vec3(0, 0, -1));
+        });
+        only_errors("facet_kinds", [&] { facet_kinds(mesh); });
+        for (const std::size_t facet : {std::size_t{0}, std::size_t{1}, std::size_t{9}})
+            for (const Vec3& axis : {Vec3(0), Vec3(0, 0, -1), Vec3(kNaN), Vec3(1e308)})
+                only_errors("facet_kind", [&] { facet_kind(mesh, facet, axis); });
+        try {
+            check_ray_mesh(mesh);
+        } catch (const InputError&) {
+            ++refused;
+        }
+    }
+    CHECK(refused > 20);
+    CHECK(refused < odd_meshes().size());
+
+    const MeshPointImages images(film_of_4());
+    for (const Vec3& v : kOddVectors) {
+        only_errors("images", [&] { images.images(v); });
+        only_errors("images of many", [&] { images.images(std::vector<Vec3>{{0, 0, -1}, v}); });
+    }
+    CHECK(refusal([&] { images.images(Vec3(kNaN)); }).rfind("point: ", 0) == 0);
+}
+
+TEST_CASE("triangles and grids that are none are refused", "[core]") {
+    const RayMesh mesh = film_of_4();
+    const LinearCamera camera = make_perspective({});
+    const auto with_scene = [&](const auto& change) {
+        TriangleScene scene = one_triangle();
+        change(scene);
+        only_errors("draw_through", [&] { draw_through(mesh, scene, {0, 0, 4, 4, 1}); });
+    };
+    const auto with_grid = [&](const auto& change) {
+        SurfaceGrid grid = one_facet();
+        change(grid);
+        only_errors("make_mirror_mesh", [&] { make_mirror_mesh(grid, camera); });
+        only_errors("make_lens_mesh", [&] { make_lens_mesh(grid, camera, 1.5); });
+    };
+    for (const Vec3& v : kOddVectors) {
+        with_scene([&](TriangleScene& scene) { scene.points[1] = v; });
+        with_scene([&](TriangleScene& scene) { scene.points = {v, v, v}; });
+        with_grid([&](SurfaceGrid& grid) { grid.points[0] = v; });
+        with_grid([&](SurfaceGrid& grid) { grid.corner_normal[2] = v; });
+    }
+    with_scene([](TriangleScene& scene) { scene = {}; });
+    with_scene([](TriangleScene& scene) { scene.points.clear(); });
+    with_scene([](TriangleScene& scene) { scene.object.clear(); });
+    with_scene([](TriangleScene& scene) { scene.triangles[0][1] = kNone; });
+    with_grid([](SurfaceGrid& grid) { grid = {}; });
+    with_grid([](SurfaceGrid& grid) { grid.corner_point.pop_back(); });
+    with_grid([](SurfaceGrid& grid) { grid.facets[0] = {0, 1, kNone}; });
+    with_grid([](SurfaceGrid& grid) { grid.corner_point[0] = kNone; });
+    for (const double x : kOddNumbers) {
+        only_errors("make_lens_mesh", [&] { make_lens_mesh(one_facet(), camera, x); });
+        LinearCamera odd = camera;
+        odd.screen_w.w = x, odd.eye.x = x, odd.view_direction.z = x;
+        only_errors("make_mirror_mesh", [&] { make_mirror_mesh(one_facet(), odd); });
+        only_errors("make_lens_mesh", [&] { make_lens_mesh(one_facet(), odd, 1.5); });
+    }
+    only_errors("make_mirror_mesh", [&] { make_mirror_mesh(one_facet(), {}); });
+}
+
+TEST_CASE("cameras of numbers that are none are refused or have rays", "[core]") {
+    for (const double x : kOddNumbers) {
+        for (const Vec3& v : kOddVectors) {
+            only_errors("make_perspective", [&] {
+                make_perspective({{v, {}, {0, 1, 0}}, 40, 4, 4, {x, 0}});
+            });
+            only_errors("make_orthographic", [&] { make_orthographic({{v, {}, {0, 1, 0}}, 2, x, 4}); });
+        }
+        only_errors("make_perspective", [&] { make_perspective({{}, x}); });
+        only_errors("make_perspective", [&] { make_perspective({{}, 40, x, x}); });
+        only_errors("make_orthographic", [&] { make_orthographic({{}, x}); });
+        only_errors("make_oblique", [&] { make_oblique({{}, 2, x, x, x, 4}); });
+        only_errors("film_ray", [&] { film_ray(make_perspective({}), {x, -x}); });
+        only_errors("make_film_axes", [&] { make_film_axes({{x, 0, 0}, {0, x, 0}, {x, x, x}}); });
+        only_errors("require_film", [&] { require_film(x, 5); });
+        const std::vector<Vec3> v{{x, 0, 0}, {0, x, 0}, {0, 0, x}};
+        const std::vector<Vec2> s{{x, 0}, {1, x}, {0, 1}};
+        const std::vector<IdTriple> t{{0, 1, 2}}, far{{0, 1, 3}};
+        only_errors("make_ray_mesh", [&] { make_ray_mesh({v, v, s, t}, 4, 4); });
+        only_errors("make_ray_mesh", [&] { make_ray_mesh({v, v, s, far}, 4, x); });
+        only_errors("make_ray_mesh", [&] { make_ray_mesh({v, {}, {}, t}, 4, 4); });
+        only_errors("clip_homogeneous", [&] { clip_homogeneous(std::vector<Vec4>(3, Vec4(x))); });
+    }
+    only_errors("clip_homogeneous", [] { clip_homogeneous({}); });
+    for (const CameraDescription& c : odd_descriptions(CameraType::kViewVolume)) {
+        const ViewVolume& volume = c.view_volume;
+        only_errors("check_view_volume", [&] { check_view_volume(volume); });
+        only_errors("make_view_volume", [&] { make_view_volume(volume, {4, 4}); });
+        only_errors("depth_range", [&] { depth_range(volume); });
+        only_errors("npar", [&] { npar(volume); });
+        only_errors("nper", [&] { nper(volume); });
+    }
+}
+
+TEST_CASE("every kind of camera meets descriptions, films, places and points that are none", "[core]") {
+    only_errors("exact_ray", [] { exact_ray({}, {0, 0}); });
+    only_errors("film_positions", [] { film_positions({}, {0, 0, 0}); });
+    only_errors("facet_kinds", [] { facet_kinds(Camera()); });
+    for (std::size_t k = 0; k < kCameraTypeNames.size(); ++k) {
+        const auto type = static_cast<CameraType>(k);
+        INFO(camera_type_name(type));
+        for (const double x : kOddNumbers) {
+            CameraDescription plain;
+            plain.type = type, plain.facets = 2;
+            only_errors("make_camera", [&] { make_camera(plain, {x, 4}); });
+            only_errors("make_camera", [&] { make_camera(plain, {4, x}); });
+        }
+        for (const CameraDescription& from : odd_descriptions(type)) {
+            only_errors("make_camera", [&] {
+                const Camera camera = make_camera(from, {4, 3});
+                exact_ray(camera, {kNaN, 0});
+                exact_ray(camera, {1e308, -1e308});
+                film_positions(camera, Vec3(kNaN));
+                film_positions(camera, Vec3(1e308, kInfinity, 0));
+                film_positions(camera, from.eye);
+                facet_kinds(camera);
+                if (camera.model) film_spread(*camera.model, {1, kNaN}, 0);
+            });
+        }
+    }
+}
+
+TEST_CASE("facets by themselves answer numbers that are none", "[core]") {
+    for (const Vec3& v : kOddVectors) {
+        const std::array<Ray, 3> rays{Ray{v, {0, 0, 1}}, Ray{{1, 0, 0}, v}, Ray{{0, 1, 0}, {0, 0, 1}}};
+        only_errors("general_linear_camera", [&] { general_linear_camera(rays, {0, 0, 1}); });
+        only_errors("general_linear_camera", [&] { general_linear_camera(rays, v, kNaN); });
+        const Coplanarity facet = make_coplanarity({rays});
+        only_errors("point_images", [&] { point_images(facet, v, {true, true}); });
+        only_errors("point_images", [&] { point_images(facet, {0, 0, 1}); });
+        only_errors("weights", [&] { weights_in_parametric_triangle(facet, v.x, v); });
+        only_errors("may_hold", [&] { may_hold(facet, make_facet_beam(facet), v); });
+        only_errors("ray_spread", [&] { ray_spread({rays[0], rays[1], rays[2]}).roots(); });
+        only_errors("roots", [&] { RaySpread{v.x, v.y, v.z}.roots(); });
+    }
+}

@@ -1,0 +1,37 @@
+"""The shell scripts: what proves something can fail, and packages are asked for by purpose."""
+import re
+import subprocess
+
+import pytest
+
+from conftest import SOURCE
+
+SHELL = [file for file in [*(SOURCE / "scripts").iterdir(), SOURCE / ".ci/run"]
+         if file.is_file() and file.read_bytes().startswith(b"#!/usr/bin/env bash")]
+
+
+@pytest.mark.parametrize("file", SHELL, ids=lambda file: file.name)
+def test_no_command_that_must_fail_is_passed_over(file):
+    """errexit ignores a pipeline with "!" before it: only as a condition does it stop anything."""
+    bare = [line for line in file.read_text().splitlines() if re.match(r"(.*[;&|{(])?\s*!\s", line) and
+            not re.search(r"\b(if|elif|while|until)\s+!\s", line)]
+    assert bare == []
+    assert "set -euo pipefail" in file.read_text()
+
+
+def test_each_package_has_one_purpose():
+    purpose, of_package = None, {}
+    for line in (SOURCE / "scripts/packages.txt").read_text().splitlines():
+        line = line.split("#")[0].strip()
+        if line.startswith("["):
+            purpose = line[1:-1]
+        elif line:
+            assert purpose and line not in of_package
+            of_package[line] = purpose
+    assert set(of_package.values()) == {"program", "tests", "checks"}
+    assert of_package["slurm-wlm"] == of_package["catch2"] == "tests" and of_package["doxygen"] == "checks"
+
+
+def test_a_purpose_that_there_is_not_is_refused():
+    run = subprocess.run([SOURCE / "scripts/install-deps", "nothing"], capture_output=True, text=True)
+    assert run.returncode == 2 and "nothing" in run.stderr
