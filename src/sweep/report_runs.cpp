@@ -1,18 +1,16 @@
 #include "sweep/report_runs.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
 #include "base/file_bytes.h"
-#include "base/files.h"
 #include "base/format.h"
 #include "base/parallel.h"
+#include "sweep/own_files.h"
 #include "sweep/report_words.h"
 #include "sweep/sweep_pictures.h"
 #include "sweep/sweep_plots.h"
@@ -67,21 +65,24 @@ std::size_t bytes_of(const ReportRun& run) {
 }
 
 /// Pictures as files beside the page, which then links them.
-void put_beside(const std::string& folder, const std::string& id, ReportRun& run) {
-    int count = 0;
-    for (PagePicture& picture : run.pictures) {
-        if (picture.png.empty() || !picture.file.empty()) continue;
-        picture.file = fmt::format("pictures/{}-{}.png", id, ++count);
-        replace_file(folder + "/" + picture.file, picture.png);
-        picture.png.clear();
+void put_beside(const std::string& folder, std::span<const RunRecord> runs, std::span<ReportRun> sections,
+                OwnReportFiles& own) {
+    std::vector<std::string> names;
+    std::vector<PagePicture*> pictures;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        int count = 0;
+        for (PagePicture& picture : sections[i].pictures) {
+            if (picture.png.empty() || !picture.file.empty()) continue;
+            names.push_back(fmt::format("{}-{}.png", runs[i].plan.id, ++count));
+            pictures.push_back(&picture);
+        }
     }
-}
-
-/// Of the folder of an earlier, larger report.
-void remove_pictures(const std::string& folder) {
-    std::error_code failure;
-    std::filesystem::remove_all(folder + "/pictures", failure);
-    if (failure) throw OutputError(folder + "/pictures", "cannot be removed: " + failure.message());
+    own.will_write(names);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        pictures[i]->file = "pictures/" + names[i];
+        replace_file(folder + "/" + pictures[i]->file, pictures[i]->png);
+        pictures[i]->png.clear();
+    }
 }
 
 }  // namespace
@@ -89,7 +90,7 @@ void remove_pictures(const std::string& folder) {
 void fill_runs(const SweepSummary& summary, std::size_t most_bytes, Report& report, KeptPictures* kept) {
     const std::vector<RunRecord>& runs = summary.runs;
     report.runs.resize(runs.size());
-    remove_pictures(summary.folder);
+    OwnReportFiles own(summary.folder, "pictures");
     TruthPictures truths(summary.folder);
     std::size_t bytes = 0, embedded = 0;
     for (std::size_t from = 0; from < runs.size(); from += kBatch) {
@@ -104,10 +105,11 @@ void fill_runs(const SweepSummary& summary, std::size_t most_bytes, Report& repo
         });
         for (std::size_t i = from; i < to; ++i) bytes += bytes_of(report.runs[i]);
         if (bytes <= most_bytes) continue;
-        make_folder(summary.folder + "/pictures");
-        for (; embedded < to; ++embedded)
-            put_beside(summary.folder, runs[embedded].plan.id, report.runs[embedded]);
+        put_beside(summary.folder, std::span(runs).subspan(embedded, to - embedded),
+                   std::span(report.runs).subspan(embedded, to - embedded), own);
+        embedded = to;
     }
+    own.remove_others();
     if (const std::size_t missing = summary.count(RunState::kMissing))
         report.warnings.push_back(std::to_string(missing) + " of the runs are not done yet");
     if (const std::size_t failed = summary.count(RunState::kFailed))

@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "sweep/csv.h"
 #include "sweep/fit_runs.h"
+#include "sweep/own_files.h"
 #include "sweep/results_json.h"
 #include "sweep/run_files.h"
 #include "sweep/run_plan.h"
@@ -29,7 +30,9 @@ std::vector<PlannedRun> plan_of(const SweepParams& params, const SweepCallbacks&
     return make_plan(params.axes, callbacks.keys);
 }
 
-FileLock claim(const SweepParams& params, const std::vector<PlannedRun>& plan) {
+FileLock claim(const SweepParams& params, const SweepCallbacks& callbacks,
+               const std::vector<PlannedRun>& plan) {
+    if (callbacks.inputs) require_inputs_apart(params.folder, plan, callbacks.inputs());
     if (params.replace) clear_folder(params.folder);
     return claim_folder(params.folder, {params.subject, params.axes}, plan, params.progress);
 }
@@ -67,12 +70,12 @@ void write_report_files(const SweepSummary& summary, KeptPictures* pictures = nu
 }  // namespace
 
 void plan_sweep(const SweepParams& params, const SweepCallbacks& callbacks) {
-    claim(params, plan_of(params, callbacks));
+    claim(params, callbacks, plan_of(params, callbacks));
 }
 
 SweepSummary run_sweep(const SweepParams& params, const SweepCallbacks& callbacks) {
     const std::vector<PlannedRun> plan = plan_of(params, callbacks);
-    const FileLock user = claim(params, plan);
+    const FileLock user = claim(params, callbacks, plan);
     const bool is_whole = params.shard.count == 1;
     KeptPictures pictures(kMostBytesInPage);
     std::map<std::string, RunRecord> done;

@@ -33,6 +33,8 @@ struct SweepCallbacks {
     std::function<DrawnPicture(const PlannedRun& run)> render;
     std::function<Image(const PlannedRun& run)> trace;  // asked once for all runs of one RunKeys::truth
     std::function<double(const PlannedRun& run)> memory = {};  // bytes that the run needs; empty: none
+    // Files that the points' pictures depend on, asked after the keys of all points; empty: none
+    std::function<std::vector<std::string>()> inputs = {};
 };
 
 struct SweepParams {
@@ -50,7 +52,7 @@ struct SweepParams {
 
 /// Writes manifest.json and plan.jsonl and runs nothing. Throws OutputError, and UsageError where the folder
 /// belongs to another sweep: one of another scene, camera, kind of truth or other axes (their values are
-/// free), or two points have one name.
+/// free), where files that lie there or that are read would be written over, or two points have one name.
 void plan_sweep(const SweepParams& params, const SweepCallbacks& callbacks);
 
 /// Plans, runs what is not finished, then does what report_sweep does. A run whose render throws Error, or

@@ -1,6 +1,5 @@
 #include "sweep/sweep_folder.h"
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -9,6 +8,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/format.h"
+#include "sweep/own_files.h"
 #include "sweep/results_json.h"
 
 namespace trilens {
@@ -17,21 +17,12 @@ namespace {
 
 constexpr const char* kWhatToDo = "choose another folder, or discard what is there with --replace";
 
-// The manifest goes last: until then the folder is known as a sweep's.
-constexpr std::array kWritten = {"report.html", "runs.csv",   "displacement.csv", "summary.json",
-                                 "summary.tex", "plots",      "pictures",         "runs",
-                                 "truth",       "plan.jsonl", "manifest.json"};
-
 std::string manifest_file(const std::string& folder) {
     return folder + "/manifest.json";
 }
 /// Held by every process at work in the folder.
 std::string users_lock(const std::string& folder) {
     return folder + "/lock";
-}
-/// Held while the manifest is read and written.
-std::string plan_lock(const std::string& folder) {
-    return folder + "/plan.lock";
 }
 
 bool is_there(const fs::path& file) {
@@ -70,6 +61,7 @@ void require_free(const std::string& folder, const SweepManifest& manifest) {
         if (const std::optional<std::string> below = sweep_below(folder))
             throw UsageError(fmt::format("{} holds a gallery of sweeps ({} is one); choose another folder",
                                          folder, *below));
+        require_no_foreign_files(folder);
         return;
     }
     std::optional<SweepManifest> owner;
@@ -85,6 +77,10 @@ void require_free(const std::string& folder, const SweepManifest& manifest) {
 
 }  // namespace
 
+std::string plan_lock(const std::string& folder) {
+    return folder + "/plan.lock";
+}
+
 bool is_same_sweep(const SweepManifest& a, const SweepManifest& b) {
     const SweepSubject &one = a.subject, &other = b.subject;
     const bool is_same_scene = scene_name(one) == scene_name(other) ||
@@ -99,10 +95,12 @@ FileLock claim_folder(const std::string& folder, const SweepManifest& manifest,
     FileLock user = FileLock::wait(users_lock(folder), LockKind::kMany, progress);
     const FileLock planner = FileLock::wait(plan_lock(folder), LockKind::kOne, progress);
     require_free(folder, manifest);
+    const bool is_new = !is_there(manifest_file(folder));
     make_folder(folder + "/truth");
     make_folder(folder + "/runs");
     replace_text_file(manifest_file(folder), manifest_text(manifest, plan));
     replace_text_file(folder + "/plan.jsonl", plan_text(plan));
+    if (is_new) begin_report_lists(folder);
     return user;
 }
 
@@ -110,11 +108,13 @@ void clear_folder(const std::string& folder) {
     if (!is_there(manifest_file(folder))) return;
     const std::optional<FileLock> alone = FileLock::try_lock(users_lock(folder), LockKind::kOne);
     if (!alone) throw UsageError(folder + " cannot be replaced: another process is sweeping into it");
-    for (const char* name : kWritten) {
-        std::error_code failure;
-        fs::remove_all(folder + "/" + name, failure);
-        if (failure) throw OutputError(folder + "/" + name, "cannot be removed: " + failure.message());
+    bool is_sweep = true;
+    try {
+        read_manifest(manifest_file(folder));
+    } catch (const InputError&) {
+        is_sweep = false;
     }
+    remove_own_files(folder, is_sweep);
 }
 
 void require_no_sweep(const std::string& folder) {

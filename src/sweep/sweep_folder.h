@@ -16,13 +16,17 @@ bool is_same_sweep(const SweepManifest& a, const SweepManifest& b);
 
 /// Makes the folder the sweep's and writes its manifest and plan. The lock keeps the folder the sweep's until
 /// it is destroyed; other processes of the same sweep share it. Throws UsageError where it holds another
-/// sweep or a gallery of sweeps, InputError where it holds a manifest that cannot be read, OutputError.
+/// sweep or a gallery of sweeps, or files of a sweep's names that are none's, InputError where it holds a
+/// manifest that cannot be read, OutputError.
 FileLock claim_folder(const std::string& folder, const SweepManifest& manifest,
                       const std::vector<PlannedRun>& plan, const Progress& progress);
 
-/// Removes all that sweeps write from a sweep's folder, and nothing else; does nothing to other folders.
-/// Throws UsageError while a process is at work in it, OutputError.
+/// Removes all that sweeps write from a sweep's folder, and nothing else, as remove_own_files does; does
+/// nothing to other folders. Throws UsageError while a process is at work in it, OutputError.
 void clear_folder(const std::string& folder);
+
+/// The file whose lock a process holds while it reads and writes the manifest, or writes the report.
+std::string plan_lock(const std::string& folder);
 
 /// Throws UsageError where the folder is a sweep's own: a gallery would write over its report.
 void require_no_sweep(const std::string& folder);

@@ -3,18 +3,18 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
-#include <set>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "base/files.h"
 #include "base/format.h"
 #include "report/html.h"
+#include "sweep/file_lock.h"
+#include "sweep/own_files.h"
 #include "sweep/plot_groups.h"
 #include "sweep/report_runs.h"
 #include "sweep/report_words.h"
+#include "sweep/sweep_folder.h"
 #include "sweep/sweep_plots.h"
 
 namespace trilens {
@@ -65,32 +65,27 @@ void fill_table(const SweepSummary& summary, Report& report) {
 
 /// The plots as files, without those of an earlier report.
 void write_plots(const SweepSummary& summary, Report& report) {
-    namespace fs = std::filesystem;
     const std::string folder = summary.folder + "/plots";
-    make_folder(folder);
-    std::set<std::string> written;
-    for (const NamedPlot& plot : make_plots(summary)) {
-        const std::string svg = plot_svg(plot.drawing), pdf = plot_pdf(plot.drawing);
+    const std::vector<NamedPlot> plots = make_plots(summary);
+    std::vector<std::string> names;
+    for (const NamedPlot& plot : plots)
+        for (const char* end : {".svg", ".pdf", ".vl.json"}) names.push_back(plot.name + end);
+    OwnReportFiles own(summary.folder, "plots");
+    own.will_write(names);
+    for (const NamedPlot& plot : plots) {
+        const std::string svg = plot_svg(plot.drawing);
         replace_text_file(folder + "/" + plot.name + ".svg", svg);
-        replace_text_file(folder + "/" + plot.name + ".pdf", pdf);
+        replace_text_file(folder + "/" + plot.name + ".pdf", plot_pdf(plot.drawing));
         replace_text_file(folder + "/" + plot.name + ".vl.json", plot.vega_lite);
-        for (const char* end : {".svg", ".pdf", ".vl.json"}) written.insert(plot.name + end);
         report.plots.push_back(svg);
     }
-    std::vector<std::string> stale;
-    std::error_code unreadable;
-    for (fs::directory_iterator entry(folder, unreadable), end; !unreadable && entry != end;
-         entry.increment(unreadable)) {
-        const std::string name = entry->path().filename().string(), kind = entry->path().extension().string();
-        const bool is_plot = kind == ".svg" || kind == ".pdf" || name.ends_with(".vl.json");
-        if (is_plot && written.count(name) == 0) stale.push_back(entry->path().string());
-    }
-    for (const std::string& file : stale) remove_file(file);
+    own.remove_others();
 }
 
 }  // namespace
 
 void write_sweep_report(const SweepSummary& summary, KeptPictures* kept) {
+    const FileLock alone = FileLock::wait(plan_lock(summary.folder), LockKind::kOne, {});
     Report report;
     const SweepSubject& subject = summary.manifest.subject;
     report.title = subject.title.empty() ? "Sweep of " + subject.scene : subject.title;

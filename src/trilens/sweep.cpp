@@ -226,6 +226,11 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk&
     job->callbacks.keys = [at](const Coordinates& point) { return keys_of(*at, point); };
     job->callbacks.render = [at](const PlannedRun& run) { return render(*at, run); };
     job->callbacks.trace = [at](const PlannedRun& run) { return trace(*at, run); };
+    job->callbacks.inputs = [at, file = request.sweep_file] {
+        std::vector<std::string> files = at->subjects->files();
+        if (!file.empty()) files.push_back(file);
+        return files;
+    };
     job->callbacks.memory = [at](const PlannedRun& run) { return memory_of(*at, run); };
     return job;
 }
@@ -241,6 +246,7 @@ SweepRequest read_sweep_file(const std::string& file, SweepRequest request) {
     const SweepFile sweep = read_sweep_file(file);
     const std::string folder = std::filesystem::path(file).parent_path().string();
     request.scenes_folder = folder;
+    request.sweep_file = file;
     request.over = sweep.over;
     const auto is_scenes = [](const AxisRequest& axis) { return axis.axis == "scene"; };
     const bool has_scenes_axis = std::ranges::any_of(sweep.over, is_scenes);

@@ -47,9 +47,11 @@ struct SweepRequest {
     double memory_limit = 0;      // bytes that the runs at work may need together; 0: most of what is free
     std::string folder;
     std::string scenes_folder;  // where scene files that an axis names start; empty: where the program runs
-    bool replace = false;       // starts the folder afresh, whichever sweep it belongs to
-    std::string title;          // of the report; empty: the scene's own name
-    std::string command;        // what makes the sweep again, for the report; may be empty
+    std::string sweep_file;     // that the request was read from; empty: none
+    bool replace = false;  // starts the folder afresh, whichever sweep it belongs to; files that no sweep
+                           // wrote stay
+    std::string title;     // of the report; empty: the scene's own name
+    std::string command;   // what makes the sweep again, for the report; may be empty
 };
 
 /// How a sweep says what it does; both may be empty. `progress`: made for a job of that name.
@@ -64,7 +66,8 @@ struct SweepTalk {
 /// one is another sweep's. Several processes may do one sweep in one folder at once. Throws UsageError for a
 /// text that says no axis, truth or shard, for two points of one name, for an axis that a scene in memory
 /// cannot have, and for a folder that belongs to another sweep (of another scene or other overrides, camera,
-/// truth or axes; the lists of values may differ), InputError where a scene has no optic or cannot be read,
+/// truth or axes; the lists of values may differ) or where files would be written over that no sweep made or
+/// that this one reads, InputError where a scene has no optic or cannot be read,
 /// OutputError, Interrupted.
 SweepSummary run_sweep(const SweepRequest& request, const SweepTalk& talk = {});
 

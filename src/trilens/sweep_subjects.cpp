@@ -1,6 +1,7 @@
 #include "trilens/sweep_subjects.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -27,6 +28,7 @@ SubjectFacts facts_of(const Scene& scene, const PointRequest& request) {
     facts.camera = scene.cameras[find_camera(scene, camera)].name;
     facts.digest = hash_text(scene.resolved + "\n" + scene_digest(scene));
     facts.film = scene.film;
+    for (const FileRead& file : scene.files) facts.files.push_back(file.path);
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         if (scene.meshes[m].role != Role::kOptic) continue;
         facts.optics.push_back({static_cast<Id>(m), scene.meshes[m].name});
@@ -58,6 +60,13 @@ const SubjectFacts& Subjects::facts(const PointRequest& request) {
     const std::lock_guard guard(mutex_);
     warn_once(scene);
     return facts_.emplace(key, std::move(facts)).first->second;
+}
+
+std::vector<std::string> Subjects::files() {
+    const std::lock_guard guard(mutex_);
+    std::set<std::string> files;
+    for (const auto& [key, facts] : facts_) files.insert(facts.files.begin(), facts.files.end());
+    return {files.begin(), files.end()};
 }
 
 std::shared_ptr<const LoadedSubject> Subjects::load(const PointRequest& request) {

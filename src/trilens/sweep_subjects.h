@@ -21,7 +21,8 @@ struct SubjectFacts {
     std::vector<SweptOptic> optics;
     std::string camera;  // the one that is used
     Film film;
-    std::size_t faces = 0;  // of the optics' cages
+    std::size_t faces = 0;           // of the optics' cages
+    std::vector<std::string> files;  // that the scene was read from
 };
 
 /// A renderer with what making it took.
@@ -39,6 +40,9 @@ class Subjects {
     /// Throws as load_scene does, InputError where the scene has no optic, UsageError for its camera.
     const SubjectFacts& facts(const PointRequest& request);
     std::shared_ptr<const LoadedSubject> load(const PointRequest& request);
+
+    /// The files of all scenes whose facts were asked for, each once.
+    std::vector<std::string> files();
 
   private:
     void warn_once(const Scene& scene);
