@@ -12,6 +12,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "measure/flip_colour.h"
 #include "measure/picture_window.h"
 #include "measure/separable_filter.h"
 
@@ -24,70 +25,9 @@ struct FlipWindow {
 
 namespace {
 
-using Colour = std::array<double, 3>;
-using Matrix = std::array<Colour, 3>;
 using Planes = std::array<Plane, 3>;
 
 constexpr std::size_t kPixelsAtOnce = 4096;
-
-// --- Colours: linear sRGB (D65), CIE XYZ, YCxCz (Y, red-green, blue-yellow), L*a*b*
-// ----------------------------------------------------------------------------------------------
-
-constexpr Matrix kXyzOfRgb = {{{10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794},
-                               {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
-                               {1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382}}};
-
-constexpr Colour times(const Matrix& m, const Colour& c) {
-    Colour out{};
-    for (std::size_t i = 0; i < 3; ++i) out[i] = m[i][0] * c[0] + m[i][1] * c[1] + m[i][2] * c[2];
-    return out;
-}
-
-constexpr Matrix inverse(const Matrix& m) {
-    const auto minor_at = [&](std::size_t i, std::size_t j) {
-        const std::size_t a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
-        return m[a][c] * m[b][d] - m[a][d] * m[b][c];
-    };
-    const double determinant = m[0][0] * minor_at(0, 0) + m[0][1] * minor_at(0, 1) + m[0][2] * minor_at(0, 2);
-    Matrix out{};
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) out[i][j] = minor_at(j, i) / determinant;
-    return out;
-}
-
-constexpr Matrix kRgbOfXyz = inverse(kXyzOfRgb);
-constexpr Colour kWhite = times(kXyzOfRgb, {1, 1, 1});
-
-/// The part that L*a*b* and YCxCz share; `v` is relative to white.
-Colour opponent(const Colour& v) {
-    return {116 * v[1] - 16, 500 * (v[0] - v[1]), 200 * (v[1] - v[2])};
-}
-
-Colour relative_to_white(const Colour& rgb) {
-    Colour v = times(kXyzOfRgb, rgb);
-    for (std::size_t i = 0; i < 3; ++i) v[i] /= kWhite[i];
-    return v;
-}
-
-Colour rgb_of_ycxcz(const Colour& c) {
-    const double y = (c[0] + 16) / 116;
-    return times(kRgbOfXyz, {(y + c[1] / 500) * kWhite[0], y * kWhite[1], (y - c[2] / 200) * kWhite[2]});
-}
-
-/// L*a*b* with the chroma weighted by lightness (Hunt: what is dark has less colour).
-Colour hunt_lab(const Colour& rgb) {
-    constexpr double kDelta = 6.0 / 29;
-    Colour v = relative_to_white(rgb);
-    for (double& x : v)
-        x = x > kDelta * kDelta * kDelta ? std::cbrt(x) : x / (3 * kDelta * kDelta) + 4.0 / 29;
-    const Colour lab = opponent(v);
-    return {lab[0], 0.01 * lab[0] * lab[1], 0.01 * lab[0] * lab[2]};
-}
-
-/// HyAB (Abasi, Amani Tehran, Fairchild 2020): city blocks in lightness, straight in chroma.
-double hyab(const Colour& a, const Colour& b) {
-    return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
-}
 
 // --- Filters
 // ----------------------------------------------------------------------------------------------
@@ -183,8 +123,8 @@ Planes opponent_planes(const ColourPicture& picture, const std::vector<std::uint
             const auto shown = [&](float value) {
                 return is_finite[i] ? std::clamp(static_cast<double>(value), 0.0, 1.0) : 0.0;
             };
-            const Colour colour =
-                opponent(relative_to_white({shown(picture.r[i]), shown(picture.g[i]), shown(picture.b[i])}));
+            const Colour colour = ycxcz_of_relative(
+                relative_to_white({shown(picture.r[i]), shown(picture.g[i]), shown(picture.b[i])}));
             for (std::size_t c = 0; c < 3; ++c) planes[c].values[i] = colour[c];
         }
     });
