@@ -17,16 +17,29 @@ std::string reason(int error_number) {
     return std::generic_category().message(error_number);
 }
 
-/// A name that no other process or thread of this machine uses at the same time.
-std::string temporary_name(const std::string& file) {
+struct NewFile {
+    std::string name;
+    std::FILE* stream = nullptr;  // null where none could be made
+    int failed = 0;               // errno then
+};
+
+/// A new file beside `file`. Ids of processes come back, so that a name may be one that a killed process
+/// left: then the next one is tried.
+NewFile make_temporary(const std::string& file) {
     static std::atomic<unsigned> counter{0};
-    return file + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".part";
+    constexpr int kMostTries = 1000;
+    NewFile made;
+    for (int tries = 0; tries < kMostTries && !made.stream; ++tries) {
+        made.name = file + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".part";
+        made.stream = std::fopen(made.name.c_str(), "wbx");
+        made.failed = made.stream ? 0 : errno;
+        if (made.failed != 0 && made.failed != EEXIST) break;
+    }
+    return made;
 }
 
 /// Zero, or the errno of the first step that failed. fclose is a step: a full disk may speak only there.
-int write_all(const std::string& file, std::span<const unsigned char> bytes) {
-    std::FILE* out = std::fopen(file.c_str(), "wbx");
-    if (!out) return errno;
+int write_all(std::FILE* out, std::span<const unsigned char> bytes) {
     int failed = 0;
     if (std::fwrite(bytes.data(), 1, bytes.size(), out) != bytes.size()) failed = errno ? errno : EIO;
     if (std::fclose(out) != 0 && !failed) failed = errno;
@@ -54,16 +67,17 @@ std::string output_target(const std::string& file) {
 
 void replace_file(const std::string& named, std::span<const unsigned char> bytes) {
     const std::string file = output_target(named);
-    const std::string temporary = temporary_name(file);
-    const int write_error = write_all(temporary, bytes);
+    const NewFile temporary = make_temporary(file);
+    if (!temporary.stream) throw OutputError(file, "cannot be written: " + reason(temporary.failed));
+    const int write_error = write_all(temporary.stream, bytes);
     std::error_code rename_error;
     if (!write_error) {
-        std::filesystem::rename(temporary, file, rename_error);
+        std::filesystem::rename(temporary.name, file, rename_error);
         if (!rename_error) return;
     }
 
     std::error_code nothing_more_to_do;
-    std::filesystem::remove(temporary, nothing_more_to_do);
+    std::filesystem::remove(temporary.name, nothing_more_to_do);
     throw OutputError(file,
                       "cannot be written: " + (write_error ? reason(write_error) : rename_error.message()));
 }

@@ -36,6 +36,7 @@ std::optional<std::string> read_whole_file(const std::string& file) {
 }
 
 void make_folder(const std::string& folder) {
+    if (folder.empty()) return;
     std::error_code failure;
     fs::create_directories(folder, failure);
     if (failure) throw OutputError(folder, "cannot be made: " + failure.message());

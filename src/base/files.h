@@ -12,7 +12,7 @@ void replace_text_file(const std::string& file, const std::string& text);
 /// The bytes of `file`; none where it cannot be read.
 std::optional<std::string> read_whole_file(const std::string& file);
 
-/// Makes `folder` and what it lies in. Throws OutputError.
+/// Makes `folder` and what it lies in; the empty name is the current folder, which is there. Throws OutputError.
 void make_folder(const std::string& folder);
 
 /// Removes `file` where it exists. Throws OutputError.

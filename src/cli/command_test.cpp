@@ -14,6 +14,9 @@ Answer run(const SuiteRequest& request, Console& console) {
     console.files().writes(request.junit);
     console.files().writes(request.html);
     SuiteTalk talk;
+    // Scenes are read for their files only where one of them could be lost.
+    if (console.files().has_old_outputs())
+        talk.reads = [&](const std::vector<std::string>& files) { console.files().reads(files); };
     talk.progress = console.progress("tests");
     talk.on_test = [&](const TestResult& test) {
         console.note(fmt::format("{}: {} in {:.2f} s", test.name, test_state_name(test.state), test.seconds));

@@ -6,12 +6,12 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "base/parallel.h"
+#include "base/run_on_threads.h"
 #include "base/stopwatch.h"
 #include "suite/find_tests.h"
 #include "suite/junit.h"
@@ -31,10 +31,7 @@ class SuiteRun {
         const int wanted = params_.jobs > 0 ? params_.jobs : thread_count();
         const std::size_t jobs = std::min(tests_.size(), static_cast<std::size_t>(wanted));
         params_.progress(0);
-        std::vector<std::thread> others;
-        for (std::size_t i = 1; i < jobs; ++i) others.emplace_back([this] { work(); });
-        work();
-        for (std::thread& other : others) other.join();
+        run_on_threads(jobs, [this] { work(); });
         if (failure_) std::rethrow_exception(failure_);
     }
 

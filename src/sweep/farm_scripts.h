@@ -20,8 +20,9 @@ const std::vector<std::string>& farm_systems();
 
 /// The text of a script. Slurm: for sbatch; an array whose parts are requeued where their node fails, and
 /// which hands in the report as a job that follows it. HTCondor: a submit description; the report is a line
-/// to type. GNU parallel: a shell script that does all. Words are quoted for the shell. Throws UsageError for
-/// another system and for less than one part.
+/// to type. GNU parallel: a shell script that does all. Words are quoted for the shell, and what the batch
+/// systems would replace in names is written as they read it back. Throws UsageError for another system, for
+/// less than one part, and for words that a script of the system cannot hold.
 std::string farm_script(const FarmRequest& request);
 
 /// A word as a POSIX shell reads it back.

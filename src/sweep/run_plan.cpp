@@ -7,10 +7,10 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "base/error.h"
+#include "base/run_on_threads.h"
 #include "sweep/do_run.h"
 #include "sweep/file_lock.h"
 #include "sweep/machine.h"
@@ -160,10 +160,7 @@ std::map<std::string, RunRecord> run_plan(const SweepParams& params, const Sweep
     for (const PlannedRun& run : workers.mine) workers.failures[run.id] = failure_stamp(params.folder, run);
 
     params.progress(0);
-    std::vector<std::thread> threads;
-    for (std::size_t job = 1; job < jobs; ++job) threads.emplace_back([&] { workers.work(); });
-    workers.work();
-    for (std::thread& thread : threads) thread.join();
+    run_on_threads(jobs, [&] { workers.work(); });
     if (workers.failure) std::rethrow_exception(workers.failure);
     params.progress(1);
     return std::move(workers.done);

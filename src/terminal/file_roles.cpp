@@ -2,6 +2,7 @@
 
 #include <trilens/error.h>
 #include <trilens/files.h>
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -36,6 +37,12 @@ void FileRoles::writes(const std::string& file) {
         if (is_one_file(output, file))
             throw UsageError("the outputs " + output + " and " + file + " are one file");
     outputs_.push_back(file);
+}
+
+bool FileRoles::has_old_outputs() const {
+    std::error_code failure;
+    return std::ranges::any_of(outputs_,
+                               [&](const std::string& output) { return fs::exists(output, failure); });
 }
 
 }  // namespace trilens

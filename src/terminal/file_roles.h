@@ -18,6 +18,9 @@ class FileRoles {
     /// another output. The empty name and "-" are no files.
     void writes(const std::string& file);
 
+    /// Whether one of the outputs is there already, and so may be an input.
+    bool has_old_outputs() const;
+
     const std::vector<std::string>& inputs() const { return inputs_; }
 
   private:

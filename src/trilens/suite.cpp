@@ -1,9 +1,14 @@
 #include "trilens/suite.h"
 
+#include <cstddef>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <utility>
 
+#include "base/check_output.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "suite/suite.h"
 #include "trilens/compare_inputs.h"
 #include "trilens/render.h"
@@ -21,17 +26,67 @@ EngineChoice engine_of(const RenderTest& test, const std::string& name) {
     }
 }
 
-}  // namespace
+std::size_t camera_of(const RenderTest& test, const Scene& scene) {
+    try {
+        return find_camera(scene, test.camera);
+    } catch (const UsageError& error) {
+        throw InputError(test.folder + "/test.json", "/camera", error.what());
+    }
+}
 
-SuiteScene open_suite_scene(const RenderTest& test, const Progress& progress, const Warn& warn) {
+SceneRequest scene_request(const RenderTest& test) {
     SceneRequest request;
     request.file = test.scene;
     for (const SceneSetting& setting : test.set)
         request.overrides.push_back({setting.pointer, setting.value});
-    Scene scene = load_scene(request);
+    return request;
+}
+
+/// What the test reads. What is wrong with it or its scene, the test itself will say.
+std::vector<std::string> files_of(const std::string& folder) {
+    std::vector<std::string> files = {folder + "/test.json"};
+    try {
+        const RenderTest test = read_render_test(folder);
+        files.insert(files.end(), {test.scene, test.reference});
+        for (const FileRead& file : load_scene(scene_request(test)).files) files.push_back(file.path);
+    } catch (const InputError&) {
+    } catch (const UsageError&) {
+    }
+    return files;
+}
+
+std::vector<std::string> files_of_all(const std::vector<std::string>& folders) {
+    const std::vector<FoundTest> tests = find_tests(folders);
+    std::vector<std::vector<std::string>> of_test(tests.size());
+    parallel_for(tests.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) of_test[i] = files_of(tests[i].folder);
+    });
+    std::vector<std::string> files;
+    for (const std::vector<std::string>& some : of_test) files.insert(files.end(), some.begin(), some.end());
+    return files;
+}
+
+/// A file that is not there yet is nobody's input.
+bool could_be_input(const std::string& output) {
+    std::error_code none;
+    return !output.empty() && std::filesystem::exists(output, none);
+}
+
+void require_outputs_apart(const SuiteRequest& request, const SuiteTalk& talk) {
+    if (!talk.reads && !could_be_input(request.junit) && !could_be_input(request.html)) return;
+    const std::vector<std::string> files = files_of_all(request.folders);
+    if (talk.reads) talk.reads(files);
+    for (const std::string& output : {request.junit, request.html})
+        if (could_be_input(output)) check_writable(output, files);
+}
+
+}  // namespace
+
+SuiteScene open_suite_scene(const RenderTest& test, const Progress& progress, const Warn& warn) {
+    Scene scene = load_scene(scene_request(test));
     if (warn)
         for (const std::string& warning : scene.warnings) warn(warning);
-    const std::size_t camera = find_camera(scene, test.camera);
+    const std::size_t camera = camera_of(test, scene);
     const auto renderer = std::make_shared<const Renderer>(std::move(scene), warn);
     const Progress quiet{{}, progress.cancel};
     return {[renderer, camera, test, quiet, warn](const std::string& engine, int resolution) {
@@ -43,6 +98,7 @@ SuiteScene open_suite_scene(const RenderTest& test, const Progress& progress, co
 }
 
 SuiteResult run_suite(const SuiteRequest& request, const SuiteTalk& talk) {
+    require_outputs_apart(request, talk);
     SuiteParams params;
     params.folders = request.folders;
     params.pattern = request.pattern;

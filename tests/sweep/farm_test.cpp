@@ -106,6 +106,58 @@ TEST_CASE("sweep: scripts name every part once and quote what shells would read"
     CHECK(shell_quoted("/materials/0/ior=1.3,1.5") == "/materials/0/ior=1.3,1.5");
 }
 
+TEST_CASE("sweep: folders with blanks, quotes, % and $ come back from the scripts as they are") {
+    const std::string home = trilens_test::scratch_dir("farm_names");
+    FarmRequest request;
+    request.parts = 2;
+    request.title = "test";
+    request.folder = home + "/it's 50% of $HOME # \"all\"";
+    request.command = {"trilens", "sweep", "run", "a.json", "-o", request.folder};
+    request.report = {"trilens", "sweep", "report", request.folder};
+    const auto text = [&](const char* system) {
+        request.system = system;
+        return farm_script(request);
+    };
+    std::string script = text("slurm");
+    INFO(script);
+    const std::string pattern = home + "/it's 50%% of $HOME # \\\"all\\\"";
+    CHECK(script.find("#SBATCH --output=\"" + pattern + "/slurm-%a.log\"\n") != std::string::npos);
+
+    // The shell's part, run with an sbatch and a trilens that write down their words.
+    fs::create_directories(home + "/bin");
+    for (const char* program : {"sbatch", "trilens"}) {
+        const std::string file = home + "/bin/" + program;
+        replace_text_file(
+            file, "#!/bin/sh\nfor word; do echo \"$word\"; done >>'" + home + "/" + program + ".log'\n");
+        fs::permissions(file, fs::perms::owner_all);
+    }
+    replace_text_file(home + "/script", script);
+    const std::string run = "PATH='" + home +
+                            "/bin':\"$PATH\" SLURM_ARRAY_TASK_ID=0 SLURM_ARRAY_JOB_ID=7 bash '" + home +
+                            "/script'";
+    REQUIRE(std::system(run.c_str()) == 0);
+    const std::string words = read_whole_file(home + "/sbatch.log").value();
+    INFO(words);
+    CHECK(words.find("\n--output=" + home + "/it's 50%% of $HOME # \"all\"/slurm-report.log\n") !=
+          std::string::npos);
+    CHECK(read_whole_file(home + "/trilens.log").value().find("\n" + request.folder + "\n") !=
+          std::string::npos);
+
+    script = text("htcondor");
+    CHECK(script.find("\noutput = " + home +
+                      "/it's 50% of $(DOLLAR)HOME # \"all\"/condor-$(Process).out\n") != std::string::npos);
+    CHECK(script.find("of $(DOLLAR)HOME # \"\"all\"\"' '--threads'") != std::string::npos);
+    CHECK_NOTHROW(text("parallel"));
+
+    request.folder = request.command.back() = "/a\\b";
+    CHECK_THROWS_AS(text("slurm"), UsageError);
+    request.folder = request.command.back() = "/a{}b";
+    CHECK_THROWS_AS(text("parallel"), UsageError);
+    CHECK_NOTHROW(text("slurm"));
+    request.folder = request.command.back() = "/a\nb";
+    for (const std::string& system : farm_systems()) CHECK_THROWS_AS(text(system.c_str()), UsageError);
+}
+
 TEST_CASE("sweep: a sweep file says scenes, axes and truth; what it may not say is refused with its place") {
     const std::string folder = trilens_test::scratch_dir("farm_file"), file = folder + "/sweep.json";
     replace_text_file(file, R"({ "scenes": ["a.json"], "truth": "facets", "zip": true, // a remark
