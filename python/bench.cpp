@@ -66,7 +66,9 @@ void bind_bench(py::module_& module) {
         py::arg("repeat") = 9, py::arg("isa") = "", py::arg("warn") = py::none(),
         "The projector against Embree's packets on the same rays in the same run: those that leave the "
         "scene's optics, or the camera's own where it sees none. isa: \"avx512\", \"avx2\" or \"sse4.2\" "
-        "for both sides; \"\": the best of this machine.");
+        "for both sides; \"\": the best of this machine. repeat: rounds, at least 1. The others: see "
+        "render.\n"
+        "Raises as render does, and UsageError for an instruction set that this machine does not have.");
 }
 
 }  // namespace trilens::python

@@ -61,7 +61,9 @@ void bind_film_camera(py::module_& module) {
     py::class_<Camera>(module, "FilmCamera",
                        "A scene's camera, of any kind, before its film: exact rays and exact places.")
         .def(py::init(&camera_of), py::arg("scene"), py::arg("camera") = "",
-             "camera: its name; \"\": the scene's own. Raises InputError where there is none.")
+             "camera: its name; \"\": the scene's own. Raises UsageError where there is none of that name, "
+             "InputError where\n"
+             "its description is none of a camera.")
         .def_property_readonly(
             "is_linear", [](const Camera& camera) { return camera.linear.has_value(); },
             "Whether straight lines stay straight: perspective and parallel cameras.")
@@ -81,7 +83,9 @@ void bind_film_camera(py::module_& module) {
              "(N, 3);\nNaN where the camera has no ray.")
         .def("project", &images_of, py::arg("points"),
              "Where the film shows world points (N, 3), whatever hides them: a dict of point (which one), x, "
-             "y (pixels)\nand t. A point may have several images, or none.");
+             "y (pixels)\nand t >= 0, between the camera's clipping planes. A point may have several images, "
+             "or "
+             "none; one that\nlies beyond the film is listed only where it is the only one.");
 }
 
 }  // namespace trilens::python

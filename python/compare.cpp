@@ -82,9 +82,9 @@ void bind_metrics(py::module_& module) {
         field("fail", &CompareCounts::fail, "Beyond fail and failrelative."),
         field("warn", &CompareCounts::warn, "Beyond warn."),
         field("hard", &CompareCounts::hard, "Beyond hardfail."),
-        field("nan_ref", &CompareCounts::nan_ref, "With a NaN in any channel of the reference."),
+        field("nan_ref", &CompareCounts::nan_ref, "With a NaN in any float channel of the reference."),
         field("nan_test", &CompareCounts::nan_test, "Likewise, of the test."),
-        field("inf_ref", &CompareCounts::inf_ref, "With an infinity in any channel of the reference."),
+        field("inf_ref", &CompareCounts::inf_ref, "With an infinity in any float channel of the reference."),
         field("inf_test", &CompareCounts::inf_test, "Likewise, of the test."),
         field("masked", &CompareCounts::masked, "Left out by the mask."));
     py::class_<WorstPixel> worst(module, "WorstPixel", "The largest finite difference.");
@@ -139,7 +139,7 @@ void bind_layers(py::module_& module) {
         field("mean_off_folds", &Moved::mean_off_folds, "Mean away from folds of the reference, pixels."),
         field("near_folds", &Moved::near_folds, "Found pixels near such a fold."));
     py::class_<LayerComparison>(module, "LayerComparison", "What one layer of both images shows.")
-        .def_readonly("layer", &LayerComparison::layer, "\"reflect\" or \"refract\".")
+        .def_readonly("layer", &LayerComparison::layer, "\"reflect\", \"refract\" or \"direct\".")
         .def_readonly("seen", &LayerComparison::seen, "None where the images do not tell.")
         .def_property_readonly(
             "displacement",
@@ -254,7 +254,7 @@ void bind_compare(py::module_& module) {
         "failrelative: a failing pixel also differs by this share. allowfailures: pixels that may differ by "
         "any.\n"
         "radius: how far displaced points are looked for, 1..4096 pixels.\n"
-        "Raises InputError where the images cannot be compared.");
+        "Raises InputError where the images cannot be compared, UsageError for thresholds out of range.");
 }
 
 }  // namespace trilens::python

@@ -109,7 +109,9 @@ void bind_explain(RendererClass& renderer) {
         "facet_kind: what the corner rays of the camera's or an optic's facet make among the general linear\n"
         "cameras (Yu and McMillan 2004), as FilmCamera.facet_kinds names them; None where no facet was "
         "used.\n"
-        "engine: \"exact\", \"classic\", \"limit\" or \"facets\". Raises UsageError outside of the film.");
+        "engine: \"exact\", \"classic\", \"envmap\", \"planar\", \"limit\" or \"facets\". Raises UsageError "
+        "outside of "
+        "the\nfilm and for a camera or resolution that there is not, InputError as render does.");
 }
 
 }  // namespace trilens::python

@@ -151,7 +151,8 @@ void bind_image(py::module_& module) {
             "uint32 arrays are ids.\n\n"
             "size: (width, height) of the film in pixels; None: as far as the window reaches.\n"
             "window: (x0, y0, x1, y1) of the film that the arrays cover; None: from its top left.\n"
-            "metadata: texts by names that start with \"trilens:\".")
+            "metadata: texts by names that start with \"trilens:\".\n"
+            "Raises UsageError for arrays of unequal shapes or other types, InputError for what is no image.")
         .def_property_readonly("names", names_of, "The channels' names, in the image's order.")
         .def_property_readonly("size", size_of, "(width, height) of the film, in pixels.")
         .def_property_readonly("window", window_of,
@@ -161,9 +162,12 @@ void bind_image(py::module_& module) {
             "Texts by name (\"trilens:scene\"), as a new dict.")
         .def_property_readonly(
             "statistics", [](const HeldImage& held) { return held.statistics; },
-            "Of an image that was drawn here: optic_pixels, pixels_without_ray, prepare_seconds, "
-            "draw_seconds;\n"
-            "else empty.")
+            "Of an image that was drawn here, else empty. Pixels: optic_pixels, and of these "
+            "pixels_without_ray,\n"
+            "subdivided_pixels (of a part of a facet), traced_pixels and layered_pixels (an optic seen in an "
+            "optic);\n"
+            "projected_facets; predicted_error: pixels, the most that was left; prepare_seconds, "
+            "draw_seconds.")
         .def("rgb", rgb_of, py::arg("layer") = "",
              "The colours R, G, B of a layer (\"\": the beauty) as a new float32 array (height, width, 3),\n"
              "linear Rec.709. Raises KeyError where the image has none.")
@@ -182,7 +186,8 @@ void bind_image(py::module_& module) {
             "tone: \"none\", \"reinhard\" (2002, extended), \"aces\" (Narkowicz's fit) or \"neutral\" "
             "(Khronos).\n"
             "white: the least luminance that \"reinhard\" shows as white.\n"
-            "Raises UsageError for other endings and names, OutputError where the file cannot be written.");
+            "Raises UsageError for other endings and names, InputError for a png without R G B, OutputError "
+            "where the\nfile cannot be written.");
     module.def(
         "count_regions",
         [](const HeldImage& held, std::size_t least) {

@@ -171,7 +171,7 @@ void bind_project(RendererClass& renderer) {
         "  t        along the last ray, in units of its direction (direct: depth along the view axis)\n"
         "  path     \"direct\", \"reflect\" or \"refract\"\n"
         "  optic    index into Renderer.optics; object: its object id; NONE on direct paths\n"
-        "  facet    of the optic's grid; NONE on direct paths\n"
+        "  facet    of the optic's grid, or of the mesh of a rayMesh camera; else NONE on direct paths\n"
         "  length   of the last ray up to the point, scene units\n"
         "  inside   on the film\n"
         "  visible  nothing lies between\n"
@@ -184,7 +184,9 @@ void bind_project(RendererClass& renderer) {
         "many "
         "as the\n"
         "                  longest path of all has, behind step_count of them NONE and \"\"\n"
-        "Raises InputError for points that are not finite.");
+        "Raises InputError for points that are not finite, UsageError for a camera, resolution or search "
+        "that "
+        "there\nis not.");
 }
 
 }  // namespace trilens::python

@@ -115,7 +115,7 @@ void bind_camera(py::module_& module) {
         .def_property_readonly("eye", [](const LinearCamera& camera) { return tuple_of(camera.eye); })
         .def_property_readonly(
             "view_direction", [](const LinearCamera& camera) { return tuple_of(camera.view_direction); },
-            "Unit.")
+            "Unit: the view axis, which is the direction of parallel rays.")
         .def(
             "project",
             [](const LinearCamera& camera, const Doubles& points) {
@@ -161,7 +161,8 @@ void bind_camera(py::module_& module) {
         py::arg("width") = static_cast<int>(orthographic.width),
         py::arg("height") = static_cast<int>(orthographic.height),
         "Parallel rays; the film's middle is at eye. world_height: what the film's height covers, scene "
-        "units.");
+        "units.\n"
+        "Raises InputError where this leaves no camera.");
 }
 
 void bind_makers(py::module_& module) {
@@ -172,13 +173,19 @@ void bind_makers(py::module_& module) {
             return make_camera_mesh(camera, width, height);
         },
         py::arg("camera"), py::arg("width"), py::arg("height"),
-        "The film as two facets; t is the depth along the view axis.");
+        "The film, width x height pixels, as two facets; t is the depth along the view axis. Raises "
+        "InputError "
+        "for\na film without pixels.");
     module.def("mirror_mesh", make_mirror_mesh, py::arg("grid"), py::arg("camera"), released,
-               "What the camera sees in a mirror of this grid; facet f is facet f of the grid.");
+               "What the camera sees in a mirror of this grid; facet f is facet f of the grid. Raises "
+               "InputError for\n"
+               "numbers that are not finite or too large.");
     module.def("lens_mesh", make_lens_mesh, py::arg("grid"), py::arg("camera"), py::arg("ior"), released,
                "What it sees through one interface. ior: the refractive index behind the grid's front over "
                "that before\n"
-               "it. Facets that lie partly in total reflection have no rays (NONE).");
+               "it. Facets that lie partly in total reflection have no rays (NONE). Raises InputError as "
+               "mirror_mesh does, "
+               "and\nfor an ior that is not positive.");
 }
 
 }  // namespace
@@ -191,7 +198,8 @@ void bind_ray_mesh(py::module_& module) {
              "origins, directions: (C, 3), world frame; a direction's length is the unit of t.\n"
              "screen: (C, 2) pixels from the film's top left, or homogeneous (C, 3): (x w, y w, w).\n"
              "facets: (F, 3) corners; NONE NONE NONE for a facet without rays.\n"
-             "Raises InputError where they do not fit together.")
+             "Raises InputError where they do not fit together or hold what is not finite or beyond 1e30, "
+             "UsageError\nfor arrays of other shapes.")
         .def_property_readonly("origins",
                                [](const py::object& self) { return rays_view(self, &Ray::origin); })
         .def_property_readonly("directions",
@@ -205,7 +213,9 @@ void bind_ray_mesh(py::module_& module) {
         .def("images", image_arrays, py::arg("points"),
              "Where world points (N, 3) appear: arrays with one entry per image, in the points' order: "
              "point, x, y\n"
-             "(pixels), t, facet, weights (n, 3) of the facet's corners. Images lie inside their facets.")
+             "(pixels), t, facet, weights (n, 3) of the facet's corners. Images lie inside their facets, at "
+             "t >= 0. Raises\n"
+             "InputError for points that are not finite or beyond 1e30.")
         .def("__repr__", [](const RayMesh& mesh) {
             return "<trilens.RayMesh " + std::to_string(mesh.facets.size()) + " facets>";
         });
@@ -228,7 +238,9 @@ void bind_ray_mesh(py::module_& module) {
         "seen), t (in units of the ray's direction) and barycentric (one axis more, of 2: the weights of "
         "the\n"
         "triangle's second and third corner), NaN where nothing is seen.\n"
-        "Raises InputError where mesh, triangles or window do not fit together.");
+        "Raises InputError where mesh and triangles do not fit together, and for a window without samples, "
+        "with "
+        "more\nthan 2147483647 of them, or with more than this machine's memory holds.");
     bind_camera(module);
     bind_makers(module);
 }

@@ -87,7 +87,7 @@ LayerRequest layer_request(const std::optional<Names>& layers, const std::option
         request = {(*window)[0], (*window)[1], (*window)[2], (*window)[3], {}};
     }
     if (layers) {
-        if (layers->empty()) throw UsageError("no layers are asked for; None asks for all of them");
+        if (layers->empty()) throw UsageError("no layers are asked for; None asks for the usual ones");
         request.layers = *layers;
     }
     return request;
@@ -137,25 +137,29 @@ void bind_pictures(RendererClass& renderer) {
         "camera: by name; None: the scene's own.\n"
         "engine: \"exact\", \"classic\" (the thesis' engine), \"envmap\" or \"planar\" (the usual "
         "approximations).\n"
-        "layers: to keep beside R G B A, of layer_names(); None: all.\n"
+        "layers: to keep beside R G B A, of layer_names(); None: all but \"path\", \"stat\", "
+        "\"magnification\" and\n"
+        "\"position\".\n"
         "window: (x0, y0, x1, y1) of the film in pixels, x1 and y1 outside; None: all of it.\n"
         "curves, clip, pieces, tolerance: of the classic engine: \"arcs\", \"slices\", \"tessellate\" or\n"
         "\"straight\"; \"scene\", \"screen\" or \"none\"; pieces 1..1024; arcs keep within tolerance "
         "pixels.\n"
         "rays: \"fitted\" or \"interpolated\", of every optic; None: as the scene says.\n"
-        "max_error: pixels; facets whose predicted displacement is more are divided, and at last traced; 0: "
-        "none;\n"
-        "None: as the scene says.\n"
+        "max_error: pixels, 0..1000; facets whose predicted displacement is more are divided, and at last\n"
+        "traced; 0: only those off by more than (32 / n)^2 pixels of a film 480 high, and by one; None: as "
+        "the\n"
+        "scene says.\n"
         "seen_optics: \"layers\" (optics seen in mirrors are layers of their own, where they can be) or "
         "\"divided\";\n"
         "None: as the scene says.\n"
         "grid: \"surface\" (n x n facets on each face) or \"screen\" (n x n over each optic's bounds on the "
-        "film).\n"
+        "film);\nNone: as the scene says.\n"
         "progress: called as progress(done, job), done in 0..1; returning False raises Interrupted.\n"
         "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
-        "Raises UsageError for a camera, layer or window that there is not, InputError where the picture "
-        "does not\n"
-        "fit in memory, ComputationError for pixels that are not finite. Ctrl-C stops it: "
+        "Raises UsageError for a camera, layer, window or other value that there is not, InputError where "
+        "the\n"
+        "picture does not fit in memory or the camera cannot show what the scene has, ComputationError for "
+        "pixels that are not finite. Ctrl-C stops it: "
         "KeyboardInterrupt.");
     renderer.def(
         "trace",
@@ -182,7 +186,8 @@ void bind_pictures(RendererClass& renderer) {
         py::arg("seen_optics") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the same scene by ray tracing: the truth.\n\n"
         "surface: \"limit\" (the exact surfaces) or \"facets\" (the rays that render's facets interpolate).\n"
-        "The other arguments, and what is raised, are those of render.");
+        "rays, max_error, grid and seen_optics are about facets: UsageError without surface=\"facets\". The "
+        "other\narguments, and what is raised, are those of render.");
 }
 
 void bind_line_drawing(py::module_& module, RendererClass& renderer) {
@@ -228,7 +233,8 @@ void bind_line_drawing(py::module_& module, RendererClass& renderer) {
         "wire: hidden edges too. folds: the curves too where what an optic shows turns over on the film "
         "(the\n"
         "eye's caustics). caustics: the surfaces too where neighbouring rays that leave an optic meet. The\n"
-        "other arguments are those of render.");
+        "other arguments, and what is raised, are those of render; nothing is divided, so there is no "
+        "max_error.");
 }
 
 void bind_facts(RendererClass& renderer) {
@@ -239,7 +245,7 @@ void bind_facts(RendererClass& renderer) {
         .def_property_readonly("optics", &Renderer::optics, "In scene order.")
         .def_property_readonly("triangle_count", &Renderer::triangle_count, "Of the objects.")
         .def("facet_count", &Renderer::facet_count, py::arg("resolution") = 0,
-             "Of the optics' grids; 0: at the scene's resolutions.")
+             "Of the optics' grids; 0: at the scene's resolutions. Raises UsageError for one beyond 1..1024.")
         .def("digest", &Renderer::digest, py::call_guard<py::gil_scoped_release>(),
              "16 hexadecimal digits of what the scene loaded from all its files: equal digests, equal "
              "pictures of\n"
@@ -291,7 +297,7 @@ void bind_renderer(py::module_& module) {
         py::arg("scene"), py::kw_only(), py::arg("warn") = py::none(),
         "Goes on with another scene, as of an animation's next frame; what is built of meshes that are the "
         "same\nin both stays. Returns what stayed: objects (all of them, or not) and how many optics. Not "
-        "while another\nthread draws.");
+        "while another\nthread draws. Raises as the constructor does, and then nothing has changed.");
     bind_pictures(renderer);
     bind_line_drawing(module, renderer);
     bind_project(renderer);

@@ -4,6 +4,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cmath>
+
 #include "talk.h"
 
 namespace trilens::python {
@@ -68,7 +70,7 @@ void bind_parts(py::module_& module) {
                    : one.filter == FilterKind::kGaussian ? "gaussian"
                                                          : "box";
         },
-        "How samples make a pixel's colour.");
+        "How samples make a pixel's colour: \"box\", \"mitchell\" or \"gaussian\".");
 
     py::class_<CameraDescription>(module, "Camera", "A camera as the scene gives it.")
         .def_readonly("name", &CameraDescription::name)
@@ -195,6 +197,10 @@ void bind_scene(py::module_& module) {
         .def(
             "at_frame",
             [](const Scene& scene, double frame, int frames, const std::string& camera) {
+                if (!std::isfinite(frame)) throw UsageError("a frame is a finite number");
+                if (frames < 0 || frames > kMostFrames || (frames > 0 && std::fabs(frame) > kMostFrames))
+                    throw UsageError("a turntable has 1 to " + std::to_string(kMostFrames) +
+                                     " frames, or 0: none");
                 const std::vector<SceneOverride> turned =
                     frames > 0 ? turntable(scene, find_camera(scene, camera), static_cast<int>(frame), frames)
                                : std::vector<SceneOverride>();
@@ -205,7 +211,9 @@ void bind_scene(py::module_& module) {
             "their\nfirst key and after their last.\n\n"
             "turntable: frames of a whole turn of the camera about what it looks at; 0: it stays.\n"
             "camera: the one that turns; \"\": the scene's own.\n"
-            "Raises UsageError for a scene built in memory, InputError for values that are none.")
+            "Raises UsageError for a frame that is not finite, for a camera that does not turn with what it "
+            "looks at,\nand for a turn of no or more than 100000 frames, InputError for values that are "
+            "none.")
         .def_property_readonly(
             "animation",
             [](const Scene& scene) -> py::object {

@@ -99,7 +99,7 @@ void bind_suite(py::module_& module) {
         "progress: called as progress(done, job); returning False raises Interrupted.\n"
         "A test that cannot be run is an error of its own, and the others go on. Raises InputError for "
         "folders without\n"
-        "tests, UsageError for a pattern that means none.");
+        "tests, UsageError for a pattern that means none, OutputError.");
     module.def(
         "list_suite",
         [](const py::object& folders, const std::string& pattern) {

@@ -117,7 +117,8 @@ void bind_summary(py::module_& module) {
                                         "Displacement of one optic's layer in one run.");
     bind_fields(shift, field("layer", &OpticDisplacement::layer, "\"reflect\" or \"refract\"."),
                 field("optic", &OpticDisplacement::optic, "Its name, or \"all\"."),
-                field("metrics", &OpticDisplacement::metrics, "Values by column name, in pixels."));
+                field("metrics", &OpticDisplacement::metrics,
+                      "Values by column name: pixels, counts of pixels, and disp_coverage, 0..1."));
     py::class_<RunRecord>(module, "SweepRun", "One run of a sweep.")
         .def_property_readonly(
             "n", [](const RunRecord& run) { return run.plan.n(); },
@@ -140,7 +141,8 @@ void bind_summary(py::module_& module) {
         .def_readonly("folder", &SweepSummary::folder)
         .def_property_readonly("title",
                                [](const SweepSummary& summary) { return summary.manifest.subject.title; })
-        .def_readonly("runs", &SweepSummary::runs, "In the order of their resolutions.")
+        .def_readonly("runs", &SweepSummary::runs,
+                      "In the order of the plan: the first axis changes slowest.")
         .def_readonly("fits", &SweepSummary::fits)
         .def("fit", find_fit, py::arg("metric") = "disp_mean_px", py::arg("layer") = "reflect",
              py::arg("optic") = "", py::return_value_policy::reference_internal,
@@ -203,9 +205,10 @@ void bind_sweep(py::module_& module) {
     def_sweep(
         module, "sweep",
         [](const SweepRequest& request, const SweepTalk& talk) { return run_sweep(request, talk); },
-        "Renders, traces once and compares over the optics' resolutions, in a folder that can be resumed: "
-        "what is\n"
-        "done there already is not done again. Sums up with fits, tables, plots and report.html.\n\n"
+        "Renders, traces and compares over the optics' resolutions or any other axes, in a folder that can "
+        "be "
+        "resumed:\n"
+        "what is done there already is not done again. Sums up with fits, tables, plots and report.html.\n\n"
         "scene: a scene file, or a Scene. folder: where the results go.\n"
         "over: resolutions as whole numbers; or axes as text, a list of texts, or a dict: "
         "\"resolution=1,2,4\",\n"
@@ -218,7 +221,9 @@ void bind_sweep(py::module_& module) {
         "camera, overrides, warn: as in load_scene and render.\n"
         "A Scene is known by its label; without one by all that it holds, so that a changed one is another\n"
         "sweep's and raises UsageError in the folder of the first.\n"
-        "A run that fails is recorded (SweepRun.error), and the others go on.");
+        "A run that fails is recorded (SweepRun.error), and the others go on. Raises UsageError for what is "
+        "no "
+        "axis,\ntruth or shard, InputError where a scene has no optic or cannot be read, OutputError.");
     def_sweep(
         module, "plan_sweep",
         [](const SweepRequest& request, const SweepTalk& talk) { return plan_sweep(request, talk); },

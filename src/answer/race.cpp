@@ -15,6 +15,7 @@ Json fields(const BenchResult& bench) {
             {"isa", r.projector_isa},
             {"surface_ms", bench.surface_ms},
             {"rays_ms", bench.rays_ms},
+            {"shade_ms", bench.shade_ms},
             {"projector",
              {{"prepare_ms", r.prepare_ms},
               {"samples_ms", r.samples_ms},
@@ -51,10 +52,10 @@ std::string text(const BenchResult& bench) {
     std::string text = fmt::format(
         "{} pixels through {} facets, {} rays; {} triangles; {} thread{}, {}\n"
         "Embree: {}, packets of {}, coherent, triangles and rays in float\n"
-        "surfaces {:.1f} ms, corner rays and samples {:.1f} ms\n\n",
+        "medians: surfaces {:.1f} ms, corner rays {:.1f} ms, shading of all samples {:.1f} ms\n\n",
         r.pixels, r.facets, bench.direct ? "the camera's own" : "the optics'", r.triangles, r.threads,
         r.threads == 1 ? "" : "s", r.projector_isa, r.embree_configuration, r.rays_at_once, bench.surface_ms,
-        bench.rays_ms);
+        bench.rays_ms, bench.shade_ms);
     text += fmt::format("{:<34} {:>10} {:>10} {:>7}\n", "medians, ms", "projector", "Embree", "ratio");
     text += line("tree", r.prepare_ms, r.build_ms);
     text += line("samples in vectors, rays in packets", r.samples_ms, r.rays_ms);

@@ -31,9 +31,18 @@ void check_sample_grid(const SampleGrid& grid) {
                                      height, side, side, kMostSamples));
 }
 
-void check_ray_mesh(const RayMesh& mesh) {
+void check_facet_corners(const RayMesh& mesh) {
     if (mesh.screen.size() != mesh.rays.size()) throw InputError("", "screen", "needs one entry per ray");
     if (mesh.facets.size() >= kNone) throw InputError("", "facets", "are numbered with 32 bits");
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        if (!mesh.has_rays(f)) continue;
+        for (const Id corner : mesh.facets[f])
+            require(corner < mesh.rays.size(), "facets", f, "has a corner that is none of the mesh");
+    }
+}
+
+void check_ray_mesh(const RayMesh& mesh) {
+    check_facet_corners(mesh);
     for (std::size_t i = 0; i < mesh.rays.size(); ++i) {
         require(is_coordinate(mesh.rays[i].origin) && is_coordinate(mesh.rays[i].direction), "rays", i,
                 kNoNumber);
@@ -41,11 +50,6 @@ void check_ray_mesh(const RayMesh& mesh) {
         const Vec3 size = glm::abs(mesh.screen[i]);
         const double largest = glm::max(glm::max(size.x, size.y), size.z);
         require(largest == 0 || largest >= 1 / kLargestNumber, "screen", i, "is too small");
-    }
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-        if (!mesh.has_rays(f)) continue;
-        for (const Id corner : mesh.facets[f])
-            require(corner < mesh.rays.size(), "facets", f, "has a corner that is none of the mesh");
     }
 }
 

@@ -33,6 +33,10 @@ void check_sample_grid(const SampleGrid& grid);
 /// there is not.
 void check_ray_mesh(const RayMesh& mesh);
 
+/// Throws InputError (place "facets/3", "screen") unless all corners of its facets with rays are there,
+/// whatever numbers they have.
+void check_facet_corners(const RayMesh& mesh);
+
 /// Throws InputError with the place of the first thing that makes them no scene: "object", "primitive" where
 /// there is not one entry per triangle, "points/3" for what is not finite or beyond kLargestNumber,
 /// "triangles/3" for a corner that is no point.

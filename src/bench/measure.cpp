@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/check_data.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -56,6 +57,23 @@ PlaneMeeting meet_plane(const TriangleScene& scene, Id triangle, const Ray& ray)
     return {dot(e2, r) / determinant, std::min({b1, b2, 1 - b1 - b2})};
 }
 
+/// Both sides trust what they draw.
+void check_course(const RaceCourse& course, const RaceParams& params) {
+    if (params.repeats < 1) throw UsageError("a race needs at least one repeat");
+    check_triangle_scene(course.scene);
+    check_sample_grid(course.grid);
+    for (const RaceView& view : course.views) {
+        if (!view.mesh || !view.owned) throw InputError("", "views", "a view has a mesh and samples");
+        check_facet_corners(*view.mesh);
+        const std::vector<std::size_t>& first = view.owned->first;
+        if (first.size() != view.mesh->facets.size() + 1 || first.front() != 0 ||
+            first.back() != view.owned->sample.size() || !std::is_sorted(first.begin(), first.end()))
+            throw InputError("", "views", "samples are grouped by the facets of their mesh");
+        for (const Id sample : view.owned->sample)
+            if (sample >= course.grid.size()) throw InputError("", "views", "a sample is none of the grid");
+    }
+}
+
 /// Both sides' inputs that are made beforehand, and their outputs, for one view.
 struct View {
     const RayMesh& mesh;
@@ -64,18 +82,22 @@ struct View {
     std::vector<RayPacket> packets;
     std::vector<VectorHits> vector_hits;
     std::vector<PacketHits> packet_hits;
-    std::vector<Hit> hits;
-    std::vector<FloatHit> float_hits;
 };
 
-void explain(const RaceCourse& course, const View& view, Mismatches& found) {
+/// Hits by sample, of one view after the other.
+struct SampleHits {
+    std::vector<Hit> ours;
+    std::vector<FloatHit> theirs;
+};
+
+void explain(const RaceCourse& course, const View& view, const SampleHits& hits, Mismatches& found) {
     constexpr double kHair = 1e-3;
     for (std::size_t f = 0; f + 1 < view.owned.first.size(); ++f) {
         if (!view.mesh.has_rays(f)) continue;
         const FacetWeights weights = facet_weights(view.mesh, f);
         for (const Id s : view.owned.of(f)) {
-            const Hit& ours = view.hits[s];
-            const Id theirs = view.float_hits[s].triangle;
+            const Hit& ours = hits.ours[s];
+            const Id theirs = hits.theirs[s].triangle;
             if (ours.triangle == theirs) continue;
             ++found.pixels;
             const Ray ray = sample_ray(view.mesh, f, weights, course.grid.position(s));
@@ -95,13 +117,9 @@ View make_view(const RaceView& view, const SampleGrid& grid, std::size_t triangl
               make_sample_tiles(*view.mesh, *view.owned, grid, tile_params(triangles)),
               make_ray_packets(*view.mesh, *view.owned, grid),
               {},
-              {},
-              {},
               {}};
     made.vector_hits.resize(made.tiles.vectors.size());
     made.packet_hits.resize(made.packets.size());
-    made.hits.resize(grid.size());
-    made.float_hits.resize(grid.size());
     return made;
 }
 
@@ -110,6 +128,7 @@ struct Sides {
     PreparedScene prepared;
     PacketTracer tracer;
     std::vector<View> views;
+    SampleHits hits;
 };
 
 struct Times {
@@ -124,16 +143,16 @@ void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
     };
     const auto draw_written = [&] {
         for (View& v : sides.views)
-            draw_tiles({&data, &data.leaves, &v.mesh, &grid, &v.tiles, v.hits, {}}, {});
+            draw_tiles({&data, &data.leaves, &v.mesh, &grid, &v.tiles, sides.hits.ours, {}}, {});
     };
     const auto draw_whole = [&] {
-        for (View& v : sides.views) trilens::draw(sides.prepared, v.mesh, v.owned, grid, v.hits);
+        for (View& v : sides.views) trilens::draw(sides.prepared, v.mesh, v.owned, grid, sides.hits.ours);
     };
     const auto trace = [&] {
         for (View& v : sides.views) sides.tracer.trace_in_order(v.packets, v.packet_hits);
     };
     const auto trace_written = [&] {
-        for (View& v : sides.views) sides.tracer.trace(v.packets, v.float_hits);
+        for (View& v : sides.views) sides.tracer.trace(v.packets, sides.hits.theirs);
     };
     // There and back, so that a slow change of the machine's speed cancels.
     const double t1 = milliseconds(trace), d1 = milliseconds(draw), d2 = milliseconds(draw),
@@ -168,7 +187,9 @@ Sides make_sides(const RaceCourse& course, const RaceParams& params, RaceResult&
     result.build_ms = median(build);
     result.samples_ms = median(samples);
     result.rays_ms = median(rays);
-    Sides sides{PreparedScene(course.scene), PacketTracer(course.scene, options), {}};
+    Sides sides{PreparedScene(course.scene), PacketTracer(course.scene, options), {}, {}};
+    sides.hits.ours.resize(course.grid.size());
+    sides.hits.theirs.resize(course.grid.size());
     for (const RaceView& v : course.views)
         sides.views.push_back(make_view(v, course.grid, course.scene.size()));
     return sides;
@@ -177,6 +198,7 @@ Sides make_sides(const RaceCourse& course, const RaceParams& params, RaceResult&
 }  // namespace
 
 RaceResult race(const RaceCourse& course, const RaceParams& params) {
+    check_course(course, params);
     RaceResult result;
     result.projector_isa = params.isa.empty() ? kernel_instruction_sets().front() : params.isa;
     const HeldSet held(params.isa);
@@ -201,11 +223,13 @@ RaceResult race(const RaceCourse& course, const RaceParams& params) {
         (result.trace_written_ms + result.build_ms + result.rays_ms) / (result.whole_ms + result.prepare_ms);
     result.slowest_ratio = *std::min_element(times.ratio.begin(), times.ratio.end());
     result.fastest_ratio = *std::max_element(times.ratio.begin(), times.ratio.end());
-    for (const View& view : sides.views) {
+    for (View& view : sides.views) {
         result.facets += view.tiles.rays.size();
         result.pixels += view.owned.sample.size();
-        for (const Id s : view.owned.sample) result.seen += view.hits[s].seen();
-        explain(course, view, result.mismatches);
+        trilens::draw(sides.prepared, view.mesh, view.owned, course.grid, sides.hits.ours);
+        sides.tracer.trace(view.packets, sides.hits.theirs);
+        for (const Id s : view.owned.sample) result.seen += sides.hits.ours[s].seen();
+        explain(course, view, sides.hits, result.mismatches);
     }
     return result;
 }

@@ -57,7 +57,8 @@ struct RaceCourse {
 };
 
 /// All times and counts are sums over the views. Throws UsageError for an instruction set that one of the
-/// sides does not have.
+/// sides does not have and for less than one repeat, InputError where scene, grid and views do not fit
+/// together.
 RaceResult race(const RaceCourse& course, const RaceParams& params);
 
 }  // namespace trilens

@@ -24,6 +24,17 @@ std::string window_of(const Image& image) {
     return text.str();
 }
 
+/// A channel that is shorter than the image would be read beyond its end.
+void require_whole(const Image& image, const std::string& which) {
+    if (image.data_width < 0 || image.data_height < 0)
+        refuse("data window", "the " + which + "'s has no size");
+    for (const Channel& channel : image.channels) {
+        const std::size_t size = channel.is_id() ? channel.ids().size() : channel.floats().size();
+        if (size != image.pixels())
+            refuse(channel.name, "the " + which + "'s channel has not one value per pixel");
+    }
+}
+
 /// "reflectID.object" of "reflect.object", "reflectP.X" of "reflect.X"; other names as they are.
 std::string newer_name(const std::string& name) {
     const std::size_t dot = name.find('.');
@@ -58,6 +69,8 @@ void require_same_channels(const Image& one, const Image& other, const std::stri
 }  // namespace
 
 void require_comparable(const Image& reference, const Image& test) {
+    require_whole(reference, "reference");
+    require_whole(test, "test");
     if (reference.width != test.width || reference.height != test.height)
         refuse("size", "the reference is " + size_of(reference) + ", the test " + size_of(test));
     if (window_of(reference) != window_of(test))

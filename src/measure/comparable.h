@@ -14,7 +14,7 @@ namespace trilens {
 
 /// Throws InputError that names the first difference where the images differ in size, data window, channel
 /// names or channel types (float, id). The order of channels is free, and an older name (see seen_channel) is
-/// the same channel as the newer one.
+/// the same channel as the newer one. Also where a channel has not one value per pixel of the data window.
 void require_comparable(const Image& reference, const Image& test);
 
 /// Per pixel of the data window 1 where it takes part, else 0. Without `mask_object` all do; with it those

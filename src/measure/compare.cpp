@@ -236,6 +236,8 @@ Comparison compare(const Image& reference, const Image& test, const CompareOptio
     require_comparable(reference, test);
     const Mask mask = compared_pixels(reference, test, options.mask_object);
     const std::vector<ChannelPair> channels = channels_of(reference, test, options.layer);
+    if (flip && flip->size() != mask.size())
+        throw InputError("", "flip", "has not one error per pixel of the data window");
 
     Comparison result;
     count_flags(reference, channels, mask, options, result);

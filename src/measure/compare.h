@@ -74,7 +74,8 @@ struct Comparison {
 /// % of the compared ones; else kWarning where warning pixels > warnpercent % of the compared ones; else
 /// kPass. No rule hides another. Throws InputError where the images cannot be compared (see
 /// require_comparable, compared_pixels) or the layer has no R, G and B.
-/// `flip`: the errors of layer_flip for the same images and layer, where they are known.
+/// `flip`: the errors of layer_flip for the same images and layer, where they are known; InputError where
+/// they are not as many as pixels.
 Comparison compare(const Image& reference, const Image& test, const CompareOptions& options = {},
                    const std::vector<float>* flip = nullptr);
 

@@ -12,7 +12,7 @@ namespace trilens {
 
 /// One layer of both images.
 struct LayerComparison {
-    std::string layer;  // "reflect", "refract"
+    std::string layer;  // "reflect", "refract", "direct"
     std::optional<SeenMismatch> seen;
     std::optional<Displacement> displacement;
 };
@@ -21,7 +21,8 @@ struct LayerComparison {
 std::vector<LayerComparison> compare_layers(const Image& reference, const Image& test,
                                             const DisplacementOptions& options = {});
 
-/// Adds the shifts of every layer that shows something to the difference of the same two images (add_shift).
+/// Adds the shifts of every layer that shows something to the difference of the same two images (add_shift,
+/// and its errors).
 void add_shifts(const std::vector<LayerComparison>& layers, Image& difference);
 
 /// Sums over the layers.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/check.h"
+#include "base/error.h"
 #include "measure/comparable.h"
 #include "measure/compare.h"
 
@@ -17,7 +17,10 @@ void add_channel(Image& image, const std::string& name, std::vector<float> value
 }  // namespace
 
 void add_shift(const std::string& layer, const Displacement& displacement, Image& difference) {
-    TRILENS_CHECK(displacement.state.size() == difference.pixels(), "a displacement of the same images");
+    for (const std::size_t size :
+         {displacement.state.size(), displacement.shift_x.size(), displacement.shift_y.size()})
+        if (size != difference.pixels())
+            throw InputError("", layer, "its displacement is of an image of another size");
     std::vector<float> state;
     for (const Shift shift : displacement.state)
         state.push_back(shift == Shift::kFound ? 1.0f : shift == Shift::kLost ? -1.0f : 0.0f);
@@ -47,7 +50,8 @@ Image make_difference(const Image& reference, const Image& test, const Differenc
     }
     add_channel(image, "mask.M", std::vector<float>(mask.begin(), mask.end()));
     if (flip.empty()) flip = layer_flip(reference, test, options.layer);
-    TRILENS_CHECK(flip.size() == mask.size(), "one error per pixel");
+    if (flip.size() != mask.size())
+        throw InputError("", "flip", "has not one error per pixel of the data window");
     for (std::size_t i = 0; i < flip.size(); ++i)
         if (!mask[i]) flip[i] = 0;
     add_channel(image, "flip.Y", std::move(flip));

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "base/error.h"
+
 namespace trilens {
 namespace {
 
@@ -66,6 +68,8 @@ double probability_within(int degrees, double theta) {
 }  // namespace
 
 double student_t(int degrees, double confidence) {
+    if (degrees < 1 || !(confidence > 0 && confidence < 1))
+        throw UsageError("Student's t needs a degree of freedom and a confidence between 0 and 1");
     double low = 0, high = std::numbers::pi / 2;
     for (int i = 0; i < 200 && high - low > 0; ++i) {
         const double middle = (low + high) / 2;

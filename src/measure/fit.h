@@ -42,7 +42,7 @@ std::optional<Fit> fit_power_law(std::span<const FitPoint> points, const FitOpti
 
 /// The value that Student's t of this many degrees of freedom (at least 1) exceeds in size with probability
 /// 1 - confidence, 0 < confidence < 1: 12.706 of 1 and 0.95. By the finite sums of Abramowitz and Stegun
-/// 26.7.3 and 26.7.4.
+/// 26.7.3 and 26.7.4. Throws UsageError for other degrees or confidences.
 double student_t(int degrees, double confidence);
 
 }  // namespace trilens

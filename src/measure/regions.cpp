@@ -9,6 +9,7 @@ namespace trilens {
 namespace {
 
 const std::vector<float>& alpha_of(const Image& image) {
+    if (image.data_width < 0 || image.data_height < 0) throw InputError("", "", "the image has no size");
     const Channel* alpha = image.find("A");
     if (!alpha || alpha->is_id()) throw InputError("", "A", "is no channel of numbers of the image");
     if (alpha->floats().size() != image.pixels()) throw InputError("", "A", "has not one value per pixel");

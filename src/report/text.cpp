@@ -1,6 +1,7 @@
 // Numbers through std::to_chars, which knows no locale; markup with nothing left to interpret.
 #include "report/text.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,7 @@
 namespace trilens {
 namespace {
 
+constexpr int kMostDecimals = 100, kMostDigits = 17;
 constexpr const char* kReplacement = "\xEF\xBF\xBD";  // U+FFFD
 
 /// The length in bytes of the well-formed UTF-8 sequence at the start of `text`; 0 where there is none.
@@ -67,7 +69,7 @@ std::string fixed_text(double value, int decimals) {
     if (!std::isfinite(value)) return shortest_text(value);
     std::array<char, 512> buffer;  // the largest double has 309 digits before the point
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                   std::chars_format::fixed, decimals);
+                                   std::chars_format::fixed, std::clamp(decimals, 0, kMostDecimals));
     std::string text(buffer.data(), end.ptr);
     const bool is_zero = text.find_first_of("123456789") == std::string::npos;
     return is_zero && text[0] == '-' ? text.substr(1) : text;
@@ -78,7 +80,7 @@ std::string rounded_text(double value, int digits) {
     if (value == 0) return "0";
     std::array<char, 64> buffer;
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                   std::chars_format::scientific, digits - 1);
+                                   std::chars_format::scientific, std::clamp(digits, 1, kMostDigits) - 1);
     double rounded = value;
     std::from_chars(buffer.data(), end.ptr, rounded);
     const double magnitude = std::abs(rounded);

@@ -11,11 +11,12 @@ namespace trilens {
 /// The shortest decimal text that reads back as the same double; "nan", "inf", "-inf".
 std::string shortest_text(double value);
 
-/// `value` with `decimals` digits after the point; never "-0.00". Not finite: as shortest_text.
+/// `value` with `decimals` digits (0..100; the nearest of these for others) after the point; never
+/// "-0.00". Not finite: as shortest_text.
 std::string fixed_text(double value, int decimals);
 
-/// `value` rounded to `digits` significant digits, without trailing zeros; with an exponent below 1e-4 and
-/// from 1e6 on. Not finite: as shortest_text.
+/// `value` rounded to `digits` (1..17; the nearest of these for others) significant digits, without trailing
+/// zeros; with an exponent below 1e-4 and from 1e6 on. Not finite: as shortest_text.
 std::string rounded_text(double value, int digits);
 
 /// `text` for XML and HTML, in elements and in quoted attributes: the five special characters become

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/check_data.h"
 #include "base/error.h"
 #include "base/format.h"
 #include "scene/animation_keys.h"
 #include "scene/json_check.h"
 #include "scene/override.h"
 #include "scene/reading.h"
+#include "scene/resolved.h"
 
 namespace trilens {
 namespace {
@@ -35,13 +37,7 @@ Scene with_cameras(const Scene& from, const Json& json, const TextureReader& tex
     return std::move(reading.scene);
 }
 
-}  // namespace
-
-std::optional<AnimationInfo> find_animation(const Scene& scene) {
-    if (scene.resolved.empty()) return std::nullopt;
-    const Json json = Json::parse(scene.resolved);
-    if (!json.contains("animation")) return std::nullopt;
-    const Json& animation = json.at("animation");
+AnimationInfo animation_info(const Json& animation) {
     AnimationInfo info;
     info.fps = animation.value("fps", info.fps);
     bool any = false;
@@ -57,13 +53,22 @@ std::optional<AnimationInfo> find_animation(const Scene& scene) {
     return info;
 }
 
+}  // namespace
+
+std::optional<AnimationInfo> find_animation(const Scene& scene) {
+    if (scene.resolved.empty()) return std::nullopt;
+    const Json json = resolved_json(scene);
+    if (!json.contains("animation")) return std::nullopt;
+    return animation_info(json.at("animation"));
+}
+
 Scene load_frame(const Scene& scene, double frame, std::span<const SceneOverride> changes,
                  const TextureReader& textures) {
     if (scene.resolved.empty())
         throw UsageError("a scene built in memory has no animation: change its values instead");
     if (!std::isfinite(frame)) throw UsageError("a frame is a finite number");
     const std::string title = scene_title(scene);
-    const Json still = Json::parse(scene.resolved);
+    const Json still = resolved_json(scene);
     Json json = still;
     apply_animation(json, frame, title);
     apply_overrides(json, changes, title);
@@ -91,7 +96,9 @@ Scene load_frame(const Scene& scene, double frame, std::span<const SceneOverride
 }
 
 std::vector<SceneOverride> turntable(const Scene& scene, std::size_t camera, int frame, int frames) {
-    const CameraDescription& from = scene.cameras.at(camera);
+    if (camera >= scene.cameras.size()) throw UsageError(fmt::format("there is no camera number {}", camera));
+    if (frames < 1) throw UsageError(fmt::format("a turn takes at least one frame, not {}", frames));
+    const CameraDescription& from = scene.cameras[camera];
     switch (from.type) {
         case CameraType::kRayMesh:
         case CameraType::kViewVolume:
@@ -105,6 +112,8 @@ std::vector<SceneOverride> turntable(const Scene& scene, std::size_t camera, int
             break;
     }
     const Vec3 axis = normalize_or_zero(from.up), arm = from.eye - from.at;
+    if (!is_coordinate(from.eye) || !is_coordinate(from.at))
+        throw UsageError("the camera \"" + from.name + "\" stands or looks where no number is");
     if (axis == Vec3(0)) throw UsageError("the camera \"" + from.name + "\" has no up axis to turn about");
     if (frame == 0) return {};
     const double angle = 2 * std::numbers::pi * frame / frames, c = std::cos(angle), s = std::sin(angle);

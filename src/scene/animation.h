@@ -18,7 +18,8 @@ struct AnimationInfo {
     std::size_t tracks = 0;
 };
 
-/// None where the scene has no animation, or was built in memory.
+/// None where the scene has no animation, or was built in memory. Throws InputError where Scene::resolved is
+/// no scene's JSON.
 std::optional<AnimationInfo> find_animation(const Scene& scene);
 
 /// The scene at a frame, which may lie between whole ones: every animated value as its keys have it, held
@@ -32,7 +33,8 @@ Scene load_frame(const Scene& scene, double frame, std::span<const SceneOverride
                  const TextureReader& textures);
 
 /// What turns a camera about its lookAt's `at` and up axis by 360 * frame / frames degrees, counterclockwise
-/// seen against the axis. Throws UsageError for a camera whose rays do not all go with its lookAt.
+/// seen against the axis. Throws UsageError for a camera that there is not or whose rays do not all go with
+/// its lookAt, and for less than one frame.
 std::vector<SceneOverride> turntable(const Scene& scene, std::size_t camera, int frame, int frames);
 
 }  // namespace trilens

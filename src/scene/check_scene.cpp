@@ -52,7 +52,7 @@ class SceneCheck {
                     3 * static_cast<std::size_t>(texture->width) * static_cast<std::size_t>(texture->height),
                 place, "has not three values per pixel");
     }
-    void object(const ObjectMesh& mesh, const std::string& place) const;
+    void object(const Mesh& whole, const std::string& place) const;
     void optic(const Mesh& mesh, const std::string& place) const;
 
     const Scene& scene_;
@@ -93,7 +93,10 @@ void SceneCheck::lights() const {
     }
 }
 
-void SceneCheck::object(const ObjectMesh& mesh, const std::string& place) const {
+void SceneCheck::object(const Mesh& whole, const std::string& place) const {
+    require(whole.material == kNone || whole.material < scene_.materials.size(), place + "/material",
+            "is no material of the scene");
+    const ObjectMesh& mesh = whole.object;
     const std::size_t count = mesh.triangles.size();
     finite(mesh.points, place + "/points");
     for (std::size_t t = 0; t < count; ++t)
@@ -123,7 +126,7 @@ void SceneCheck::meshes() const {
     for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
         const std::string place = "/meshes/" + std::to_string(m);
         if (scene_.meshes[m].role == Role::kObject)
-            object(scene_.meshes[m].object, place);
+            object(scene_.meshes[m], place);
         else
             optic(scene_.meshes[m], place);
     }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/check_scene.h"
+
 namespace trilens {
 namespace {
 
@@ -71,7 +73,8 @@ MeshInfo make_mesh_info(const Mesh& mesh, const Scene& scene) {
     const std::vector<Vec3>& points = is_object ? mesh.object.points : mesh.cage.points;
     info.points = points.size();
     info.triangles = mesh.object.triangles.size();
-    info.creases = mesh.cage.crease_indices.size() - mesh.cage.crease_lengths.size();
+    info.creases = mesh.cage.crease_indices.size() -
+                   std::min(mesh.cage.crease_indices.size(), mesh.cage.crease_lengths.size());
     info.corners = mesh.cage.corner_indices.size();
     info.holes = mesh.cage.hole_indices.size();
     info.resolution = is_object ? 0 : mesh.resolution;
@@ -99,6 +102,7 @@ MaterialInfo make_material_info(Id index, const Scene& scene) {
 }  // namespace
 
 SceneInfo make_scene_info(const Scene& scene) {
+    check_scene(scene);
     SceneInfo info;
     for (const CameraDescription& camera : scene.cameras) {
         info.cameras.push_back(camera.name);

@@ -42,6 +42,7 @@ struct SceneInfo {
     Box bounds;
 };
 
+/// Throws InputError as check_scene does.
 SceneInfo make_scene_info(const Scene& scene);
 
 }  // namespace trilens

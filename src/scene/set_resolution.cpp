@@ -1,7 +1,7 @@
 #include "scene/set_resolution.h"
 
 #include "base/error.h"
-#include "scene/json.h"
+#include "scene/resolved.h"
 
 namespace trilens {
 
@@ -10,10 +10,11 @@ void set_resolution(Scene& scene, int resolution) {
         throw InputError(scene_title(scene), "/meshes",
                          "a resolution of " + std::to_string(resolution) + " is not in 1.." +
                              std::to_string(kMaxResolution));
+    Json resolved;
+    if (!scene.resolved.empty()) resolved = resolved_json(scene);
     for (Mesh& mesh : scene.meshes)
         if (mesh.role == Role::kOptic) mesh.resolution = resolution;
     if (scene.resolved.empty()) return;
-    Json resolved = Json::parse(scene.resolved);
     for (std::size_t m = 0; m < scene.meshes.size(); ++m)
         if (scene.meshes[m].role == Role::kOptic) resolved["meshes"][m]["resolution"] = resolution;
     scene.resolved = resolved.dump();

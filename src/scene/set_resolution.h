@@ -6,7 +6,7 @@
 namespace trilens {
 
 /// Gives every optic this resolution, in the scene and in its resolved JSON. Throws InputError unless it is
-/// in 1..1024.
+/// in 1..1024, or where Scene::resolved is no scene's JSON; then nothing has changed.
 void set_resolution(Scene& scene, int resolution);
 
 }  // namespace trilens

@@ -183,6 +183,7 @@ std::vector<Coordinates> make_points(const SweepAxes& sweep) {
     for (const Axis& axis : sweep.axes) {
         if (std::ranges::count(names, axis.kind.name) > 0)
             throw UsageError("the axis " + axis.kind.name + " is named twice");
+        if (axis.values.empty()) throw UsageError("the axis " + axis.kind.name + " has no value");
         names.push_back(axis.kind.name);
     }
     std::vector<Coordinates> points(1);

@@ -73,8 +73,8 @@ Axis make_axis(const AxisKind& kind, const AxisRequest& request, const std::stri
 /// The kind of a JSON pointer as an axis: its last part names runs, "/materials/0/ior" "ior".
 AxisKind pointer_kind(const std::string& pointer);
 
-/// The points, in the order of the plan. Throws UsageError for two axes of one name, zipped axes of unequal
-/// length, more than 100000 points.
+/// The points, in the order of the plan. Throws UsageError for an axis without values, two axes of one name,
+/// zipped axes of unequal length, more than 100000 points.
 std::vector<Coordinates> make_points(const SweepAxes& axes);
 
 /// A name for files, from the values: "n0008", "classic_n0008_spp2".

@@ -1,38 +1,90 @@
 #include "trilens/bench.h"
 
-#include <deque>
-#include <utility>
+#include <algorithm>
 
+#include "base/check_data.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/rasterize.h"
 #include "base/stopwatch.h"
+#include "render/check_frame.h"
 #include "render/facet_engine.h"
 #include "render/frame.h"
+#include "render/sample_colour.h"
 #include "render/world.h"
 #include "scene/check_scene.h"
+#include "trilens/view_collector.h"
 
 namespace trilens {
 namespace {
 
-/// Rays that look at the scene, kept.
-struct BenchRays {
-    std::deque<RayMesh> mesh;
-    std::deque<FacetSamples> owned;
-    std::vector<RaceView> views;
+constexpr std::size_t kBandSamples = 1u << 15;
 
-    void add(const RayMesh& rays, const FacetSamples& samples) {
-        if (samples.sample.empty()) return;
-        views.push_back({&mesh.emplace_back(rays), &owned.emplace_back(samples)});
-    }
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+template <typename Work>
+double milliseconds(const Work& work) {
+    const Stopwatch watch;
+    work();
+    return 1000 * watch.seconds();
+}
+
+/// The colours of all samples, which nobody keeps but the sum.
+double shade(const World& world, const SampleViews& views) {
+    std::vector<double> light(views.samples.size());
+    parallel_for(light.size(), 1024, [&](std::size_t first, std::size_t last) {
+        for (std::size_t s = first; s < last; ++s)
+            light[s] = sample_colour(world, views, views.samples[s]).direct.x;
+    });
+    return light.empty() ? 0 : light.front();
+}
+
+/// What a frame is made of, timed; each time from nothing.
+struct Preparation {
+    std::unique_ptr<World> world;
+    Frame frame;
 };
 
-/// All that leave the optics, found by drawing the picture once.
-BenchRays optic_rays(const World& world, const Frame& frame, const SampleGrid& grid) {
-    BenchRays rays;
-    const auto keep = [&](const RayMesh& mesh, const FacetSamples& owned) { rays.add(mesh, owned); };
+Preparation prepare(const Scene& scene, const BenchRequest& request, const Warn& warn, BenchResult& result) {
+    Preparation made;
+    std::vector<double> surface, rays;
+    const int times = std::max(1, request.race.repeats / 3);
+    for (int i = 0; i < times; ++i) {
+        const Warn told = i + 1 == times ? warn : Warn([](const std::string&) {});
+        made.frame = {};
+        Scene copy = scene;
+        surface.push_back(milliseconds([&] { made.world = make_world(std::move(copy), told); }));
+        check_frame(*made.world, request.frame);
+        rays.push_back(milliseconds([&] { made.frame = make_frame(*made.world, request.frame, told); }));
+    }
+    result.surface_ms = median(surface);
+    result.rays_ms = median(rays);
+    return made;
+}
+
+/// Draws the picture band by band: the rays that leave the optics are collected, the shading is timed.
+void draw_bands(const Preparation& made, const SampleGrid& film, ViewCollector* collector,
+                const BenchRequest& request, BenchResult& result) {
+    const std::size_t row = static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.side) *
+                            static_cast<std::size_t>(film.side);
+    const int rows = static_cast<int>(std::max<std::size_t>(1, kBandSamples / row));
+    std::vector<double> shading(static_cast<std::size_t>(std::max(1, request.race.repeats / 3)), 0);
+    SampleGrid band = film;
+    const auto keep = [&](const RayMesh& mesh, const FacetSamples& owned) {
+        if (collector) collector->add(mesh, owned, band);
+    };
+    const FacetViews facets = make_facet_views(*made.world, made.frame, Engine::kExact, keep);
     SampleViews views;
-    make_facet_views(world, frame, Engine::kExact, keep).viewer(grid, views);
-    return rays;
+    for (int y = film.y0; y < film.y1; y += rows) {
+        band.y0 = y, band.y1 = std::min(y + rows, film.y1);
+        facets.viewer(band, views);
+        for (double& sum : shading) sum += milliseconds([&] { shade(*made.world, views); });
+    }
+    result.shade_ms = median(shading);
 }
 
 }  // namespace
@@ -41,20 +93,17 @@ BenchResult run_bench(Scene scene, const BenchRequest& request, const Warn& warn
     check_scene(scene);
     if (request.race.repeats < 1) throw UsageError("a benchmark needs at least one repeat");
     BenchResult result;
-    const Stopwatch surface_watch;
-    const std::unique_ptr<World> world = make_world(std::move(scene), warn);
-    result.surface_ms = 1000 * surface_watch.seconds();
-
-    const Stopwatch rays_watch;
-    const Frame frame = make_frame(*world, request.frame, warn);
-    const Film& film = world->scene.film;
+    const Preparation made = prepare(scene, request, warn, result);
+    const Film& film = made.world->scene.film;
     const SampleGrid grid{0, 0, film.width, film.height, film.spp};
-    BenchRays rays;
-    if (!frame.optics.empty()) rays = optic_rays(*world, frame, grid);
-    result.direct = rays.views.empty();
-    if (result.direct) rays.add(frame.camera.mesh, rasterize_facets(frame.camera.mesh, grid));
-    result.rays_ms = 1000 * rays_watch.seconds();
-    RaceCourse course{world->objects, rays.views, grid};
+    check_sample_grid(grid);
+
+    ViewCollector collector(grid);
+    draw_bands(made, grid, made.frame.optics.empty() ? nullptr : &collector, request, result);
+    CollectedViews views = collector.take();
+    result.direct = views.meshes.empty();
+    if (result.direct) views.add(made.frame.camera.mesh, rasterize_facets(made.frame.camera.mesh, grid));
+    RaceCourse course{made.world->objects, views.views(), grid};
     result.race = race(course, request.race);
     return result;
 }

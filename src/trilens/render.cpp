@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/format.h"
 #include "image/exr_strips.h"
+#include "render/check_frame.h"
 #include "render/frame.h"
 #include "render/picture.h"
 #include "scene/check_scene.h"
@@ -18,17 +19,6 @@ namespace {
 std::unique_ptr<World> make_checked_world(Scene scene, const Warn& warn) {
     check_scene(scene);
     return make_world(std::move(scene), warn);
-}
-
-void check_frame(const World& world, const FrameParams& frame) {
-    if (frame.camera >= world.scene.cameras.size())
-        throw UsageError(fmt::format("there is no camera number {}; the scene has {}", frame.camera,
-                                     world.scene.cameras.size()));
-    if (frame.resolution < 0 || frame.resolution > kMaxResolution)
-        throw UsageError(fmt::format("a resolution of {} is not in 1..{}", frame.resolution, kMaxResolution));
-    if (frame.max_error && !(*frame.max_error >= 0 && *frame.max_error <= kMostMaxError))
-        throw UsageError(
-            fmt::format("an error of {} pixels is not in 0..{}", *frame.max_error, kMostMaxError));
 }
 
 void check_engine(const EngineChoice& engine) {

@@ -83,8 +83,9 @@ class Renderer {
 
     const Scene& scene() const;
     std::vector<OpticInfo> optics() const;
-    std::size_t triangle_count() const;                 // of the objects
-    std::size_t facet_count(int resolution = 0) const;  // of the optics' grids; 0: at the scene's resolutions
+    std::size_t triangle_count() const;  // of the objects
+    /// Of the optics' grids; 0: at the scene's resolutions. Throws UsageError for one beyond 1..1024.
+    std::size_t facet_count(int resolution = 0) const;
 
     /// Throws what draw would for this camera and resolution, without drawing.
     void check(const FrameParams& frame) const;
@@ -99,18 +100,23 @@ class Renderer {
     EncodedPicture draw_exr(const PictureRequest& request, const Progress& progress = {},
                             const Warn& warn = {}) const;
 
-    /// How one pixel comes about.
+    /// How one pixel comes about. Throws UsageError for a pixel off the film, or a camera, resolution,
+    /// largest error or engine that there is not, InputError where the camera cannot show what the scene has
+    /// or the optics have too many facets to hold.
     PixelExplanation explain(const PictureRequest& request, int x, int y) const;
 
     /// What a hit of an explanation is. Throws UsageError for one that is unset or of another scene.
     SeenTriangle seen_triangle(const Hit& hit) const;
 
     /// Where world points appear: for each point its images, direct and over every optic. Throws InputError
-    /// for points that are not finite.
+    /// for points that are not finite, and where the camera cannot show what the scene has; UsageError for a
+    /// camera, resolution or largest error that there is not.
     std::vector<PointProjection> project(std::span<const Vec3> points,
                                          const ProjectRequest& request = {}) const;
 
-    /// The picture as lines.
+    /// The picture as lines. Throws UsageError for a camera, resolution or largest error that there is not,
+    /// InputError where the camera cannot show what the scene has or the optics have too many facets to hold.
+    /// `warn` is told of what the drawing leaves out.
     LineDrawing draw_lines(const FrameParams& frame, const LineChoice& lines = {},
                            const Warn& warn = {}) const;
 

@@ -1,5 +1,6 @@
 #include "trilens/sweep_axes.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include "base/error.h"
@@ -15,8 +16,15 @@ struct AxisEntry {
     Apply apply;
 };
 
+double number_of(const AxisValue& value) {
+    if (!value.number) throw UsageError("the value \"" + value.text + "\" stands for no number");
+    return *value.number;
+}
+
 int whole(const AxisValue& value) {
-    return static_cast<int>(*value.number);
+    const double number = number_of(value);
+    if (!(std::fabs(number) <= 1e9)) throw UsageError("the value \"" + value.text + "\" is too large");
+    return static_cast<int>(number);
 }
 
 void override_with(const std::string& pointer, const std::string& value, PointRequest& request) {
@@ -88,7 +96,7 @@ const std::vector<AxisEntry>& axis_entries() {
         {{"rays", "", "corner rays", ValueKind::kWord, 0, 0, false, {"fitted", "interpolated"}}, set_rays},
         {{"grid", "", "facets' grid", ValueKind::kWord, 0, 0, false, {"surface", "screen"}}, set_grid},
         {{"max-error", "px", "largest predicted error [px]", ValueKind::kNumber, 0, 1000},
-         [](const auto& v, auto& r) { r.picture.frame.max_error = *v.number; }},
+         [](const auto& v, auto& r) { r.picture.frame.max_error = number_of(v); }},
         {{"size", "", "pixels", ValueKind::kSize, 1, kMostPixels, true}, set_size},
         {{"spp", "spp", "samples per pixel, across", kWhole, 1, kMaxSpp},
          [](const auto& v, auto& r) { override_with("/film/spp", v.text, r); }},

@@ -35,7 +35,8 @@ std::vector<AxisKind> axis_kinds();
 /// nearest name.
 AxisKind find_axis_kind(const std::string& name, const std::string& where);
 
-/// Makes the point of its base: each coordinate in its turn. Throws UsageError.
+/// Makes the point of its base: each coordinate in its turn. Throws UsageError, also for a value without the
+/// number that its axis needs.
 PointRequest request_at(PointRequest base, const Coordinates& point);
 
 /// The point's scene. Throws as load_scene does; UsageError where a point would change the text of a scene in

@@ -1,5 +1,7 @@
 #include "trilens/version.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "image/image_io.h"
 #include "intersect/tracer.h"
@@ -16,9 +18,10 @@ std::vector<std::string> library_versions() {
 }
 
 void set_threads(int threads) {
-    set_thread_count(threads);
-    set_tracer_threads(threads);
-    set_image_threads(threads);
+    const int most = std::max(threads, 0);
+    set_thread_count(most);
+    set_tracer_threads(most);
+    set_image_threads(most);
 }
 
 int threads() {

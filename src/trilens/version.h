@@ -18,8 +18,8 @@ std::string version();
 /// The libraries underneath with their versions: ray tracing, surfaces, images.
 std::vector<std::string> library_versions();
 
-/// Limits the threads of everything that follows, in this library and in those underneath; 0 means all that
-/// the machine has. Results do not depend on it.
+/// Limits the threads of everything that follows, in this library and in those underneath; 0, and what is
+/// below, means all that the machine has. Results do not depend on it.
 void set_threads(int threads);
 
 /// How many threads are used now, at least 1.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "base/check_data.h"
+#include "base/error.h"
 #include "camera/ray_spread.h"
 #include "vector/ray_slopes.h"
 
@@ -105,6 +107,9 @@ CausticSheet gather(const CausticParams& params, const std::vector<std::array<Sh
 }  // namespace
 
 std::vector<CausticSheet> caustic_sheets(const CausticParams& params) {
+    check_facet_corners(params.mesh);
+    if (!params.seen.empty() && params.seen.size() != params.mesh.facets.size())
+        throw InputError("", "seen", "has not one entry per facet");
     const std::vector<RaySlope> slopes = corner_slopes(params.mesh);
     std::vector<std::array<SheetCorner, 2>> corners(slopes.size());
     for (std::size_t c = 0; c < corners.size(); ++c)

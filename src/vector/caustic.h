@@ -31,6 +31,7 @@ inline constexpr double kFarCaustic = 10;
 /// at the corners (ray_slopes.h), so of second order in the facets' size inside of the mesh and of first at
 /// its border. Complex roots that rounding or the facets' size may have made of a double one (by a thousandth
 /// of the equation's own terms) count as that. Rays are followed through whatever stands before the caustic.
+/// Throws InputError where `mesh` or `seen` do not fit together.
 std::vector<CausticSheet> caustic_sheets(const CausticParams& params);
 
 }  // namespace trilens

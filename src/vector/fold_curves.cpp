@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/check_data.h"
+#include "base/error.h"
 #include "base/parallel.h"
 #include "vector/ray_slopes.h"
 #include "vector/sample_lattice.h"
@@ -208,6 +210,14 @@ std::vector<FoldCurve> FoldFinder::find() {
 }  // namespace
 
 std::vector<FoldCurve> fold_curves(const FoldView& view) {
+    check_sample_grid(view.grid);
+    check_facet_corners(view.mesh);
+    if (view.facet.size() != view.grid.size())
+        throw InputError("", "facet", "has not one entry per sample of the grid");
+    for (const Id facet : view.facet)
+        if (facet != kNone && facet >= view.mesh.facets.size())
+            throw InputError("", "facet", "names a facet that the mesh does not have");
+    if (!view.first_hit || !view.object_of) throw UsageError("fold curves need to see what rays hit");
     return FoldFinder(view).find();
 }
 

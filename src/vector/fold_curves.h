@@ -34,7 +34,8 @@ struct FoldView {
 /// environment: of the directions') is taken at the samples, each change between neighbours is found to 1e-6
 /// pixels, and neighbours are joined. Between neighbours of different objects, or where the hit jumps (one
 /// part of an object before another), there is none. Curves end up to a sample before the end of what the
-/// mesh shows, and two that are nearer to each other than a sample may be lost.
+/// mesh shows, and two that are nearer to each other than a sample may be lost. Throws InputError where
+/// mesh, grid and facets do not fit together, UsageError without first_hit or object_of.
 std::vector<FoldCurve> fold_curves(const FoldView& view);
 
 }  // namespace trilens

@@ -1,0 +1,516 @@
+// What callers hand to the public functions: errors come of it where it is no data, and nothing else does. A
+// list of every public function keeps the tests whole.
+#include "support/callers_data.h"
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "support/test.h"
+#include "trilens/sweep_subjects.h"
+#include "trilens/trilens.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kOddTexts{"",   "#",   "\xff\xfe", "1e999", "nan",
+                                         "-1", "a/b", "..",       "{",     std::string(3, '\0')};
+
+/// A picture of 4 x 3 with all that comparisons ask for.
+Image small_image() {
+    Image image;
+    image.width = image.data_width = 4;
+    image.height = image.data_height = 3;
+    for (const char* name : {"R", "G", "B", "A", "reflectP.X", "reflectP.Y", "reflectP.Z"})
+        image.channels.push_back({name, std::vector<float>(12, 0.5f)});
+    for (const char* name : {"optic.object", "reflectID.object", "reflectID.primitive"})
+        image.channels.push_back({name, std::vector<Id>(12, 1)});
+    return image;
+}
+
+std::vector<Image> odd_images() {
+    std::vector<Image> all(2);
+    all[0] = Image();
+    all[1] = small_image();
+    const auto add = [&](const auto& change) { change(all.emplace_back(small_image())); };
+    for (const int n : kOddInts) {
+        add([&](Image& image) { image.data_width = n; });
+        add([&](Image& image) { image.data_height = n; });
+        add([&](Image& image) { image.width = n, image.x0 = n; });
+        add([&](Image& image) {
+            image.data_width = n, image.data_height = n, image.width = n, image.height = n;
+        });
+    }
+    for (std::size_t c = 0; c < small_image().channels.size(); ++c) {
+        add([&](Image& image) { image.channels[c].values = std::vector<float>(3); });
+        add([&](Image& image) { image.channels[c].values = std::vector<float>(); });
+        add([&](Image& image) { image.channels[c].values = std::vector<Id>(99, kNone); });
+        add([&](Image& image) {
+            image.channels[c].values = std::vector<float>(12, static_cast<float>(kNaN));
+        });
+        add([&](Image& image) {
+            image.channels[c].values = std::vector<float>(12, static_cast<float>(kInfinity));
+        });
+        add([&](Image& image) {
+            image.channels.erase(image.channels.begin() + static_cast<std::ptrdiff_t>(c));
+        });
+        add([&](Image& image) { image.channels[c].name = "R"; });
+    }
+    return all;
+}
+
+Scene small_scene() {
+    return parse_scene(scene_examples()[0].json, "",
+                       std::vector<SceneOverride>{{"/film/width", "16"}, {"/film/height", "12"}});
+}
+
+PictureRequest picture_of(const FrameParams& frame, const EngineChoice& engine = {}) {
+    PictureRequest request;
+    request.frame = frame;
+    request.engine = engine;
+    return request;
+}
+
+/// Functions that no data of a caller's can end, or that other tests hand what is no data: each with why.
+const std::map<std::string, std::string> kElsewhere{
+    {"explain_pixel", "Renderer::explain"},
+    {"project_points", "Renderer::project"},
+    {"camera_type_name", "of an enumerator"},
+    {"is_linear", "of an enumerator"},
+    {"projects", "of an enumerator"},
+    {"follows_paths", "of an enumerator"},
+    {"state_name", "of an enumerator"},
+    {"path_name", "of an enumerator"},
+    {"event_name", "of an enumerator"},
+    {"corner_rays_name", "of an enumerator"},
+    {"general_linear_kind_name", "of an enumerator"},
+    {"engine_name", "of an enumerator"},
+    {"test_state_name", "of an enumerator"},
+    {"test_state_of", "of an enumerator"},
+    {"run_sweep", "tests/sweep and tests/cli: what a sweep is asked"},
+    {"merge_folders", "tests/sweep"},
+    {"replace_file", "tests/base and tests/image: outputs"},
+    {"output_target", "tests/image: outputs"},
+    {"readable_size", "tests/image: inputs"},
+    {"replace_text_file", "tests/image: outputs"},
+    {"make_folder", "tests/sweep"},
+    {"remove_file", "tests/sweep"},
+};
+
+/// The public headers and those that they include to pass on, as they are installed; what these include again
+/// is theirs alone.
+std::set<std::string> public_headers() {
+    static const std::regex kInclude(R"(^#include <trilens/([\w/]+\.h)>)");
+    const fs::path root = fs::path(TRILENS_BUILD_DIR) / "include" / "trilens";
+    std::set<std::string> headers;
+    for (const auto& entry : fs::directory_iterator(root)) {
+        if (!entry.is_regular_file()) continue;
+        headers.insert(entry.path().string());
+        std::ifstream in(entry.path());
+        std::smatch match;
+        for (std::string line; std::getline(in, line);)
+            if (std::regex_search(line, match, kInclude)) headers.insert((root / match[1].str()).string());
+    }
+    return headers;
+}
+
+/// Names of the functions that they declare outside of types.
+std::set<std::string> public_functions() {
+    static const std::regex kFunction(
+        R"(^(?:inline |constexpr |\[\[noreturn\]\] )*[\w:<>,\s\*&]*?[\w>\*&]\s+[\*&]?(\w+)\()");
+    std::set<std::string> names;
+    for (const std::string& header : public_headers()) {
+        std::ifstream in(header);
+        std::smatch match;
+        for (std::string line; std::getline(in, line);)
+            if (!line.empty() && std::isalpha(static_cast<unsigned char>(line[0])) &&
+                line.find("return") != 0 && std::regex_search(line, match, kFunction))
+                names.insert(match[1]);
+    }
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("every public function meets what is no data", "[trilens]") {
+    std::string tests;
+    for (const char* file : {"/tests/trilens/callers_data_test.cpp", "/tests/core/callers_data_test.cpp"}) {
+        std::ifstream in(source_dir() + file);
+        std::stringstream text;
+        text << in.rdbuf();
+        tests += text.str();
+    }
+    const std::set<std::string> functions = public_functions();
+    CHECK(functions.size() > 90);
+    std::string missing;
+    for (const std::string& name : functions) {
+        const bool called = std::regex_search(tests, std::regex("\\b" + name + "\\("));
+        if (!called && kElsewhere.count(name) == 0) missing += name + " ";
+    }
+    CHECK(missing == "");
+}
+
+TEST_CASE("images that are none are refused by all that takes images", "[trilens]") {
+    const std::string folder = scratch_dir("callers_images");
+    const Image good = small_image();
+    for (const Image& odd : odd_images()) {
+        only_errors("check_image", [&] { check_image(odd); });
+        only_errors("encode_image", [&] { encode_image(odd); });
+        only_errors("encode_image_as", [&] { encode_image_as(odd, ImageFormat::kPng); });
+        only_errors("write_image", [&] { write_image(folder + "/a.exr", odd); });
+        only_errors("write_image_as", [&] { write_image_as(folder + "/a", odd, ImageFormat::kPng); });
+        only_errors("count_regions", [&] { count_regions(odd, 0); });
+        only_errors("keep_common_channels", [&] { keep_common_channels(odd, good); });
+        for (const auto& [a, b] : {std::pair(&good, &odd), std::pair(&odd, &good), std::pair(&odd, &odd)}) {
+            only_errors("compare", [&] { compare(*a, *b); });
+            only_errors("layer_flip", [&] { layer_flip(*a, *b, ""); });
+            only_errors("compare_layers", [&] { compare_layers(*a, *b); });
+            only_errors("compare_seen", [&] { compare_seen(*a, *b, "reflect"); });
+            only_errors("measure_displacement", [&] { measure_displacement(*a, *b, "reflect"); });
+            only_errors("make_difference", [&] { make_difference(*a, *b); });
+        }
+    }
+    const std::vector<float> few(3);
+    CHECK(refusal([&] { compare(good, good, {}, &few); }).rfind("flip: ", 0) == 0);
+    CHECK(refusal([&] { make_difference(good, good, {}, few); }).rfind("flip: ", 0) == 0);
+    Image difference = make_difference(good, good);
+    CHECK(refusal([&] { add_shift("reflect", Displacement(), difference); }).rfind("reflect: ", 0) == 0);
+    LayerComparison layer{"reflect", {}, Displacement()};
+    layer.displacement->coverage = 1;
+    only_errors("add_shifts", [&] { add_shifts({layer}, difference); });
+    only_errors("total_seen", [&] { total_seen({layer, {}}); });
+    only_errors("main_layer", [&] { main_layer({}, "x"); });
+    only_errors("named_metrics", [&] { named_metrics({}, {layer, {}}); });
+    only_errors("broken_limits", [&] { broken_limits({{"x", kNaN}, {"", 0}}, {}); });
+    only_errors("metric_names", [] { metric_names(); });
+    for (const double x : kOddNumbers) {
+        DisplacementOptions options;
+        options.radius = x;
+        only_errors("radius", [&] { compare_layers(good, good, options); });
+        CompareOptions limits;
+        limits.fail = limits.failpercent = limits.warn = limits.hardfail = x;
+        only_errors("limits", [&] { compare(good, good, limits); });
+    }
+}
+
+TEST_CASE("numbers and texts that are none are refused or written", "[trilens]") {
+    for (const double x : kOddNumbers) {
+        for (const int n : kOddInts) {
+            only_errors("fixed_text", [&] { fixed_text(x, n); });
+            only_errors("rounded_text", [&] { rounded_text(x, n); });
+        }
+        only_errors("shortest_text", [&] { shortest_text(x); });
+        const ToneMapping tone{x, ToneCurve::kReinhard, x};
+        only_errors("tone_mapped", [&] { tone_mapped(Vec3(x), tone); });
+        only_errors("check_tone_mapping", [&] { check_tone_mapping(tone); });
+        only_errors("encode_image_as", [&] { encode_image_as(small_image(), ImageFormat::kPng, tone); });
+        only_errors("fit_power_law", [&] {
+            fit_power_law(std::vector<FitPoint>{{x, 1}, {2, x}, {4, 1}, {8, 0.1}}, {x, true});
+        });
+        only_errors("student_t", [&] { student_t(3, x); });
+        only_errors("encode_apng", [&] { encode_apng({}, x); });
+        only_errors("encode_apng", [&] {
+            encode_apng(std::vector<std::vector<unsigned char>>{{}, {1, 2}}, x);
+        });
+    }
+    CHECK(fixed_text(0.5, 1000).size() == 102);
+    CHECK(rounded_text(0.1, 1000) == rounded_text(0.1, 17));
+    for (const int n : {0, -1, -2147483647 - 1}) CHECK_THROWS_AS(student_t(n, 0.95), UsageError);
+    only_errors("fit_power_law", [] { fit_power_law({}); });
+    for (const std::string& text : kOddTexts) {
+        only_errors("tone_curve", [&] { tone_curve(text); });
+        only_errors("escape_markup", [&] { escape_markup(text); });
+        only_errors("json_text", [&] { json_text(text); });
+        only_errors("latex_text", [&] { latex_text(text); });
+        only_errors("suggestion", [&] { suggestion(text, kOddTexts); });
+        only_errors("one_line", [&] { one_line(text); });
+        only_errors("shell_quoted", [&] { shell_quoted(text); });
+        only_errors("parse_point", [&] { parse_point(text); });
+        only_errors("parse_frames", [&] { parse_frames(text); });
+        only_errors("frame_file", [&] { frame_file(text, -2147483647 - 1); });
+        only_errors("find_engine", [&] { find_engine(text); });
+        only_errors("matches_pattern", [&] { matches_pattern(text, text, {text}); });
+        only_errors("has_this_platform", [&] { has_this_platform({text}); });
+        for (const auto& read : std::vector<std::pair<const char*, void (*)(const std::string&)>>{
+                 {"read_points", [](const std::string& f) { read_points(f); }},
+                 {"read_image", [](const std::string& f) { read_image(f); }},
+                 {"read_image_parts", [](const std::string& f) { read_image_parts(f); }},
+                 {"read_compared_image", [](const std::string& f) { read_compared_image(f, f); }},
+                 {"read_whole_file", [](const std::string& f) { read_whole_file(f); }},
+                 {"check_writable", [](const std::string& f) { check_writable(f, {f}); }},
+                 {"load_scene", [](const std::string& f) { load_scene(SceneRequest{f, {}, -1}); }},
+                 {"parse_scene", [](const std::string& f) { parse_scene(f, f, {}, f); }},
+                 {"read_sweep_file", [](const std::string& f) { read_sweep_file(f, {}); }},
+                 {"is_sweep_file", [](const std::string& f) { is_sweep_file(f); }},
+                 {"is_whole_sweep", [](const std::string& f) { is_whole_sweep(f); }},
+                 {"require_no_sweep", [](const std::string& f) { require_no_sweep(f); }},
+                 {"load_sweep", [](const std::string& f) { load_sweep(f); }},
+                 {"list_suite", [](const std::string& f) { list_suite({f}, f); }},
+                 {"meant_tests", [](const std::string& f) { meant_tests({f}, f); }},
+                 {"find_tests", [](const std::string& f) { find_tests({f}); }}})
+            // What is no file of ours: the folder that the program runs in is one to search, and is passed
+            // over.
+            if (text != ".." || std::string(read.first).find("s") == std::string::npos)
+                only_errors(read.first, [&] { read.second(text); });
+    }
+    only_errors("base64_text", [] { base64_text({}); });
+    only_errors("engine_names", [] { engine_names(); });
+    only_errors("layer_names", [] { layer_names(); });
+    only_errors("summary_schema", [] { summary_schema(); });
+    only_errors("scene_schema", [] { scene_schema(); });
+    only_errors("version", [] { version(), library_versions(), this_platform(), farm_systems(); });
+    for (const int n : {-2147483647 - 1, -1}) {
+        only_errors("set_threads", [&] { set_threads(n); });
+        CHECK(threads() >= 1);
+    }
+    set_threads(0);
+}
+
+TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens]") {
+    std::vector<Scene> all(1);
+    const auto add = [&](const auto& change) { change(all.emplace_back(small_scene())); };
+    add([](Scene&) {});
+    for (const char* text : {"{", "[]", "3", "{\"animation\":3}", "{\"meshes\":[]}"})
+        add([&](Scene& scene) { scene.resolved = text; });
+    add([](Scene& scene) { scene.resolved.clear(); });
+    add([](Scene& scene) { scene.cameras.clear(); });
+    add([](Scene& scene) { scene.meshes.clear(); });
+    add([](Scene& scene) { scene.materials.clear(); });
+    add([](Scene& scene) { scene.own_camera = 99; });
+    for (const double x : kOddNumbers) {
+        add([&](Scene& scene) { scene.cameras[0].eye = Vec3(x); });
+        add([&](Scene& scene) { scene.cameras[0].at = Vec3(1, x, 0), scene.cameras[0].up = Vec3(x, 1, 0); });
+        add([&](Scene& scene) { scene.lights.assign(1, {}), scene.lights[0].intensity = x; });
+        add([&](Scene& scene) { scene.materials[0].ior = x; });
+        add([&](Scene& scene) { scene.render.max_error = x; });
+    }
+    for (Mesh& mesh : all[1].meshes) {
+        const auto index = static_cast<std::size_t>(&mesh - all[1].meshes.data());
+        add([&](Scene& scene) { scene.meshes[index].material = 77; });
+        add([&](Scene& scene) { scene.meshes[index].primitive.reset(); });
+        add([&](Scene& scene) { scene.meshes[index].role = Role::kOptic; });
+        add([&](Scene& scene) { scene.meshes[index].role = Role::kObject; });
+        add([&](Scene& scene) { scene.meshes[index].object.triangles.push_back({0, 1, kNone}); });
+        add([&](Scene& scene) { scene.meshes[index].cage.crease_lengths = {3}; });
+        for (const double x : kOddNumbers)
+            add([&](Scene& scene) {
+                if (scene.meshes[index].primitive) scene.meshes[index].primitive->radius = x;
+            });
+    }
+    const Warn quiet = [](const std::string&) {};
+    for (const Scene& scene : all) {
+        only_errors("check_scene", [&] { check_scene(scene); });
+        only_errors("make_scene_info", [&] { make_scene_info(scene); });
+        only_errors("find_animation", [&] { find_animation(scene); });
+        only_errors("find_camera", [&] { find_camera(scene, ""), find_camera(scene, "nobody"); });
+        only_errors("scene_title", [&] { scene_title(scene); });
+        for (const double frame : kOddNumbers)
+            only_errors("scene_at_frame", [&] { scene_at_frame(scene, frame); });
+        only_errors("load_frame", [&] { load_frame(scene, 0, {}, {}); });
+        for (const int n : kOddInts) {
+            only_errors("turntable", [&] { turntable(scene, 0, n, n); });
+            only_errors("turntable", [&] { turntable(scene, 99, 1, n); });
+            Scene changed = scene;
+            only_errors("set_resolution", [&] { set_resolution(changed, n); });
+        }
+        Scene changed = scene;
+        only_errors("set_resolution", [&] { set_resolution(changed, 2); });
+        only_errors("Renderer", [&] {
+            Renderer(scene, quiet).draw(picture_of({find_camera(scene, ""), 2}), {}, quiet);
+        });
+    }
+    CHECK_THROWS_AS(turntable(small_scene(), 0, 1, 0), UsageError);
+    CHECK_THROWS_AS(make_scene_info(Scene()), InputError);
+    for (const std::string& text : kOddTexts) {
+        only_errors("load_scene_text", [&] { load_scene_text(text, SceneSource("x"), {}, {}); });
+        only_errors("parse_scene", [&] {
+            parse_scene(scene_examples()[0].json, "", std::vector<SceneOverride>{{text, text}});
+        });
+    }
+}
+
+TEST_CASE("a renderer refuses requests that are none", "[trilens]") {
+    const Warn quiet = [](const std::string&) {};
+    Renderer renderer(small_scene(), quiet);
+    for (const int n : kOddInts) {
+        PictureRequest request;
+        request.frame.resolution = 2;
+        request.layers = {n, 0, 1 + n % 7, n, {}};
+        only_errors("window", [&] { renderer.draw(request, {}, quiet); });
+        only_errors("draw_exr", [&] { renderer.draw_exr(request, {}, quiet); });
+        request.layers = {};
+        only_errors("explain", [&] { renderer.explain(request, n, n); });
+        if (n > 1024 || n < 0) {
+            const FrameParams frame{0, n};
+            only_errors("check", [&] { renderer.check(frame); });
+            only_errors("facet_count", [&] { renderer.facet_count(n); });
+            only_errors("draw_lines", [&] { renderer.draw_lines(frame, {true, true, true}, quiet); });
+            only_errors("project", [&] { renderer.project({}, {frame}); });
+        }
+        ClassicParams classic;
+        classic.pieces = n;
+        if (n <= 1 || n > 1024)
+            only_errors("classic", [&] { renderer.draw(picture_of({0, 2}, classic), {}, quiet); });
+        only_errors("classic_name", [&] { classic_name(classic); });
+        BenchRequest bench;
+        bench.frame.resolution = n > 4 ? -n : n;
+        bench.race.repeats = n > 4 ? 0 : n;
+        only_errors("run_bench", [&] { run_bench(small_scene(), bench, quiet); });
+    }
+    for (const double x : kOddNumbers) {
+        FrameParams frame{0, 2};
+        frame.max_error = x;
+        only_errors("max_error", [&] { renderer.draw(picture_of(frame), {}, quiet); });
+        only_errors("project", [&] { renderer.project(std::vector<Vec3>{Vec3(x)}); });
+        only_errors("seen_triangle", [&] { renderer.seen_triangle({kNone, x, {x, x}}); });
+        only_errors("seen_triangle", [&] { renderer.seen_triangle({0, x, {x, x}}); });
+    }
+    const FrameParams nobody{99, 2};
+    CHECK_THROWS_AS(renderer.draw(picture_of(nobody)), UsageError);
+    CHECK_THROWS_AS(renderer.explain(picture_of(nobody), 1, 1), UsageError);
+    CHECK_THROWS_AS(renderer.draw_lines(nobody), UsageError);
+    BenchRequest bench;
+    bench.frame = nobody;
+    CHECK_THROWS_AS(run_bench(small_scene(), bench), UsageError);
+    CHECK_THROWS_AS(renderer.change(Scene()), InputError);
+    CHECK(renderer.scene().film.width == 16);
+}
+
+TEST_CASE("surfaces refuse cages, primitives and grids that are none", "[trilens]") {
+    const Warn quiet = [](const std::string&) {};
+    Cage plain;
+    plain.points = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    plain.face_vertex_counts = {4};
+    plain.face_vertex_indices = {0, 1, 2, 3};
+    const auto with_cage = [&](const auto& change) {
+        Cage cage = plain;
+        change(cage);
+        only_errors("make_surface", [&] { make_surface_grid(*make_surface(cage, "", quiet), 2); });
+    };
+    with_cage([](Cage& cage) { cage = {}; });
+    for (const int n : kOddInts) {
+        with_cage([&](Cage& cage) { cage.face_vertex_counts = {n}; });
+        with_cage([&](Cage& cage) { cage.face_vertex_indices[2] = n; });
+        with_cage([&](Cage& cage) {
+            cage.crease_indices = {0, n}, cage.crease_lengths = {2}, cage.crease_sharpnesses = {1};
+        });
+        with_cage([&](Cage& cage) {
+            cage.crease_indices = {0, 1}, cage.crease_lengths = {n}, cage.crease_sharpnesses = {1};
+        });
+        with_cage([&](Cage& cage) { cage.corner_indices = {n}, cage.corner_sharpnesses = {1}; });
+        with_cage([&](Cage& cage) { cage.hole_indices = {n}; });
+        if (n < 1 || n > 1024)
+            only_errors("make_surface_grid", [&] { make_surface_grid(*make_surface(plain), n); });
+    }
+    for (const double x : kOddNumbers) {
+        with_cage([&](Cage& cage) { cage.points[1] = Vec3(x); });
+        with_cage([&](Cage& cage) {
+            cage.corner_indices = {0}, cage.corner_sharpnesses = {static_cast<float>(x)};
+        });
+        for (const Primitive::Type type : {Primitive::Type::kSphere, Primitive::Type::kParaboloid,
+                                           Primitive::Type::kCylinder, Primitive::Type::kPlane})
+            for (int field = 0; field < 6; ++field) {
+                Primitive odd;
+                odd.type = type;
+                if (field == 0) odd.center = Vec3(x);
+                if (field == 1) odd.axis = Vec3(x);
+                if (field == 2) odd.tangent = Vec3(x);
+                if (field == 3) odd.radius = x;
+                if (field == 4) odd.focal_length = odd.height = x;
+                if (field == 5) odd.size = {x, x};
+                only_errors("make_surface", [&] { make_surface_grid(*make_surface(odd), 2); });
+            }
+    }
+    with_cage([](Cage& cage) { cage.crease_lengths = {2}; });
+    with_cage([](Cage& cage) { cage.corner_sharpnesses = {2}; });
+    SurfaceGrid grid = make_surface_grid(*make_surface(plain), 1);
+    only_errors("faces_front", [&] { faces_front(grid, grid.facets[0], Vec3(kNaN)); });
+}
+
+TEST_CASE("sweeps and suites refuse requests that are none", "[trilens]") {
+    const std::string folder = scratch_dir("callers_sweeps");
+    for (const std::string& text : kOddTexts) {
+        only_errors("parse_over", [&] { parse_over(text); });
+        only_errors("parse_over", [&] { parse_over("a=" + text); });
+        only_errors("pointer_kind", [&] { pointer_kind(text); });
+        only_errors("find_axis_kind", [&] { find_axis_kind(text, "here"); });
+        only_errors("plan_sweep", [&] {
+            SweepRequest request;
+            request.loaded = small_scene();
+            request.over = {{text, {text}}};
+            request.folder = folder + "/plan";
+            plan_sweep(request);
+        });
+        for (const AxisKind& kind : axis_kinds()) {
+            only_errors("make_axis", [&] { make_axis(kind, {kind.name, {text}}, "here"); });
+            only_errors("make_axis", [&] {
+                make_axis(kind, {kind.name, {text + ".." + text + ":x" + text}}, "here");
+            });
+            const Coordinates point{{kind.name, {text, {}}}}, huge{{kind.name, {text, 1e300}}};
+            only_errors("request_at", [&] { request_at({}, point); });
+            only_errors("request_at", [&] { request_at({}, huge); });
+            only_errors("point_id", [&] { point_id({{{kind, {}}}, false}, point); });
+            only_errors("point_text", [&] { point_text(point); });
+            only_errors("find_coordinate", [&] { find_coordinate(point, text); });
+        }
+        only_errors("farm_script", [&] { farm_script({text, -1, text, text, {text}, {}}); });
+        only_errors("truth_file", [&] { truth_file(text, text), run_folder(text, text); });
+        only_errors("without_axis", [&] { without_axis({}, text); });
+        only_errors("find_value", [&] { find_value({}, text); });
+    }
+    CHECK_THROWS_AS(request_at({}, {{"resolution", {"8", {}}}}), UsageError);
+    CHECK_THROWS_AS(make_points({{{axis_kinds()[0], {}}}, false}), UsageError);
+    only_errors("make_points", [] { make_points({{}, true}); });
+    only_errors("make_axis", [] { make_axis({}, {}, ""); });
+    only_errors("report_sweep", [&] { report_sweep(folder + "/none"); });
+    only_errors("write_sweep_gallery", [&] { write_sweep_gallery(folder + "/none", {}); });
+    only_errors("run_suite", [&] {
+        SuiteRequest request;
+        request.folders = {folder};
+        request.jobs = -3;
+        run_suite(request);
+    });
+    only_errors("run_suite", [] { run_suite(SuiteRequest()); });
+    only_errors("study_engines", [&] { study_engines({{}, "", folder + "/study"}); });
+    only_errors("study_engines", [&] {
+        SceneRequest none;
+        none.file = "none.json";
+        study_engines({{none}, "nobody", folder + "/study"});
+    });
+}
+
+TEST_CASE("what looks through meshes by itself refuses what does not fit together", "[trilens]") {
+    RayMesh mesh = make_camera_mesh(make_perspective({{}, 40, 4, 4}), 4, 4);
+    const SampleGrid grid{0, 0, 4, 4, 1};
+    const std::vector<Id> facets(16, 0), far(16, 9), few(3, 0);
+    const auto nothing = [](const Ray&) { return Hit(); };
+    const auto nobody = [](Id) { return Id{0}; };
+    only_errors("fold_curves", [&] { fold_curves({mesh, grid, facets, nothing, nobody}); });
+    CHECK(refusal([&] { fold_curves({mesh, grid, far, nothing, nobody}); }).rfind("facet: ", 0) == 0);
+    CHECK(refusal([&] { fold_curves({mesh, grid, few, nothing, nobody}); }).rfind("facet: ", 0) == 0);
+    CHECK_THROWS_AS(fold_curves({mesh, grid, facets, {}, {}}), UsageError);
+    CHECK(refusal([&] { caustic_sheets({mesh, {1}, 1}); }).rfind("seen: ", 0) == 0);
+    for (const double x : kOddNumbers) {
+        only_errors("caustic_sheets", [&] { caustic_sheets({mesh, {}, x}); });
+        RayMesh odd = mesh;
+        odd.rays[1].direction = Vec3(x);
+        only_errors("caustic_sheets", [&] { caustic_sheets({odd, {}, 1}); });
+    }
+    TriangleScene scene;
+    FacetSamples none, wrong{{0, 0, 7}, {1, 2}};
+    const RaceParams once{1, ""};
+    CHECK_THROWS_AS(race({scene, {{&mesh, &none}}, grid}, once), InputError);
+    CHECK_THROWS_AS(race({scene, {{&mesh, &wrong}}, grid}, once), InputError);
+    CHECK_THROWS_AS(race({scene, {{}}, grid}, once), InputError);
+    CHECK_THROWS_AS(race({scene, {}, {0, 0, 9, 9, 65536}}, once), InputError);
+    CHECK_THROWS_AS(race({scene, {}, grid}, {0, ""}), UsageError);
+    mesh.facets[0][1] = 44;
+    CHECK(refusal([&] { caustic_sheets({mesh, {}, 1}); }).rfind("facets/0: ", 0) == 0);
+}
