@@ -86,7 +86,7 @@ void bind_suite(py::module_& module) {
             request.html = html.value_or("").string();
             request.title = title;
             Talk talk(progress);
-            return talk.run([&] { return run_suite(request, {talk.progress("tests"), {}}); });
+            return talk.run([&] { return run_suite(request, {talk.progress("tests"), {}, {}}); });
         },
         py::arg("folders"), py::arg("pattern") = "", py::kw_only(), py::arg("jobs") = 0,
         py::arg("update") = false, py::arg("junit") = py::none(), py::arg("html") = py::none(),
@@ -99,7 +99,8 @@ void bind_suite(py::module_& module) {
         "progress: called as progress(done, job); returning False raises Interrupted.\n"
         "A test that cannot be run is an error of its own, and the others go on. Raises InputError for "
         "folders without\n"
-        "tests, UsageError for a pattern that means none, OutputError.");
+        "tests, UsageError for a pattern that means none and where junit or html is a file that the tests "
+        "read, OutputError.");
     module.def(
         "list_suite",
         [](const py::object& folders, const std::string& pattern) {

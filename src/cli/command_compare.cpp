@@ -59,9 +59,12 @@ std::vector<MetricLimit> limits_of(const CompareCommand& command) {
 Image read_input(const CompareRequest& request, bool is_reference, Console& console) {
     const Stopwatch watch;
     const std::string& file = is_reference ? request.reference : request.test;
+    const std::string red = request.options.layer + ".R";
     Image image = request.strict ? read_image(file)
                                  : read_compared_image(file, is_reference ? request.layer_of_reference
                                                                           : request.layer_of_test);
+    if (!request.options.layer.empty() && !image.find(red))
+        throw InputError(file, red, "there is no such channel");
     console.note_stage(
         fmt::format("read {}: {} x {}, {} channels", file, image.width, image.height, image.channels.size()),
         watch);
@@ -116,10 +119,14 @@ Answer run(const CompareRequest& request, Console& console) {
     ComparedInputs inputs = read_inputs(request, console);
     const Stopwatch watch;
     const CommonChannels& images = inputs.images;
-    inputs.flip = layer_flip(images.reference, images.test, request.options.layer);
-    inputs.comparison = compare(images.reference, images.test, request.options, &inputs.flip);
-    inputs.layers =
-        compare_layers(images.reference, images.test, {request.radius, request.options.mask_object});
+    try {
+        inputs.flip = layer_flip(images.reference, images.test, request.options.layer);
+        inputs.comparison = compare(images.reference, images.test, request.options, &inputs.flip);
+        inputs.layers =
+            compare_layers(images.reference, images.test, {request.radius, request.options.mask_object});
+    } catch (const InputError& error) {
+        throw InputError(request.reference + " and " + request.test, "", error.what());
+    }
     judge_limits(request, inputs);
     console.note_stage(fmt::format("compared {} channels", images.reference.channels.size()), watch);
     if (!request.difference.empty()) write_difference(request, inputs, console);
@@ -158,8 +165,8 @@ std::vector<Option> image_options(CompareCommand& command) {
              .range = {0}},
             {.names = "--layer",
              .target = &command.request.options.layer,
-             .help = "compare this layer instead of the beauty: direct, reflect, refract",
-             .value = "L"},
+             .help = "compare this layer instead of the beauty",
+             .choices = {"direct", "reflect", "refract"}},
             {.names = "--ref-layer",
              .target = &command.request.layer_of_reference,
              .help = "the reference's channels L.R, L.G, L.B, or its part L, are its beauty",

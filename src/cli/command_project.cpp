@@ -24,6 +24,9 @@ struct ProjectOptions {
 std::vector<Vec3> wanted_points(const ProjectOptions& options) {
     if (options.point.empty() == options.points.empty())
         throw UsageError("project needs either --point X,Y,Z or --points FILE.csv");
+    if (is_standard_stream(options.points) && is_standard_stream(options.scene.scene))
+        throw UsageError("the scene and the points cannot both be standard input");
+    if (is_standard_stream(options.points)) return parse_points(standard_input("points are"), kStandardInput);
     if (!options.points.empty()) return read_points(options.points);
     std::vector<Vec3> points;
     for (const std::string& text : options.point) {
@@ -84,7 +87,7 @@ Command project_command() {
                   .value = "X,Y,Z"},
                  {.names = "--points",
                   .target = &options->points,
-                  .help = "a file of x,y,z per line; a header line is allowed",
+                  .help = "a file of x,y,z per line, or - for standard input; a header line is allowed",
                   .value = "FILE.csv",
                   .offer = Offer::kFile},
                  {.names = "--search",

@@ -3,7 +3,6 @@
 #include <trilens/error.h>
 #include <trilens/stopwatch.h>
 #include <algorithm>
-#include <charconv>
 #include <iostream>
 #include <iterator>
 
@@ -11,6 +10,8 @@
 
 namespace trilens {
 namespace {
+
+constexpr int kMostFilmSide = 32768;  // as the schema of scenes has it
 
 std::vector<SceneOverride> file_overrides(const SceneOptions& options) {
     std::vector<SceneOverride> overrides;
@@ -24,7 +25,10 @@ std::vector<SceneOverride> file_overrides(const SceneOptions& options) {
     // Options that have a place in the file are overrides too, so that the resolved scene holds them.
     if (!options.size.empty()) {
         const std::vector<int> size = parse_integers(options.size, 'x', 2, "--size");
-        if (size[0] < 1 || size[1] < 1) throw UsageError("--size " + options.size + " is no film");
+        const auto [least, most] = std::minmax(size[0], size[1]);
+        if (least < 1 || most > kMostFilmSide || 1LL * least * most > kMostPixels)
+            throw UsageError(fmt::format("--size {} is no film: 1 to {} a side, at most {} pixels",
+                                         options.size, kMostFilmSide, kMostPixels));
         overrides.push_back({"/film/width", std::to_string(size[0])});
         overrides.push_back({"/film/height", std::to_string(size[1])});
     }
@@ -34,17 +38,24 @@ std::vector<SceneOverride> file_overrides(const SceneOptions& options) {
     return overrides;
 }
 
-constexpr const char* kStandardInput = "standard input";
-
 /// OpenEXR's first four bytes.
 bool is_exr(const std::string& bytes) {
     return bytes.rfind("\x76\x2f\x31\x01", 0) == 0;
 }
 
-Scene read_standard_input(const SceneRequest& request) {
-    const std::string text{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
+}  // namespace
+
+std::string standard_input(const std::string& expected) {
+    std::string text{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
     if (std::cin.bad()) throw InputError(kStandardInput, "", "cannot be read");
-    if (text.empty()) throw InputError(kStandardInput, "", "is empty; a scene is expected there");
+    if (text.empty()) throw InputError(kStandardInput, "", "is empty; " + expected + " expected there");
+    return text;
+}
+
+namespace {
+
+Scene read_standard_input(const SceneRequest& request) {
+    const std::string text = standard_input("a scene is");
     if (is_exr(text)) throw InputError(kStandardInput, "", "is an image; name its file instead of -");
     Scene scene = parse_scene(text, "", request.overrides, kStandardInput);
     if (request.resolution != 0) set_resolution(scene, request.resolution);
@@ -61,26 +72,6 @@ std::string scene_note(const SceneOptions& options, const Scene& scene) {
 }
 
 }  // namespace
-
-std::vector<int> parse_integers(const std::string& text, char separator, std::size_t count,
-                                const std::string& option) {
-    std::vector<int> values;
-    const char *at = text.data(), *end = at + text.size();
-    while (at <= end) {
-        int value = 0;
-        const auto [next, error] = std::from_chars(at, end, value);
-        if (error != std::errc()) break;
-        values.push_back(value);
-        at = next;
-        if (at == end) break;
-        if (*at != separator) break;
-        ++at;
-    }
-    if (at != end || values.size() != count)
-        throw UsageError(option + " needs " + std::to_string(count) + " integers separated by '" + separator +
-                         "', not \"" + text + "\"");
-    return values;
-}
 
 std::vector<Option> scene_argument(SceneOptions& options) {
     return {{.names = "SCENE",

@@ -12,6 +12,11 @@
 
 namespace trilens {
 
+inline constexpr const char* kStandardInput = "standard input";
+
+/// All that is there. Throws InputError where that is nothing, and says what is `expected`: "a scene is".
+std::string standard_input(const std::string& expected);
+
 struct SceneOptions {
     std::string scene;             // a scene file, an image that carries its scene, or "-"
     std::string camera;            // empty: the image's own, or the first
@@ -47,9 +52,5 @@ LayerRequest layer_request(const SceneOptions& options);
 
 /// A sweep that talks on the console.
 SweepTalk sweep_talk(Console& console);
-
-/// Integers separated by `separator`. Throws UsageError naming `option` unless there are exactly `count`.
-std::vector<int> parse_integers(const std::string& text, char separator, std::size_t count,
-                                const std::string& option);
 
 }  // namespace trilens

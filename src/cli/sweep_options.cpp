@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 
 namespace trilens {
 namespace {
@@ -51,17 +50,6 @@ std::string command_line(const SweepOptions& options, const std::string& scene) 
     for (const std::string& word : command_words(options, scene))
         line += (line.empty() ? "" : " ") + shell_quoted(word);
     return line;
-}
-
-/// Two scenes of one name would write over each other.
-void require_distinct_names(const std::vector<std::string>& scenes) {
-    std::map<std::string, std::string> scene_of_name;
-    for (const std::string& scene : scenes) {
-        const auto [known, is_new] = scene_of_name.emplace(scene_name(scene), scene);
-        if (!is_new)
-            throw UsageError("the scenes " + known->second + " and " + scene +
-                             " have one name, and so one folder; sweep them into different ones");
-    }
 }
 
 SweepRequest sweep_request(const SweepOptions& options, const std::string& scene) {
@@ -157,7 +145,9 @@ std::vector<Option> sweep_options(SweepOptions& options) {
            .range = {0, 1e9}},
           {.names = "--replace",
            .target = &options.replace,
-           .help = "start the folder afresh, whatever sweep it holds (else another sweep's is refused)"}},
+           .help =
+               "start the folder afresh, whatever sweep it holds (else another sweep's is refused); files "
+               "that no sweep wrote stay"}},
          scene_overrides(options.scene)});
 }
 

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <sstream>
 
 #include "base/error.h"
 #include "scene/scene.h"
@@ -48,9 +49,9 @@ std::optional<Vec3> parse_point(const std::string& text) {
     return at == end ? std::optional(point) : std::nullopt;
 }
 
-std::vector<Vec3> read_points(const std::string& file) {
-    std::ifstream in(file);
-    if (!in) throw InputError(file, "", "cannot be read");
+namespace {
+
+std::vector<Vec3> read_points(std::istream& in, const std::string& file) {
     std::vector<Vec3> points;
     std::string line;
     for (std::size_t number = 1; std::getline(in, line); ++number) {
@@ -66,6 +67,19 @@ std::vector<Vec3> read_points(const std::string& file) {
     if (in.bad()) throw InputError(file, "", "cannot be read");
     if (points.empty()) throw InputError(file, "", "holds no points");
     return points;
+}
+
+}  // namespace
+
+std::vector<Vec3> parse_points(const std::string& text, const std::string& name) {
+    std::istringstream in(text);
+    return read_points(in, name);
+}
+
+std::vector<Vec3> read_points(const std::string& file) {
+    std::ifstream in(file);
+    if (!in) throw InputError(file, "", "cannot be read");
+    return read_points(in, file);
 }
 
 }  // namespace trilens

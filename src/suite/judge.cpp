@@ -105,7 +105,8 @@ Judgement judge(const RenderTest& test, const Image& reference, std::vector<Test
         for (std::string& reason : broken_limits(test.max, judgement.metrics))
             judgement.reasons.push_back(std::move(reason));
     } catch (const InputError& error) {
-        judgement.reasons.push_back(error.what());
+        const std::string place = test.compare.layer.empty() ? "" : test.folder + "/test.json: /layer: ";
+        judgement.reasons.push_back(place + error.what());
     }
     judgement.images = std::move(common);
     return judgement;

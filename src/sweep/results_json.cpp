@@ -194,6 +194,10 @@ auto read_json_file(const std::string& file, const Read& read) {
     if (!text) throw InputError(file, "", "cannot be read");
     try {
         return read(*text);
+    } catch (const Json::parse_error&) {
+        throw InputError(file, "", "is no part of a sweep's results: it is no JSON");
+    } catch (const Json::exception&) {
+        throw InputError(file, "", "is no part of a sweep's results: a value is missing or of another kind");
     } catch (const std::exception& error) {
         throw InputError(file, "", std::string("is no part of a sweep's results: ") + error.what());
     }

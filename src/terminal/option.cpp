@@ -147,6 +147,26 @@ void set_option(const Option& option, const std::vector<std::string>& values) {
         option.target);
 }
 
+std::vector<int> parse_integers(const std::string& text, char separator, std::size_t count,
+                                const std::string& option) {
+    std::vector<int> values;
+    const char *at = text.data(), *end = at + text.size();
+    while (at <= end) {
+        int value = 0;
+        const auto [next, error] = std::from_chars(at, end, value);
+        if (error != std::errc()) break;
+        values.push_back(value);
+        at = next;
+        if (at == end) break;
+        if (*at != separator) break;
+        ++at;
+    }
+    if (at != end || values.size() != count)
+        throw UsageError(option + " needs " + std::to_string(count) + " integers separated by '" + separator +
+                         "', not \"" + text + "\"");
+    return values;
+}
+
 std::vector<Option> joined(std::vector<std::vector<Option>> parts) {
     std::vector<Option> all;
     for (std::vector<Option>& part : parts) all.insert(all.end(), part.begin(), part.end());

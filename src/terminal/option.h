@@ -36,6 +36,10 @@ void set_option(const Option& option, const std::vector<std::string>& values);
 /// Options one behind the other.
 std::vector<Option> joined(std::vector<std::vector<Option>> parts);
 
+/// Integers separated by `separator`. Throws UsageError naming `option` unless there are exactly `count`.
+std::vector<int> parse_integers(const std::string& text, char separator, std::size_t count,
+                                const std::string& option);
+
 /// "a, b or c".
 std::string one_of(const std::vector<std::string>& words);
 

@@ -141,7 +141,8 @@ bool is_free_for_json(const Run& run, const Console& console) {
     return true;
 }
 
-int fail(const Run& run, Console& console, const Error& error) {
+/// `may_write` false: it is known that the answer's file cannot be written.
+int fail(const Run& run, Console& console, const Error& error, bool may_write = true) {
     const int code =
         error.code() == ExitCode::kInterrupted ? stop_exit_code() : static_cast<int>(error.code());
     console.error(error.what());
@@ -151,7 +152,7 @@ int fail(const Run& run, Console& console, const Error& error) {
     try {
         if (run.common.json == "-")
             print(json_text(object));
-        else if (is_free_for_json(run, console))
+        else if (may_write && is_free_for_json(run, console))
             replace_text_file(run.common.json, json_text(object));
     } catch (const Error& second) {
         if (std::string(second.what()) != error.what()) console.error(second.what());
@@ -201,6 +202,10 @@ void prepare_last_words(const Run& run, const Console& console) {
 int run_command(const Run& run, Console& console) {
     try {
         console.files().writes(run.common.json);
+    } catch (const Error& error) {
+        return fail(run, console, error, false);
+    }
+    try {
         prepare_last_words(run, console);
         set_threads(run.common.threads);
         std::string built = "trilens " + version();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/check_output.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/format.h"
@@ -180,10 +181,15 @@ std::vector<ClassicParams> ways_to_clip() {
 }  // namespace
 
 EngineStudy study_engines(const StudyRequest& request, const SweepTalk& talk) {
+    std::vector<std::string> files;
+    for (const SceneRequest& scene : request.scenes) files.push_back(scene.file);
+    require_distinct_names(files);
     EngineStudy study;
     std::vector<StudyRow> complete;  // of the scenes that could be drawn in every way
     int complete_scenes = 0;
     make_folder(request.folder + "/plots");
+    for (const char* name : {"engines.csv", "clipping.csv"})
+        check_writable(request.folder + "/" + name, files);
     for (const SceneRequest& file : request.scenes) {
         Scene scene = load_scene(file);
         if (talk.warn)

@@ -44,8 +44,8 @@ struct EngineStudy {
 };
 
 /// Draws every scene in every way and writes engines.csv, clipping.csv and plots/ to the folder, after each
-/// scene. What would cut a scene into too many triangles is left out with a warning. Throws as run_sweep
-/// does.
+/// scene. What would cut a scene into too many triangles is left out with a warning. Throws as
+/// require_distinct_names and run_sweep do.
 EngineStudy study_engines(const StudyRequest& request, const SweepTalk& talk = {});
 
 }  // namespace trilens

@@ -274,6 +274,19 @@ SweepRequest read_sweep_file(const std::string& file, SweepRequest request) {
     return request;
 }
 
+void require_distinct_names(std::span<const std::string> scenes) {
+    std::map<std::string, std::string> scene_of_name;
+    for (const std::string& scene : scenes) {
+        if (scene == "-")
+            throw UsageError("a sweep reads its scenes more than once: name files, not - for standard input");
+        const auto [known, is_new] =
+            scene_of_name.emplace(std::filesystem::path(scene).stem().string(), scene);
+        if (!is_new)
+            throw UsageError("the scenes " + known->second + " and " + scene +
+                             " have one name, and so one folder; sweep them into different ones");
+    }
+}
+
 bool is_whole_sweep(const std::string& shard) {
     return shard_of(shard).count == 1;
 }

@@ -84,6 +84,10 @@ bool is_whole_sweep(const std::string& shard);
 /// Writes the plan and runs nothing; returns the plan's file.
 std::string plan_sweep(const SweepRequest& request, const SweepTalk& talk = {});
 
+/// Throws UsageError where two of the files have one name but for folder and end: their results would write
+/// over each other; and for "-", which cannot be read more than once.
+void require_distinct_names(std::span<const std::string> scenes);
+
 /// Throws UsageError where the folder is one sweep's own: a gallery of several would write over its report.
 void require_no_sweep(const std::string& folder);
 

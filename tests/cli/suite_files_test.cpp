@@ -45,4 +45,9 @@ TEST_CASE("a reference may lie beside test.json; a wrong camera is that file's",
     const CommandRun wrong = run_trilens("test '" + folder + "'");
     CHECK(wrong.exit_code == 6);
     CHECK(wrong.out.find("test.json: /camera: there is no camera \"nope\"") != std::string::npos);
+    write_file(folder, "test.json", R"({ "against": "truth", "layer": "nope" })");
+    const CommandRun layer = run_trilens("test '" + folder + "'");
+    INFO(layer.out);
+    CHECK(layer.exit_code == 1);
+    CHECK(layer.out.find("test.json: /layer: nope.R: there is no such channel") != std::string::npos);
 }

@@ -162,7 +162,8 @@ def main(trilens, scratch, jobs):
         file.write(call(trilens, "scene", "example", "mirror-sphere"))
     axes = ["--over", f"/cameras/0/yfov=30..{29 + jobs // 4}:+1", "--over", "engine=exact,classic", "--over", "resolution=1,2",
             "--size", "48x36", "--spp", "1"]
-    whole, farm = scratch + "/whole", scratch + "/farm"
+    # Names that the shell, sbatch and Slurm's patterns would each read otherwise.
+    whole, farm = scratch + "/whole", scratch + "/it's 5%a # \"farm\""
     call(trilens, "sweep", "run", scene, *axes, "-o", whole, "-q", "-j", "2")
     script = call(trilens, "sweep", "submit", scene, *axes, "-o", farm, "--system", "slurm", "--print")
     with open(scratch + "/submit.sh", "w") as file:
@@ -185,6 +186,8 @@ def main(trilens, scratch, jobs):
     finally:
         cluster.end()
     assert done_runs(farm) == jobs
+    logs = {name for name in os.listdir(farm) if name.startswith("slurm-")}
+    assert logs == {f"slurm-{job}.log" for job in range(jobs)} | {"slurm-report.log"}, f"the logs are {sorted(logs)}"
     assert comparable(farm) == comparable(whole), "the farm's summary is another than that of an unbroken run"
     print(f"{jobs} jobs; a node with {killed} processes killed after {before} runs; all done after {seconds:.0f} s; same summary")
 

@@ -175,6 +175,13 @@ TEST_CASE("sweep: replacing removes what sweeps write, all of it and nothing els
     replace_text_file(folder + "/manifest.json", "{}");
     CHECK_THROWS_AS(fake.run(), InputError);
     CHECK(contains(message_of([&] { fake.run(); }), "--replace"));
+    for (const char* foreign : {"<html>", "[]", "{}", R"({"subject": 3})"}) {
+        replace_text_file(folder + "/manifest.json", foreign);
+        const std::string message = message_of([&] { fake.run(); });
+        INFO(message);
+        CHECK(contains(message, "manifest.json: is no part of a sweep's results: "));
+        CHECK_FALSE(contains(message, "json.exception"));
+    }
     fake.params.replace = true;
     CHECK(fake.run().count(RunState::kDone) == 2);
 }
