@@ -121,6 +121,10 @@ void require_no_sweep(const std::string& folder) {
     if (is_there(manifest_file(folder)))
         throw UsageError(
             folder + " holds a sweep, whose report several scenes would write over; choose another folder");
+    if (is_there(folder + "/report.html") && !sweep_below(folder))
+        throw UsageError(folder +
+                         "/report.html is there already and no gallery's: it would be lost; choose " +
+                         "another folder");
 }
 
 }  // namespace trilens

@@ -28,7 +28,8 @@ void clear_folder(const std::string& folder);
 /// The file whose lock a process holds while it reads and writes the manifest, or writes the report.
 std::string plan_lock(const std::string& folder);
 
-/// Throws UsageError where the folder is a sweep's own: a gallery would write over its report.
+/// Throws UsageError where a gallery would write over a report: the folder is a sweep's own, or holds one
+/// and no sweeps below it.
 void require_no_sweep(const std::string& folder);
 
 }  // namespace trilens

@@ -195,6 +195,11 @@ TEST_CASE("sweep: a gallery's folder takes no sweep, and a sweep's folder no gal
     CHECK_THROWS_AS(above.run(), UsageError);
     CHECK_THROWS_AS(require_no_sweep(folder + "/ball"), UsageError);
     CHECK_NOTHROW(require_no_sweep(folder));
+    write_sweep_gallery(folder, std::vector<SweepSummary>{summary});
+    CHECK_NOTHROW(write_sweep_gallery(folder, std::vector<SweepSummary>{summary}));
+    const std::string other = trilens_test::scratch_dir("folder_own_report");
+    replace_text_file(other + "/report.html", "mine");
+    CHECK_THROWS_AS(require_no_sweep(other), UsageError);
     CHECK_THROWS_AS(write_sweep_gallery(folder + "/ball", std::vector<SweepSummary>{summary}), UsageError);
 }
 
