@@ -168,13 +168,14 @@ TEST_CASE("images that are none are refused by all that takes images", "[trilens
         only_errors("write_image_as", [&] { write_image_as(folder + "/a", odd, ImageFormat::kPng); });
         only_errors("count_regions", [&] { count_regions(odd, 0); });
         only_errors("keep_common_channels", [&] { keep_common_channels(odd, good); });
-        for (const auto& [a, b] : {std::pair(&good, &odd), std::pair(&odd, &good), std::pair(&odd, &odd)}) {
-            only_errors("compare", [&] { compare(*a, *b); });
-            only_errors("layer_flip", [&] { layer_flip(*a, *b, ""); });
-            only_errors("compare_layers", [&] { compare_layers(*a, *b); });
-            only_errors("compare_seen", [&] { compare_seen(*a, *b, "reflect"); });
-            only_errors("measure_displacement", [&] { measure_displacement(*a, *b, "reflect"); });
-            only_errors("make_difference", [&] { make_difference(*a, *b); });
+        for (const auto& pair : {std::pair(&good, &odd), std::pair(&odd, &good), std::pair(&odd, &odd)}) {
+            const Image &a = *pair.first, &b = *pair.second;
+            only_errors("compare", [&] { compare(a, b); });
+            only_errors("layer_flip", [&] { layer_flip(a, b, ""); });
+            only_errors("compare_layers", [&] { compare_layers(a, b); });
+            only_errors("compare_seen", [&] { compare_seen(a, b, "reflect"); });
+            only_errors("measure_displacement", [&] { measure_displacement(a, b, "reflect"); });
+            only_errors("make_difference", [&] { make_difference(a, b); });
         }
     }
     const std::vector<float> few(3);
