@@ -12,6 +12,9 @@ constexpr double kLeastDepth = 1e-12;
 /// An image through the facets this near to an exact one, in pixels, is taken for the same.
 constexpr double kSameImage = 3;
 
+/// The cosine of the angle by which an image that only facets have may miss its point, on the exact surface.
+constexpr double kLeastCosine = 0.866;
+
 /// A camera for the law of reflection alone: all rays leave the eye, and every point is in front of it.
 LinearCamera law_of_eye(const Vec3& eye) {
     LinearCamera camera;
@@ -195,6 +198,18 @@ std::vector<OpticImage> PointProjector::optic_images(const OpticPath& path, cons
     return found;
 }
 
+/// Whether the camera's exact ray, mirrored, goes about where the facets' ray goes: where several views blend
+/// facets may be far from it.
+bool PointProjector::leads_towards(const Ray& view, const OpticPath& path, const Vec3& point) const {
+    if (camera_.linear || path.path != Path::kReflect) return true;
+    const std::optional<SurfaceHit> hit = limit_tracer(world_, path.optic).first_hit(view);
+    if (!hit) return true;  // past the silhouette, which facets have elsewhere
+    const Vec3& normal = hit->point.normal;
+    const Vec3 out = view.direction - 2 * dot(view.direction, normal) * normal;
+    const Vec3 way = point - hit->point.position;
+    return dot(out, way) > kLeastCosine * length(out) * length(way);
+}
+
 void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, const SpecularSearch& searched,
                                     PointProjection& result) const {
     for (const OpticImage& one : optic_images(path, point, searched, result)) {
@@ -203,6 +218,7 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, co
         const Vec3& eye = view->origin;
         if (searches_surfaces() && one.refined && !sight_.is_free_of_optic(eye, one.from, path.optic))
             continue;
+        if (!one.refined && request_.refine && !leads_towards(*view, path, point)) continue;
         const Id on_facet = one.refined ? kNone : path.optic;
         if (world_.scene.render.max_depth > 0 && !sight_.goes_straight(one.from, point, on_facet)) continue;
         const double t =

@@ -37,6 +37,7 @@ class PointProjector {
     void add_camera_mesh(const Vec3& point, PointProjection& result) const;
     void add_optic_path(const OpticPath& path, const Vec3& point, const SpecularSearch& searched,
                         PointProjection& result) const;
+    bool leads_towards(const Ray& view, const OpticPath& path, const Vec3& point) const;
     void add_several(const SeveralOpticsImages& several, const Vec3& point, PointProjection& result) const;
     void differentiate(WorldImage& image, const Vec3& point) const;
     std::vector<SpecularSearch> search(const OpticPath& path, std::span<const Vec3> points) const;

@@ -229,11 +229,14 @@ TEST_CASE("numbers and texts that are none are refused or written", "[trilens]")
         only_errors("tone_curve", [&] { tone_curve(text); });
         only_errors("escape_markup", [&] { escape_markup(text); });
         only_errors("json_text", [&] { json_text(text); });
+        only_errors("csv_text", [&] { csv_text(text); });
         only_errors("latex_text", [&] { latex_text(text); });
         only_errors("suggestion", [&] { suggestion(text, kOddTexts); });
         only_errors("one_line", [&] { one_line(text); });
         only_errors("shell_quoted", [&] { shell_quoted(text); });
         only_errors("parse_point", [&] { parse_point(text); });
+        only_errors("parse_points", [&] { parse_points(text, text); });
+        only_errors("require_distinct_names", [&] { require_distinct_names(std::vector{text, text}); });
         only_errors("parse_frames", [&] { parse_frames(text); });
         only_errors("frame_file", [&] { frame_file(text, -2147483647 - 1); });
         only_errors("find_engine", [&] { find_engine(text); });
