@@ -63,7 +63,8 @@ TEST_CASE("compare names the images that cannot be compared", "[cli][messages]")
               both + ": optic.object: no pixel shows object 77"));
     CHECK(has(error(quoted(a) + " " + quoted(bare) + " --layer reflect", 3),
               bare + ": reflect.R: there is no such channel"));
-    CHECK(has(error(quoted(a) + " " + quoted(a) + " --layer nope", 2), "--layer"));
+    CHECK(has(error(quoted(a) + " " + quoted(a) + " --layer nope", 3),
+              a + ": nope.R: there is no such channel"));
 }
 
 TEST_CASE("scenes of one name, and standard input, are refused by what reads or writes twice",
