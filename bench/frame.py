@@ -190,8 +190,7 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
-        for textures in (sphere.parent / "textures",):
-            shutil.copytree(textures, folder / textures.name)
+        shutil.copytree(sphere.parent / "textures", folder / "textures")
         rows = timed_rows(build / "trilens", folder, sphere, repeats) + prepared_rows(build)
         (out / "table.md").write_text(markdown(rows))
         print(markdown(rows))

@@ -1,26 +1,20 @@
 // Medians of repeated runs.
 #pragma once
 
-#include <algorithm>
-#include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
+
+#include "bench/times.h"
 
 namespace trilens_bench {
 
 /// The median of `repeats` runs of `work`, milliseconds of wall time.
 inline double median_ms(int repeats, const std::function<void()>& work) {
     std::vector<double> times;
-    for (int i = 0; i < repeats; ++i) {
-        const auto start = std::chrono::steady_clock::now();
-        work();
-        times.push_back(
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    }
-    std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
-    return times[static_cast<std::size_t>(repeats / 2)];
+    for (int i = 0; i < repeats; ++i) times.push_back(trilens::milliseconds(work));
+    return trilens::median(std::move(times));
 }
 
 /// Reproducible uniform numbers, the same with every compiler.

@@ -23,7 +23,7 @@ struct Box {
     }
     /// Lengths of the sides; zero for an empty box.
     Vec3 size() const { return glm::max(high - low, Vec3(0)); }
-    /// Of its surface.
+    /// Half the area of its surface; zero for an empty box.
     double half_area() const {
         const Vec3 side = size();
         return side.x * side.y + side.y * side.z + side.z * side.x;

@@ -8,7 +8,7 @@
 #include "base/check_data.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/stopwatch.h"
+#include "bench/times.h"
 #include "intersect/packet_tracer.h"
 #include "projector/draw_options.h"
 #include "projector/prepared_scene.h"
@@ -16,19 +16,6 @@
 
 namespace trilens {
 namespace {
-
-template <typename Work>
-double milliseconds(const Work& work) {
-    const Stopwatch watch;
-    work();
-    return 1000 * watch.seconds();
-}
-
-double median(std::vector<double> v) {
-    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-    std::nth_element(v.begin(), middle, v.end());
-    return *middle;
-}
 
 /// Holds the projector to an instruction set while it lives.
 struct HeldSet {

@@ -146,6 +146,7 @@ class TileMaker {
     void number_mixed_facets(std::span<const MixedSample> samples);
     void add_tile(const RoughTile& rough, SampleTiles& tiles);
     bool place_rows(const RoughTile& rough, const SampleTile& tile);
+    void begin_list(std::size_t samples);
     void list_rows(const SampleTile& tile);
     void list_cells(const RoughTile& rough, const SampleTile& tile);
     void add_vector(const SampleTile& tile, std::size_t first, std::size_t count, SampleTiles& tiles);

@@ -87,15 +87,19 @@ bool TileMaker::place_rows(const RoughTile& rough, const SampleTile& tile) {
     return whole_rows;
 }
 
-/// The samples as a list: by bands, in each by columns, in each by rows; where each band ends. Every row is
-/// one run.
-void TileMaker::list_rows(const SampleTile& tile) {
+void TileMaker::begin_list(std::size_t samples) {
     // What is written without a sample is overwritten by the next one.
-    const std::size_t room = tile.samples + kLanes;
+    const std::size_t room = samples + kLanes;
     column_.resize(room);
     row_.resize(room);
     sample_.resize(room);
     band_ends_.clear();
+}
+
+/// The samples as a list: by bands, in each by columns, in each by rows; where each band ends. Every row is
+/// one run.
+void TileMaker::list_rows(const SampleTile& tile) {
+    begin_list(tile.samples);
     std::uint32_t count = 0;
     for (int y = 0; y < tile.height; y += kBand) {
         const int* first = &first_column_[static_cast<std::size_t>(y)];
@@ -129,11 +133,7 @@ void TileMaker::list_cells(const RoughTile& rough, const SampleTile& tile) {
         const int x = at.column - tile.column, y = at.row - tile.row;
         cells_[static_cast<std::size_t>((y / kBand * tile.width + x) * kBand + y % kBand)] = s;
     }
-    const std::size_t room = tile.samples + kLanes;
-    column_.resize(room);
-    row_.resize(room);
-    sample_.resize(room);
-    band_ends_.clear();
+    begin_list(tile.samples);
     std::uint32_t count = 0;
     const Id* cell = cells_.data();
     for (int y = 0; y < tile.height; y += kBand) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "reflect/mirror.h"
+
 namespace trilens {
 namespace {
 
@@ -204,8 +206,7 @@ bool PointProjector::leads_towards(const Ray& view, const OpticPath& path, const
     if (camera_.linear || path.path != Path::kReflect) return true;
     const std::optional<SurfaceHit> hit = limit_tracer(world_, path.optic).first_hit(view);
     if (!hit) return true;  // past the silhouette, which facets have elsewhere
-    const Vec3& normal = hit->point.normal;
-    const Vec3 out = view.direction - 2 * dot(view.direction, normal) * normal;
+    const Vec3 out = mirrored(view.direction, hit->point.normal);
     const Vec3 way = point - hit->point.position;
     return dot(out, way) > kLeastCosine * length(out) * length(way);
 }

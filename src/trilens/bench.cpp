@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/rasterize.h"
-#include "base/stopwatch.h"
+#include "bench/times.h"
 #include "render/check_frame.h"
 #include "render/facet_engine.h"
 #include "render/frame.h"
@@ -20,27 +20,12 @@ namespace {
 
 constexpr std::size_t kBandSamples = 1u << 15;
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-template <typename Work>
-double milliseconds(const Work& work) {
-    const Stopwatch watch;
-    work();
-    return 1000 * watch.seconds();
-}
-
-/// The colours of all samples, which nobody keeps but the sum.
-double shade(const World& world, const SampleViews& views) {
-    std::vector<double> light(views.samples.size());
-    parallel_for(light.size(), 1024, [&](std::size_t first, std::size_t last) {
-        for (std::size_t s = first; s < last; ++s)
-            light[s] = sample_colour(world, views, views.samples[s]).direct.x;
+/// Finds the colours of all samples, for the time that it takes.
+void shade(const World& world, const SampleViews& views) {
+    std::vector<SampleColour> colours(views.samples.size());
+    parallel_for(colours.size(), 1024, [&](std::size_t first, std::size_t last) {
+        for (std::size_t s = first; s < last; ++s) colours[s] = sample_colour(world, views, views.samples[s]);
     });
-    return light.empty() ? 0 : light.front();
 }
 
 /// What a frame is made of, timed; each time from nothing.

@@ -1,15 +1,10 @@
-// What callers hand to the public functions: errors come of it where it is no data, and nothing else does. A
-// list of every public function keeps the tests whole.
+// What callers hand to the public functions: errors come of it where it is no data, and nothing else does.
 #include "support/callers_data.h"
 
-#include <filesystem>
 #include <fstream>
-#include <map>
-#include <regex>
-#include <set>
-#include <sstream>
 
 #include "support/test.h"
+#include "trilens/odd_images.h"
 #include "trilens/sweep_subjects.h"
 #include "trilens/trilens.h"
 
@@ -18,53 +13,8 @@ using namespace trilens_test;
 
 namespace {
 
-namespace fs = std::filesystem;
-
 const std::vector<std::string> kOddTexts{"",   "#",   "\xff\xfe", "1e999", "nan",
                                          "-1", "a/b", "..",       "{",     std::string(3, '\0')};
-
-/// A picture of 4 x 3 with all that comparisons ask for.
-Image small_image() {
-    Image image;
-    image.width = image.data_width = 4;
-    image.height = image.data_height = 3;
-    for (const char* name : {"R", "G", "B", "A", "reflectP.X", "reflectP.Y", "reflectP.Z"})
-        image.channels.push_back({name, std::vector<float>(12, 0.5f)});
-    for (const char* name : {"optic.object", "reflectID.object", "reflectID.primitive"})
-        image.channels.push_back({name, std::vector<Id>(12, 1)});
-    return image;
-}
-
-std::vector<Image> odd_images() {
-    std::vector<Image> all(2);
-    all[0] = Image();
-    all[1] = small_image();
-    const auto add = [&](const auto& change) { change(all.emplace_back(small_image())); };
-    for (const int n : kOddInts) {
-        add([&](Image& image) { image.data_width = n; });
-        add([&](Image& image) { image.data_height = n; });
-        add([&](Image& image) { image.width = n, image.x0 = n; });
-        add([&](Image& image) {
-            image.data_width = n, image.data_height = n, image.width = n, image.height = n;
-        });
-    }
-    for (std::size_t c = 0; c < small_image().channels.size(); ++c) {
-        add([&](Image& image) { image.channels[c].values = std::vector<float>(3); });
-        add([&](Image& image) { image.channels[c].values = std::vector<float>(); });
-        add([&](Image& image) { image.channels[c].values = std::vector<Id>(99, kNone); });
-        add([&](Image& image) {
-            image.channels[c].values = std::vector<float>(12, static_cast<float>(kNaN));
-        });
-        add([&](Image& image) {
-            image.channels[c].values = std::vector<float>(12, static_cast<float>(kInfinity));
-        });
-        add([&](Image& image) {
-            image.channels.erase(image.channels.begin() + static_cast<std::ptrdiff_t>(c));
-        });
-        add([&](Image& image) { image.channels[c].name = "R"; });
-    }
-    return all;
-}
 
 Scene small_scene() {
     return parse_scene(scene_examples()[0].json, "",
@@ -78,128 +28,7 @@ PictureRequest picture_of(const FrameParams& frame, const EngineChoice& engine =
     return request;
 }
 
-/// Functions that no data of a caller's can end, or that other tests hand what is no data: each with why.
-const std::map<std::string, std::string> kElsewhere{
-    {"explain_pixel", "Renderer::explain"},
-    {"project_points", "Renderer::project"},
-    {"camera_type_name", "of an enumerator"},
-    {"is_linear", "of an enumerator"},
-    {"projects", "of an enumerator"},
-    {"follows_paths", "of an enumerator"},
-    {"state_name", "of an enumerator"},
-    {"path_name", "of an enumerator"},
-    {"event_name", "of an enumerator"},
-    {"corner_rays_name", "of an enumerator"},
-    {"general_linear_kind_name", "of an enumerator"},
-    {"engine_name", "of an enumerator"},
-    {"test_state_name", "of an enumerator"},
-    {"test_state_of", "of an enumerator"},
-    {"run_sweep", "tests/sweep and tests/cli: what a sweep is asked"},
-    {"merge_folders", "tests/sweep"},
-    {"replace_file", "tests/base and tests/image: outputs"},
-    {"output_target", "tests/image: outputs"},
-    {"readable_size", "tests/image: inputs"},
-    {"replace_text_file", "tests/image: outputs"},
-    {"make_folder", "tests/sweep"},
-    {"remove_file", "tests/sweep"},
-};
-
-/// The public headers and those that they include to pass on, as they are installed; what these include again
-/// is theirs alone.
-std::set<std::string> public_headers() {
-    static const std::regex kInclude(R"(^#include <trilens/([\w/]+\.h)>)");
-    const fs::path root = fs::path(TRILENS_BUILD_DIR) / "include" / "trilens";
-    std::set<std::string> headers;
-    for (const auto& entry : fs::directory_iterator(root)) {
-        if (!entry.is_regular_file()) continue;
-        headers.insert(entry.path().string());
-        std::ifstream in(entry.path());
-        std::smatch match;
-        for (std::string line; std::getline(in, line);)
-            if (std::regex_search(line, match, kInclude)) headers.insert((root / match[1].str()).string());
-    }
-    return headers;
-}
-
-/// Names of the functions that they declare outside of types.
-std::set<std::string> public_functions() {
-    static const std::regex kFunction(
-        R"(^(?:inline |constexpr |\[\[noreturn\]\] )*[\w:<>,\s\*&]*?[\w>\*&]\s+[\*&]?(\w+)\()");
-    std::set<std::string> names;
-    for (const std::string& header : public_headers()) {
-        std::ifstream in(header);
-        std::smatch match;
-        for (std::string line; std::getline(in, line);)
-            if (!line.empty() && std::isalpha(static_cast<unsigned char>(line[0])) &&
-                line.find("return") != 0 && std::regex_search(line, match, kFunction))
-                names.insert(match[1]);
-    }
-    return names;
-}
-
 }  // namespace
-
-TEST_CASE("every public function meets what is no data", "[trilens]") {
-    std::string tests;
-    for (const char* file : {"/tests/trilens/callers_data_test.cpp", "/tests/core/callers_data_test.cpp"}) {
-        std::ifstream in(source_dir() + file);
-        std::stringstream text;
-        text << in.rdbuf();
-        tests += text.str();
-    }
-    const std::set<std::string> functions = public_functions();
-    CHECK(functions.size() > 90);
-    std::string missing;
-    for (const std::string& name : functions) {
-        const bool called = std::regex_search(tests, std::regex("\\b" + name + "\\("));
-        if (!called && kElsewhere.count(name) == 0) missing += name + " ";
-    }
-    CHECK(missing == "");
-}
-
-TEST_CASE("images that are none are refused by all that takes images", "[trilens]") {
-    const std::string folder = scratch_dir("callers_images");
-    const Image good = small_image();
-    for (const Image& odd : odd_images()) {
-        only_errors("check_image", [&] { check_image(odd); });
-        only_errors("encode_image", [&] { encode_image(odd); });
-        only_errors("encode_image_as", [&] { encode_image_as(odd, ImageFormat::kPng); });
-        only_errors("write_image", [&] { write_image(folder + "/a.exr", odd); });
-        only_errors("write_image_as", [&] { write_image_as(folder + "/a", odd, ImageFormat::kPng); });
-        only_errors("count_regions", [&] { count_regions(odd, 0); });
-        only_errors("keep_common_channels", [&] { keep_common_channels(odd, good); });
-        for (const auto& pair : {std::pair(&good, &odd), std::pair(&odd, &good), std::pair(&odd, &odd)}) {
-            const Image &a = *pair.first, &b = *pair.second;
-            only_errors("compare", [&] { compare(a, b); });
-            only_errors("layer_flip", [&] { layer_flip(a, b, ""); });
-            only_errors("compare_layers", [&] { compare_layers(a, b); });
-            only_errors("compare_seen", [&] { compare_seen(a, b, "reflect"); });
-            only_errors("measure_displacement", [&] { measure_displacement(a, b, "reflect"); });
-            only_errors("make_difference", [&] { make_difference(a, b); });
-        }
-    }
-    const std::vector<float> few(3);
-    CHECK(refusal([&] { compare(good, good, {}, &few); }).rfind("flip: ", 0) == 0);
-    CHECK(refusal([&] { make_difference(good, good, {}, few); }).rfind("flip: ", 0) == 0);
-    Image difference = make_difference(good, good);
-    CHECK(refusal([&] { add_shift("reflect", Displacement(), difference); }).rfind("reflect: ", 0) == 0);
-    LayerComparison layer{"reflect", {}, Displacement()};
-    layer.displacement->coverage = 1;
-    only_errors("add_shifts", [&] { add_shifts({layer}, difference); });
-    only_errors("total_seen", [&] { total_seen({layer, {}}); });
-    only_errors("main_layer", [&] { main_layer({}, "x"); });
-    only_errors("named_metrics", [&] { named_metrics({}, {layer, {}}); });
-    only_errors("broken_limits", [&] { broken_limits({{"x", kNaN}, {"", 0}}, {}); });
-    only_errors("metric_names", [] { metric_names(); });
-    for (const double x : kOddNumbers) {
-        DisplacementOptions options;
-        options.radius = x;
-        only_errors("radius", [&] { compare_layers(good, good, options); });
-        CompareOptions limits;
-        limits.fail = limits.failpercent = limits.warn = limits.hardfail = x;
-        only_errors("limits", [&] { compare(good, good, limits); });
-    }
-}
 
 TEST_CASE("numbers and texts that are none are refused or written", "[trilens]") {
     for (const double x : kOddNumbers) {

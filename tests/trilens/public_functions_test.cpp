@@ -1,0 +1,97 @@
+// A list of every public function, which keeps the tests of callers' data whole.
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "support/test.h"
+
+using namespace trilens_test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Functions that no data of a caller's can end, or that other tests hand what is no data: each with why.
+const std::map<std::string, std::string> kElsewhere{
+    {"explain_pixel", "Renderer::explain"},
+    {"project_points", "Renderer::project"},
+    {"camera_type_name", "of an enumerator"},
+    {"is_linear", "of an enumerator"},
+    {"projects", "of an enumerator"},
+    {"follows_paths", "of an enumerator"},
+    {"state_name", "of an enumerator"},
+    {"path_name", "of an enumerator"},
+    {"event_name", "of an enumerator"},
+    {"corner_rays_name", "of an enumerator"},
+    {"general_linear_kind_name", "of an enumerator"},
+    {"engine_name", "of an enumerator"},
+    {"test_state_name", "of an enumerator"},
+    {"test_state_of", "of an enumerator"},
+    {"run_sweep", "tests/sweep and tests/cli: what a sweep is asked"},
+    {"merge_folders", "tests/sweep"},
+    {"replace_file", "tests/base and tests/image: outputs"},
+    {"output_target", "tests/image: outputs"},
+    {"readable_size", "tests/image: inputs"},
+    {"replace_text_file", "tests/image: outputs"},
+    {"make_folder", "tests/sweep"},
+    {"remove_file", "tests/sweep"},
+};
+
+/// The public headers and those that they include to pass on, as they are installed; what these include again
+/// is theirs alone.
+std::set<std::string> public_headers() {
+    static const std::regex kInclude(R"(^#include <trilens/([\w/]+\.h)>)");
+    const fs::path root = fs::path(TRILENS_BUILD_DIR) / "include" / "trilens";
+    std::set<std::string> headers;
+    for (const auto& entry : fs::directory_iterator(root)) {
+        if (!entry.is_regular_file()) continue;
+        headers.insert(entry.path().string());
+        std::ifstream in(entry.path());
+        std::smatch match;
+        for (std::string line; std::getline(in, line);)
+            if (std::regex_search(line, match, kInclude)) headers.insert((root / match[1].str()).string());
+    }
+    return headers;
+}
+
+/// Names of the functions that they declare outside of types.
+std::set<std::string> public_functions() {
+    static const std::regex kFunction(
+        R"(^(?:inline |constexpr |\[\[noreturn\]\] )*[\w:<>,\s\*&]*?[\w>\*&]\s+[\*&]?(\w+)\()");
+    std::set<std::string> names;
+    for (const std::string& header : public_headers()) {
+        std::ifstream in(header);
+        std::smatch match;
+        for (std::string line; std::getline(in, line);)
+            if (!line.empty() && std::isalpha(static_cast<unsigned char>(line[0])) &&
+                line.find("return") != 0 && std::regex_search(line, match, kFunction))
+                names.insert(match[1]);
+    }
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("every public function meets what is no data", "[trilens]") {
+    std::string tests;
+    for (const char* file : {"/tests/trilens/callers_data_test.cpp", "/tests/trilens/callers_images_test.cpp",
+                             "/tests/core/callers_data_test.cpp"}) {
+        std::ifstream in(source_dir() + file);
+        std::stringstream text;
+        text << in.rdbuf();
+        tests += text.str();
+    }
+    const std::set<std::string> functions = public_functions();
+    CHECK(functions.size() > 90);
+    std::string missing;
+    for (const std::string& name : functions) {
+        const bool called = std::regex_search(tests, std::regex("\\b" + name + "\\("));
+        if (!called && kElsewhere.count(name) == 0) missing += name + " ";
+    }
+    CHECK(missing == "");
+}
