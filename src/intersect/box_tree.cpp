@@ -1,4 +1,4 @@
-// THE door to Embree for truth: boxes as user geometry, one ray at a time, robust traversal.
+// THE door to Embree for truth: boxes as user geometry, robust traversal.
 #include "intersect/box_tree.h"
 
 #include <algorithm>
@@ -9,20 +9,12 @@
 #include <vector>
 
 #include "base/check.h"
-#include "intersect/embree_device.h"
+#include "intersect/box_tree_data.h"
 
 namespace trilens {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// The way from the world to Embree's frame: centre at the origin, half diagonal 1.
-struct LocalFrame {
-    Vec3 centre{0};
-    double scale = 1;  // local length = scale * world length
-
-    Vec3 from_world(const Vec3& point) const { return (point - centre) * scale; }
-};
 
 /// A ray as Embree gets it: local frame, unit direction, started where it reaches the scene.
 struct LocalRay {
@@ -150,45 +142,26 @@ RTCBounds local_bounds(const LocalFrame& frame, const Box& box) {
 
 }  // namespace
 
-struct BoxTree::Data {
-    /// Boxes that share an Embree scene and its frame.
-    struct Group {
-        std::vector<Id> box;
-        LocalFrame frame;
-        RTCScene scene = nullptr;
-    };
+void BoxTree::Data::build(std::span<const Box> boxes, Group& group) {
+    group.frame = make_frame(boxes, group.box);
+    std::vector<RTCBounds> bounds;
+    bounds.reserve(group.box.size());
+    for (const Id i : group.box) bounds.push_back(local_bounds(group.frame, boxes[i]));
 
-    explicit Data(const std::string& isa) : device(isa) {}
-    ~Data() {
-        for (const Group& group : groups)
-            if (group.scene) rtcReleaseScene(group.scene);
-    }
-    Data(const Data&) = delete;
-    Data& operator=(const Data&) = delete;
-
-    void build(std::span<const Box> boxes, Group& group) {
-        group.frame = make_frame(boxes, group.box);
-        std::vector<RTCBounds> bounds;
-        bounds.reserve(group.box.size());
-        for (const Id i : group.box) bounds.push_back(local_bounds(group.frame, boxes[i]));
-
-        RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
-        rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(bounds.size()));
-        rtcSetGeometryUserData(geometry, bounds.data());
-        rtcSetGeometryBoundsFunction(geometry, &on_bounds, nullptr);
-        rtcSetGeometryIntersectFunction(geometry, &on_box);
-        rtcCommitGeometry(geometry);
-        group.scene = rtcNewScene(device.get());
-        rtcSetSceneFlags(group.scene, RTC_SCENE_FLAG_ROBUST);
-        rtcAttachGeometry(group.scene, geometry);
-        rtcReleaseGeometry(geometry);
-        rtcCommitScene(group.scene);
-        device.check("building the tree");
-    }
-
-    EmbreeDevice device;
-    std::vector<Group> groups;
-};
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(bounds.size()));
+    rtcSetGeometryUserData(geometry, bounds.data());
+    rtcSetGeometryBoundsFunction(geometry, &on_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, &on_box);
+    rtcSetGeometryOccludedFunction(geometry, &on_box_of_segments);
+    rtcCommitGeometry(geometry);
+    group.scene = rtcNewScene(device.get());
+    rtcSetSceneFlags(group.scene, RTC_SCENE_FLAG_ROBUST);
+    rtcAttachGeometry(group.scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(group.scene);
+    device.check("building the tree");
+}
 
 BoxTree::BoxTree(std::span<const Box> boxes, const std::string& isa) : data_(std::make_unique<Data>(isa)) {
     if (boxes.empty()) return;

@@ -9,7 +9,7 @@
 
 #include "base/box.h"
 #include "base/ids.h"
-#include "base/ray.h"
+#include "base/segments.h"
 
 namespace trilens {
 
@@ -40,11 +40,27 @@ class BoxTree {
         visit_with(ray, {t_min, t_max}, callback, &visitor);
     }
 
+    /// Calls visitor(segment, box) for the boxes that each segment may meet, as above, with the segment's
+    /// number, until it returns true: the segments for which it did. It must not throw.
+    template <typename Visitor>
+    Segments::Bits find(const Segments& segments, Visitor&& visitor) const {
+        static_assert(std::is_invocable_r_v<bool, Visitor&, std::size_t, Id>);
+        using Plain = std::remove_reference_t<Visitor>;
+        const SegmentCallback callback = [](void* state, std::size_t segment, Id box) -> bool {
+            return (*static_cast<Plain*>(state))(segment, box);
+        };
+        return find_with(segments, callback, &visitor);
+    }
+
   private:
     struct Data;
+    struct SegmentQuery;
     struct Interval {
         double t_min, t_max;
     };
+    using SegmentCallback = bool (*)(void* state, std::size_t segment, Id box);
+    Segments::Bits find_with(const Segments& segments, SegmentCallback callback, void* state) const;
+    static void on_box_of_segments(const void* from_embree) noexcept;
     using Callback = double (*)(void* state, Id box);
     void visit_with(const Ray& ray, const Interval& interval, Callback callback, void* state) const;
 

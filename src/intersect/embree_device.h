@@ -74,7 +74,7 @@ inline void intersect_one(RTCScene scene, EmbreeContext* context, RTCRayHit* ray
 }
 #endif
 
-/// rtcIntersect16 and rtcIntersect8 for rays that travel together.
+/// rtcIntersect16, rtcIntersect8 and rtcOccluded16 for rays that travel together.
 #if TRILENS_EMBREE_MAJOR >= 4
 inline RTCIntersectArguments coherent_arguments() {
     RTCIntersectArguments arguments;
@@ -90,6 +90,13 @@ inline void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit8* ray
     RTCIntersectArguments arguments = coherent_arguments();
     rtcIntersect8(valid, scene, rays, &arguments);
 }
+inline void occluded_coherent(const int* valid, RTCScene scene, EmbreeContext* context, RTCRay16* rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    arguments.context = context;
+    rtcOccluded16(valid, scene, rays, &arguments);
+}
 #else
 inline RTCIntersectContext coherent_context() {
     RTCIntersectContext context;
@@ -104,6 +111,10 @@ inline void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit16* ra
 inline void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit8* rays) {
     RTCIntersectContext context = coherent_context();
     rtcIntersect8(valid, scene, &context, rays);
+}
+inline void occluded_coherent(const int* valid, RTCScene scene, EmbreeContext* context, RTCRay16* rays) {
+    context->flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcOccluded16(valid, scene, context, rays);
 }
 #endif
 

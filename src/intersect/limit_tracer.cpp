@@ -10,6 +10,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "intersect/box_tree.h"
+#include "intersect/local_segments.h"
 #include "intersect/surface_newton.h"
 
 namespace trilens {
@@ -26,6 +27,10 @@ constexpr double kStraySafety = 2;
 // A patch that strays s from a facet of size h turns by about 4 s / h from its middle to its ends; the stray
 // kept is twice what was seen, and rays within twice that angle of the surface may meet the patch twice.
 constexpr double kGrazing = 4;
+
+// How much wider than its patches the box around a surface is, as a share of itself: patches stray by what a
+// few samples say.
+constexpr double kRoomAround = 0.01;
 
 /// A facet of the fine grid with the patch of surface that it stands for.
 struct Patch {
@@ -77,6 +82,23 @@ Box box_of(const Patch& patch) {
     return {glm::min(a, glm::min(b, c)) - patch.stray, glm::max(a, glm::max(b, c)) + patch.stray};
 }
 
+/// By the bounds of the faces' parts; without bounds all of space.
+Box box_of_closed_form(const Surface& surface) {
+    constexpr int kParts = 8;
+    const std::unique_ptr<const SurfaceBounder> bounder = surface.make_bounder();
+    if (!bounder) return {Vec3(-kInfinity), Vec3(kInfinity)};
+    Box box;
+    for (Id face = 0; face < surface.face_count(); ++face) {
+        for (int i = 0; i < kParts * kParts; ++i) {
+            const Vec2 low = Vec2(i % kParts, i / kParts) / double{kParts};
+            const SurfaceBounds part = bounder->bounds(face, low, low + 1.0 / kParts);
+            box.include(part.middle.position - part.position_radius);
+            box.include(part.middle.position + part.position_radius);
+        }
+    }
+    return box;
+}
+
 Vec3 chord_normal(const Patch& patch) {
     return normalize_or_zero(cross(patch.corner[1] - patch.corner[0], patch.corner[2] - patch.corner[0]));
 }
@@ -115,12 +137,14 @@ struct LimitTracer::Data {
     const Surface& surface;
     std::vector<Patch> patches;
     double size = 0;  // half diagonal of a box about every face's corners and middle
+    Box around;       // holds every hit
     BoxTree tree;
 
     Data(const Surface& exact, const SurfaceGrid& fine, const std::string& isa)
         : surface(exact),
           patches(make_patches(exact, fine)),
           size(half_diagonal(exact)),
+          around(box_around()),
           tree(boxes(), isa) {}
 
     static std::vector<Patch> make_patches(const Surface& surface, const SurfaceGrid& fine) {
@@ -140,6 +164,13 @@ struct LimitTracer::Data {
             }
         }
         return surface.face_count() > 0 ? 0.5 * length(high - low) : 0;
+    }
+    Box box_around() const {
+        Box box;
+        for (const Patch& patch : patches) box.include(box_of(patch));
+        if (surface.has_closed_form()) box = box_of_closed_form(surface);
+        const Vec3 room = kRoomAround * box.size() + Vec3(kSelfHit * size);
+        return {box.low - room, box.high + room};
     }
     std::vector<Box> boxes() const {
         std::vector<Box> result;
@@ -233,6 +264,15 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
         });
     }
     return first;
+}
+
+Segments::Bits LimitTracer::occluded(const Segments& segments, Segments::Bits asked) const {
+    Segments::Bits found = 0;
+    for_each_of(may_meet(segments, data_->around) & asked, [&](std::size_t i) {
+        const std::optional<SurfaceHit> hit = first_hit(segments.ray(i));
+        if (hit && hit->t < 1) found |= Segments::bit(i);
+    });
+    return found;
 }
 
 double LimitTracer::self_hit_t_min(const Ray& ray) const {

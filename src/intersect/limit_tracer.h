@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "base/segments.h"
 #include "base/surface.h"
 
 namespace trilens {
@@ -37,6 +38,9 @@ class LimitTracer {
     /// it is the fine facet's. A ray that starts on the surface needs a t_min that leaves out its own start:
     /// see self_hit_t_min.
     std::optional<SurfaceHit> first_hit(const Ray& ray, double t_min = 0) const;
+
+    /// The segments that meet the surface, of those in `asked`: for each whether first_hit's t is below 1.
+    Segments::Bits occluded(const Segments& segments, Segments::Bits asked) const;
 
     /// The t_min for a ray that starts on this surface: 1e-9 of the surface's size, in units of the
     /// direction.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -167,6 +168,20 @@ bool Tracer::occluded(const Ray& ray, double t_min, double t_max) const {
         return found ? -kInfinity : t_max;
     });
     return found;
+}
+
+Segments::Bits Tracer::occluded(const Segments& segments) const {
+    // Most segments meet no box: a ray is made ready when it does.
+    std::array<std::optional<ShearedRay>, Segments::kMost> sheared;
+    return data_->tree.find(segments, [&](std::size_t segment, Id index) {
+        if (!sheared[segment]) sheared[segment].emplace(segments.ray(segment));
+        const Group& group = data_->groups[index];
+        for (Id triangle = group.first; triangle < group.first + group.count; ++triangle) {
+            const auto hit = sheared[segment]->meet(corners_of(*data_->scene, triangle));
+            if (hit && hit->t > 0 && hit->t < 1) return true;
+        }
+        return false;
+    });
 }
 
 void trace_facets(const Tracer& tracer, const RayMesh& mesh, const FacetSamples& owned,

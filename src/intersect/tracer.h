@@ -8,6 +8,7 @@
 #include "base/facet_samples.h"
 #include "base/ray_mesh.h"
 #include "base/sample_grid.h"
+#include "base/segments.h"
 #include "base/triangle_scene.h"
 
 namespace trilens {
@@ -36,6 +37,9 @@ class Tracer {
 
     /// Whether anything lies on the ray with t_min < t < t_max.
     bool occluded(const Ray& ray, double t_min, double t_max) const;
+
+    /// The segments on which something lies: for each what occluded(ray, 0, 1) says.
+    Segments::Bits occluded(const Segments& segments) const;
 
   private:
     struct Data;

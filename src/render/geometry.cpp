@@ -121,14 +121,12 @@ bool has_shadows(const World& world) {
                        [](const Light& light) { return light.shadows; });
 }
 
-bool casts_shadow(const World& world, const Ray& segment) {
-    if (object_tracer(world).occluded(segment, 0.0, 1.0)) return true;
-    for (std::size_t i = 0; i < world.optics.size(); ++i) {
-        if (!world.optics[i].mirror) continue;
-        const std::optional<SurfaceHit> hit = limit_tracer(world, i).first_hit(segment);
-        if (hit && hit->t < 1) return true;
-    }
-    return false;
+Segments::Bits casts_shadow(const World& world, const Segments& segments) {
+    Segments::Bits hidden = object_tracer(world).occluded(segments);
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        if (world.optics[i].mirror)
+            hidden |= limit_tracer(world, i).occluded(segments, segments.all() & ~hidden);
+    return hidden;
 }
 
 void prepare_shadows(const World& world) {

@@ -50,9 +50,8 @@ const PathWorld& path_world(const World& world);
 /// Whether any light asks what lies between it and a point.
 bool has_shadows(const World& world);
 
-/// Whether an object, or the exact surface of a mirror, meets the open segment from the ray's origin to its
-/// tip (t < 1). Glass lets the light through.
-bool casts_shadow(const World& world, const Ray& segment);
+/// The segments that an object, or the exact surface of a mirror, meets. Glass lets the light through.
+Segments::Bits casts_shadow(const World& world, const Segments& segments);
 
 /// Builds what casts_shadow asks, where the scene has shadows: before many threads do.
 void prepare_shadows(const World& world);

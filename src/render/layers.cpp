@@ -15,6 +15,7 @@ namespace {
 // Samples that are held at once: what stays in cache (measured), and what bounds the memory of a frame.
 constexpr std::size_t kBandSamples = 1u << 15, kMostBandSamples = 1u << 17;
 constexpr std::size_t kBandsAtOnce = 3;  // on their way: seen, shaded, taken
+constexpr std::size_t kPixelsPerTask = 256;
 constexpr std::size_t kBlockRows = 16;   // of a block of the file, one thread's work
 
 /// Whether a path that the scene asks for has no ray at this sample, and not because all light is reflected.
@@ -35,11 +36,10 @@ void add(SampleColour& sum, double weight, const SampleColour& one) {
     sum.coverage += weight * one.coverage;
 }
 
-SampleColour mean_colour(const World& world, const SampleViews& views, std::size_t first, std::size_t count) {
+SampleColour mean_colour(std::span<const SampleColour> samples) {
     SampleColour sum, mean;
-    for (std::size_t s = first; s < first + count; ++s)
-        add(sum, 1, sample_colour(world, views, views.samples[s]));
-    add(mean, 1.0 / static_cast<double>(count), sum);
+    for (const SampleColour& sample : samples) add(sum, 1, sample);
+    add(mean, 1.0 / static_cast<double>(samples.size()), sum);
     return mean;
 }
 
@@ -58,8 +58,7 @@ class FilteredSamples {
         viewer(grid_, views);
         colours_.resize(grid_.size());
         parallel_for(colours_.size(), 1024, [&](std::size_t from, std::size_t to) {
-            for (std::size_t s = from; s < to; ++s)
-                colours_[s] = sample_colour(world, views, views.samples[s]);
+            sample_colours(world, views, from, std::span(colours_).subspan(from, to - from));
         });
     }
 
@@ -136,13 +135,20 @@ void view_band(const World& world, const Viewer& viewer, const PixelFilter& filt
 void put_band(const World& world, const Band& band, std::size_t first, Canvas& canvas) {
     const SampleGrid& grid = band.grid;
     const std::size_t per_pixel = static_cast<std::size_t>(grid.side * grid.side);
-    parallel_for(grid.pixels(), 256, [&](std::size_t from, std::size_t to) {
+    parallel_for(grid.pixels(), kPixelsPerTask, [&](std::size_t from, std::size_t to) {
+        std::vector<SampleColour> colours;
         for (std::size_t p = from; p < to; ++p) {
+            const std::size_t place = (p - from) % kPixelsPerTask;
+            if (!band.filtered && place == 0) {
+                colours.resize(std::min(kPixelsPerTask, to - p) * per_pixel);
+                sample_colours(world, band.views, p * per_pixel, colours);
+            }
             const int across = static_cast<int>(p % static_cast<std::size_t>(grid.width())),
                       down = static_cast<int>(p / static_cast<std::size_t>(grid.width()));
-            canvas.put_colour(band.filtered ? band.filtered->colour(grid.x0 + across, grid.y0 + down)
-                                            : mean_colour(world, band.views, p * per_pixel, per_pixel),
-                              first + p);
+            canvas.put_colour(
+                band.filtered ? band.filtered->colour(grid.x0 + across, grid.y0 + down)
+                              : mean_colour(std::span(colours).subspan(place * per_pixel, per_pixel)),
+                first + p);
             canvas.put_centre(world, band.middle(), band.middle().samples[p], first + p);
         }
     });

@@ -136,8 +136,8 @@ void set_up_shading(World& world) {
     world.shading.background = world.scene.background;
     world.shading.occluded = {};
     if (has_shadows(world))
-        world.shading.occluded = [self = &world](const Vec3& from, const Vec3& to) {
-            return casts_shadow(*self, {from, to - from});
+        world.shading.occluded = [self = &world](const Segments& segments) {
+            return casts_shadow(*self, segments);
         };
 }
 

@@ -11,10 +11,6 @@ namespace {
 
 constexpr double kInversePi = 0.31830988618379067154;
 
-/// How far along its normal a shadow ray starts, as a share of the scene's size: above float rounding of a
-/// ray tracer that works near the scene's centre, below what can be seen.
-constexpr double kShadowOffset = 1e-5;
-
 struct Frame {
     Vec3 position, geometric_normal, normal;  // unit, both on the viewer's side
     Vec3 shadow_start;                        // of shadow rays: off the surface, on the viewer's side
@@ -84,7 +80,9 @@ Vec3 light_arriving(const ShadeScene& scene, const Light& light, const Frame& fr
         // Light that arrives from behind a flat triangle is in the triangle's own shadow. On a smooth one it
         // may still pass over the surface that the triangle stands for.
         if (!frame.smooth && dot(frame.geometric_normal, toward_light) <= 0) return Vec3(0);
-        if (scene.occluded(frame.shadow_start, target)) return Vec3(0);
+        Segments segment;
+        segment.add(frame.shadow_start, target - frame.shadow_start);
+        if (scene.occluded(segment)) return Vec3(0);
     }
     return kInversePi * irradiance * cosine * light.color;
 }

@@ -8,6 +8,7 @@
 
 #include "base/appearance.h"
 #include "base/ray.h"
+#include "base/segments.h"
 #include "base/triangle_scene.h"
 
 namespace trilens {
@@ -24,9 +25,8 @@ struct ShadeScene {
     Background background;
     double size = 1;  // diagonal of the scene's bounding box, the unit of shadow offsets
 
-    /// Whether the open segment from `from` to `to` (world) meets anything that casts a shadow; only asked
-    /// for lights with shadows.
-    std::function<bool(const Vec3& from, const Vec3& to)> occluded;
+    /// Which of the segments meet anything that casts a shadow; only asked for lights with shadows.
+    std::function<Segments::Bits(const Segments&)> occluded;
 };
 
 /// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided
@@ -35,13 +35,22 @@ struct ShadeScene {
 /// promise (Hanika 2021), so that the edge of a round body's own shadow does not follow its triangles.
 Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray);
 
+/// How far along its normal a shadow ray starts, as a share of the scene's size: above float rounding of a
+/// ray tracer that works near the scene's centre, below what can be seen.
+inline constexpr double kShadowOffset = 1e-5;
+
 /// Radiance of the background along `direction` (any length, world).
 Vec3 shade_background(const Background& background, const Vec3& direction);
 
-/// What one ray shows: the hit's shade, or the background.
-inline Vec3 shade_ray(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
-    return hit.seen() ? shade_hit(scene, hit, ray) : shade_background(scene.background, ray.direction);
-}
+/// A ray and what it sees.
+struct SeenAlong {
+    const Hit* hit = nullptr;  // unset: nothing but the background
+    const Ray* ray = nullptr;
+};
+
+/// What the rays show: each hit's shade (the same bits as shade_hit's), or the background.
+/// light.size() == seen.size().
+void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::span<Vec3> light);
 
 /// Reflectance of a polished metal by Schlick's approximation, as glTF has it:
 /// f0 + (1 - f0) (1 - cos)^5, cos the cosine of incidence in 0..1.

@@ -24,7 +24,7 @@ constexpr std::size_t kBandSamples = 1u << 15;
 void shade(const World& world, const SampleViews& views) {
     std::vector<SampleColour> colours(views.samples.size());
     parallel_for(colours.size(), 1024, [&](std::size_t first, std::size_t last) {
-        for (std::size_t s = first; s < last; ++s) colours[s] = sample_colour(world, views, views.samples[s]);
+        sample_colours(world, views, first, std::span(colours).subspan(first, last - first));
     });
 }
 

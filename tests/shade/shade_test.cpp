@@ -76,10 +76,10 @@ TEST_CASE("a shadow removes exactly the light that it hides", "[shade]") {
     ambient.color = Vec3(0.25);
     shading.lights.push_back(ambient);
     bool hidden = false;
-    shading.occluded = [&](const Vec3& from, const Vec3& to) {
-        CHECK(from.z > 0);
-        CHECK(to.z > from.z);
-        return hidden;
+    shading.occluded = [&](const Segments& segments) {
+        CHECK(segments.ray(0).origin.z > 0);
+        CHECK(segments.ray(0).direction.z > 0);
+        return hidden ? segments.all() : 0;
     };
     const double lit = shade_hit(shading, middle(), {Vec3(0, 0, 1), Vec3(0, 0, -1)}).x;
     hidden = true;

@@ -73,10 +73,15 @@ void finish(Body& body, const Light& light) {
     body.shading.materials = {Material{}};
     body.shading.lights = {light};
     body.shading.size = 4;
-    body.shading.occluded = [&body](const Vec3& from, const Vec3& to) {
-        for (std::size_t t = 0; t < body.triangles.triangles.size(); ++t)
-            if (passes_through(from, to, corners(body.triangles, t))) return true;
-        return false;
+    body.shading.occluded = [&body](const Segments& segments) {
+        Segments::Bits hidden = 0;
+        for (std::size_t i = 0; i < segments.count; ++i) {
+            const auto [from, way] = segments.ray(i);
+            for (std::size_t t = 0; t < body.triangles.triangles.size(); ++t)
+                if (passes_through(from, from + way, corners(body.triangles, t)))
+                    hidden |= Segments::Bits{1} << i;
+        }
+        return hidden;
     };
 }
 
@@ -161,9 +166,9 @@ TEST_CASE("a lifted shadow ray starts where a sphere's tangent planes say", "[sh
         finish(body, light);
         body.shading.size = 0;
         Vec3 start(0);
-        body.shading.occluded = [&](const Vec3& from, const Vec3&) {
-            start = from;
-            return false;
+        body.shading.occluded = [&](const Segments& segments) -> Segments::Bits {
+            start = segments.ray(0).origin;
+            return 0;
         };
         shade_hit(body.shading, {0, 1.0, Vec2(0.5, 0)}, {Vec3(2, 0, 0), Vec3(-1, 0, 0)});
         const double rise = std::sin(alpha) * std::sin(alpha) * std::cos(alpha);
@@ -188,9 +193,9 @@ TEST_CASE("a triangle without corner normals starts its shadow rays as it always
         const Ray ray{eye, position(body.triangles, hit) - eye};
         if (dot(flat, ray.direction) > 0) flat = -flat;
         int asked = 0;
-        body.shading.occluded = [&](const Vec3& from, const Vec3&) {
+        body.shading.occluded = [&](const Segments& segments) -> Segments::Bits {
             ++asked;
-            CHECK(from == position(body.triangles, hit) + 1e-5 * body.shading.size * flat);
+            CHECK(segments.ray(0).origin == position(body.triangles, hit) + 1e-5 * body.shading.size * flat);
             return false;
         };
         const double seen = shade_hit(body.shading, hit, ray).x;
