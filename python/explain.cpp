@@ -66,13 +66,14 @@ py::dict explanation_dict(const Renderer& renderer, Engine engine, const PixelEx
     dict["sees"] = hit_dict(renderer, view.hit);
     if (view.optic != kNone) {
         const OpticInfo optic = renderer.optics()[view.optic];
+        const OpticView& on_optic = pixel.views.on_optic(view);
         py::dict shown;
         shown["object"] = optic.object;
         shown["name"] = optic.name;
         shown["facet"] = view.facet;
-        shown["uv"] = py::make_tuple(view.uv.x, view.uv.y);
-        shown["cos_incident"] = view.incidence.cosine;
-        shown["front"] = view.incidence.front;
+        shown["uv"] = py::make_tuple(on_optic.uv.x, on_optic.uv.y);
+        shown["cos_incident"] = on_optic.incidence.cosine;
+        shown["front"] = on_optic.incidence.front;
         dict["optic"] = shown;
         for (const Path path : {Path::kReflect, Path::kRefract})
             dict[path_name(path)] = end_dict(renderer, pixel, pixel.views.find(view, path));

@@ -85,6 +85,7 @@ class Sphere final : public PrimitiveShape {
         const double out = dot(point, axes.out);
         return {face, {inverse_tangent(dot(point, axes.u) / out), inverse_tangent(dot(point, axes.v) / out)}};
     }
+    bool has(const Vec3&) const override { return true; }
 
   private:
     struct Axes {

@@ -29,6 +29,8 @@ class PrimitiveShape {
         Vec2 uv{0};
     };
     virtual Place place(const Vec3& point) const = 0;
+    /// Whether it is not cut off there.
+    virtual bool has(const Vec3& point) const { return place(point).face != kNone; }
 };
 
 /// The shape of a checked primitive.

@@ -62,27 +62,46 @@ class PrimitiveSurface final : public Surface {
     }
 
     std::optional<SurfaceHit> intersect(const Ray& ray, double t_min) const override {
+        std::optional<SurfaceHit> first;
+        for_each_root(ray, t_min, [&](double t, const Vec3& point) {
+            const PrimitiveShape::Place place = shape_->place(point);
+            if (place.face != kNone) first = {place.face, place.uv, t, eval(place.face, place.uv)};
+            return first.has_value();
+        });
+        return first;
+    }
+
+    bool meets(const Ray& ray, double t_min, double t_max) const override {
+        bool found = false;
+        for_each_root(ray, t_min, [&](double t, const Vec3& point) {
+            found = t < t_max && shape_->has(point);
+            return found;
+        });
+        return found;
+    }
+
+  private:
+    /// Calls use(t, point) for t > t_min where the ray meets the uncut shape, ascending, until it returns
+    /// true; the point is in the shape's frame.
+    template <typename Use>
+    void for_each_root(const Ray& ray, double t_min, Use&& use) const {
         // Start from the ray's point nearest to the centre: the equation then has numbers of the shape's own
         // size.
         const Mat3 local_from_world = glm::transpose(world_from_local_);
         const Vec3 direction = local_from_world * ray.direction;
         Vec3 origin = local_from_world * (ray.origin - center_);
         const double squared = dot(direction, direction);
-        if (!(squared > 0)) return std::nullopt;
+        if (!(squared > 0)) return;
         const double start = -dot(origin, direction) / squared;
         origin += start * direction;
 
         for (double root : solve(shape_->equation({origin, direction}))) {
             const double t = start + root;
             if (!std::isfinite(t) || !(t > t_min)) continue;
-            const PrimitiveShape::Place place = shape_->place(origin + root * direction);
-            if (place.face == kNone) continue;
-            return SurfaceHit{place.face, place.uv, t, eval(place.face, place.uv)};
+            if (use(t, origin + root * direction)) return;
         }
-        return std::nullopt;
     }
 
-  private:
     Primitive primitive_;
     std::unique_ptr<PrimitiveShape> shape_;
     Vec3 center_;

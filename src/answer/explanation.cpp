@@ -48,12 +48,13 @@ Json explanation_json(const Renderer& renderer, const EngineChoice& engine, cons
     fields["sees"] = hit_json(renderer, view.hit);
     if (view.optic != kNone) {
         const OpticInfo optic = renderer.optics()[view.optic];
+        const OpticView& on_optic = pixel.views.on_optic(view);
         fields["optic"] = {{"object", optic.object},
                            {"name", optic.name},
                            {"facet", view.facet},
-                           {"uv", {json_number(view.uv.x), json_number(view.uv.y)}},
-                           {"cos_incident", json_number(view.incidence.cosine)},
-                           {"front", view.incidence.front}};
+                           {"uv", {json_number(on_optic.uv.x), json_number(on_optic.uv.y)}},
+                           {"cos_incident", json_number(on_optic.incidence.cosine)},
+                           {"front", on_optic.incidence.front}};
         for (const Path path : {Path::kReflect, Path::kRefract})
             fields[path_name(path)] = end_json(renderer, pixel, pixel.views.find(view, path));
         fields["ends"] = Json::array();

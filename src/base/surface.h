@@ -87,6 +87,11 @@ class Surface {
     /// The first hit with t > t_min in closed form, for surfaces that have one; `has_closed_form` says which.
     virtual bool has_closed_form() const { return false; }
     virtual std::optional<SurfaceHit> intersect(const Ray&, double /*t_min*/) const { return std::nullopt; }
+    /// Whether that hit has t < t_max.
+    virtual bool meets(const Ray& ray, double t_min, double t_max) const {
+        const std::optional<SurfaceHit> hit = intersect(ray, t_min);
+        return hit && hit->t < t_max;
+    }
 
     /// Bytes that it holds now, but for the allocator's own and what does not grow with the surface.
     virtual std::size_t bytes_held() const { return 0; }

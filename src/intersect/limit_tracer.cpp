@@ -269,7 +269,12 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
 Segments::Bits LimitTracer::occluded(const Segments& segments, Segments::Bits asked) const {
     Segments::Bits found = 0;
     for_each_of(may_meet(segments, data_->around) & asked, [&](std::size_t i) {
-        const std::optional<SurfaceHit> hit = first_hit(segments.ray(i));
+        const Ray ray = segments.ray(i);
+        if (data_->surface.has_closed_form()) {
+            if (data_->surface.meets(ray, 0, 1)) found |= Segments::bit(i);
+            return;
+        }
+        const std::optional<SurfaceHit> hit = first_hit(ray);
         if (hit && hit->t < 1) found |= Segments::bit(i);
     });
     return found;

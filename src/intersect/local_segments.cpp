@@ -27,7 +27,8 @@ struct Vector {
     Number x, y, z;
 };
 HWY_INLINE Vector load(const double (&from)[3][Segments::kMost], std::size_t first) {
-    return {hn::Load(kTag, from[0] + first), hn::Load(kTag, from[1] + first), hn::Load(kTag, from[2] + first)};
+    return {hn::Load(kTag, from[0] + first), hn::Load(kTag, from[1] + first),
+            hn::Load(kTag, from[2] + first)};
 }
 HWY_INLINE Number inner(const Vector& a, const Vector& b) {
     return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
@@ -51,8 +52,7 @@ void make_local_here(const Segments& segments, const Vec3& centre, double scale,
     for (std::size_t first = 0; first < segments.count; first += kWidth) {
         const Vector step = load(segments.step, first), from = load(segments.from, first);
         const Number squared = inner(step, step), zero = number(0);
-        const Truth usual =
-            hn::And(hn::Gt(squared, number(1e-280)), hn::Lt(squared, number(1e280)));
+        const Truth usual = hn::And(hn::Gt(squared, number(1e-280)), hn::Lt(squared, number(1e280)));
         const Number inverse = hn::Div(number(1), hn::Sqrt(squared)), unit = number(scale);
         const Vector direction{hn::Mul(step.x, inverse), hn::Mul(step.y, inverse), hn::Mul(step.z, inverse)};
         const Number speed = hn::Mul(inner(direction, step), unit);

@@ -14,8 +14,8 @@ struct LocalSegments {
     Segments::Bits unusual = 0;                 // those with steps whose squares no number holds: left alone
 };
 
-/// Brings segments into the frame whose origin is `centre` and whose unit is 1 / scale, where everything lies in
-/// a ball of radius 1 about the origin. Good to the roundings that kBoxMargin has room for.
+/// Brings segments into the frame whose origin is `centre` and whose unit is 1 / scale, where everything lies
+/// in a ball of radius 1 about the origin. Good to the roundings that kBoxMargin has room for.
 LocalSegments make_local_segments(const Segments& segments, const Vec3& centre, double scale);
 
 /// Segments that may meet the box: all that do, and few that do not. A box that rounding must not cost

@@ -116,18 +116,25 @@ Image Canvas::layout() const {
     return layout;
 }
 
-void Canvas::put_colour(const SampleColour& mean, std::size_t pixel) {
-    const Vec3 beauty = mean.direct + mean.reflect + mean.refract;
-    const std::array<const Vec3*, 3> parts{&mean.direct, &mean.reflect, &mean.refract};
+void Canvas::put_colours(std::span<const SampleColour> means, std::size_t first) {
+    constexpr std::array kParts{&SampleColour::direct, &SampleColour::reflect, &SampleColour::refract};
     for (int c = 0; c < 3; ++c) {
         const std::size_t k = static_cast<std::size_t>(c);
-        if (!std::isfinite(static_cast<float>(beauty[c])))
-            throw ComputationError("a pixel's colour is not finite");
-        floats(rgba_[k])[pixel] = static_cast<float>(beauty[c]);
-        for (std::size_t p = 0; p < parts.size(); ++p)
-            if (parts_[p][k] != kNone) floats(parts_[p][k])[pixel] = static_cast<float>((*parts[p])[c]);
+        float* out = floats(rgba_[k]).data() + first;
+        bool finite = true;
+        for (const SampleColour& mean : means) {
+            *out = static_cast<float>(mean.direct[c] + mean.reflect[c] + mean.refract[c]);
+            finite = finite && std::isfinite(*out++);
+        }
+        if (!finite) throw ComputationError("a pixel's colour is not finite");
+        for (std::size_t p = 0; p < kParts.size(); ++p) {
+            if (parts_[p][k] == kNone) continue;
+            float* part = floats(parts_[p][k]).data() + first;
+            for (const SampleColour& mean : means) *part++ = static_cast<float>((mean.*kParts[p])[c]);
+        }
     }
-    floats(rgba_[3])[pixel] = static_cast<float>(mean.coverage);
+    float* coverage = floats(rgba_[3]).data() + first;
+    for (const SampleColour& mean : means) *coverage++ = static_cast<float>(mean.coverage);
 }
 
 void Canvas::put_end(const World& world, const PathEnd* end, const EndChannels& channels, std::size_t pixel) {
@@ -154,8 +161,9 @@ void Canvas::put_centre(const World& world, const SampleViews& views, const Samp
     if (optic_object_ != kNone) {
         ids(optic_object_)[pixel] = optic ? world.optics[view.optic].mesh : kNone;
         ids(optic_facet_)[pixel] = optic ? view.facet : kNone;
-        floats(optic_u_)[pixel] = static_cast<float>(view.uv.x);
-        floats(optic_v_)[pixel] = static_cast<float>(view.uv.y);
+        const Vec2 uv = optic ? views.on_optic(view).uv : Vec2(0);
+        floats(optic_u_)[pixel] = static_cast<float>(uv.x);
+        floats(optic_v_)[pixel] = static_cast<float>(uv.y);
     }
     if (path_count_ != kNone) ids(path_count_)[pixel] = count_steps(views, view);
     if (method_ != kNone) {

@@ -18,7 +18,7 @@ class Canvas {
     Canvas(Image image, const std::vector<std::string>& layers);
 
     /// Throws ComputationError where the colour is not finite.
-    void put_colour(const SampleColour& mean, std::size_t pixel);
+    void put_colours(std::span<const SampleColour> means, std::size_t first);
     /// What the pixel's centre shows.
     void put_centre(const World& world, const SampleViews& views, const SampleView& view, std::size_t pixel);
 

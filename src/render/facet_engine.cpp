@@ -54,12 +54,13 @@ struct FacetViewer {
     /// Along the camera's rays as far as its far plane.
     double reach() const { return frame.camera.far_depth - frame.camera.near_depth; }
     void view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
-    bool comes_first(std::size_t index, const Hit& hit, const SampleView& view) const;
+    bool comes_first(std::size_t index, const Hit& hit, const SampleViews& views,
+                     const SampleView& view) const;
     bool leaves_body(std::size_t index, const Hit& hit, const Ray& ray) const;
     void view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                     SampleViews& views) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
-    void describe_optic(std::size_t index, const Hit& hit, SampleView& view) const;
+    void describe_optic(std::size_t index, const Hit& hit, SampleView& view, OpticView& on_optic) const;
 };
 
 /// As comes_before has it.
@@ -71,46 +72,63 @@ Vec3 corner_weights(const Hit& hit) {
     return {1 - hit.barycentric.x - hit.barycentric.y, hit.barycentric.x, hit.barycentric.y};
 }
 
-void FacetViewer::describe_optic(std::size_t index, const Hit& hit, SampleView& view) const {
+void FacetViewer::describe_optic(std::size_t index, const Hit& hit, SampleView& view,
+                                 OpticView& on_optic) const {
     const SurfaceGrid& grid = frame.optics[index].facets->grid();
     view.hit = {};
     view.depth = hit.t;
     view.optic = static_cast<Id>(index);
     view.facet = hit.triangle;
-    view.uv = Vec2(0);
+    on_optic = {};
     const Vec3 weights = corner_weights(hit);
     const IdTriple& corner = grid.facets[view.facet];
     Vec3 normal(0);
     for (int k = 0; k < 3; ++k) {
         const std::size_t c = static_cast<std::size_t>(k);
         normal += weights[k] * grid.corner_normal[corner[c]];
-        view.uv += weights[k] * grid.facet_uv[view.facet][c];
+        on_optic.uv += weights[k] * grid.facet_uv[view.facet][c];
     }
 
     // The side is the facet's own; the angle that of the interpolated normal, grazing where it turned away.
-    view.incidence.front = faces_front(grid, corner, view.ray.direction);
-    const Vec3 unit = normalize_or_zero(normal) * (view.incidence.front ? 1.0 : -1.0);
-    view.incidence.cosine = std::clamp(-dot(normalize_or_zero(view.ray.direction), unit), 0.0, 1.0);
-    if (view.around != kNone) view.way = hit.t * length(view.ray.direction);
+    Incidence& incidence = on_optic.incidence;
+    incidence.front = faces_front(grid, corner, view.ray.direction);
+    const Vec3 unit = normalize_or_zero(normal) * (incidence.front ? 1.0 : -1.0);
+    incidence.cosine = std::clamp(-dot(normalize_or_zero(view.ray.direction), unit), 0.0, 1.0);
+    if (view.around != kNone) on_optic.way = hit.t * length(view.ray.direction);
 }
 
+/// Starts the views: the camera's rays, and what they see first of the objects.
 void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const {
+    const RayMesh& mesh = frame.camera.mesh;
     std::vector<Hit> hits(grid.size());
-    draw_first(frame.camera.mesh, owned, grid, hits);
-    for (std::size_t s = 0; s < hits.size(); ++s) {
-        if (!hits[s].seen() || hits[s].t > reach()) continue;
-        views.samples[s].hit = hits[s];
-        views.samples[s].depth = hits[s].t;
+    draw_first(mesh, owned, grid, hits);
+    views.restart(grid.size());
+    if (owned.sample.size() < grid.size()) views.reset(grid.size());
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        if (!mesh.has_rays(f)) continue;
+        const FacetWeights weights = facet_weights(mesh, f);
+        const std::span<const Id> samples = owned.of(f);
+        parallel_for(samples.size(), 1024, [&](std::size_t from, std::size_t to) {
+            for (const Id s : samples.subspan(from, to - from)) {
+                SampleView& view = views.samples[s];
+                view = {};
+                view.ray = sample_ray(mesh, f, weights, grid.position(s));
+                if (!hits[s].seen() || hits[s].t > reach()) continue;
+                view.hit = hits[s];
+                view.depth = hits[s].t;
+            }
+        });
     }
 }
 
 /// Of two optics that touch where a ray meets them, whether this one's turn comes before that of the one that
 /// the sample shows so far.
-bool FacetViewer::comes_first(std::size_t index, const Hit& hit, const SampleView& view) const {
+bool FacetViewer::comes_first(std::size_t index, const Hit& hit, const SampleViews& views,
+                              const SampleView& view) const {
     const SurfaceGrid& grid = frame.optics[index].facets->grid();
     const int own = turn_at_place(world->optics[index].mirror,
                                   faces_front(grid, grid.facets[hit.triangle], view.ray.direction));
-    const int other = turn_at_place(world->optics[view.optic].mirror, view.incidence.front);
+    const int other = turn_at_place(world->optics[view.optic].mirror, views.on_optic(view).incidence.front);
     return own < other || (own == other && index < view.optic);
 }
 
@@ -137,12 +155,12 @@ void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const
                 const Id other =
                     sees_optic ? world->optics[view.optic].mesh : world->objects.object[view.hit.triangle];
                 if (sees_optic && touches(hits[s].t, view.depth)) {
-                    if (!comes_first(index, hits[s], view)) continue;
+                    if (!comes_first(index, hits[s], views, view)) continue;
                 } else if (!comes_before(hits[s].t, own, view.depth, other)) {
                     continue;
                 }
             }
-            describe_optic(index, hits[s], view);
+            describe_optic(index, hits[s], view, views.of_optics[s]);
         }
     });
 }
@@ -160,11 +178,9 @@ void FacetViewer::redraw_direct(const FacetSamples& owned, const SampleGrid& gri
 }
 
 void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
-    views.reset(grid.size());
     const FacetSamples owned = rasterize_facets(frame.camera.mesh, grid);
-    set_camera_rays(frame.camera.mesh, owned, grid, views.samples);
-    set_surroundings(frame.surroundings, views);
     view_objects(owned, grid, views);
+    set_surroundings(frame.surroundings, views);
     for (std::size_t i = 0; i < frame.optics.size(); ++i) view_optic(i, owned, grid, views);
     if (redraws_direct) redraw_direct(owned, grid, views);
     count_from_eye(frame.camera, views.samples);

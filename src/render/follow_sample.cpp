@@ -17,16 +17,17 @@ void append_steps(const std::vector<PathSegment>& segments, Id last, std::vector
 
 }  // namespace
 
-void follow_sample(const World& world, const FirstHit& first, SampleView& view, std::vector<PathEnd>& ends,
-                   std::vector<Step>& steps) {
+void follow_sample(const World& world, const FirstHit& first, const SampleView& view,
+                   const SamplePaths& found) {
+    auto& [on_optic, ends, steps] = found;
     const SurfaceHit& hit = first.at;
     const PathWorld& paths = path_world(world);
     const double cosine = dot(normalize_or_zero(view.ray.direction), hit.point.normal);
-    view.incidence = {std::min(1.0, std::fabs(cosine)), cosine <= 0};
+    on_optic.incidence = {std::min(1.0, std::fabs(cosine)), cosine <= 0};
     const double eye = hit.t * length(view.ray.direction);
-    view.way = eye;
+    on_optic.way = eye;
     const Meeting meeting{view.optic, normalize_or_zero(view.ray.direction), hit.point.position,
-                          hit.point.normal, view.incidence.front};
+                          hit.point.normal, on_optic.incidence.front};
     const FollowedPaths followed =
         follow_paths(paths, {meeting, eye, first.around}, {.objects = &object_tracer(world)});
     for (std::size_t i = 0; i < followed.segments.size(); ++i) {
@@ -46,7 +47,7 @@ void follow_sample(const World& world, const FirstHit& first, SampleView& view, 
         end.hit.t /= eye;
         ends.push_back(end);
     }
-    view.cut = followed.cut;
+    on_optic.cut = followed.cut;
 }
 
 }  // namespace trilens

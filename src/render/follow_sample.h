@@ -15,10 +15,17 @@ struct FirstHit {
     Media around;  // what the ray starts in
 };
 
-/// Appends the ends of all paths of a sample whose ray meets its optic (view.optic) there, with their steps,
-/// and sets view.incidence and view.way. `first_step` of the ends counts in `steps`. The rays that leave
-/// carry the eye-to-surface length, as corner rays do.
-void follow_sample(const World& world, const FirstHit& first, SampleView& view, std::vector<PathEnd>& ends,
-                   std::vector<Step>& steps);
+/// Where what is found goes.
+struct SamplePaths {
+    OpticView& on_optic;  // its incidence, way and cut
+    std::vector<PathEnd>& ends;
+    std::vector<Step>& steps;
+};
+
+/// Appends the ends of all paths of a sample whose ray meets its optic (view.optic) there, with their steps.
+/// `first_step` of the ends counts in `steps`. The rays that leave carry the eye-to-surface length, as corner
+/// rays do.
+void follow_sample(const World& world, const FirstHit& first, const SampleView& view,
+                   const SamplePaths& found);
 
 }  // namespace trilens

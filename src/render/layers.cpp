@@ -1,7 +1,9 @@
 #include "render/layers.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <mutex>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -16,17 +18,18 @@ namespace {
 constexpr std::size_t kBandSamples = 1u << 15, kMostBandSamples = 1u << 17;
 constexpr std::size_t kBandsAtOnce = 3;  // on their way: seen, shaded, taken
 constexpr std::size_t kPixelsPerTask = 256;
-constexpr std::size_t kBlockRows = 16;   // of a block of the file, one thread's work
+constexpr std::size_t kBlockRows = 16;  // of a block of the file, one thread's work
 
 /// Whether a path that the scene asks for has no ray at this sample, and not because all light is reflected.
 bool lacks_ray(const World& world, const SampleViews& views, const SampleView& view) {
     if (view.optic == kNone) return false;
     const Optic& optic = world.optics[view.optic];
     const RenderSettings& settings = world.scene.render;
+    const Incidence& incidence = views.on_optic(view).incidence;
     if (optic.mirror) return settings.reflect && !views.find(view, Path::kReflect);
     return settings.refract && !views.find(view, Path::kRefract) && !view.traced &&
-           !reflects_totally(interface_of(world, view.optic, views.around_of(view), view.incidence.front),
-                             view.incidence.cosine);
+           !reflects_totally(interface_of(world, view.optic, views.around_of(view), incidence.front),
+                             incidence.cosine);
 }
 
 void add(SampleColour& sum, double weight, const SampleColour& one) {
@@ -118,6 +121,7 @@ struct Band {
     SampleGrid grid{};
     SampleViews views, centres;  // centres: only where a pixel has several samples
     std::unique_ptr<FilteredSamples> filtered;
+    LayerStatistics counts;
 
     /// What the pixels' centres see: with one sample a pixel that sample, otherwise looked at once more.
     const SampleViews& middle() const { return grid.side > 1 ? centres : views; }
@@ -131,42 +135,74 @@ void view_band(const World& world, const Viewer& viewer, const PixelFilter& filt
     if (grid.side > 1) viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
 }
 
-/// Its pixels, from that `first` of the canvas on.
-void put_band(const World& world, const Band& band, std::size_t first, Canvas& canvas) {
+/// Colours of the pixels of a band from `first` on, as many as there is room for.
+void find_colours(const World& world, const Band& band, std::size_t first, std::span<SampleColour> colours) {
     const SampleGrid& grid = band.grid;
+    if (band.filtered) {
+        const std::size_t width = static_cast<std::size_t>(grid.width());
+        for (std::size_t i = 0; i < colours.size(); ++i)
+            colours[i] = band.filtered->colour(grid.x0 + static_cast<int>((first + i) % width),
+                                               grid.y0 + static_cast<int>((first + i) / width));
+        return;
+    }
     const std::size_t per_pixel = static_cast<std::size_t>(grid.side * grid.side);
-    parallel_for(grid.pixels(), kPixelsPerTask, [&](std::size_t from, std::size_t to) {
-        std::vector<SampleColour> colours;
-        for (std::size_t p = from; p < to; ++p) {
-            const std::size_t place = (p - from) % kPixelsPerTask;
-            if (!band.filtered && place == 0) {
-                colours.resize(std::min(kPixelsPerTask, to - p) * per_pixel);
-                sample_colours(world, band.views, p * per_pixel, colours);
-            }
-            const int across = static_cast<int>(p % static_cast<std::size_t>(grid.width())),
-                      down = static_cast<int>(p / static_cast<std::size_t>(grid.width()));
-            canvas.put_colour(
-                band.filtered ? band.filtered->colour(grid.x0 + across, grid.y0 + down)
-                              : mean_colour(std::span(colours).subspan(place * per_pixel, per_pixel)),
-                first + p);
-            canvas.put_centre(world, band.middle(), band.middle().samples[p], first + p);
-        }
-    });
+    if (per_pixel == 1) return sample_colours(world, band.views, first, colours);
+    std::vector<SampleColour> samples(colours.size() * per_pixel);
+    sample_colours(world, band.views, first * per_pixel, samples);
+    for (std::size_t i = 0; i < colours.size(); ++i)
+        colours[i] = mean_colour(std::span(samples).subspan(i * per_pixel, per_pixel));
 }
 
-void count_band(const World& world, const SampleViews& middle, LayerStatistics& counts) {
-    for (const SampleView& view : middle.samples) {
-        counts.optic_pixels += view.optic != kNone;
-        counts.pixels_without_ray += lacks_ray(world, middle, view);
-        counts.traced_pixels += view.traced;
-        counts.layered_pixels += !view.traced && view.layers > 0;
-        counts.subdivided_pixels += !view.traced && view.level > 0;
-        counts.faint_light = std::max(counts.faint_light, view.cut.faint);
-        counts.predicted_error = std::max(counts.predicted_error, view.predicted);
-        counts.deep_light = std::max(counts.deep_light, view.cut.too_deep);
-    }
-    counts.projected_facets = std::max(counts.projected_facets, middle.projected_facets);
-    counts.crowded_out = std::max(counts.crowded_out, middle.crowded_out);
+void count(const World& world, const SampleViews& middle, const SampleView& view, LayerStatistics& counts) {
+    if (view.optic == kNone) return;
+    const OpticView& on_optic = middle.on_optic(view);
+    ++counts.optic_pixels;
+    counts.pixels_without_ray += lacks_ray(world, middle, view);
+    counts.traced_pixels += view.traced;
+    counts.layered_pixels += !view.traced && view.layers > 0;
+    counts.subdivided_pixels += !view.traced && view.level > 0;
+    counts.faint_light = std::max(counts.faint_light, on_optic.cut.faint);
+    counts.predicted_error = std::max(counts.predicted_error, on_optic.predicted);
+    counts.deep_light = std::max(counts.deep_light, on_optic.cut.too_deep);
+}
+
+void merge(const LayerStatistics& from, LayerStatistics& to) {
+    to.optic_pixels += from.optic_pixels;
+    to.pixels_without_ray += from.pixels_without_ray;
+    to.traced_pixels += from.traced_pixels;
+    to.layered_pixels += from.layered_pixels;
+    to.subdivided_pixels += from.subdivided_pixels;
+    to.faint_light = std::max(to.faint_light, from.faint_light);
+    to.predicted_error = std::max(to.predicted_error, from.predicted_error);
+    to.deep_light = std::max(to.deep_light, from.deep_light);
+    to.projected_facets = std::max(to.projected_facets, from.projected_facets);
+    to.crowded_out = std::max(to.crowded_out, from.crowded_out);
+}
+
+/// Its pixels, from that `first` of the canvas on.
+LayerStatistics put_band(const World& world, const Band& band, std::size_t first, Canvas& canvas) {
+    const SampleViews& middle = band.middle();
+    LayerStatistics counts;
+    counts.projected_facets = middle.projected_facets;
+    counts.crowded_out = middle.crowded_out;
+    std::mutex mutex;
+    parallel_for(band.grid.pixels(), kPixelsPerTask, [&](std::size_t from, std::size_t to) {
+        LayerStatistics own;
+        std::array<SampleColour, kPixelsPerTask> colours;
+        for (std::size_t start = from; start < to; start += kPixelsPerTask) {
+            const std::size_t end = std::min(to, start + kPixelsPerTask);
+            const std::span<SampleColour> here = std::span(colours).first(end - start);
+            find_colours(world, band, start, here);
+            canvas.put_colours(here, first + start);
+            for (std::size_t p = start; p < end; ++p) {
+                canvas.put_centre(world, middle, middle.samples[p], first + p);
+                count(world, middle, middle.samples[p], own);
+            }
+        }
+        const std::lock_guard lock(mutex);
+        merge(own, counts);
+    });
+    return counts;
 }
 
 }  // namespace
@@ -201,10 +237,11 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
     };
     stages.work = [&](std::size_t item, std::size_t slot) {
         const std::size_t above = sink ? 0 : item * static_cast<std::size_t>(rows);
-        put_band(world, band[slot], above * static_cast<std::size_t>(width), canvases[sink ? slot : 0]);
+        band[slot].counts =
+            put_band(world, band[slot], above * static_cast<std::size_t>(width), canvases[sink ? slot : 0]);
     };
     stages.end = [&](std::size_t, std::size_t slot) {
-        count_band(world, band[slot].middle(), counts);
+        merge(band[slot].counts, counts);
         if (sink) sink->add(canvases[slot].image().channels, band[slot].grid.height());
         progress(static_cast<double>(band[slot].grid.y1 - request.y0) / height);
     };

@@ -31,10 +31,11 @@ struct LimitViewer {
     void operator()(const SampleGrid& grid, SampleViews& views) const;
 
   private:
-    void view_sample(SampleView& view, const Media& around, Found& found) const;
+    void view_sample(SampleView& view, OpticView& on_optic, const Media& around, Found& found) const;
 };
 
-void LimitViewer::view_sample(SampleView& view, const Media& around, Found& found) const {
+void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media& around,
+                              Found& found) const {
     const double reach = camera.far_depth - camera.near_depth;
     view.hit = objects->first_hit(view.ray);
     if (view.hit.seen() && view.hit.t > reach) view.hit = {};
@@ -62,15 +63,15 @@ void LimitViewer::view_sample(SampleView& view, const Media& around, Found& foun
         nearest = hit;
         view.optic = static_cast<Id>(i);
     }
-    view.first_end = found.ends.size();
-    if (nearest) {
-        view.hit = {};
-        view.depth = nearest->t;
-        view.facet = nearest->face;
-        view.uv = nearest->uv;
-        follow_sample(*world, {*nearest, around}, view, found.ends, found.steps);
-    }
-    view.end_count = found.ends.size() - view.first_end;
+    if (!nearest) return;
+    view.hit = {};
+    view.depth = nearest->t;
+    view.facet = nearest->face;
+    on_optic = {};
+    on_optic.uv = nearest->uv;
+    on_optic.first_end = found.ends.size();
+    follow_sample(*world, {*nearest, around}, view, {on_optic, found.ends, found.steps});
+    on_optic.end_count = found.ends.size() - on_optic.first_end;
 }
 
 void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
@@ -94,11 +95,12 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
         for (std::size_t task = from; task < to; ++task)
             for (const Id s : samples_of(task)) {
                 SampleView& view = views.samples[s];
-                view_sample(view, views.around_of(view), found[task]);
+                view_sample(view, views.of_optics[s], views.around_of(view), found[task]);
             }
     });
     for (std::size_t task = 0; task < found.size(); ++task) {
-        for (const Id s : samples_of(task)) views.samples[s].first_end += views.ends.size();
+        for (const Id s : samples_of(task))
+            if (views.samples[s].optic != kNone) views.of_optics[s].first_end += views.ends.size();
         for (PathEnd& end : found[task].ends) end.first_step += views.steps.size();
         views.ends.insert(views.ends.end(), found[task].ends.begin(), found[task].ends.end());
         views.steps.insert(views.steps.end(), found[task].steps.begin(), found[task].steps.end());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "base/parallel.h"
 #include "render/trace_samples.h"
@@ -101,13 +102,15 @@ void ShownDrawer::note(const Shown& shown, const std::vector<Id>& leaf) {
         if (leaf[s] == kNone) continue;
         const PathLeaf& of_sample = shown.paths.leaves()[leaf[s]];
         SampleView& view = views_.samples[s];
+        OpticView& on_optic = views_.on_optic(view);
+        const CutPaths& cut = shown.paths.cut();
         if (shown.depth == 0) view.leaf = leaf[s];
         view.layers = shown.depth;
         view.level = of_sample.level;
-        view.predicted = of_sample.predicted;
-        view.cut.faint = std::max(view.cut.faint, shown.paths.cut().faint);
-        view.cut.too_deep = std::max(view.cut.too_deep, shown.paths.cut().too_deep);
-        view.cut.lost = std::max(view.cut.lost, shown.paths.cut().lost);
+        on_optic.predicted = of_sample.predicted;
+        on_optic.cut.faint = std::max(on_optic.cut.faint, cut.faint);
+        on_optic.cut.too_deep = std::max(on_optic.cut.too_deep, cut.too_deep);
+        on_optic.cut.lost = std::max(on_optic.cut.lost, cut.lost);
         if (of_sample.method == LeafMethod::kTraced) traced_.push_back(static_cast<Id>(s));
     }
     views_.projected_facets += shown.paths.projected_count();
@@ -241,20 +244,26 @@ OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, con
 }
 
 void collect_ends(const std::vector<OpticEnds>& optics, SampleViews& views) {
-    for (const OpticEnds& one : optics)
-        for (const Id s : one.sample) ++views.samples[s].end_count;
+    constexpr std::size_t kUnplaced = ~std::size_t{0};
     std::size_t total = 0;
-    for (SampleView& view : views.samples) {
-        view.first_end = total;
-        total += view.end_count;
-        view.end_count = 0;
+    for (const OpticEnds& one : optics) {
+        total += one.ends.size();
+        for (const Id s : one.sample) {
+            ++views.of_optics[s].end_count;
+            views.of_optics[s].first_end = kUnplaced;
+        }
     }
     views.ends.resize(total);
+    std::size_t placed = 0;
     for (const OpticEnds& one : optics) {
         const std::size_t steps = views.steps.size();
         views.steps.insert(views.steps.end(), one.steps.begin(), one.steps.end());
         for (std::size_t i = 0; i < one.ends.size(); ++i) {
-            SampleView& view = views.samples[one.sample[i]];
+            OpticView& view = views.of_optics[one.sample[i]];
+            if (view.first_end == kUnplaced) {
+                view.first_end = placed;
+                placed += std::exchange(view.end_count, 0);
+            }
             PathEnd& end = views.ends[view.first_end + view.end_count++];
             end = one.ends[i];
             end.first_step += steps;

@@ -67,7 +67,7 @@ void Contributions::shade() {
         const auto& [index, weight, end] = contributions_[i];
         SampleColour& colour = colours_[index];
         if (!end) {
-            colour.direct = weight * light[i];
+            colour.direct += weight * light[i];
             continue;
         }
         if (end->medium != kNone && end->hit.seen())

@@ -117,7 +117,7 @@ void set_surroundings(const Surroundings& around, SampleViews& views) {
 Vec3 light_of_view(const World& world, const SampleViews& views, const SampleView& view) {
     if (view.around == kNone) return Vec3(1);
     const Material* glass = glass_of(world, felt(world, views.around_of(view)));
-    if (view.optic != kNone) return volume_transmittance(*glass, view.way);
+    if (view.optic != kNone) return volume_transmittance(*glass, views.on_optic(view).way);
     return view.hit.seen() ? volume_transmittance(*glass, view.hit.t * length(view.ray.direction)) : Vec3(1);
 }
 
@@ -133,12 +133,13 @@ GlassInterface interface_of(const World& world, Id optic, const Media& around, b
 OpticWeights first_weights(const World& world, const SampleViews& views, const SampleView& view) {
     const bool fresnel = world.scene.render.fresnel;
     const Material& material = *glass_of(world, view.optic);
-    if (view.around == kNone) return optic_weights(material, view.incidence, fresnel);
+    const Incidence& incidence = views.on_optic(view).incidence;
+    if (view.around == kNone) return optic_weights(material, incidence, fresnel);
     OpticWeights weights =
         world.optics[view.optic].mirror
-            ? optic_weights(material, view.incidence, fresnel)
-            : interface_weights(interface_of(world, view.optic, views.around_of(view), view.incidence.front),
-                                view.incidence.cosine, fresnel);
+            ? optic_weights(material, incidence, fresnel)
+            : interface_weights(interface_of(world, view.optic, views.around_of(view), incidence.front),
+                                incidence.cosine, fresnel);
     const Vec3 light = light_of_view(world, views, view);
     weights.reflect *= light;
     weights.refract *= light;

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kSamplesPerTask = 256;
 
 /// The camera's ray where it passes the exact surface by, at the rim of a facet: it goes straight on.
-void pass_by(const World& world, SampleView& view, OpticEnds& out) {
+void pass_by(const World& world, const SampleView& view, OpticEnds& out) {
     PathEnd end;
     end.path = Path::kReflect;
     end.first_step = out.steps.size();
@@ -18,7 +18,6 @@ void pass_by(const World& world, SampleView& view, OpticEnds& out) {
     out.steps.push_back({view.optic, Event::kReflect});
     end.ray = {view.ray.origin + view.depth * view.ray.direction, view.depth * view.ray.direction};
     end.hit = object_tracer(world).first_hit(end.ray);
-    view.incidence.cosine = 0;
     out.ends.push_back(end);
 }
 
@@ -41,14 +40,19 @@ void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samp
             const std::size_t last = std::min(samples.size(), (task + 1) * kSamplesPerTask);
             for (std::size_t i = task * kSamplesPerTask; i < last; ++i) {
                 SampleView& view = views.samples[samples[i]];
+                OpticView& on_optic = views.on_optic(view);
                 view.traced = true;
                 const Ray of_facets = view.ray;
                 view.ray = traced_ray(params.camera, params.grid.position(samples[i]), of_facets);
                 const auto hit = world.optics[params.optic].tracer->first_hit(view.ray);
                 if (hit)
-                    follow_sample(params.world, {*hit, views.around_of(view)}, view, own.ends, own.steps);
+                    follow_sample(params.world, {*hit, views.around_of(view)}, view,
+                                  {on_optic, own.ends, own.steps});
                 view.ray = of_facets;
-                if (!hit) pass_by(params.world, view, own);
+                if (!hit) {
+                    pass_by(params.world, view, own);
+                    on_optic.incidence.cosine = 0;
+                }
                 own.sample.resize(own.ends.size(), samples[i]);
             }
         }

@@ -1,5 +1,7 @@
 #include "render/views.h"
 
+#include <algorithm>
+
 namespace trilens {
 
 const PathEnd* SampleViews::find(const SampleView& sample, Path path) const {
@@ -9,7 +11,13 @@ const PathEnd* SampleViews::find(const SampleView& sample, Path path) const {
 }
 
 void SampleViews::reset(std::size_t count) {
-    samples.assign(count, {});
+    restart(count);
+    std::fill(samples.begin(), samples.end(), SampleView());
+}
+
+void SampleViews::restart(std::size_t count) {
+    samples.resize(count);
+    of_optics.resize(count);
     ends.clear();
     steps.clear();
     around.clear();

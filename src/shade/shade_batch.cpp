@@ -64,7 +64,8 @@ HWY_INLINE Vector outer(const Vector& a, const Vector& b) {
             hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
 }
 HWY_INLINE Vector either(Truth which, const Vector& a, const Vector& b) {
-    return {hn::IfThenElse(which, a.x, b.x), hn::IfThenElse(which, a.y, b.y), hn::IfThenElse(which, a.z, b.z)};
+    return {hn::IfThenElse(which, a.x, b.x), hn::IfThenElse(which, a.y, b.y),
+            hn::IfThenElse(which, a.z, b.z)};
 }
 HWY_INLINE Vector opposite(const Vector& a) {
     return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)};
@@ -105,12 +106,11 @@ struct Smooth {
 HWY_INLINE Smooth smooth_at(const Lanes& at, const Vector& geometric, const Vector& position) {
     Vector n[3];
     for (int k = 0; k < 3; ++k) n[k] = load(at.batch.corner_normal[k], at.first);
-    const Vector smooth = unit_or_zero(plus(
-        plus(times(at.weight(0), n[0]), times(at.weight(1), n[1])), times(at.weight(2), n[2])));
+    const Vector smooth = unit_or_zero(
+        plus(plus(times(at.weight(0), n[0]), times(at.weight(1), n[1])), times(at.weight(2), n[2])));
     const Truth none = hn::And(hn::And(hn::Eq(smooth.x, number(0)), hn::Eq(smooth.y, number(0))),
                                hn::Eq(smooth.z, number(0)));
-    const Number side =
-        hn::IfThenElse(hn::Lt(inner(smooth, geometric), number(0)), number(-1), number(1));
+    const Number side = hn::IfThenElse(hn::Lt(inner(smooth, geometric), number(0)), number(-1), number(1));
 
     Vector lifted = position;
     for (int k = 0; k < 3; ++k) {
@@ -169,8 +169,7 @@ void find_light_here(ShadeBatch& batch, const ShadeLight& light) {
         lit = hn::AndNot(hn::Le(cosine, number(0)), lit);
         if (light.casts_shadows) {
             // Light that arrives from behind a flat triangle is in the triangle's own shadow.
-            const Truth behind =
-                hn::Le(inner(load(batch.geometric_normal, first), toward), number(0));
+            const Truth behind = hn::Le(inner(load(batch.geometric_normal, first), toward), number(0));
             lit = hn::AndNot(hn::AndNot(truth_of(batch.smooth, first), behind), lit);
             store(minus(target, load(batch.shadow_start, first)), batch.way, first);
         }
@@ -187,8 +186,7 @@ void add_ambient_here(ShadeBatch& batch, const Vec3& radiance) {
 void add_light_here(ShadeBatch& batch, const Vec3& color, ShadeBatch::Bits lanes) {
     for (std::size_t first = 0; first < batch.count; first += kWidth) {
         const Vector before = load(batch.arriving, first);
-        const Vector after =
-            plus(before, times(hn::Load(kTag, batch.irradiance + first), vector(color)));
+        const Vector after = plus(before, times(hn::Load(kTag, batch.irradiance + first), vector(color)));
         store(either(truth_of(lanes, first), after, before), batch.arriving, first);
     }
 }

@@ -34,9 +34,9 @@ struct ShadeBatch {
     Bits smooth = 0;  // lanes whose normal comes from the corners
 
     // of one light, by find_light
-    ShadeLanes3 way;                     // of shadow rays, from shadow_start to the light
+    ShadeLanes3 way;                             // of shadow rays, from shadow_start to the light
     alignas(64) double irradiance[kShadeLanes];  // over pi, unhindered and of a white light
-    Bits lit = 0;                        // lanes that it reaches where nothing stands in the way
+    Bits lit = 0;                                // lanes that it reaches where nothing stands in the way
 
     ShadeLanes3 arriving;  // irradiance over pi of all lights so far, and the ambient radiance
 };
@@ -44,7 +44,7 @@ struct ShadeBatch {
 /// A light as all lanes see it.
 struct ShadeLight {
     bool is_point = false;
-    Vec3 position{0};      // of a point light
+    Vec3 position{0};        // of a point light
     Vec3 toward{0}, far{0};  // of a directional one: unit, and so far that it is beyond the scene
     double intensity = 0;
     bool casts_shadows = false;

@@ -76,7 +76,9 @@ std::map<std::string, Room> rooms() {
 const std::map<std::string, std::set<std::string>> kDoors{
     {"glm/", {"src/base/vec.h"}},
     {"tbb/", {"src/base/parallel.cpp"}},
-    {"hwy/", {"src/projector/kernel", "src/measure/patch_batch.cpp", "src/camera/specular_lanes.cpp"}},
+    {"hwy/",
+     {"src/projector/kernel", "src/measure/patch_batch.cpp", "src/camera/specular_lanes.cpp",
+      "src/shade/shade_batch.cpp", "src/intersect/local_segments.cpp"}},
     {"oneapi/", {}},
     {"opensubdiv/", {"surfaces/"}},
     {"tiny_obj_loader.h", {}},

@@ -9,8 +9,10 @@
 #include "measure/displacement.h"
 #include "measure/synthetic.h"
 #include "projector/kernel.h"
+#include "render/picture.h"
 #include "support/test.h"
 #include "surfaces/surfaces.h"
+#include "worlds.h"
 
 using namespace trilens;
 using namespace trilens_test;
@@ -68,4 +70,22 @@ TEST_CASE("the search for images has the same answers with every instruction set
         CHECK(different == 0);
     }
     CHECK(use_instruction_set(""));
+}
+
+TEST_CASE("pictures have the same bits with every instruction set", "[laws][render]") {
+    for (const char* name : {"sphere", "torus", "water"}) {
+        const auto world = shipped_world(name, 4, 90, 60);
+        REQUIRE(world);
+        std::optional<Image> first;
+        for (const std::string& set : kernel_instruction_sets()) {
+            REQUIRE(use_instruction_set(set));
+            Picture picture = draw_picture(*world, {}, {}, nullptr);
+            if (!first) first = picture.image;
+            INFO(name << " " << set);
+            REQUIRE(picture.image.channels.size() == first->channels.size());
+            for (std::size_t c = 0; c < first->channels.size(); ++c)
+                CHECK(picture.image.channels[c].values == first->channels[c].values);
+        }
+        CHECK(use_instruction_set(""));
+    }
 }

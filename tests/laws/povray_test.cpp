@@ -206,7 +206,7 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
     make_limit_viewer(*world, make_camera_rays(world->scene, 0))({0, 0, kWidth, kHeight, 1}, views);
     Against result;
     for (std::size_t p = 0; p < other.size(); ++p) {
-        const CutPaths& cut = views.samples[p].cut;
+        const CutPaths cut = views.samples[p].optic == kNone ? CutPaths() : views.of_optics[p].cut;
         if (cut.too_deep > 0.5) {
             ++result.trapped;
             continue;

@@ -183,6 +183,8 @@ TEST_CASE("A hit lies on the ray and on the surface, and is the first", "[surfac
                 Ray ray{target + far * normalize(Vec3(normal(random), normal(random), normal(random))), {}};
                 ray.direction = (target - ray.origin) * std::pow(10, exponent(random));
                 const auto hit = surface->intersect(ray, 0);
+                for (const double t_max : {1.0, 0.3, 2.0, hit ? hit->t : 1.0})
+                    CHECK(surface->meets(ray, 0, t_max) == (hit && hit->t < t_max));
                 // What a ray says is known to the rounding of its origin, its direction and the equation.
                 const double tolerance = 1e-14 * (far + 10 * scale) * 4;
 
