@@ -24,7 +24,7 @@ struct BoxTree::Data {
         RTCScene scene = nullptr;
     };
 
-    explicit Data(const std::string& isa) : device(isa) {}
+    explicit Data(const std::string& isa) : device(isa), packet_width(native_packet_width(device)) {}
     ~Data() {
         for (const Group& group : groups)
             if (group.scene) rtcReleaseScene(group.scene);
@@ -38,6 +38,7 @@ struct BoxTree::Data {
     void build(std::span<const Box> boxes, Group& group);
 
     EmbreeDevice device;
+    int packet_width = 4;  // rays that Embree takes at once
     std::vector<Group> groups;
 };
 

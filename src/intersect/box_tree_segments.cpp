@@ -1,5 +1,4 @@
 // Which boxes segments may meet: Embree's packets, with what is inside the boxes left to the caller.
-#include <cstring>
 #include <limits>
 
 #include "intersect/box_tree_data.h"
@@ -8,28 +7,28 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kPacket = 16;
-static_assert(Segments::kMost % kPacket == 0);
-
-/// The segments from `first` on as Embree wants them; false where none of them is asked.
-bool set_packet(const LocalSegments& local, std::size_t first, Segments::Bits asked, RTCRay16& rays,
-                int (&valid)[kPacket]) {
-    constexpr std::size_t kBytes = kPacket * sizeof(float);
-    std::memcpy(rays.org_x, local.origin[0] + first, kBytes);
-    std::memcpy(rays.org_y, local.origin[1] + first, kBytes);
-    std::memcpy(rays.org_z, local.origin[2] + first, kBytes);
-    std::memcpy(rays.dir_x, local.direction[0] + first, kBytes);
-    std::memcpy(rays.dir_y, local.direction[1] + first, kBytes);
-    std::memcpy(rays.dir_z, local.direction[2] + first, kBytes);
-    std::memcpy(rays.tfar, local.length + first, kBytes);
+/// The segments from `first` on as Embree wants them; those not asked are rays without a length. False where
+/// none is asked.
+template <typename Rays, std::size_t kWidth>
+bool set_packet(const LocalSegments& local, std::size_t first, Segments::Bits asked, Rays& rays,
+                int (&valid)[kWidth]) {
     bool any = false;
-    for (std::size_t i = 0; i < kPacket; ++i) {
+    for (std::size_t i = 0; i < kWidth; ++i) {
+        const std::size_t s = first + i;
+        const bool is_asked = asked >> s & 1;
+        const auto value = [&](const float* of_all, float otherwise) {
+            return is_asked ? of_all[s] : otherwise;
+        };
+        rays.org_x[i] = value(local.origin[0], 0), rays.dir_x[i] = value(local.direction[0], 1);
+        rays.org_y[i] = value(local.origin[1], 0), rays.dir_y[i] = value(local.direction[1], 1);
+        rays.org_z[i] = value(local.origin[2], 0), rays.dir_z[i] = value(local.direction[2], 1);
         rays.tnear[i] = rays.time[i] = 0;
+        rays.tfar[i] = value(local.length, -1);
         rays.mask[i] = ~0u;
         rays.flags[i] = 0;
-        rays.id[i] = static_cast<unsigned>(first + i);
-        valid[i] = asked >> (first + i) & 1 ? -1 : 0;
-        any = any || valid[i];
+        rays.id[i] = static_cast<unsigned>(s);
+        valid[i] = is_asked ? -1 : 0;
+        any = any || is_asked;
     }
     return any;
 }
@@ -72,12 +71,21 @@ Segments::Bits BoxTree::find_with(const Segments& segments, SegmentCallback call
         query.callback = callback;
         query.state = state;
         query.box = group.box.data();
-        for (std::size_t first = 0; first < segments.count; first += kPacket) {
-            RTCRay16 rays;
-            alignas(64) int valid[kPacket];
-            if (set_packet(local, first, local.meets & ~found, rays, valid))
-                occluded_coherent(valid, group.scene, &query, &rays);
-        }
+        const auto ask = [&]<typename Rays, std::size_t kWidth>() {
+            static_assert(Segments::kMost % kWidth == 0);
+            for (std::size_t first = 0; first < segments.count; first += kWidth) {
+                Rays rays;
+                alignas(64) int valid[kWidth];
+                if (set_packet(local, first, local.meets & ~found, rays, valid))
+                    occluded_coherent(valid, group.scene, &query, &rays);
+            }
+        };
+        if (data_->packet_width == 16)
+            ask.operator()<RTCRay16, 16>();
+        else if (data_->packet_width == 8)
+            ask.operator()<RTCRay8, 8>();
+        else
+            ask.operator()<RTCRay4, 4>();
         found |= query.found;
     }
     for_each_of(unusual, [&](std::size_t i) {

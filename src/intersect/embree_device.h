@@ -74,7 +74,13 @@ inline void intersect_one(RTCScene scene, EmbreeContext* context, RTCRayHit* ray
 }
 #endif
 
-/// rtcIntersect16, rtcIntersect8 and rtcOccluded16 for rays that travel together.
+/// The widest packets that the device takes without splitting them: 16, 8 or 4 rays.
+inline int native_packet_width(const EmbreeDevice& device) {
+    if (rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return 16;
+    return rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 4;
+}
+
+/// rtcIntersect and rtcOccluded for rays that travel together.
 #if TRILENS_EMBREE_MAJOR >= 4
 inline RTCIntersectArguments coherent_arguments() {
     RTCIntersectArguments arguments;
@@ -90,12 +96,24 @@ inline void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit8* ray
     RTCIntersectArguments arguments = coherent_arguments();
     rtcIntersect8(valid, scene, rays, &arguments);
 }
-inline void occluded_coherent(const int* valid, RTCScene scene, EmbreeContext* context, RTCRay16* rays) {
+inline RTCOccludedArguments occluded_arguments(EmbreeContext* context) {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
     arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
     arguments.context = context;
+    return arguments;
+}
+inline void occluded_coherent(const int* valid, RTCScene scene, EmbreeContext* context, RTCRay16* rays) {
+    RTCOccludedArguments arguments = occluded_arguments(context);
     rtcOccluded16(valid, scene, rays, &arguments);
+}
+inline void occluded_coherent(const int* valid, RTCScene scene, EmbreeContext* context, RTCRay8* rays) {
+    RTCOccludedArguments arguments = occluded_arguments(context);
+    rtcOccluded8(valid, scene, rays, &arguments);
+}
+inline void occluded_coherent(const int* valid, RTCScene scene, EmbreeContext* context, RTCRay4* rays) {
+    RTCOccludedArguments arguments = occluded_arguments(context);
+    rtcOccluded4(valid, scene, rays, &arguments);
 }
 #else
 inline RTCIntersectContext coherent_context() {
@@ -115,6 +133,14 @@ inline void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit8* ray
 inline void occluded_coherent(const int* valid, RTCScene scene, EmbreeContext* context, RTCRay16* rays) {
     context->flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcOccluded16(valid, scene, context, rays);
+}
+inline void occluded_coherent(const int* valid, RTCScene scene, EmbreeContext* context, RTCRay8* rays) {
+    context->flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcOccluded8(valid, scene, context, rays);
+}
+inline void occluded_coherent(const int* valid, RTCScene scene, EmbreeContext* context, RTCRay4* rays) {
+    context->flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcOccluded4(valid, scene, context, rays);
 }
 #endif
 

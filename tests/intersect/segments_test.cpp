@@ -71,7 +71,13 @@ TEST_CASE("segments side by side are hidden as single rays are") {
         for (Vec3& p : scene.points) p += centre;
         if (trial % 4 == 0)  // one far beyond the others, in a tree of its own
             for (int k = 0; k < 3; ++k) scene.points[scene.triangles[0][static_cast<std::size_t>(k)]] *= 1e6;
-        const Tracer tracer(scene);
+                // Packets of 4 rays, of 8, and of what suits the machine best.
+#if defined(__x86_64__)
+        const bool has_eight = __builtin_cpu_supports("avx2");
+#else
+        const bool has_eight = false;
+#endif
+        const Tracer tracer(scene, trial % 5 == 1 ? "sse2" : trial % 5 == 2 && has_eight ? "avx2" : "");
         for (int batch = 0; batch < 30; ++batch) {
             const Segments segments = any_segments(random, centre, size);
             const Segments::Bits found = tracer.occluded(segments);

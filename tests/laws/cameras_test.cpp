@@ -94,7 +94,7 @@ TEST_CASE("through every camera the projector, the thesis' engine and Embree see
             on_optic += exact.samples[s].optic != kNone;
             differing += seen(exact, s) != seen(traced, s);
             classic_differing += seen(exact, s) != seen(classic, s);
-            without += exact.samples[s].optic != kNone && exact.samples[s].end_count == 0;
+            without += exact.samples[s].optic != kNone && exact.ends_of(exact.samples[s]).empty();
         }
         const double all = static_cast<double>(exact.samples.size());
         INFO("of " << all << ", " << on_optic << " of the ball: " << differing << " differ from the traced, "
