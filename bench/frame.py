@@ -28,8 +28,9 @@ POINTS, SIDE = 100_000, 708  # of `project`; of the field of a million triangles
 GROUPS = [
     ("kernel: drawing through facets", r"N_AVX|N_SSE|draw_batch|Bvh|BlockDrawer|place_exactly"),
     ("samples: facets' samples into vectors", r"plan_tiles|TileMaker|rasterize|group_by_facet|make_sample_tiles"),
-    ("shadow rays", r"casts_shadow|BoxTree|Tracer|ShearedRay|embree|PrimitiveSurface|Sphere::|on_box|__fma"),
-    ("shading", r"shade_|sample_colour|lookup_|optic_weights|fresnel|light_of_view"),
+    ("shadow rays", r"casts_shadow|segment|unhindered|BoxTree|Tracer|ShearedRay|embree|PrimitiveSurface|Sphere::|on_box"
+                    r"|::solve|__fma"),
+    ("shading", r"shade_|Shaded|Contributions|sample_colour|lookup_|optic_weights|fresnel|light_of_view"),
     ("compression and packing", r"isal|deflate|zip_block|pack_|OpenEXR|libdeflate|libz|png|ExrStrips"),
     ("rays and views of samples", r"set_camera_rays|SampleViews|FacetViewer|collect_ends|NodeDrawer|ShownDrawer|OpticPaths"
                                   r"|draw_optic_paths|sample_ray|follow|surroundings"),
