@@ -5,42 +5,23 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "intersect/local_segments.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "base/double_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens::segment_lanes {
 namespace HWY_NAMESPACE {
+using namespace lanes::HWY_NAMESPACE;
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Tag = hn::CappedTag<double, 8>;
-using Number = hn::Vec<Tag>;
-using Truth = hn::Mask<Tag>;
-inline constexpr Tag kTag;
 inline constexpr hn::Rebind<float, Tag> kFloatTag;
-constexpr std::size_t kWidth = hn::MaxLanes(kTag);
 static_assert(Segments::kMost % kWidth == 0);
 
-HWY_INLINE Number number(double x) {
-    return hn::Set(kTag, x);
-}
-struct Vector {
-    Number x, y, z;
-};
 HWY_INLINE Vector load(const double (&from)[3][Segments::kMost], std::size_t first) {
-    return {hn::Load(kTag, from[0] + first), hn::Load(kTag, from[1] + first),
-            hn::Load(kTag, from[2] + first)};
-}
-HWY_INLINE Number inner(const Vector& a, const Vector& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+    return vector_at(from[0] + first, from[1] + first, from[2] + first);
 }
 /// a + s b
 HWY_INLINE Vector along(const Vector& a, Number s, const Vector& b) {
-    return {hn::Add(a.x, hn::Mul(s, b.x)), hn::Add(a.y, hn::Mul(s, b.y)), hn::Add(a.z, hn::Mul(s, b.z))};
-}
-HWY_INLINE Segments::Bits bits_of(Truth truth, std::size_t first) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(kTag, truth, bytes);
-    return static_cast<Segments::Bits>(bytes[0]) << first;
+    return plus(a, times(s, b));
 }
 HWY_INLINE void store(const Vector& v, float (&to)[3][Segments::kMost], std::size_t first) {
     hn::Store(hn::DemoteTo(kFloatTag, v.x), kFloatTag, to[0] + first);
@@ -54,11 +35,9 @@ void make_local_here(const Segments& segments, const Vec3& centre, double scale,
         const Number squared = inner(step, step), zero = number(0);
         const Truth usual = hn::And(hn::Gt(squared, number(1e-280)), hn::Lt(squared, number(1e280)));
         const Number inverse = hn::Div(number(1), hn::Sqrt(squared)), unit = number(scale);
-        const Vector direction{hn::Mul(step.x, inverse), hn::Mul(step.y, inverse), hn::Mul(step.z, inverse)};
+        const Vector direction = times(inverse, step);
         const Number speed = hn::Mul(inner(direction, step), unit);
-        const Vector origin{hn::Mul(hn::Sub(from.x, number(centre.x)), unit),
-                            hn::Mul(hn::Sub(from.y, number(centre.y)), unit),
-                            hn::Mul(hn::Sub(from.z, number(centre.z)), unit)};
+        const Vector origin = times(unit, minus(from, vector(centre)));
 
         // The stretch inside the scene's ball, with room for rounding of far origins.
         const Number far = hn::Add(hn::Add(hn::Abs(origin.x), hn::Abs(origin.y)), hn::Abs(origin.z));
@@ -72,8 +51,8 @@ void make_local_here(const Segments& segments, const Vec3& centre, double scale,
         const Truth finite = hn::And(hn::IsFinite(speed), hn::IsFinite(inner(origin, origin)));
         const Truth meets = hn::And(hn::And(finite, hn::Gt(half_chord_2, zero)),
                                     hn::And(hn::Gt(speed, zero), hn::Le(enter, leave)));
-        local.meets |= bits_of(hn::And(meets, usual), first);
-        local.unusual |= bits_of(hn::Not(usual), first);
+        local.meets |= bits_of(hn::And(meets, usual)) << first;
+        local.unusual |= bits_of(hn::Not(usual)) << first;
 
         store(along(nearest, hn::Sub(enter, to_nearest), direction), local.origin, first);
         store(direction, local.direction, first);
@@ -87,15 +66,12 @@ Segments::Bits may_meet_here(const Segments& segments, const Box& box) {
     // Segment and box are apart where a side of the box, or a side and the segment, have a plane between
     // them. Every comparison with what is no number says that they may meet.
     const Vec3 middle = 0.5 * box.low + 0.5 * box.high, half = 0.5 * box.high - 0.5 * box.low;
-    const Vector side{number(half.x), number(half.y), number(half.z)};
+    const Vector side = vector(half);
     Segments::Bits apart = 0;
     for (std::size_t first = 0; first < segments.count; first += kWidth) {
         const Vector step = load(segments.step, first), from = load(segments.from, first);
-        const Number one_half = number(0.5);
-        const Vector way{hn::Mul(step.x, one_half), hn::Mul(step.y, one_half), hn::Mul(step.z, one_half)};
-        const Vector off{hn::Sub(hn::Add(from.x, way.x), number(middle.x)),
-                         hn::Sub(hn::Add(from.y, way.y), number(middle.y)),
-                         hn::Sub(hn::Add(from.z, way.z), number(middle.z))};
+        const Vector way = times(number(0.5), step);
+        const Vector off = minus(plus(from, way), vector(middle));
         const Vector reach{hn::Abs(way.x), hn::Abs(way.y), hn::Abs(way.z)};
         const auto beyond = [](Number distance, Number own, Number other) {
             return hn::Gt(hn::Abs(distance), hn::Add(own, other));
@@ -111,7 +87,7 @@ Segments::Bits may_meet_here(const Segments& segments, const Box& box) {
             hn::Or(hn::Or(beside(way.x, way.y, off.x, off.y, side.x, side.y, reach.x, reach.y),
                           beside(way.y, way.z, off.y, off.z, side.y, side.z, reach.y, reach.z)),
                    beside(way.z, way.x, off.z, off.x, side.z, side.x, reach.z, reach.x));
-        apart |= bits_of(hn::Or(on_axes, around), first);
+        apart |= bits_of(hn::Or(on_axes, around)) << first;
     }
     return ~apart;
 }

@@ -3,81 +3,25 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shade/shade_batch.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "base/double_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens::shade_lanes {
 namespace HWY_NAMESPACE {
+using namespace lanes::HWY_NAMESPACE;
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Sums and products one by one, never fused, and in the order of shade_hit, so that every instruction set
-// rounds as it does.
+// In the order of shade_hit, so that it rounds alike.
 
-using Tag = hn::CappedTag<double, 8>;
-using Number = hn::Vec<Tag>;
-using Truth = hn::Mask<Tag>;
-inline constexpr Tag kTag;
-constexpr std::size_t kWidth = hn::MaxLanes(kTag);
 static_assert(kShadeLanes % kWidth == 0);
 
-HWY_INLINE Number number(double x) {
-    return hn::Set(kTag, x);
-}
-HWY_INLINE Number larger(Number a, Number b) {
-    return hn::IfThenElse(hn::Lt(a, b), b, a);
-}
-HWY_INLINE Number smaller(Number a, Number b) {
-    return hn::IfThenElse(hn::Lt(b, a), b, a);
-}
-
-struct Vector {
-    Number x, y, z;
-};
-HWY_INLINE Vector vector(const Vec3& v) {
-    return {number(v.x), number(v.y), number(v.z)};
-}
 HWY_INLINE Vector load(const ShadeLanes3& from, std::size_t first) {
-    return {hn::Load(kTag, from.x + first), hn::Load(kTag, from.y + first), hn::Load(kTag, from.z + first)};
+    return vector_at(from.x + first, from.y + first, from.z + first);
 }
 HWY_INLINE void store(const Vector& v, ShadeLanes3& to, std::size_t first) {
     hn::Store(v.x, kTag, to.x + first);
     hn::Store(v.y, kTag, to.y + first);
     hn::Store(v.z, kTag, to.z + first);
-}
-HWY_INLINE Vector plus(const Vector& a, const Vector& b) {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE Vector minus(const Vector& a, const Vector& b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vector times(Number s, const Vector& a) {
-    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-}
-HWY_INLINE Vector over(const Vector& a, Number s) {
-    return {hn::Div(a.x, s), hn::Div(a.y, s), hn::Div(a.z, s)};
-}
-HWY_INLINE Number inner(const Vector& a, const Vector& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Vector outer(const Vector& a, const Vector& b) {
-    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
-            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
-}
-HWY_INLINE Vector either(Truth which, const Vector& a, const Vector& b) {
-    return {hn::IfThenElse(which, a.x, b.x), hn::IfThenElse(which, a.y, b.y),
-            hn::IfThenElse(which, a.z, b.z)};
-}
-HWY_INLINE Vector opposite(const Vector& a) {
-    return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)};
-}
-HWY_INLINE ShadeBatch::Bits bits_of(Truth truth, std::size_t first) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(kTag, truth, bytes);
-    return static_cast<ShadeBatch::Bits>(bytes[0]) << first;
-}
-HWY_INLINE Truth truth_of(ShadeBatch::Bits bits, std::size_t first) {
-    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits >> first)};
-    return hn::LoadMaskBits(kTag, bytes);
 }
 
 /// As normalize_or_zero.
@@ -139,7 +83,7 @@ void find_surfaces_here(ShadeBatch& batch, double offset) {
             const Smooth smooth = smooth_at(at, geometric, position);
             normal = either(smooth.is_smooth, smooth.normal, normal);
             surface = either(smooth.is_smooth, smooth.surface, surface);
-            batch.smooth |= bits_of(smooth.is_smooth, first);
+            batch.smooth |= bits_of(smooth.is_smooth) << first;
         }
         store(position, batch.position, first);
         store(geometric, batch.geometric_normal, first);
@@ -170,11 +114,11 @@ void find_light_here(ShadeBatch& batch, const ShadeLight& light) {
         if (light.casts_shadows) {
             // Light that arrives from behind a flat triangle is in the triangle's own shadow.
             const Truth behind = hn::Le(inner(load(batch.geometric_normal, first), toward), number(0));
-            lit = hn::AndNot(hn::AndNot(truth_of(batch.smooth, first), behind), lit);
+            lit = hn::AndNot(hn::AndNot(truth_of(batch.smooth >> first), behind), lit);
             store(minus(target, load(batch.shadow_start, first)), batch.way, first);
         }
         hn::Store(hn::Mul(hn::Mul(number(kInversePi), irradiance), cosine), kTag, batch.irradiance + first);
-        batch.lit |= bits_of(lit, first);
+        batch.lit |= bits_of(lit) << first;
     }
 }
 
@@ -187,7 +131,7 @@ void add_light_here(ShadeBatch& batch, const Vec3& color, ShadeBatch::Bits lanes
     for (std::size_t first = 0; first < batch.count; first += kWidth) {
         const Vector before = load(batch.arriving, first);
         const Vector after = plus(before, times(hn::Load(kTag, batch.irradiance + first), vector(color)));
-        store(either(truth_of(lanes, first), after, before), batch.arriving, first);
+        store(either(truth_of(lanes >> first), after, before), batch.arriving, first);
     }
 }
 
