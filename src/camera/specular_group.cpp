@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "base/check.h"
 
@@ -14,6 +15,9 @@ constexpr std::size_t kMostNear = 20'000;
 /// smaller than where one would be looked for, since what is left is excluded by its place more cheaply.
 constexpr double kTurnAround = 0.03;
 
+/// A point that lies further from a surface than this, in units of its faces, leaves no cell undecided.
+constexpr double kFarInCells = 0x1p-10;
+
 template <typename Act>
 void for_each_lane(LaneBits lanes, Act act) {
     for (; lanes != 0; lanes &= lanes - 1) act(static_cast<std::size_t>(std::countr_zero(lanes)));
@@ -23,7 +27,32 @@ void for_each_lane(LaneBits lanes, Act act) {
 
 SpecularGroup::SpecularGroup(const Surface& surface, const SurfaceBounder& bounder, SpecularTree& tree,
                              const SpecularQuery& query, const SearchLimits& limits)
-    : tree_(tree), query_(query), walks_(kPointLanes, SpecularWalk(surface, bounder, tree, limits)) {}
+    : tree_(tree),
+      query_(query),
+      walks_(kPointLanes, SpecularWalk(surface, bounder, tree, limits)),
+      curvature_(surface.sphere_curvature()) {}
+
+/// Of a sphere: by the normal at some place of it, and in units of its cells.
+bool SpecularGroup::is_far_from_surface(const Vec3& place, const LawZero& zero) const {
+    const Vec3 way = place - zero.point.position;
+    const double height = dot(way, zero.point.normal) + 0.5 * curvature_ * dot(way, way);
+    return std::fabs(height) > kFarInCells * (length(zero.point.du) + length(zero.point.dv));
+}
+
+/// What the lane's walk knows, but of points and eyes so near to the surface that cells of the smallest size
+/// stay undecided.
+void SpecularGroup::note_zeros(std::size_t lane) {
+    const std::vector<LawZero>& zeros = walks_[lane].zeros();
+    for (std::size_t k = 0; k < kMostZeros; ++k) {
+        ZeroLanes& known = known_[k];
+        known.known &= ~(LaneBits{1} << lane);
+        if (k >= zeros.size() || !is_far_from_surface(points_.at(lane), zeros[k])) continue;
+        if (!query_.camera.parallel && !is_far_from_surface(query_.camera.eye, zeros[k])) continue;
+        known.known |= LaneBits{1} << lane;
+        known.at.set(lane, zeros[k].point.position);
+        known.along[lane] = zeros[k].along;
+    }
+}
 
 /// Each point begins where its neighbour ended.
 void SpecularGroup::settle(std::span<const Vec3> points) {
@@ -39,6 +68,7 @@ void SpecularGroup::settle(std::span<const Vec3> points) {
 
 void SpecularGroup::note_settled() {
     settled_.clear();
+    if (curvature_ > 0) for_each_lane(under_way_, [&](std::size_t lane) { note_zeros(lane); });
     for_each_lane(under_way_, [&](std::size_t lane) {
         for (const CellBox& box : walks_[lane].settled()) {
             const auto known = std::find_if(settled_.begin(), settled_.end(), [&](const Settled& other) {
@@ -89,6 +119,10 @@ void SpecularGroup::visit(const Wait& wait) {
     const LaneQuestion question{query_.event == SpecularEvent::kReflect, path_indices(query_), points_,
                                 lanes};
     lanes &= ~empty_lanes(question, node.place, node.view);
+    for (const ZeroLanes& zeros : known_)
+        if (lanes & zeros.known)
+            lanes &= ~alone_lanes({question.reflects, question.n, points_, lanes}, node.place, node.view, zeros,
+                                  curvature_);
     if (lanes != 0 && node.bounds) lanes = judge(node, lanes);
     if (lanes == 0) return;
     tree_.halve(node);

@@ -56,7 +56,7 @@ bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& p
         if (!image || largest(image->at.uv - zero.uv) > kSameZero) return false;
         result_.images.push_back(*image);
     }
-    zeros_.push_back(zero);
+    zeros_.push_back({zero, point, dot(path.bend, point.normal)});
     return true;
 }
 
@@ -150,7 +150,7 @@ bool SpecularWalk::must_split(TreeNode& cell) {
     const std::size_t zeros = zeros_.size(), images = result_.images.size();
     const Verdict verdict = ask_newton(cell);
     if (verdict == Verdict::kSettled) {
-        const SurfaceParameter zero = zeros_.back();
+        const SurfaceParameter zero = zeros_.back().at;
         zeros_.resize(zeros);
         result_.images.resize(images);
         settle_again(zero);
@@ -189,7 +189,7 @@ void SpecularWalk::settle_at(const SurfaceParameter& zero) {
         if (!alone && share_ <= kAloneShare) alone = cell;
         if (verdict == Verdict::kSettled) {
             // A zero on the border is one of the neighbour too: which of the two is listed is for run to say.
-            if (is_clear_of_border(*cell, zeros_.back().uv))
+            if (is_clear_of_border(*cell, zeros_.back().at.uv))
                 isolated_.push_back(alone->box);
             else
                 is_lost_ = true;
@@ -237,9 +237,9 @@ SpecularSearch SpecularWalk::run(const SpecularQuery& query) {
     return end();
 }
 
-void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const SurfaceParameter> near) {
+void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const LawZero> near) {
     begin(query);
-    for (const SurfaceParameter& start : near) settle_near(start);
+    for (const LawZero& start : near) settle_near(start.at);
 }
 
 std::optional<SpecularSearch> SpecularWalk::end_near() {

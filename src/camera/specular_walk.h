@@ -14,6 +14,13 @@ namespace trilens {
 
 /// Over a cell whose normals turn by more than this the Newton operator decides nothing, and is not asked.
 inline constexpr double kHopelessTurn = 0.25;
+/// A zero of the law, of an image or not.
+struct LawZero {
+    SurfaceParameter at;
+    SurfacePoint point;
+    double along = 0;  // h . normal
+};
+
 /// Branch and bound for one query after the other, all of one tree. One thread each; surface, bounder and
 /// tree must live longer.
 class SpecularWalk {
@@ -27,7 +34,7 @@ class SpecularWalk {
 
     /// Begins a search that ends sooner, with `near`, zeros of the law for a point close by. What it settles
     /// has the bits that run has; the caller goes through the cells, by `has_settled` and `must_split`.
-    void begin_near(const SpecularQuery& query, std::span<const SurfaceParameter> near);
+    void begin_near(const SpecularQuery& query, std::span<const LawZero> near);
     /// Whether the cell, with all that it holds, has no zero but those that are settled.
     bool has_settled(const CellBox& box) const;
     std::span<const CellBox> settled() const { return isolated_; }
@@ -42,8 +49,8 @@ class SpecularWalk {
     /// undecided, or a zero lies on the border of a cell.
     std::optional<SpecularSearch> end_near();
 
-    /// The zeros of the law that the last run settled, of images or not.
-    const std::vector<SurfaceParameter>& zeros() const { return zeros_; }
+    /// The zeros of the law that the last run settled.
+    const std::vector<LawZero>& zeros() const { return zeros_; }
 
     /// Whether a cell is not halved any more.
     bool is_last(const TreeNode& cell) const {
@@ -78,7 +85,8 @@ class SpecularWalk {
     double share_ = 0;  // to which the Newton operator shrinks the cell asked last
     bool is_lost_ = false;
     std::vector<TreeNode*> waiting_;
-    std::vector<SurfaceParameter> undecided_, zeros_;
+    std::vector<SurfaceParameter> undecided_;
+    std::vector<LawZero> zeros_;
     std::vector<CellBox> isolated_;  // each with one zero at most, which is settled
     SpecularSearch result_;
 };
