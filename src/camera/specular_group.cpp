@@ -54,16 +54,31 @@ void SpecularGroup::note_zeros(std::size_t lane) {
     }
 }
 
+/// Asks for all lanes at once.
+bool SpecularGroup::is_open(TreeNode& cell, std::size_t lane) {
+    if (!cell.view.is_apart || walks_.front().is_last(cell)) return false;
+    if (cell.place.normal_radius > kHopelessTurn) return true;
+    auto asked = std::find_if(asked_.begin(), asked_.end(), [&](const Wait& a) { return a.node == &cell; });
+    if (asked == asked_.end()) {
+        const LaneQuestion question{query_.event == SpecularEvent::kReflect, path_indices(query_), points_,
+                                    under_way_};
+        asked_.push_back({&cell, newton_lanes(question, tree_.terms_of(cell), cell.box.half()).open});
+        asked = asked_.end() - 1;
+    }
+    return asked->lanes >> lane & 1;
+}
+
 /// Each point begins where its neighbour ended.
 void SpecularGroup::settle(std::span<const Vec3> points) {
+    for (std::size_t lane = 0; lane < kPointLanes; ++lane)
+        points_.set(lane, points[std::min(lane, points.size() - 1)]);
+    asked_.clear();
     for (std::size_t lane = 0; lane < points.size(); ++lane) {
-        points_.set(lane, points[lane]);
         query_.point = points[lane];
-        walks_[lane].begin_near(query_, zeros_);
+        walks_[lane].begin_near(query_, zeros_, [&](TreeNode& cell) { return is_open(cell, lane); });
         if (walks_[lane].is_lost()) under_way_ &= ~(LaneBits{1} << lane);
         if (walks_[lane].zeros().size() >= zeros_.size()) zeros_ = walks_[lane].zeros();
     }
-    for (std::size_t lane = points.size(); lane < kPointLanes; ++lane) points_.set(lane, points.front());
 }
 
 void SpecularGroup::note_settled() {
@@ -111,7 +126,7 @@ LaneBits SpecularGroup::judge(TreeNode& cell, LaneBits lanes) {
 void SpecularGroup::visit(const Wait& wait) {
     TreeNode& node = *wait.node;
     LaneBits lanes = wait.lanes & under_way_;
-    for_each_lane(lanes, [&](std::size_t lane) { walks_[lane].look(1); });
+    for (std::size_t lane = 0; lane < kPointLanes; ++lane) looked_at_[lane] += lanes >> lane & 1;
     if (node.bounds)
         for (const Settled& settled : settled_)
             if (is_within(node.box, settled.box)) lanes &= ~settled.lanes;
@@ -137,6 +152,7 @@ std::vector<std::optional<SpecularSearch>> SpecularGroup::run(std::span<const Ve
     settle(points);
     note_settled();
     waiting_.clear();
+    looked_at_.fill(0);
     for (TreeNode* part : parts) waiting_.push_back({part, under_way_});
     std::size_t looked_at = 0;
     while (!waiting_.empty() && under_way_ != 0) {
@@ -146,7 +162,10 @@ std::vector<std::optional<SpecularSearch>> SpecularGroup::run(std::span<const Ve
         if (++looked_at == kMostNear) lose(under_way_);
     }
     std::vector<std::optional<SpecularSearch>> found;
-    for (std::size_t lane = 0; lane < points.size(); ++lane) found.push_back(walks_[lane].end_near());
+    for (std::size_t lane = 0; lane < points.size(); ++lane) {
+        walks_[lane].look(looked_at_[lane]);
+        found.push_back(walks_[lane].end_near());
+    }
     zeros_ = walks_[points.size() - 1].zeros();
     return found;
 }

@@ -38,6 +38,7 @@ class SpecularGroup {
     };
 
     void settle(std::span<const Vec3> points);
+    bool is_open(TreeNode& cell, std::size_t lane);
     void note_settled();
     void note_zeros(std::size_t lane);
     bool is_far_from_surface(const Vec3& place, const LawZero& zero) const;
@@ -54,6 +55,8 @@ class SpecularGroup {
     PointLanes points_;
     LaneBits under_way_ = 0;
     std::vector<Settled> settled_;
+    std::vector<Wait> asked_;  // with the lanes for which the cell is open
+    std::array<std::uint32_t, kPointLanes> looked_at_{};
     std::vector<Wait> waiting_;
 };
 

@@ -168,7 +168,7 @@ struct Pair {
 };
 
 struct Verdicts {
-    Truth leaves, contracts;
+    Truth leaves, contracts, open;
 };
 
 HWY_INLINE Number turning_radius(const Sights& point, Number stretch, const CellTerms::Reach& a,
@@ -241,7 +241,16 @@ HWY_INLINE Verdicts newton_of(const CellTerms& cell, const Vector& points, const
         hn::And(hn::Le(spread.x, number(0.5 * half.x)), hn::Le(spread.y, number(0.5 * half.y)));
     const Truth inside =
         hn::And(hn::Le(hn::Abs(step.x), number(half.x)), hn::Le(hn::Abs(step.y), number(half.y)));
-    return {leaving, hn::AndNot(leaving, hn::And(known, hn::And(contracting, inside)))};
+    // With room for rounding.
+    constexpr double kSurely = 1e-6;
+    const auto stays = [&](double side, Number at, Number wide) {
+        return hn::Le(hn::Abs(at), scaled(1 - kSurely, hn::Add(number(side), wide)));
+    };
+    const Truth wide = hn::Or(hn::Gt(spread.x, number((kAloneShare + kSurely) * half.x)),
+                              hn::Gt(spread.y, number((kAloneShare + kSurely) * half.y)));
+    const Truth staying = hn::And(stays(half.x, step.x, spread.x), stays(half.y, step.y, spread.y));
+    return {leaving, hn::AndNot(leaving, hn::And(known, hn::And(contracting, inside))),
+            hn::And(known, hn::And(wide, staying))};
 }
 
 NewtonLanes newton_lanes_here(const LaneQuestion& question, const CellTerms& cell, const Vec2& half) {
@@ -251,9 +260,11 @@ NewtonLanes newton_lanes_here(const LaneQuestion& question, const CellTerms& cel
         const Verdicts verdicts = newton_of(cell, points_from(question.points, first), half);
         result.leaves |= bits_of(verdicts.leaves, first);
         result.contracts |= bits_of(verdicts.contracts, first);
+        result.open |= bits_of(verdicts.open, first);
     }
     result.leaves &= question.asked;
     result.contracts &= question.asked;
+    result.open &= question.asked;
     return result;
 }
 

@@ -56,9 +56,14 @@ struct ZeroLanes {
 LaneBits alone_lanes(const LaneQuestion& question, const PlaceBounds& place, const EyeView& view,
                      const ZeroLanes& zeros, double curvature);
 
+/// A cell that the operator shrinks to this share has one zero at most: for two zeros p and q of it, 0 = J (p
+/// - q), J a mean of the Jacobians between them, and no such mean is singular.
+inline constexpr double kAloneShare = 0.9;
+
 struct NewtonLanes {
     LaneBits leaves = 0;     // proven: the cell has no zero
     LaneBits contracts = 0;  // of the others: the operator shrinks the cell by half or more
+    LaneBits open = 0;       // newton_bounds says neither, nor shrinks to kAloneShare, however it rounds
 };
 
 /// newton_bounds of a cell with these half sides, for the lanes asked.

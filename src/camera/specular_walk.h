@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -29,12 +30,15 @@ class SpecularWalk {
                  const SearchLimits& limits)
         : surface_(surface), bounder_(bounder), tree_(tree), limits_(limits) {}
 
+    using IsOpen = std::function<bool(TreeNode& cell)>;
+
     /// Searches the whole surface.
     SpecularSearch run(const SpecularQuery& query);
 
     /// Begins a search that ends sooner, with `near`, zeros of the law for a point close by. What it settles
-    /// has the bits that run has; the caller goes through the cells, by `has_settled` and `must_split`.
-    void begin_near(const SpecularQuery& query, std::span<const LawZero> near);
+    /// has the bits that run has; the caller goes through the cells, by `has_settled` and `must_split`. Cells
+    /// that are open, as NewtonLanes has it, are not asked one by one.
+    void begin_near(const SpecularQuery& query, std::span<const LawZero> near, const IsOpen& is_open);
     /// Whether the cell, with all that it holds, has no zero but those that are settled.
     bool has_settled(const CellBox& box) const;
     std::span<const CellBox> settled() const { return isolated_; }
@@ -72,8 +76,8 @@ class SpecularWalk {
     SurfacePoint point_at(Id face, const Vec2& uv) const;
     bool in_domain(Id face, const Vec2& uv) const;
     void refine_undecided();
-    void settle_near(SurfaceParameter start);
-    void settle_at(const SurfaceParameter& zero);
+    void settle_near(SurfaceParameter start, const IsOpen& is_open);
+    void settle_at(const SurfaceParameter& zero, const IsOpen& is_open);
     void settle_again(const SurfaceParameter& zero);
     TreeNode* half_around(TreeNode& cell, const Vec2& uv);
 
