@@ -39,8 +39,7 @@ std::size_t halve_points(std::span<const Vec3> points, std::span<std::size_t> so
         return p[next] != q[next] ? p[next] < q[next] : p[last] < q[last];
     };
     const std::size_t half = std::max(some.size() / 2 / unit, std::size_t{1}) * unit;
-    std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(half), some.end(),
-                     is_before);
+    std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(half), some.end(), is_before);
     return half;
 }
 

@@ -22,8 +22,8 @@ constexpr double kNewtonTurn = 0.06;
 constexpr double kFlatPart = 0.05;
 constexpr double kSmallPart = 0x1p-10;
 /// A tree of more nodes (some 600 bytes each) grows no further, and one of more than so many is not kept.
-constexpr std::size_t kMostNodes = 1u << 17;
-constexpr std::size_t kMostKept = 1u << 16;
+constexpr std::size_t kMostNodes = 1u << 16;
+constexpr std::size_t kMostKept = 1u << 14;
 
 }  // namespace
 

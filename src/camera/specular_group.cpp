@@ -136,8 +136,8 @@ void SpecularGroup::visit(const Wait& wait) {
     lanes &= ~empty_lanes(question, node.place, node.view);
     for (const ZeroLanes& zeros : known_)
         if (lanes & zeros.known)
-            lanes &= ~alone_lanes({question.reflects, question.n, points_, lanes}, node.place, node.view, zeros,
-                                  curvature_);
+            lanes &= ~alone_lanes({question.reflects, question.n, points_, lanes}, node.place, node.view,
+                                  zeros, curvature_);
     if (lanes != 0 && node.bounds) lanes = judge(node, lanes);
     if (lanes == 0) return;
     tree_.halve(node);

@@ -48,9 +48,9 @@ class SpecularGroup {
 
     SpecularTree& tree_;
     SpecularQuery query_;
-    std::vector<SpecularWalk> walks_;      // one for each lane
-    std::vector<LawZero> zeros_;           // of the last point
-    const double curvature_;               // Surface::sphere_curvature
+    std::vector<SpecularWalk> walks_;  // one for each lane
+    std::vector<LawZero> zeros_;       // of the last point
+    const double curvature_;           // Surface::sphere_curvature
     std::array<ZeroLanes, kMostZeros> known_;
     PointLanes points_;
     LaneBits under_way_ = 0;

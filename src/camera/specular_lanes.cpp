@@ -86,8 +86,8 @@ HWY_INLINE LaneBits bits_of(Truth truth, std::size_t first) {
 
 constexpr LaneBits kAllOfVector = (LaneBits{1} << kWidth) - 1;
 
-/// h = n1 e + n2 x in the middle of a place, and how much h . m for a fixed m changes when both h and a normal
-/// go over the place.
+/// h = n1 e + n2 x in the middle of a place, and how much h . m for a fixed m changes when both h and a
+/// normal go over the place.
 struct Bend {
     Vector middle;
     Number most;

@@ -36,7 +36,8 @@ std::vector<PointProjection> project_points(const World& world, const ProjectReq
     order_in_space(points, order, piece);
     parallel_for((points.size() + piece - 1) / piece, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from * piece; i < std::min(to * piece, points.size()); i += piece)
-            projector.project(points, std::span(order).subspan(i, std::min(piece, points.size() - i)), result);
+            projector.project(points, std::span(order).subspan(i, std::min(piece, points.size() - i)),
+                              result);
     });
     return result;
 }

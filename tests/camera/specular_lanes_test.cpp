@@ -58,7 +58,8 @@ void compare_newton(const LaneQuestion& question, const CellTerms& terms, const 
                                std::fabs(alone.step.y) <= half.y;
         // What is open stays so however it rounds.
         const Vec2 share = alone.spread / half;
-        tally.different += has(lanes.open, i) && (!alone.known || leaves || std::max(share.x, share.y) <= kAloneShare);
+        tally.different +=
+            has(lanes.open, i) && (!alone.known || leaves || std::max(share.x, share.y) <= kAloneShare);
         tally.open += has(lanes.open, i);
         if (alone.known && !is_clear(alone, half)) continue;
         tally.different += has(lanes.leaves, i) != leaves || has(lanes.contracts, i) != contracts;
