@@ -47,6 +47,9 @@ class PrimitiveSurface final : public Surface {
     FaceDomain domain(Id) const override { return FaceDomain::kSquare; }
     FaceBorder border(Id face) const override { return shape_->border(face); }
     bool has_closed_form() const override { return true; }
+    double sphere_curvature() const override {
+        return primitive_.type == Primitive::Type::kSphere ? 1 / primitive_.radius : 0;
+    }
     std::unique_ptr<const SurfaceBounder> make_bounder() const override {
         return make_primitive_bounder(primitive_, *this);
     }

@@ -1,7 +1,6 @@
 #include "base/halve_points.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "base/check.h"
@@ -28,17 +27,19 @@ PointBall ball_around(std::span<const Vec3> points, std::span<const std::size_t>
     return {middle, length(glm::max(high - middle, middle - low)) * (1 + 1e-14)};
 }
 
-std::size_t halve_points(std::span<const Vec3> points, std::span<std::size_t> some) {
+std::size_t halve_points(std::span<const Vec3> points, std::span<std::size_t> some, std::size_t unit) {
+    TRILENS_CHECK(unit > 0 && some.size() > unit, "there is a first half and a second");
     const auto [low, high] = box_around(points, some);
     const Vec3 size = high - low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-    const auto key = [&](std::size_t p) {
-        return std::array{points[p][axis], points[p][next], points[p][last]};
+    const auto is_before = [&](std::size_t a, std::size_t b) {
+        const Vec3 &p = points[a], &q = points[b];
+        if (p[axis] != q[axis]) return p[axis] < q[axis];
+        return p[next] != q[next] ? p[next] < q[next] : p[last] < q[last];
     };
-    const std::size_t half = some.size() / 2;
-    std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(half), some.end(),
-                     [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+    const std::size_t half = std::max(some.size() / 2 / unit, std::size_t{1}) * unit;
+    std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(half), some.end(), is_before);
     return half;
 }
 

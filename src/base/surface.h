@@ -93,6 +93,9 @@ class Surface {
         return hit && hit->t < t_max;
     }
 
+    /// 1 / radius of the sphere that the whole surface lies on, normals outward; 0 of every other surface.
+    virtual double sphere_curvature() const { return 0; }
+
     /// Bytes that it holds now, but for the allocator's own and what does not grow with the surface.
     virtual std::size_t bytes_held() const { return 0; }
 

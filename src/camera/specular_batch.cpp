@@ -23,7 +23,7 @@ constexpr double kFlatPart = 0.05;
 constexpr double kSmallPart = 0x1p-10;
 /// A tree of more nodes (some 600 bytes each) grows no further, and one of more than so many is not kept.
 constexpr std::size_t kMostNodes = 1u << 16;
-constexpr std::size_t kMostKept = 1u << 13;
+constexpr std::size_t kMostKept = 1u << 14;
 
 }  // namespace
 
@@ -85,7 +85,7 @@ void SpecularBatch::descend(std::span<std::size_t> some, const Parts& parts) {
     Parts left;
     for (TreeNode* part : parts) sift(*part, left);
     if (some.size() > kFewPoints) {
-        const std::size_t half = halve_points(points_, some);
+        const std::size_t half = halve_points(points_, some, kFewPoints);
         descend(some.first(half), left);
         descend(some.subspan(half), left);
         return;

@@ -22,6 +22,9 @@ using Truth = hn::Mask<Tag>;
 inline constexpr Tag kTag;
 constexpr std::size_t kWidth = hn::MaxLanes(kTag);
 
+/// h . normal, and what it is compared with, this far from zero is far from singular: a share of n1 + n2.
+constexpr double kClearBend = 0.02;
+
 HWY_INLINE Number number(double x) {
     return hn::Set(kTag, x);
 }
@@ -83,6 +86,22 @@ HWY_INLINE LaneBits bits_of(Truth truth, std::size_t first) {
 
 constexpr LaneBits kAllOfVector = (LaneBits{1} << kWidth) - 1;
 
+/// h = n1 e + n2 x in the middle of a place, and how much h . m for a fixed m changes when both h and a
+/// normal go over the place.
+struct Bend {
+    Vector middle;
+    Number most;
+};
+
+HWY_INLINE Bend bend_of(const PathIndices& n, const Sights& sights, const PlaceBounds& place,
+                        const EyeView& view) {
+    const Vector bend =
+        plus(times(number(n.eye), vector(view.sight.direction)), times(number(n.point), sights.direction));
+    const Number turn = hn::Add(number(n.eye * view.sight.turn), scaled(n.point, sights.turn));
+    const Number size = hn::Sqrt(inner(bend, bend));
+    return {bend, hn::Add(turn, hn::Mul(hn::Add(size, turn), number(place.normal_radius)))};
+}
+
 HWY_INLINE Truth empty_of(const LaneQuestion& question, const Vector& points, const PlaceBounds& place,
                           const EyeView& view) {
     const Sights sights = sights_of(points, place.position, place.position_radius);
@@ -95,14 +114,9 @@ HWY_INLINE Truth empty_of(const LaneQuestion& question, const Vector& points, co
         const Truth reflects = hn::Gt(scaled(view.cosine, cosine), number(0));
         empty = hn::And(known, question.reflects ? hn::Not(reflects) : reflects);
     }
-    const PathIndices& n = question.n;
-    const Vector bend =
-        plus(times(number(n.eye), vector(view.sight.direction)), times(number(n.point), sights.direction));
-    const Number turn = hn::Add(number(n.eye * view.sight.turn), scaled(n.point, sights.turn));
-    const Vector across = minus(bend, times(inner(bend, normal), normal));
-    const Number size = hn::Sqrt(inner(bend, bend));
-    const Number most = hn::Add(turn, hn::Mul(hn::Add(size, turn), normal_radius));
-    empty = hn::Or(empty, hn::Gt(inner(across, across), hn::Mul(most, most)));
+    const Bend bend = bend_of(question.n, sights, place, view);
+    const Vector across = minus(bend.middle, times(inner(bend.middle, normal), normal));
+    empty = hn::Or(empty, hn::Gt(inner(across, across), hn::Mul(bend.most, bend.most)));
     return hn::And(sights.apart, empty);
 }
 
@@ -114,12 +128,47 @@ LaneBits empty_lanes_here(const LaneQuestion& question, const PlaceBounds& place
     return empty & question.asked;
 }
 
+HWY_INLINE Truth alone_of(const LaneQuestion& question, const PlaceBounds& place, const EyeView& view,
+                          const ZeroLanes& zeros, double curvature, std::size_t first) {
+    const PathIndices& n = question.n;
+    const Sights sights =
+        sights_of(points_from(question.points, first), place.position, place.position_radius);
+    const Bend bend = bend_of(n, sights, place, view);
+    const Number middle = inner(bend.middle, vector(place.normal));
+    const Number margin = number(kClearBend * (n.eye + n.point)), along = hn::Load(kTag, zeros.along + first);
+    const Number high = hn::Max(along, hn::Add(middle, bend.most));
+    const Number low = hn::Min(along, hn::Sub(middle, bend.most));
+    const Truth bends_back = hn::Le(high, hn::Neg(margin));
+
+    // The chords from the zero into the place lie within this of the place's middle.
+    const Vector way = minus(points_from(zeros.at, first), vector(place.position));
+    const Number reach = hn::Add(hn::Sqrt(inner(way, way)), number(place.position_radius));
+    const Number by_eye = number(view.sight.by_distance);
+    const Number to_eye = hn::Sub(number(1), hn::Mul(by_eye, reach));
+    const Number to_point = hn::Sub(sights.distance, reach);
+    const Number turning =
+        hn::Add(hn::Div(scaled(n.eye, by_eye), to_eye), hn::Div(number(n.point), to_point));
+    const Truth outside = hn::And(hn::Gt(to_eye, number(0)), hn::Gt(to_point, number(0)));
+    const Truth bends_more =
+        hn::And(outside, hn::Ge(scaled(curvature, hn::Sub(low, margin)), scaled(1 + kClearBend, turning)));
+    return hn::And(sights.apart, hn::Or(bends_back, bends_more));
+}
+
+LaneBits alone_lanes_here(const LaneQuestion& question, const PlaceBounds& place, const EyeView& view,
+                          const ZeroLanes& zeros, double curvature) {
+    LaneBits alone = 0;
+    for (std::size_t first = 0; first < kPointLanes; first += kWidth)
+        if ((question.asked & zeros.known) >> first & kAllOfVector)
+            alone |= bits_of(alone_of(question, place, view, zeros, curvature, first), first);
+    return alone & question.asked & zeros.known;
+}
+
 struct Pair {
     Number x, y;
 };
 
 struct Verdicts {
-    Truth leaves, contracts;
+    Truth leaves, contracts, open;
 };
 
 HWY_INLINE Number turning_radius(const Sights& point, Number stretch, const CellTerms::Reach& a,
@@ -192,7 +241,16 @@ HWY_INLINE Verdicts newton_of(const CellTerms& cell, const Vector& points, const
         hn::And(hn::Le(spread.x, number(0.5 * half.x)), hn::Le(spread.y, number(0.5 * half.y)));
     const Truth inside =
         hn::And(hn::Le(hn::Abs(step.x), number(half.x)), hn::Le(hn::Abs(step.y), number(half.y)));
-    return {leaving, hn::AndNot(leaving, hn::And(known, hn::And(contracting, inside)))};
+    // With room for rounding.
+    constexpr double kSurely = 1e-6;
+    const auto stays = [&](double side, Number at, Number wide) {
+        return hn::Le(hn::Abs(at), scaled(1 - kSurely, hn::Add(number(side), wide)));
+    };
+    const Truth wide = hn::Or(hn::Gt(spread.x, number((kAloneShare + kSurely) * half.x)),
+                              hn::Gt(spread.y, number((kAloneShare + kSurely) * half.y)));
+    const Truth staying = hn::And(stays(half.x, step.x, spread.x), stays(half.y, step.y, spread.y));
+    return {leaving, hn::AndNot(leaving, hn::And(known, hn::And(contracting, inside))),
+            hn::And(known, hn::And(wide, staying))};
 }
 
 NewtonLanes newton_lanes_here(const LaneQuestion& question, const CellTerms& cell, const Vec2& half) {
@@ -202,9 +260,11 @@ NewtonLanes newton_lanes_here(const LaneQuestion& question, const CellTerms& cel
         const Verdicts verdicts = newton_of(cell, points_from(question.points, first), half);
         result.leaves |= bits_of(verdicts.leaves, first);
         result.contracts |= bits_of(verdicts.contracts, first);
+        result.open |= bits_of(verdicts.open, first);
     }
     result.leaves &= question.asked;
     result.contracts &= question.asked;
+    result.open &= question.asked;
     return result;
 }
 
@@ -216,6 +276,7 @@ HWY_AFTER_NAMESPACE();
 namespace trilens {
 namespace specular {
 HWY_EXPORT(empty_lanes_here);
+HWY_EXPORT(alone_lanes_here);
 HWY_EXPORT(newton_lanes_here);
 }  // namespace specular
 
@@ -225,6 +286,13 @@ LaneBits empty_lanes(const LaneQuestion& question, const PlaceBounds& place, con
     // Where every direction may be a normal no light is excluded.
     if (place.normal_radius >= 1 || !view.is_apart) return 0;
     return HWY_DYNAMIC_DISPATCH(empty_lanes_here)(question, place, view);
+}
+
+LaneBits alone_lanes(const LaneQuestion& question, const PlaceBounds& place, const EyeView& view,
+                     const ZeroLanes& zeros, double curvature) {
+    using namespace specular;
+    if (!(curvature > 0) || place.normal_radius >= 1 || !view.is_apart) return 0;
+    return HWY_DYNAMIC_DISPATCH(alone_lanes_here)(question, place, view, zeros, curvature);
 }
 
 NewtonLanes newton_lanes(const LaneQuestion& question, const CellTerms& cell, const Vec2& half) {

@@ -25,6 +25,7 @@ struct PointLanes {
         y[lane] = point.y;
         z[lane] = point.z;
     }
+    Vec3 at(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
 };
 
 struct LaneQuestion {
@@ -38,9 +39,31 @@ struct LaneQuestion {
 /// set, but for rounding those of test_place.
 LaneBits empty_lanes(const LaneQuestion& question, const PlaceBounds& place, const EyeView& view);
 
+/// A zero of the law for each of the lanes `known`, on a sphere.
+struct ZeroLanes {
+    PointLanes at;
+    alignas(64) double along[kPointLanes] = {};  // h . normal there
+    LaneBits known = 0;
+};
+
+/// For which of the lanes asked and known no other zero lies in a part of a sphere of this curvature; said
+/// only where the law is far from singular in the whole part.
+///
+/// For zeros P and Q, h = a n(P) and b n(Q), and d = Q - P: n(Q) . d = -n(P) . d = curvature / 2 |d|^2, so
+/// that (h(Q) - h(P)) . d = curvature (a + b) / 2 |d|^2. But h is the gradient of a convex function, the
+/// optical path in all of space: that is no less than 0, and no more than |d|^2 times the most that h turns
+/// along the chord.
+LaneBits alone_lanes(const LaneQuestion& question, const PlaceBounds& place, const EyeView& view,
+                     const ZeroLanes& zeros, double curvature);
+
+/// A cell that the operator shrinks to this share has one zero at most: for two zeros p and q of it, 0 = J (p
+/// - q), J a mean of the Jacobians between them, and no such mean is singular.
+inline constexpr double kAloneShare = 0.9;
+
 struct NewtonLanes {
     LaneBits leaves = 0;     // proven: the cell has no zero
     LaneBits contracts = 0;  // of the others: the operator shrinks the cell by half or more
+    LaneBits open = 0;       // newton_bounds says neither, nor shrinks to kAloneShare, however it rounds
 };
 
 /// newton_bounds of a cell with these half sides, for the lanes asked.

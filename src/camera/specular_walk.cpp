@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "camera/specular_lanes.h"
 #include "camera/specular_law.h"
 
 namespace trilens {
@@ -22,9 +23,6 @@ constexpr std::size_t kUndecidedStarts = 64;
 
 /// Zeros nearer than this to a cell's border are left to the cells on both sides.
 constexpr double kClearOfBorder = 1e-9;
-/// A cell that the operator shrinks to this share has one zero at most: for two zeros p and q of it, 0 = J (p
-/// - q), J a mean of the Jacobians between them, and no such mean is singular.
-constexpr double kAloneShare = 0.9;
 /// Newton steps from a neighbour's zero: enough to tell the cells that hold the zero.
 constexpr int kNearSteps = 2;
 
@@ -56,7 +54,7 @@ bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& p
         if (!image || largest(image->at.uv - zero.uv) > kSameZero) return false;
         result_.images.push_back(*image);
     }
-    zeros_.push_back(zero);
+    zeros_.push_back({zero, point, dot(path.bend, point.normal)});
     return true;
 }
 
@@ -150,7 +148,7 @@ bool SpecularWalk::must_split(TreeNode& cell) {
     const std::size_t zeros = zeros_.size(), images = result_.images.size();
     const Verdict verdict = ask_newton(cell);
     if (verdict == Verdict::kSettled) {
-        const SurfaceParameter zero = zeros_.back();
+        const SurfaceParameter zero = zeros_.back().at;
         zeros_.resize(zeros);
         result_.images.resize(images);
         settle_again(zero);
@@ -159,7 +157,7 @@ bool SpecularWalk::must_split(TreeNode& cell) {
 }
 
 /// The zero near `start`, by its cell.
-void SpecularWalk::settle_near(SurfaceParameter start) {
+void SpecularWalk::settle_near(SurfaceParameter start, const IsOpen& is_open) {
     for (int step = 0; step < kNearSteps; ++step) {
         const SurfacePoint point = surface_.eval(start.face, start.uv);
         const SpecularPath path = specular_path(query_, point.position);
@@ -168,28 +166,29 @@ void SpecularWalk::settle_near(SurfaceParameter start) {
         const bool inside = start.uv.x >= 0 && start.uv.y >= 0 && start.uv.x <= 1 && start.uv.y <= 1;
         if (!inside || !in_domain(start.face, start.uv)) return;
     }
-    settle_at(start);
+    settle_at(start, is_open);
 }
 
 /// A zero that was settled in a smaller cell than a search of the whole has it in: in that one.
 void SpecularWalk::settle_again(const SurfaceParameter& zero) {
     if (has_settled({zero.face, zero.uv, zero.uv})) return;
     const std::size_t known = zeros_.size();
-    settle_at(zero);
+    settle_at(zero, [](TreeNode&) { return false; });
     is_lost_ = is_lost_ || zeros_.size() == known;
 }
 
 /// Goes down through the cells that hold the place to the one where a search of the whole settles it, if
 /// there is, and notes the largest in which it stands alone.
-void SpecularWalk::settle_at(const SurfaceParameter& zero) {
+void SpecularWalk::settle_at(const SurfaceParameter& zero, const IsOpen& is_open) {
     if (has_settled({zero.face, zero.uv, zero.uv})) return;
     TreeNode* alone = nullptr;
     for (TreeNode* cell = &tree_.face(zero.face); cell; cell = half_around(*cell, zero.uv)) {
+        if (is_open(*cell)) continue;
         const Verdict verdict = ask_newton(*cell);
         if (!alone && share_ <= kAloneShare) alone = cell;
         if (verdict == Verdict::kSettled) {
             // A zero on the border is one of the neighbour too: which of the two is listed is for run to say.
-            if (is_clear_of_border(*cell, zeros_.back().uv))
+            if (is_clear_of_border(*cell, zeros_.back().at.uv))
                 isolated_.push_back(alone->box);
             else
                 is_lost_ = true;
@@ -237,9 +236,10 @@ SpecularSearch SpecularWalk::run(const SpecularQuery& query) {
     return end();
 }
 
-void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const SurfaceParameter> near) {
+void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const LawZero> near,
+                              const IsOpen& is_open) {
     begin(query);
-    for (const SurfaceParameter& start : near) settle_near(start);
+    for (const LawZero& start : near) settle_near(start.at, is_open);
 }
 
 std::optional<SpecularSearch> SpecularWalk::end_near() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,6 +15,13 @@ namespace trilens {
 
 /// Over a cell whose normals turn by more than this the Newton operator decides nothing, and is not asked.
 inline constexpr double kHopelessTurn = 0.25;
+/// A zero of the law, of an image or not.
+struct LawZero {
+    SurfaceParameter at;
+    SurfacePoint point;
+    double along = 0;  // h . normal
+};
+
 /// Branch and bound for one query after the other, all of one tree. One thread each; surface, bounder and
 /// tree must live longer.
 class SpecularWalk {
@@ -22,12 +30,15 @@ class SpecularWalk {
                  const SearchLimits& limits)
         : surface_(surface), bounder_(bounder), tree_(tree), limits_(limits) {}
 
+    using IsOpen = std::function<bool(TreeNode& cell)>;
+
     /// Searches the whole surface.
     SpecularSearch run(const SpecularQuery& query);
 
     /// Begins a search that ends sooner, with `near`, zeros of the law for a point close by. What it settles
-    /// has the bits that run has; the caller goes through the cells, by `has_settled` and `must_split`.
-    void begin_near(const SpecularQuery& query, std::span<const SurfaceParameter> near);
+    /// has the bits that run has; the caller goes through the cells, by `has_settled` and `must_split`. Cells
+    /// that are open, as NewtonLanes has it, are not asked one by one.
+    void begin_near(const SpecularQuery& query, std::span<const LawZero> near, const IsOpen& is_open);
     /// Whether the cell, with all that it holds, has no zero but those that are settled.
     bool has_settled(const CellBox& box) const;
     std::span<const CellBox> settled() const { return isolated_; }
@@ -42,8 +53,8 @@ class SpecularWalk {
     /// undecided, or a zero lies on the border of a cell.
     std::optional<SpecularSearch> end_near();
 
-    /// The zeros of the law that the last run settled, of images or not.
-    const std::vector<SurfaceParameter>& zeros() const { return zeros_; }
+    /// The zeros of the law that the last run settled.
+    const std::vector<LawZero>& zeros() const { return zeros_; }
 
     /// Whether a cell is not halved any more.
     bool is_last(const TreeNode& cell) const {
@@ -65,8 +76,8 @@ class SpecularWalk {
     SurfacePoint point_at(Id face, const Vec2& uv) const;
     bool in_domain(Id face, const Vec2& uv) const;
     void refine_undecided();
-    void settle_near(SurfaceParameter start);
-    void settle_at(const SurfaceParameter& zero);
+    void settle_near(SurfaceParameter start, const IsOpen& is_open);
+    void settle_at(const SurfaceParameter& zero, const IsOpen& is_open);
     void settle_again(const SurfaceParameter& zero);
     TreeNode* half_around(TreeNode& cell, const Vec2& uv);
 
@@ -78,7 +89,8 @@ class SpecularWalk {
     double share_ = 0;  // to which the Newton operator shrinks the cell asked last
     bool is_lost_ = false;
     std::vector<TreeNode*> waiting_;
-    std::vector<SurfaceParameter> undecided_, zeros_;
+    std::vector<SurfaceParameter> undecided_;
+    std::vector<LawZero> zeros_;
     std::vector<CellBox> isolated_;  // each with one zero at most, which is settled
     SpecularSearch result_;
 };

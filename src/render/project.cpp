@@ -1,6 +1,7 @@
 #include "render/project.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 #include "base/halve_points.h"
@@ -14,16 +15,12 @@ namespace {
 /// in common.
 constexpr std::size_t kPiecesPerThread = 8, kLeastPiece = 16, kMostPiece = 1024;
 
-/// Halves `some` in space down to pieces of at most `most`.
-void add_pieces(std::span<const Vec3> points, std::span<std::size_t> some, std::size_t most,
-                std::vector<std::span<const std::size_t>>& pieces) {
-    if (some.size() <= most) {
-        pieces.push_back(some);
-        return;
-    }
-    const std::size_t half = halve_points(points, some);
-    add_pieces(points, some.first(half), most, pieces);
-    add_pieces(points, some.subspan(half), most, pieces);
+/// Halves `some` in space until each `most` of them, counted from the first, lie together.
+void order_in_space(std::span<const Vec3> points, std::span<std::size_t> some, std::size_t most) {
+    if (some.size() <= most) return;
+    const std::size_t half = halve_points(points, some, most);
+    run_side_by_side({[&] { order_in_space(points, some.first(half), most); },
+                      [&] { order_in_space(points, some.subspan(half), most); }});
 }
 
 }  // namespace
@@ -34,11 +31,13 @@ std::vector<PointProjection> project_points(const World& world, const ProjectReq
     std::vector<PointProjection> result(points.size());
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::vector<std::span<const std::size_t>> pieces;
     const std::size_t share = points.size() / (kPiecesPerThread * static_cast<std::size_t>(thread_count()));
-    add_pieces(points, order, std::clamp(share, kLeastPiece, kMostPiece), pieces);
-    parallel_for(pieces.size(), 1, [&](std::size_t from, std::size_t to) {
-        for (std::size_t i = from; i < to; ++i) projector.project(points, pieces[i], result);
+    const std::size_t piece = std::clamp(std::bit_floor(share), kLeastPiece, kMostPiece);
+    order_in_space(points, order, piece);
+    parallel_for((points.size() + piece - 1) / piece, 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from * piece; i < std::min(to * piece, points.size()); i += piece)
+            projector.project(points, std::span(order).subspan(i, std::min(piece, points.size() - i)),
+                              result);
     });
     return result;
 }

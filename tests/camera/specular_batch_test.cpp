@@ -152,6 +152,13 @@ TEST_CASE("points are halved by their coordinates alone, and their ball holds th
         const std::size_t half = halve_points(points, some);
         CHECK(half == points.size() / 2);
         CHECK(halve_points(points, other) == half);
+        const std::size_t unit = 1 + static_cast<std::size_t>(round) % (points.size() - 1);
+        std::vector<std::size_t> in_units(some);
+        const std::size_t of_units = halve_points(points, in_units, unit);
+        CHECK(of_units % unit == 0);
+        CHECK(of_units > 0);
+        CHECK(of_units < points.size());
+        CHECK((of_units == unit || of_units <= points.size() / 2));
         const auto sorted = [&](std::vector<std::size_t>& order) {
             std::vector<std::array<double, 3>> first;
             for (std::size_t k = 0; k < half; ++k) {

@@ -1,6 +1,7 @@
 // What is said about points side by side is what is said about each alone.
 #include "camera/specular_lanes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "camera/closed_forms.h"
@@ -26,7 +27,7 @@ Vec3 goes_on(const SpecularQuery& query, const Vec3& in, const Vec3& normal) {
 }
 
 struct Tally {
-    int places = 0, empty = 0, leaving = 0, contracting = 0, different = 0, not_asked = 0;
+    int places = 0, empty = 0, leaving = 0, contracting = 0, open = 0, different = 0, not_asked = 0;
 };
 
 bool has(LaneBits bits, std::size_t lane) {
@@ -46,7 +47,7 @@ bool is_clear(const NewtonBounds& newton, const Vec2& half) {
 
 void compare_newton(const LaneQuestion& question, const CellTerms& terms, const Vec2& half, Tally& tally) {
     const NewtonLanes lanes = newton_lanes(question, terms, half);
-    tally.not_asked += ((lanes.leaves | lanes.contracts) & ~question.asked) != 0;
+    tally.not_asked += ((lanes.leaves | lanes.contracts | lanes.open) & ~question.asked) != 0;
     for (std::size_t i = 0; i < kPointLanes; ++i) {
         if (!has(question.asked, i)) continue;
         const Vec3 point(question.points.x[i], question.points.y[i], question.points.z[i]);
@@ -55,6 +56,11 @@ void compare_newton(const LaneQuestion& question, const CellTerms& terms, const 
         const bool contracts = alone.known && !leaves && alone.spread.x <= 0.5 * half.x &&
                                alone.spread.y <= 0.5 * half.y && std::fabs(alone.step.x) <= half.x &&
                                std::fabs(alone.step.y) <= half.y;
+        // What is open stays so however it rounds.
+        const Vec2 share = alone.spread / half;
+        tally.different +=
+            has(lanes.open, i) && (!alone.known || leaves || std::max(share.x, share.y) <= kAloneShare);
+        tally.open += has(lanes.open, i);
         if (alone.known && !is_clear(alone, half)) continue;
         tally.different += has(lanes.leaves, i) != leaves || has(lanes.contracts, i) != contracts;
         tally.leaving += leaves;
@@ -109,6 +115,7 @@ void check(const Tally& tally) {
     CHECK(tally.empty < tally.places);
     CHECK(tally.leaving > tally.places / 50);
     CHECK(tally.contracting > 0);
+    CHECK(tally.open > tally.places / 50);
 }
 
 }  // namespace
@@ -130,4 +137,55 @@ TEST_CASE("points side by side are excluded from the cells that exclude each alo
     oblique.camera.view_direction = {0.3, -2, -1.1};
     oblique.camera.screen_w = {0, 0, 0, 1};
     check(compare(draw, CubeSphere(Vec3(0), 1), oblique, 3000));
+}
+
+TEST_CASE("a zero that is known to be alone on a part of a sphere is alone there") {
+    Draw draw(86);
+    int alone = 0, alone_and_there = 0, others = 0, at_front = 0;
+    for (int round = 0; round < 20000; ++round) {
+        const CubeSphere sphere(draw.in_cube(1), draw.log_uniform(0.3, 3));
+        const bool inside = round % 4 == 0;
+        const auto somewhere = [&] {
+            return sphere.center + sphere.radius * (inside ? draw.away(0, 0.99) : draw.away(1.01, 5));
+        };
+        SpecularQuery query;
+        query.camera = camera_at(somewhere(), sphere.center + draw.in_cube(0.3));
+        query.point = somewhere();
+        const std::vector<Vec3> zeros = alhazen(sphere, query.camera.eye, query.point);
+        if (zeros.empty()) continue;
+
+        CellBox box{static_cast<Id>(round % 6), {}, {}};
+        const double size = draw.log_uniform(0.01, 0.3);
+        box.low = {draw.uniform(0, 1 - size), draw.uniform(0, 1 - size)};
+        box.high = box.low + size;
+        const PlaceBounds place = place_of(sphere.make_bounder()->bounds(box.face, box.low, box.high));
+        const EyeView view = eye_view(query, place);
+        PointLanes points;
+        for (std::size_t i = 0; i < kPointLanes; ++i) points.set(i, query.point);
+        ZeroLanes known;
+        known.known = (LaneBits{1} << zeros.size()) - 1;
+        for (std::size_t i = 0; i < zeros.size(); ++i) {
+            known.at.set(i, zeros[i]);
+            known.along[i] =
+                dot(specular_path(query, zeros[i]).bend, (zeros[i] - sphere.center) / sphere.radius);
+        }
+        const LaneBits said = alone_lanes({true, path_indices(query), points, 0xffff}, place, view, known,
+                                          sphere.sphere_curvature());
+        CHECK((said & ~known.known) == 0);
+        const auto may_lie_there = [&](const Vec3& zero) {
+            return length(zero - place.position) <= place.position_radius &&
+                   length((zero - sphere.center) / sphere.radius - place.normal) <= place.normal_radius;
+        };
+        for (std::size_t i = 0; i < zeros.size(); ++i) {
+            if (!has(said, i)) continue;
+            ++alone;
+            at_front += known.along[i] < 0;
+            alone_and_there += may_lie_there(zeros[i]);
+            for (std::size_t k = 0; k < zeros.size(); ++k) others += k != i && may_lie_there(zeros[k]);
+        }
+    }
+    CHECK(others == 0);
+    CHECK(alone_and_there > 50);
+    CHECK(at_front > 1000);
+    CHECK(alone - at_front > 1000);
 }

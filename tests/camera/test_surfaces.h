@@ -78,6 +78,7 @@ struct CubeSphere : Surface {
     std::unique_ptr<const SurfaceBounder> make_bounder() const override {
         return std::make_unique<SlopeBounder>(*this, std::array{2 * radius, 4 * radius, 24 * radius}, 2);
     }
+    double sphere_curvature() const override { return 1 / radius; }
 };
 
 /// One face z = bend (x^2 + y^2) over a square of the plane z = 0 around `center`: a plane, or a paraboloid
