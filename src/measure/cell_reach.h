@@ -50,7 +50,7 @@ class LazyValues {
 
   private:
     std::unique_ptr<std::atomic<Value*>[]> known_;
-    std::mutex mutex_;           // of what follows
+    std::mutex mutex_;          // of what follows
     std::deque<Value> values_;  // stay where they are
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <span>
 #include <utility>
 
 #include "base/parallel.h"
@@ -29,33 +28,6 @@ Displacement nothing_shown(std::size_t pixels) {
     return result;
 }
 
-/// A field's pixels in squares, for neighbours are found fastest together.
-struct Tiles {
-    static constexpr int kSide = 8;
-    int width, height, columns;
-
-    Tiles(int of_width, int of_height)
-        : width(of_width), height(of_height), columns((of_width + kSide - 1) / kSide) {}
-
-    std::size_t count() const {
-        return static_cast<std::size_t>(columns) * static_cast<std::size_t>((height + kSide - 1) / kSide);
-    }
-    template <typename Body>
-    void for_pixels(std::size_t tile, const Body& body) const {
-        const int left = kSide * (static_cast<int>(tile) % columns),
-                  top = kSide * (static_cast<int>(tile) / columns);
-        for (int row = top; row < std::min(top + kSide, height); ++row)
-            for (int column = left; column < std::min(left + kSide, width); ++column) body(column, row);
-    }
-};
-constexpr std::size_t kTilesAtOnce = 128;
-
-/// What shows one object through one optic side by side.
-void order_by_pieces(std::span<SeenPoint> points) {
-    const auto piece = [](const SeenPoint& point) { return std::pair(point.object, point.optic); };
-    if (!std::ranges::is_sorted(points, {}, piece)) std::ranges::stable_sort(points, {}, piece);
-}
-
 /// The shifts of all pixels of the finder's test; of the statistics only the losses. Places are looked for up
 /// to `reach` pixels away, at least the radius.
 Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8_t>& mask, double radius,
@@ -63,23 +35,20 @@ Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8
     const SeenField& field = finder.test().field;
     Displacement result = nothing_shown(mask.size());
     std::vector<std::uint8_t> is_beyond(mask.size(), 0);
-    const Tiles tiles(field.width, field.height);
-    parallel_for(tiles.count(), kTilesAtOnce, [&](std::size_t first, std::size_t last) {
+    parallel_for(mask.size(), 8192, [&](std::size_t first, std::size_t last) {
         std::vector<SeenPoint> wanted;
-        for (std::size_t tile = first; tile < last; ++tile) {
-            const std::size_t before = wanted.size();
-            tiles.for_pixels(tile, [&](int column, int row) {
-                const std::size_t i = field.index(column, row);
-                if (!mask[i] || !field.shows_layer(i)) return;
-                result.state[i] = Shift::kLost;
-                if (field.sees(i)) wanted.push_back(field.seen_point(i));
-            });
-            order_by_pieces(std::span(wanted).subspan(before));
+        std::vector<std::size_t> pixels;
+        for (std::size_t i = first; i < last; ++i) {
+            if (!mask[i] || !field.shows_layer(i)) continue;
+            result.state[i] = Shift::kLost;
+            if (!field.sees(i)) continue;
+            wanted.push_back(field.seen_point(i));
+            pixels.push_back(i);
         }
         const std::vector<std::optional<Vec2>> found = finder.find(wanted, reach);
         for (std::size_t k = 0; k < found.size(); ++k) {
             if (!found[k]) continue;
-            const std::size_t i = field.index(wanted[k].column, wanted[k].row);
+            const std::size_t i = pixels[k];
             is_beyond[i] = glm::length(*found[k]) > radius;
             if (is_beyond[i]) continue;
             result.state[i] = Shift::kFound;

@@ -19,14 +19,8 @@ struct BoxQuad {
     // GCC's and Clang's vectors: side by side whatever the instruction set.
     using Floats [[gnu::vector_size(16)]] = float;
     using Bits [[gnu::vector_size(16)]] = std::int32_t;
-    using Halves [[gnu::vector_size(16)]] = std::int64_t;
     Floats low[3], high[3];
 
-    static unsigned bits_of(const Bits& apart) {
-        const auto halves = reinterpret_cast<const Halves&>(apart);
-        const std::int64_t both = halves[0] | halves[1];
-        return static_cast<unsigned>(both | both >> 32);
-    }
     /// Bit i: box i (x + 2 y) holds the point, borders included. Exact for coordinates that are floats.
     unsigned holding(const Vec3& point) const {
         Bits inside = {1, 2, 4, 8};
@@ -35,7 +29,7 @@ struct BoxQuad {
             const Floats all = {at, at, at, at};
             inside &= (low[k] <= all) & (all <= high[k]);
         }
-        return bits_of(inside);
+        return static_cast<unsigned>(inside[0] | inside[1] | inside[2] | inside[3]);
     }
 };
 

@@ -2,32 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
-#include <utility>
 
-#include "measure/candidate_cells.h"
 #include "measure/image_query.h"
 #include "measure/patch_batch.h"
 
 namespace trilens {
-namespace {
-
-constexpr std::size_t kTogether = 64;
-
-/// The first points that make a group.
-std::span<const SeenPoint> group_from(std::span<const SeenPoint> points) {
-    const std::size_t most = std::min(points.size(), kTogether);
-    std::size_t count = 1;
-    while (count < most && points[count].object == points[0].object && points[count].optic == points[0].optic)
-        ++count;
-    return points.first(count);
-}
-
-}  // namespace
 
 const CellReach& ImageFinder::reach_of(int column, int row) const {
     return reaches_.get(reference_.cell_number(column, row),
-                         [&] { return reach_of_cell(reference_, test_.field, column, row); });
+                        [&] { return reach_of_cell(reference_, test_.field, column, row); });
 }
 
 std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wanted, double reach) const {
@@ -37,19 +20,13 @@ std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wa
     PatchBatch batch;
     PatchCache patches(reference_, test_.field);
     std::optional<Vec2> last;
-    std::shared_ptr<PointGroup> group;
-    std::size_t begun = 0, grouped = 0;
+    std::size_t begun = 0;
 
     // Every query that ends makes room for the next point's; at the end the lanes run empty from the top.
     const auto refill = [&](std::size_t lane) {
         while (begun < wanted.size()) {
-            if (begun == grouped) {
-                const std::span together = group_from(wanted.subspan(begun));
-                group = std::make_shared<PointGroup>(*this, together);
-                grouped += together.size();
-            }
             number[lane] = begun++;
-            queries[lane].begin(*this, {wanted[number[lane]], group, reach, last});
+            queries[lane].begin(*this, wanted[number[lane]], reach, last);
             if (queries[lane].next(batch, lane, patches)) return true;
             found[number[lane]] = queries[lane].shift();
         }
@@ -74,7 +51,7 @@ std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wa
             // The last lane's query moves here, and is asked in its turn.
             --batch.count;
             if (lane < batch.count) {
-                queries[lane] = std::move(queries[batch.count]);
+                queries[lane] = queries[batch.count];
                 number[lane] = number[batch.count];
             }
         }

@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <utility>
 
 #include "measure/likely_place.h"
 #include "measure/sliver.h"
 
 namespace trilens {
 namespace {
-
-/// More than the rounding of distances.
-constexpr double kMore = 1 + 1e-9;
 
 /// The square of the distance from a pixel to a rectangle of the screen, both in pixel centres.
 double squared_distance_to(const SeenPoint& from, double x0, double y0, double x1, double y1) {
@@ -34,18 +30,18 @@ bool has_patch(const ImageFinder& finder, const SeenPoint& wanted) {
 
 }  // namespace
 
-void ImageQuery::begin(const ImageFinder& finder, Question question) {
-    const SeenPoint& wanted = question.wanted;
+void ImageQuery::begin(const ImageFinder& finder, const SeenPoint& wanted, double reach,
+                       const std::optional<Vec2>& guess) {
     finder_ = &finder;
     wanted_ = wanted;
-    group_ = std::move(question.group);
-    guess_ = question.guess;
+    guess_ = guess;
     stage_ = Stage::kNear;
-    best_score_ = question.reach + kMostPenalty;
+    best_score_ = reach + kMostPenalty;
     best_shift_.reset();
     near_ = 0;
     corner_ = 4;
     any_ = true;
+    nodes_ = 0;
 
     const SeenField& field = finder.reference().field;
     const std::size_t here = field.index(wanted.column, wanted.row);
@@ -84,12 +80,7 @@ bool ImageQuery::next_cell() {
         stage_ = Stage::kGuess;
         if (begin_guess()) return true;
     }
-    if (stage_ == Stage::kGuess) {
-        stage_ = Stage::kSearch;
-        candidates_ = group_->cells(kMore * best_score_);
-        next_quad_ = 0;
-        left_in_quad_ = 0;
-    }
+    stage_ = Stage::kSearch;
     return begin_found_cell();
 }
 
@@ -112,6 +103,8 @@ bool ImageQuery::begin_search() {
     if (best_shift_ && best_score_ <= 1) return false;
     best_score_ =
         std::min(best_score_, farthest_place(finder_->reference().field, finder_->test().field, wanted_));
+    const int top = static_cast<int>(finder_->reference().levels.size());
+    push({top, 0, 0, 0});
     return true;
 }
 
@@ -123,6 +116,7 @@ bool ImageQuery::is_near_cell(int column, int row) const {
 /// Whether a hit at such a squared distance may be the best or as good. All that may be are tried, so that
 /// the order of trials does not matter: by a little more than the rounding of distances.
 bool ImageQuery::may_improve(double distance) const {
+    constexpr double kMore = 1 + 1e-9;
     return distance <= kMore * best_score_ * best_score_;
 }
 
@@ -139,22 +133,45 @@ bool ImageQuery::begin_guess() {
     return begin_cell(column, row);
 }
 
-/// Of the cells that may hold the point those that do so nearer than the best hit so far.
+void ImageQuery::push(const Node& node) {
+    stack_[nodes_++] = node;
+}
+
+/// Those that may hold the point, the nearest on top.
+void ImageQuery::push_children(const Node& node) {
+    const FieldIndex::Level& level = finder_->reference().levels[static_cast<std::size_t>(node.level - 1)];
+    const double size = static_cast<double>(1 << (node.level - 1));
+    const std::size_t first = nodes_;
+    for (unsigned left = level.at(node.column, node.row).holding(wanted_.point); left; left &= left - 1) {
+        const int child = std::countr_zero(left);
+        const int column = 2 * node.column + child % 2, row = 2 * node.row + child / 2;
+        const Node at{node.level - 1, column, row,
+                      squared_distance_to(wanted_, column * size - 1, row * size - 1, (column + 1) * size - 1,
+                                          (row + 1) * size - 1)};
+        if (!may_improve(at.distance)) continue;
+        std::size_t place = nodes_++;
+        for (; place > first && stack_[place - 1].distance < at.distance; --place)
+            stack_[place] = stack_[place - 1];
+        stack_[place] = at;
+    }
+}
+
+/// Depth first, nearest child first; a box is entered if it may hold the point nearer than the best hit so
+/// far.
 bool ImageQuery::begin_found_cell() {
-    for (;;) {
-        while (left_in_quad_ == 0) {
-            if (next_quad_ == candidates_->bounds.size()) return false;
-            left_in_quad_ = candidates_->bounds[next_quad_++].holding(wanted_.point);
+    while (nodes_ > 0) {
+        const Node node = stack_[--nodes_];
+        if (!may_improve(node.distance)) continue;
+        if (node.level > 0) {
+            push_children(node);
+            continue;
         }
-        const std::size_t number =
-            4 * (next_quad_ - 1) + static_cast<std::size_t>(std::countr_zero(left_in_quad_));
-        left_in_quad_ &= left_in_quad_ - 1;
-        const int column = candidates_->cells[number].column, row = candidates_->cells[number].row;
-        if (!may_improve(squared_distance_to(wanted_, column, row, column + 1, row + 1))) continue;
+        const int column = node.column - 1, row = node.row - 1;
         if (is_near_cell(column, row)) continue;  // has been tried
-        if (!group_->may_hold(number, wanted_.point, *candidates_)) continue;
+        if (!finder_->reach_of(column, row).may_hold(wanted_.point)) continue;
         if (begin_cell(column, row)) return true;
     }
+    return false;
 }
 
 // --- Patches of a cell

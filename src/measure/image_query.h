@@ -4,11 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 
 #include "base/vec.h"
-#include "measure/candidate_cells.h"
 #include "measure/image_finder.h"
 #include "measure/patch_batch.h"
 #include "measure/patch_cache.h"
@@ -18,15 +16,9 @@ namespace trilens {
 /// Begun once per point, then asked for its next patch and told the answer, until it has no next one.
 class ImageQuery {
   public:
-    /// What is asked: the place of one of the group's points, at most `reach` pixels away. `guess`: a shift
-    /// that is likely; it makes the search shorter, and changes nothing else.
-    struct Question {
-        SeenPoint wanted;
-        std::shared_ptr<PointGroup> group;
-        double reach = 0;
-        std::optional<Vec2> guess;
-    };
-    void begin(const ImageFinder& finder, Question question);
+    /// `guess`: a shift that is likely; it makes the search shorter, and changes nothing else.
+    void begin(const ImageFinder& finder, const SeenPoint& wanted, double reach,
+               const std::optional<Vec2>& guess);
 
     /// Puts the next patch into a lane of the batch; false at the end. `patches`: of the finder's reference.
     bool next(PatchBatch& batch, std::size_t lane, PatchCache& patches);
@@ -38,6 +30,10 @@ class ImageQuery {
 
   private:
     enum class Stage { kNear, kGuess, kSearch, kEnd };
+    struct Node {
+        int level, column, row;
+        double distance;  // squared, pixels
+    };
 
     bool next_cell();
     bool begin_near_cell();
@@ -47,12 +43,13 @@ class ImageQuery {
     bool begin_cell(int column, int row);
     bool is_near_cell(int column, int row) const;
     bool may_improve(double distance) const;
+    void push(const Node& node);
+    void push_children(const Node& node);
     bool next_patch(PatchBatch& batch, std::size_t lane, PatchCache& patches);
     bool put_patch(int corner, PatchBatch& batch, std::size_t lane, PatchCache& patches);
 
     const ImageFinder* finder_ = nullptr;
     SeenPoint wanted_;
-    std::shared_ptr<PointGroup> group_;
     std::optional<Vec2> guess_;
     Stage stage_ = Stage::kEnd;
 
@@ -68,9 +65,8 @@ class ImageQuery {
     bool same_primitive_ = true, any_ = false;
     std::uint16_t tried_ = 0;  // nodes of the patches that have been tried
 
-    std::shared_ptr<CandidateCells> candidates_;
-    std::size_t next_quad_ = 0;
-    unsigned left_in_quad_ = 0;  // bits of the cells of the last one that may hold the point
+    std::array<Node, 4 * 32> stack_;  // four children per level, and fewer than 32 levels
+    std::size_t nodes_ = 0;
 };
 
 }  // namespace trilens

@@ -32,7 +32,7 @@ class PatchCache {
     }
 
   private:
-    static constexpr std::size_t kEntries = 512;
+    static constexpr std::size_t kEntries = 2048;
     struct Entry {
         std::size_t key = 0;  // one more than the patch's; 0: none yet
         std::optional<Patch> patch;
