@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <memory>
 
 #include "image/zlib_stream.h"
 
@@ -45,10 +46,12 @@ void for_each_piece(const Channels& channels, int rows, std::size_t row_bytes, c
 std::vector<unsigned char> zip_block(std::span<const BlockValues> channels, int rows, int columns) {
     const std::size_t row_bytes = 4 * static_cast<std::size_t>(columns);
     const std::size_t size = row_bytes * static_cast<std::size_t>(rows) * channels.size();
-    std::vector<unsigned char> sorted(size);
+    // Two buffers that are not cleared before they are filled.
+    const auto sorted = std::make_unique_for_overwrite<unsigned char[]>(size),
+               smaller = std::make_unique_for_overwrite<unsigned char[]>(size - 1);
     // The second half goes on where the first one ends.
     const unsigned char last_even = channels.back()[row_bytes * static_cast<std::size_t>(rows) - 2];
-    Half even{sorted.data()}, odd{sorted.data() + size / 2, last_even};
+    Half even{sorted.get()}, odd{sorted.get() + size / 2, last_even};
     for_each_piece(channels, rows, row_bytes, [&](const unsigned char* bytes, std::size_t count) {
         even.take(bytes, count / 2);
         odd.take(bytes + 1, count / 2);
@@ -56,8 +59,8 @@ std::vector<unsigned char> zip_block(std::span<const BlockValues> channels, int 
     // The very first byte stands as it is.
     sorted[0] = channels[0][0];
 
-    std::vector<unsigned char> packed(size - 1);
-    packed.resize(deflate(sorted, packed));
+    const std::size_t deflated = deflate({sorted.get(), size}, {smaller.get(), size - 1});
+    std::vector<unsigned char> packed(smaller.get(), smaller.get() + deflated);
     if (!packed.empty()) return packed;
     for_each_piece(channels, rows, row_bytes, [&](const unsigned char* bytes, std::size_t count) {
         packed.insert(packed.end(), bytes, bytes + count);

@@ -54,10 +54,6 @@ std::vector<unsigned char> encode_png(int width, int height, std::span<const flo
 /// Sets the thread count of OpenImageIO; 0 means all. OpenEXR uses as many as parallel_for.
 void set_image_threads(int threads);
 
-/// Loads the library that reads all other pictures than OpenEXR and ordinary PNG, which else happens when the
-/// first one is met. False where it cannot be loaded.
-bool load_picture_library();
-
 /// "OpenImageIO 2.4.7.1, OpenEXR 3.1.5": for `trilens info`.
 std::string image_library_version();
 

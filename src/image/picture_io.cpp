@@ -164,11 +164,6 @@ void write_png(const std::string& file, int width, int height, std::span<const f
     replace_file(file, encode_named_png(file, width, height, rgb));
 }
 
-bool load_picture_library() {
-    std::string reason;
-    return picture_library(reason) != nullptr;
-}
-
 void set_image_threads(int threads) {
     set_picture_threads(threads);
 }

@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <cstddef>
+#include <deque>
 #include <memory>
+#include <mutex>
 
 #include "base/box.h"
 #include "measure/field_index.h"
@@ -27,30 +29,29 @@ struct CellReach {
 /// corners show, whole or triangle by triangle. `other`: as make_patch has it.
 CellReach reach_of_cell(const FieldIndex& index, const SeenField& other, int column, int row);
 
-/// Values that many threads may ask for. What is not asked for takes address space, but no memory.
+/// Values that many threads may ask for. What is not asked for takes the room of a pointer.
 template <typename Value>
 class LazyValues {
   public:
-    explicit LazyValues(std::size_t count)
-        : values_(std::make_unique_for_overwrite<Value[]>(count)),
-          state_(std::make_unique<std::atomic<State>[]>(count)) {}
+    explicit LazyValues(std::size_t count) : known_(std::make_unique<std::atomic<Value*>[]>(count)) {}
 
-    /// The value that make() returns, always the same; null while another thread makes it: nobody waits.
+    /// The value that make() returns, always the same.
     template <typename Make>
-    const Value* get(std::size_t index, Make&& make) {
-        std::atomic<State>& state = state_[index];
-        State found = state.load(std::memory_order_acquire);
-        if (found == State::kMade) return &values_[index];
-        if (found == State::kMaking || !state.compare_exchange_strong(found, State::kMaking)) return nullptr;
-        values_[index] = make();
-        state.store(State::kMade, std::memory_order_release);
-        return &values_[index];
+    const Value& get(std::size_t index, Make&& make) {
+        if (const Value* const found = known_[index].load(std::memory_order_acquire)) return *found;
+        const Value made = make();
+        const std::lock_guard guard(mutex_);
+        // Another thread may have made it meanwhile.
+        if (const Value* const found = known_[index].load(std::memory_order_relaxed)) return *found;
+        values_.push_back(made);
+        known_[index].store(&values_.back(), std::memory_order_release);
+        return values_.back();
     }
 
   private:
-    enum class State : char { kUnknown, kMaking, kMade };
-    std::unique_ptr<Value[]> values_;
-    std::unique_ptr<std::atomic<State>[]> state_;
+    std::unique_ptr<std::atomic<Value*>[]> known_;
+    std::mutex mutex_;          // of what follows
+    std::deque<Value> values_;  // stay where they are
 };
 
 }  // namespace trilens

@@ -8,7 +8,7 @@
 
 namespace trilens {
 
-const CellReach* ImageFinder::reach_of(int column, int row) const {
+const CellReach& ImageFinder::reach_of(int column, int row) const {
     return reaches_.get(reference_.cell_number(column, row),
                         [&] { return reach_of_cell(reference_, test_.field, column, row); });
 }
@@ -42,8 +42,8 @@ std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wa
                 ++lane;
                 continue;
             }
-            last = queries[lane].shift();
-            found[number[lane]] = last;
+            if (queries[lane].shift()) last = queries[lane].shift();
+            found[number[lane]] = queries[lane].shift();
             if (refill(lane)) {
                 ++lane;
                 continue;

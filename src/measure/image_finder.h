@@ -29,9 +29,8 @@ class ImageFinder {
     /// answer. Points of neighbouring pixels are found fastest together; an answer does not depend on which.
     std::vector<std::optional<Vec2>> find(std::span<const SeenPoint> wanted, double reach) const;
 
-    /// The bounds of a cell of the reference, made when it is first asked for; null while another thread
-    /// makes them.
-    const CellReach* reach_of(int column, int row) const;
+    /// The bounds of a cell of the reference, made when it is first asked for.
+    const CellReach& reach_of(int column, int row) const;
 
     const FieldIndex& reference() const { return reference_; }
     const FieldIndex& test() const { return test_; }

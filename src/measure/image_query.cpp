@@ -168,8 +168,7 @@ bool ImageQuery::begin_found_cell() {
         }
         const int column = node.column - 1, row = node.row - 1;
         if (is_near_cell(column, row)) continue;  // has been tried
-        const CellReach* reach = finder_->reach_of(column, row);
-        if (reach && !reach->may_hold(wanted_.point)) continue;
+        if (!finder_->reach_of(column, row).may_hold(wanted_.point)) continue;
         if (begin_cell(column, row)) return true;
     }
     return false;

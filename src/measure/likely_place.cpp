@@ -28,6 +28,7 @@ std::array<int, 2> likely_side(const SeenField& field, const SeenPoint& wanted) 
 }
 
 double farthest_place(const SeenField& field, const SeenField& test, const SeenPoint& wanted) {
+    static const double kAway[] = {0, 1, std::hypot(1.0, 1.0)};
     const Piece piece = piece_of(wanted);
     const Slopes test_slopes = slopes_at(test, wanted.column, wanted.row);
     double least = std::numeric_limits<double>::infinity();
@@ -35,9 +36,11 @@ double farthest_place(const SeenField& field, const SeenField& test, const SeenP
         for (int column = wanted.column - 1; column <= wanted.column + 1; ++column) {
             if (!field.contains(column, row) || !field.shows(field.index(column, row), piece)) continue;
             const Vec3 step = wanted.point - field.point(field.index(column, row));
-            const std::optional<double> here = pixels_for(slopes_at(field, column, row), step),
-                                        there = pixels_for(test_slopes, step);
-            const double away = std::hypot(column - wanted.column, row - wanted.row);
+            const std::optional<double> there = pixels_for(test_slopes, step);
+            const double away = kAway[std::abs(column - wanted.column) + std::abs(row - wanted.row)];
+            // The slopes here only make it more.
+            if (away + 1 + 4 * there.value_or(0) >= least) continue;
+            const std::optional<double> here = pixels_for(slopes_at(field, column, row), step);
             // A single pixel next door says nothing of where it ends; one at the same place is the same spot.
             if (!here && !there && away > 0) continue;
             least = std::min(least, away + 1 + 4 * std::max(here.value_or(0), there.value_or(0)));

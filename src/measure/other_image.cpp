@@ -14,21 +14,21 @@ constexpr int kReach = 3;  // of the 7 x 7 window
 /// Shifts below this are never another image: the bound of the test at a median of zero.
 constexpr double kLeast = kOtherImage * 0.5;
 
+/// Whether the shift exceeds the bound by the window's median: by more than half of the window's shifts.
 bool is_jump(const Displacement& displacement, std::span<const double> size, int width, std::size_t pixel) {
     const int height = static_cast<int>(size.size()) / width;
     const int column = static_cast<int>(pixel) % width, row = static_cast<int>(pixel) / width;
-    std::vector<double> around;
+    std::size_t around = 0, small = 0;
     for (int y = std::max(0, row - kReach); y <= std::min(height - 1, row + kReach); ++y) {
         for (int x = std::max(0, column - kReach); x <= std::min(width - 1, column + kReach); ++x) {
             const std::size_t i =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            if (i != pixel && displacement.state[i] == Shift::kFound) around.push_back(size[i]);
+            const bool is_found = i != pixel && displacement.state[i] == Shift::kFound;
+            around += is_found;
+            small += is_found && size[pixel] > kOtherImage * (size[i] + 0.5);
         }
     }
-    if (around.size() < kFewestNeighbours) return false;
-    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
-    std::nth_element(around.begin(), middle, around.end());
-    return size[pixel] > kOtherImage * (*middle + 0.5);
+    return around >= kFewestNeighbours && small > around / 2;
 }
 
 }  // namespace

@@ -16,6 +16,10 @@ struct Tangents {
 
 using Nodes = std::array<Vec3, 16>;
 
+double square(const Vec3& v) {
+    return dot(v, v);
+}
+
 /// The flat cell.
 Tangents bilinear(const Nodes& n, const Vec2& uv) {
     const Vec3 &p00 = n[5], &p10 = n[6], &p01 = n[9], &p11 = n[10];
@@ -92,10 +96,10 @@ Hull cubic_hull(const Nodes& n) {
 
     Vec2 tangent(0);
     for (std::size_t k = 0; k < 16; ++k) {
-        if (k % 4 < 3) tangent.x = std::max(tangent.x, length(hull.points[k + 1] - hull.points[k]));
-        if (k < 12) tangent.y = std::max(tangent.y, length(hull.points[k + 4] - hull.points[k]));
+        if (k % 4 < 3) tangent.x = std::max(tangent.x, square(hull.points[k + 1] - hull.points[k]));
+        if (k < 12) tangent.y = std::max(tangent.y, square(hull.points[k + 4] - hull.points[k]));
     }
-    hull.tangent = 3 / (kTo - kFrom) * std::min(tangent.x, tangent.y);
+    hull.tangent = 3 / (kTo - kFrom) * std::sqrt(std::min(tangent.x, tangent.y));
     return hull;
 }
 
@@ -114,12 +118,12 @@ Hull cell_hull(const Nodes& n) {
 
 /// What lies_on may take for the bend of a surface, whatever its normal.
 double largest_bend(const Nodes& n) {
-    double bend = 0;
+    double bend = 0;  // squared
     for (const std::size_t along : {std::size_t{1}, std::size_t{4}})
         for (std::size_t line = 0; line < 4; ++line)
             for (const std::size_t i : {line * (5 - along), line * (5 - along) + along})
-                bend = std::max(bend, length(n[i] - 2.0 * n[i + along] + n[i + 2 * along]));
-    return bend;
+                bend = std::max(bend, square(n[i] - 2.0 * n[i + along] + n[i + 2 * along]));
+    return std::sqrt(bend);
 }
 
 void include(PatchHull& all, const Hull& hull, double margin) {
@@ -131,7 +135,8 @@ void include(PatchHull& all, const Hull& hull, double margin) {
 
 PatchHull hull_of(const Patch& patch) {
     double size = 0;
-    for (const Vec3& node : patch.nodes) size = std::max(size, length(node));
+    for (const Vec3& node : patch.nodes) size = std::max(size, square(node));
+    size = std::sqrt(size);
     // What a patch shows lies within a few times its own distance from the origin.
     const double margin = kBendShare * largest_bend(patch.nodes) + 8 * kRounding * size;
 

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "measure/weighted_sums.h"
 
 namespace trilens {
 namespace {
@@ -31,25 +32,8 @@ double* row_of(Plane& plane, int y) {
     return plane.values.data() + static_cast<std::ptrdiff_t>(y) * plane.width;
 }
 
-/// sums[i] = the sum over k, in rising order, of kernel[k] * values(k)[i]. A few sums at a time stay in
-/// registers.
-template <typename Values>
-void weighted_sums(const Kernel& kernel, const Values& values, int count, double* sums) {
-    constexpr int kTogether = 8;
-    int i = 0;
-    for (; i + kTogether <= count; i += kTogether) {
-        double sum[kTogether] = {};
-        for (std::size_t k = 0; k < kernel.size(); ++k) {
-            const double* from = values(k) + i;
-            for (int j = 0; j < kTogether; ++j) sum[j] += kernel[k] * from[j];
-        }
-        std::copy_n(sum, kTogether, sums + i);
-    }
-    for (; i < count; ++i) {
-        double sum = 0;
-        for (std::size_t k = 0; k < kernel.size(); ++k) sum += kernel[k] * values(k)[i];
-        sums[i] = sum;
-    }
+std::size_t columns_of(const Plane& plane) {
+    return static_cast<std::size_t>(plane.width);
 }
 
 Plane filter_rows(const Plane& plane, const Kernel& kernel) {
@@ -60,8 +44,9 @@ Plane filter_rows(const Plane& plane, const Kernel& kernel) {
         std::vector<double> padded(static_cast<std::size_t>(plane.width + 2 * reach));
         for (int x = -reach; x < plane.width + reach; ++x)
             padded[static_cast<std::size_t>(x + reach)] = row[std::clamp(x, 0, plane.width - 1)];
-        weighted_sums(
-            kernel, [&](std::size_t k) { return padded.data() + k; }, plane.width, row_of(out, y));
+        std::vector<const double*> moved(kernel.size());
+        for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = padded.data() + k;
+        weighted_sums(kernel, moved, {row_of(out, y), columns_of(out)});
     });
     return out;
 }
@@ -73,8 +58,7 @@ Plane filter_columns(const Plane& plane, const Kernel& kernel) {
         std::vector<const double*> rows(kernel.size());
         for (int j = -reach; j <= reach; ++j)
             rows[static_cast<std::size_t>(j + reach)] = row_of(plane, std::clamp(y + j, 0, plane.height - 1));
-        weighted_sums(
-            kernel, [&](std::size_t k) { return rows[k]; }, plane.width, row_of(out, y));
+        weighted_sums(kernel, rows, {row_of(out, y), columns_of(out)});
     });
     return out;
 }

@@ -15,14 +15,12 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/hash.h"
-#include "image/image_io.h"
 
 namespace trilens {
 namespace {
 
 constexpr const char* kProgram = "/proc/self/exe";
-constexpr std::array kPixelLibraries = {"libembree", "libosd", "libtrilens_pictures", "libOpenImageIO",
-                                        "libm."};
+constexpr std::array kPixelLibraries = {"libembree", "libosd", "libm."};
 
 std::string hexadecimal(std::span<const unsigned char> bytes) {
     std::string text;
@@ -102,8 +100,7 @@ std::string digest_of_code(std::vector<LoadedCode> code) {
 }
 
 const std::string& code_digest() {
-    // What reads textures is loaded first, so that the digest is one whether or not one has been read.
-    static const std::string digest = (load_picture_library(), digest_of_code(loaded_code()));
+    static const std::string digest = digest_of_code(loaded_code());
     return digest;
 }
 

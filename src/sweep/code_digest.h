@@ -17,10 +17,10 @@ struct LoadedCode {
 std::vector<LoadedCode> loaded_code();
 
 /// 16 hexadecimal digits over the file that holds this library and the libraries that its pixels come from
-/// (Embree, OpenSubdiv, OpenImageIO behind our library of pictures, the C library's mathematics): over their
-/// build ids, or over the bytes of those without one. Another build of any of them gives other digits; a
-/// rebuild that makes the same bytes, another path or another process do not. Taken once per process; loads
-/// the library of pictures. Throws InputError where such a file cannot be read.
+/// (Embree, OpenSubdiv, the C library's mathematics): over their build ids, or over the bytes of those
+/// without one. Another build of any of them gives other digits; a rebuild that makes the same bytes, another
+/// path or another process do not. What decodes textures is none of them: scene_digest has the texels
+/// themselves. Taken once per process. Throws InputError where such a file cannot be read.
 const std::string& code_digest();
 
 /// The digest of exactly these files, in any order; what is not `is_ours` counts only where its name is one

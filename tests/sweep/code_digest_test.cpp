@@ -40,7 +40,7 @@ TEST_CASE("sweep: the digest follows the build ids of the engine and its librari
         std::vector<LoadedCode> other = code;
         other[i].build_id = "e5";
         INFO(code[i].file);
-        CHECK((digest_of_code(other) == digest) == (i == 4));
+        CHECK((digest_of_code(other) == digest) == (i >= 3));
         other = code;
         other[i].file = "/opt/" + code[i].file.substr(code[i].file.rfind('/') + 1);
         CHECK(digest_of_code(other) == digest);
