@@ -71,11 +71,20 @@ HWY_INLINE Vector either(Truth which, const Vector& a, const Vector& b) {
             hn::IfThenElse(which, a.z, b.z)};
 }
 
+/// As normalize_or_zero.
+HWY_INLINE Vector unit_or_zero(const Vector& v) {
+    const Number largest = larger(larger(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
+    const Truth usual = hn::AndNot(hn::Gt(largest, number(1.7e308)), hn::Gt(largest, number(0)));
+    const Vector scaled = over(v, largest);
+    const Vector unit = over(scaled, hn::Sqrt(inner(scaled, scaled)));
+    return either(usual, unit, vector(Vec3(0)));
+}
+
 /// Bit i: lane i.
 HWY_INLINE std::uint32_t bits_of(Truth truth) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(kTag, truth, bytes);
-    return bytes[0];
+    return bytes[0] & ((1u << kWidth) - 1u);
 }
 HWY_INLINE Truth truth_of(std::uint32_t bits) {
     const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits)};

@@ -7,48 +7,21 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "camera/specular_lanes.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "base/double_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens::specular {
 namespace HWY_NAMESPACE {
+using namespace lanes::HWY_NAMESPACE;
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Sums and products one by one, never fused, so that every instruction set rounds alike.
-
-using Tag = hn::CappedTag<double, kPointLanes>;
-using Number = hn::Vec<Tag>;
-using Truth = hn::Mask<Tag>;
-inline constexpr Tag kTag;
-constexpr std::size_t kWidth = hn::MaxLanes(kTag);
+static_assert(kPointLanes % kWidth == 0);
 
 /// h . normal, and what it is compared with, this far from zero is far from singular: a share of n1 + n2.
 constexpr double kClearBend = 0.02;
 
-HWY_INLINE Number number(double x) {
-    return hn::Set(kTag, x);
-}
 HWY_INLINE Number scaled(double s, Number a) {
     return hn::Mul(number(s), a);
-}
-
-struct Vector {
-    Number x, y, z;
-};
-HWY_INLINE Vector vector(const Vec3& v) {
-    return {number(v.x), number(v.y), number(v.z)};
-}
-HWY_INLINE Vector plus(const Vector& a, const Vector& b) {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE Vector minus(const Vector& a, const Vector& b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vector times(Number s, const Vector& a) {
-    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-}
-HWY_INLINE Number inner(const Vector& a, const Vector& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
 /// Sight from each lane's point to the place.
@@ -72,16 +45,7 @@ HWY_INLINE Sights sights_of(const Vector& points, const Vec3& position, double r
 }
 
 HWY_INLINE Vector points_from(const PointLanes& points, std::size_t first) {
-    return {hn::Load(kTag, points.x + first), hn::Load(kTag, points.y + first),
-            hn::Load(kTag, points.z + first)};
-}
-
-HWY_INLINE LaneBits bits_of(Truth truth, std::size_t first) {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(kTag, truth, bits);
-    LaneBits all = bits[0];
-    if constexpr (kWidth > 8) all |= static_cast<LaneBits>(bits[1]) << 8;
-    return (all & ((LaneBits{1} << kWidth) - 1)) << first;
+    return vector_at(points.x + first, points.y + first, points.z + first);
 }
 
 constexpr LaneBits kAllOfVector = (LaneBits{1} << kWidth) - 1;
@@ -124,7 +88,7 @@ LaneBits empty_lanes_here(const LaneQuestion& question, const PlaceBounds& place
     LaneBits empty = 0;
     for (std::size_t first = 0; first < kPointLanes; first += kWidth)
         if (question.asked >> first & kAllOfVector)
-            empty |= bits_of(empty_of(question, points_from(question.points, first), place, view), first);
+            empty |= bits_of(empty_of(question, points_from(question.points, first), place, view)) << first;
     return empty & question.asked;
 }
 
@@ -159,7 +123,7 @@ LaneBits alone_lanes_here(const LaneQuestion& question, const PlaceBounds& place
     LaneBits alone = 0;
     for (std::size_t first = 0; first < kPointLanes; first += kWidth)
         if ((question.asked & zeros.known) >> first & kAllOfVector)
-            alone |= bits_of(alone_of(question, place, view, zeros, curvature, first), first);
+            alone |= bits_of(alone_of(question, place, view, zeros, curvature, first)) << first;
     return alone & question.asked & zeros.known;
 }
 
@@ -258,9 +222,9 @@ NewtonLanes newton_lanes_here(const LaneQuestion& question, const CellTerms& cel
     for (std::size_t first = 0; first < kPointLanes; first += kWidth) {
         if (!(question.asked >> first & kAllOfVector)) continue;
         const Verdicts verdicts = newton_of(cell, points_from(question.points, first), half);
-        result.leaves |= bits_of(verdicts.leaves, first);
-        result.contracts |= bits_of(verdicts.contracts, first);
-        result.open |= bits_of(verdicts.open, first);
+        result.leaves |= bits_of(verdicts.leaves) << first;
+        result.contracts |= bits_of(verdicts.contracts) << first;
+        result.open |= bits_of(verdicts.open) << first;
     }
     result.leaves &= question.asked;
     result.contracts &= question.asked;

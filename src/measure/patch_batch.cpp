@@ -5,55 +5,25 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "measure/patch_batch.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "base/double_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens::patches {
 namespace HWY_NAMESPACE {
+using namespace lanes::HWY_NAMESPACE;
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Sums and products one by one, never fused, so that every instruction set rounds alike.
-
-using Tag = hn::CappedTag<double, kPatchLanes>;
-using Number = hn::Vec<Tag>;
-using Truth = hn::Mask<Tag>;
-inline constexpr Tag kTag;
-constexpr std::size_t kWidth = hn::MaxLanes(kTag);
-
-HWY_INLINE Number number(double x) {
-    return hn::Set(kTag, x);
-}
-HWY_INLINE Number larger(Number a, Number b) {
-    return hn::IfThenElse(hn::Lt(a, b), b, a);
-}
-HWY_INLINE Number smaller(Number a, Number b) {
-    return hn::IfThenElse(hn::Lt(b, a), b, a);
-}
+static_assert(kPatchLanes % kWidth == 0);
 
 struct Vector2 {
     Number x, y;
 };
-struct Vector3 {
-    Number x, y, z;
-};
-HWY_INLINE Vector3 plus(const Vector3& a, const Vector3& b) {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE Vector3 minus(const Vector3& a, const Vector3& b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vector3 times(Number s, const Vector3& a) {
-    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-}
-HWY_INLINE Number inner(const Vector3& a, const Vector3& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Number norm(const Vector3& a) {
+HWY_INLINE Number norm(const Vector& a) {
     return hn::Sqrt(inner(a, a));
 }
 
 struct Tangents {
-    Vector3 value, du, dv;
+    Vector value, du, dv;
 };
 
 /// The lanes first .. first + kWidth - 1 of a batch.
@@ -65,14 +35,14 @@ struct Lanes {
     HWY_INLINE void store(Number value, PatchBatch::Lane& to) const {
         hn::Store(value, kTag, to.lane + first);
     }
-    HWY_INLINE Vector3 node(std::size_t i) const {
+    HWY_INLINE Vector node(std::size_t i) const {
         return {load(batch.nodes[i][0]), load(batch.nodes[i][1]), load(batch.nodes[i][2])};
     }
 };
 
 HWY_INLINE Tangents bilinear(const Lanes& n, const Vector2& uv) {
-    const Vector3 p00 = n.node(5), p10 = n.node(6), p01 = n.node(9), p11 = n.node(10);
-    const Vector3 twist = plus(minus(minus(p11, p10), p01), p00), du = minus(p10, p00), dv = minus(p01, p00);
+    const Vector p00 = n.node(5), p10 = n.node(6), p01 = n.node(9), p11 = n.node(10);
+    const Vector twist = plus(minus(minus(p11, p10), p01), p00), du = minus(p10, p00), dv = minus(p01, p00);
     return {plus(plus(plus(p00, times(uv.x, du)), times(uv.y, dv)), times(hn::Mul(uv.x, uv.y), twist)),
             plus(du, times(uv.y, twist)), plus(dv, times(uv.x, twist))};
 }
@@ -96,12 +66,12 @@ HWY_INLINE Cubic cubic_at(Number s) {
 
 HWY_INLINE Tangents bicubic(const Lanes& n, const Vector2& uv) {
     const Cubic u = cubic_at(uv.x), v = cubic_at(uv.y);
-    const Vector3 zero = {number(0), number(0), number(0)};
+    const Vector zero = {number(0), number(0), number(0)};
     Tangents result = {zero, zero, zero};
     for (std::size_t b = 0; b < 4; ++b) {
-        Vector3 value = zero, slope = zero;
+        Vector value = zero, slope = zero;
         for (std::size_t a = 0; a < 4; ++a) {
-            const Vector3 node = n.node(a + 4 * b);
+            const Vector node = n.node(a + 4 * b);
             value = plus(value, times(u.weight[a], node));
             slope = plus(slope, times(u.slope[a], node));
         }
@@ -174,10 +144,10 @@ HWY_INLINE Truth is_smooth(const Lanes& n) {
         Number longest = number(0), third = number(0);
         for (std::size_t line = 0; line < 4; ++line) {
             const std::size_t i = line * (5 - along);
-            const Vector3 p0 = n.node(i), p1 = n.node(i + along), p2 = n.node(i + 2 * along),
-                          p3 = n.node(i + 3 * along);
-            const Vector3 a = minus(p1, p0), b = minus(p2, p1), c = minus(p3, p2);
-            const Vector3 d3 = plus(minus(c, times(number(2), b)), a);
+            const Vector p0 = n.node(i), p1 = n.node(i + along), p2 = n.node(i + 2 * along),
+                         p3 = n.node(i + 3 * along);
+            const Vector a = minus(p1, p0), b = minus(p2, p1), c = minus(p3, p2);
+            const Vector d3 = plus(minus(c, times(number(2), b)), a);
             longest = larger(larger(longest, inner(a, a)), larger(inner(b, b), inner(c, c)));
             third = larger(third, inner(d3, d3));
         }
@@ -193,24 +163,11 @@ HWY_INLINE Number outside_of(const Vector2& uv) {
         number(0));
 }
 
-/// As normalize_or_zero.
-HWY_INLINE Vector3 unit_or_zero(const Vector3& a) {
-    const Number largest = larger(larger(hn::Abs(a.x), hn::Abs(a.y)), hn::Abs(a.z));
-    const Truth usable = hn::And(hn::Gt(largest, number(0)), hn::Le(largest, number(1.7e308)));
-    const Vector3 scaled = {hn::Div(a.x, largest), hn::Div(a.y, largest), hn::Div(a.z, largest)};
-    const Number size = norm(scaled);
-    return {hn::IfThenElseZero(usable, hn::Div(scaled.x, size)),
-            hn::IfThenElseZero(usable, hn::Div(scaled.y, size)),
-            hn::IfThenElseZero(usable, hn::Div(scaled.z, size))};
-}
-
 /// Whether the origin lies on the surface at uv, where the surface comes closest to it. What is left is along
 /// the normal; it may be as large as the surface's own bends between pixels (a crease, facets as small as
 /// pixels), a twentieth of the shorter tangent, and the rounding of float positions.
 HWY_INLINE Truth lies_on(const Lanes& n, const Tangents& at, Number rounding) {
-    const Vector3 normal = unit_or_zero({hn::Sub(hn::Mul(at.du.y, at.dv.z), hn::Mul(at.dv.y, at.du.z)),
-                                         hn::Sub(hn::Mul(at.du.z, at.dv.x), hn::Mul(at.dv.z, at.du.x)),
-                                         hn::Sub(hn::Mul(at.du.x, at.dv.y), hn::Mul(at.dv.x, at.du.y))});
+    const Vector normal = unit_or_zero(outer(at.du, at.dv));
     Number height[16];
     for (std::size_t i = 0; i < 16; ++i) height[i] = inner(normal, n.node(i));
     Number bend = number(0);
@@ -228,11 +185,6 @@ HWY_INLINE Truth lies_on(const Lanes& n, const Tangents& at, Number rounding) {
     const Number most = hn::Add(
         hn::Add(hn::Mul(number(kBendShare), bend), hn::Mul(number(kTangentShare), tangent)), rounding);
     return hn::Le(norm(at.value), most);
-}
-
-HWY_INLINE Vector3 choose(Truth which, const Vector3& yes, const Vector3& no) {
-    return {hn::IfThenElse(which, yes.x, no.x), hn::IfThenElse(which, yes.y, no.y),
-            hn::IfThenElse(which, yes.z, no.z)};
 }
 
 /// Returns which of the lanes have a hit.
@@ -255,8 +207,8 @@ HWY_INLINE Truth invert(const Lanes& n, Truth asked) {
     Tangents there = bilinear(n, walk.uv);
     if (!hn::AllFalse(kTag, hn::And(near, smooth))) {
         const Tangents bent = bicubic(n, walk.uv);
-        there = {choose(smooth, bent.value, there.value), choose(smooth, bent.du, there.du),
-                 choose(smooth, bent.dv, there.dv)};
+        there = {either(smooth, bent.value, there.value), either(smooth, bent.du, there.du),
+                 either(smooth, bent.dv, there.dv)};
     }
     n.store(walk.uv.x, n.batch.u);
     n.store(walk.uv.y, n.batch.v);
@@ -269,9 +221,7 @@ void invert_patches_here(PatchBatch& batch) {
     for (std::size_t first = 0; first < batch.count; first += kWidth) {
         const Lanes lanes{batch, first};
         const Truth asked = hn::FirstN(kTag, batch.count - first);
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(kTag, invert(lanes, asked), bits);
-        batch.hits |= (bits[0] & ((1u << kWidth) - 1u)) << first;
+        batch.hits |= bits_of(invert(lanes, asked)) << first;
     }
 }
 

@@ -24,15 +24,6 @@ HWY_INLINE void store(const Vector& v, ShadeLanes3& to, std::size_t first) {
     hn::Store(v.z, kTag, to.z + first);
 }
 
-/// As normalize_or_zero.
-HWY_INLINE Vector unit_or_zero(const Vector& v) {
-    const Number largest = larger(larger(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
-    const Truth usual = hn::AndNot(hn::Gt(largest, number(1.7e308)), hn::Gt(largest, number(0)));
-    const Vector scaled = over(v, largest);
-    const Vector unit = over(scaled, hn::Sqrt(inner(scaled, scaled)));
-    return either(usual, unit, vector(Vec3(0)));
-}
-
 /// The lanes first .. first + kWidth - 1 of a batch.
 struct Lanes {
     ShadeBatch& batch;
