@@ -26,7 +26,7 @@ POINTS, SIDE = 100_000, 708  # of `project`; of the field of a million triangles
 
 # what a profile counts together: name, symbols or libraries
 GROUPS = [
-    ("kernel: drawing through facets", r"N_AVX|N_SSE|draw_batch|Bvh|BlockDrawer|place_exactly"),
+    ("kernel: drawing through facets", r"trilens::N_AVX|trilens::N_SSE|draw_batch|Bvh|BlockDrawer|place_exactly"),
     ("samples: facets' samples into vectors", r"plan_tiles|TileMaker|rasterize|group_by_facet|make_sample_tiles"),
     ("shadow rays", r"casts_shadow|segment|unhindered|BoxTree|Tracer|ShearedRay|embree|PrimitiveSurface|Sphere::|on_box"
                     r"|::solve|__fma"),
