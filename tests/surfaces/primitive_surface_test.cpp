@@ -240,6 +240,23 @@ TEST_CASE("t_min leaves earlier hits out", "[surfaces]") {
     CHECK_FALSE(sphere->intersect({{0, 2, 5}, {0, 0, -1}}, 0));
 }
 
+TEST_CASE("Of primitives the sphere alone has the curvature of a sphere", "[surfaces]") {
+    for (const double radius : {1e-4, 0.5, 3e4}) {
+        Primitive sphere;
+        sphere.radius = radius;
+        const auto surface = make_primitive_surface(sphere);
+        CHECK(surface->sphere_curvature() == Approx(1 / radius).epsilon(1e-15));
+        // Its normals point away from the centre, and lie on it.
+        const SurfacePoint point = surface->eval(2, {0.3, 0.8});
+        CHECK(length(point.position - point.normal / surface->sphere_curvature() - sphere.center) <
+              1e-14 * radius);
+    }
+    std::mt19937 random(7);
+    for (const Type type : kTypes)
+        if (type != Type::kSphere)
+            CHECK(make_primitive_surface(random_primitive(type, 1, random))->sphere_curvature() == 0);
+}
+
 TEST_CASE("Rays along the axis, through the rim's plane and along the surface", "[surfaces]") {
     Primitive dish;
     dish.type = Type::kParaboloid;
