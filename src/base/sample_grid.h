@@ -29,9 +29,13 @@ struct SampleGrid {
     }
     /// Position of a sample on the film, in pixels from its top left; a pixel's centre is at .5.
     Vec2 position(std::size_t sample) const {
+        const std::size_t columns = static_cast<std::size_t>(width());
+        if (side == 1)
+            return {x0 + static_cast<double>(sample % columns) + 0.5,
+                    y0 + static_cast<double>(sample / columns) + 0.5};
         const std::size_t per_pixel = static_cast<std::size_t>(samples_per_pixel());
         const std::size_t pixel = sample / per_pixel, inside = sample % per_pixel;
-        const std::size_t columns = static_cast<std::size_t>(width()), s = static_cast<std::size_t>(side);
+        const std::size_t s = static_cast<std::size_t>(side);
         return {x0 + static_cast<double>(pixel % columns) + (static_cast<double>(inside % s) + 0.5) / side,
                 y0 + static_cast<double>(pixel / columns) + (static_cast<double>(inside / s) + 0.5) / side};
     }

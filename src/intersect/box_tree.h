@@ -54,13 +54,11 @@ class BoxTree {
 
   private:
     struct Data;
-    struct SegmentQuery;
     struct Interval {
         double t_min, t_max;
     };
     using SegmentCallback = bool (*)(void* state, std::size_t segment, Id box);
     Segments::Bits find_with(const Segments& segments, SegmentCallback callback, void* state) const;
-    static void on_box_of_segments(const void* from_embree) noexcept;
     using Callback = double (*)(void* state, Id box);
     void visit_with(const Ray& ray, const Interval& interval, Callback callback, void* state) const;
 

@@ -32,9 +32,8 @@ struct BoxTree::Data {
     Data(const Data&) = delete;
     Data& operator=(const Data&) = delete;
 
-    static void on_box_of_segments(const RTCOccludedFunctionNArguments* arguments) noexcept {
-        BoxTree::on_box_of_segments(arguments);
-    }
+    /// Embree offers a box to some of a packet's rays.
+    static void on_box_of_segments(const RTCOccludedFunctionNArguments* arguments) noexcept;
     void build(std::span<const Box> boxes, Group& group);
 
     EmbreeDevice device;

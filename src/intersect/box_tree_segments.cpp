@@ -33,11 +33,9 @@ bool set_packet(const LocalSegments& local, std::size_t first, Segments::Bits as
     return any;
 }
 
-}  // namespace
-
 /// What travels through Embree to on_box_of_segments and back.
-struct BoxTree::SegmentQuery : EmbreeContext {
-    SegmentCallback callback = nullptr;
+struct SegmentQuery : EmbreeContext {
+    bool (*callback)(void* state, std::size_t segment, Id box) = nullptr;
     void* state = nullptr;
     const Id* box = nullptr;  // of each of Embree's primitives
     Segments::Bits found = 0;
@@ -49,9 +47,10 @@ struct BoxTree::SegmentQuery : EmbreeContext {
     }
 };
 
-// Embree offers a box to some of a packet's rays; those that are found here travel no further.
-void BoxTree::on_box_of_segments(const void* from_embree) noexcept {
-    const auto* arguments = static_cast<const RTCOccludedFunctionNArguments*>(from_embree);
+}  // namespace
+
+// Segments that are found here travel no further.
+void BoxTree::Data::on_box_of_segments(const RTCOccludedFunctionNArguments* arguments) noexcept {
     SegmentQuery& query = *static_cast<SegmentQuery*>(arguments->context);
     const unsigned count = arguments->N;
     for (unsigned i = 0; i < count; ++i) {

@@ -137,7 +137,7 @@ PacketTracer::PacketTracer(const TriangleScene& scene, const Options& options)
     : data_(std::make_unique<Data>(options.isa)) {
     RTCDevice device = data_->device.get();
     data_->scene = rtcNewScene(device);
-    data_->width = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) ? 16 : 8;
+    data_->width = std::max(native_packet_width(data_->device), 8);
     data_->configuration = embree_configuration(options.isa);
     rtcSetSceneBuildQuality(data_->scene,
                             options.best_tree ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);

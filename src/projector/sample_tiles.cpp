@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/check.h"
 
@@ -21,6 +22,43 @@ class TileCutter {
   private:
     const SampleGrid& grid_;
     int side_;
+};
+
+/// The cells of even size that a facet's samples are cut into, row by row.
+class CellsOfFacet {
+  public:
+    CellsOfFacet(const LatticeExtent& all, int across, int down)
+        : all_(all), height_(all.y1 - all.y0 + 1), across_(across), down_(down) {
+        const int width = all.x1 - all.x0 + 1;
+        column_cell_.resize(static_cast<std::size_t>(width));
+        for (int x = 0; x < width; ++x) column_cell_[static_cast<std::size_t>(x)] = x * across / width;
+        for (int c = 1; c <= across; ++c) cell_end_.push_back((c * width + across - 1) / across);
+    }
+
+    std::size_t count() const { return static_cast<std::size_t>(across_ * down_); }
+
+    /// Calls body(cell, part) for the samples, which ascend, by runs that lie in one cell.
+    template <typename Body>
+    void for_each_part(const SampleGrid& grid, std::span<const Id> samples, const Body& body) const {
+        for_each_run(grid, samples, [&](const LatticeRun& run) {
+            const int row_of_cells = (run.first.row - all_.y0) * down_ / height_ * across_;
+            for (LatticeRun rest = run; rest.count > 0;) {
+                const int x = rest.first.column - all_.x0, cell = column_cell_[static_cast<std::size_t>(x)];
+                LatticeRun part = rest;
+                part.count = std::min(rest.count, cell_end_[static_cast<std::size_t>(cell)] - x);
+                body(static_cast<std::size_t>(row_of_cells + cell), part);
+                rest.first.column += part.count;
+                rest.sample += static_cast<Id>(part.count);
+                rest.count -= part.count;
+            }
+        });
+    }
+
+  private:
+    LatticeExtent all_;
+    int height_, across_, down_;
+    std::vector<int> column_cell_;  // by column
+    std::vector<int> cell_end_;     // of each column of cells, the column after its last
 };
 
 /// Of a tile's rays, where it can be: beyond it conics are too bent to be bounded well (measured).
@@ -55,28 +93,22 @@ void TileCutter::add_facet(const FacetOnScreen& facet, std::span<const Id> sampl
         const int wanted = static_cast<int>(std::min(1e4, std::ceil(spread / kTileSpread)));
         return std::max((length + side_ - 1) / side_, std::min(wanted, 2 * length / side_));
     };
-    const int width = all.x1 - all.x0 + 1, height = all.y1 - all.y0 + 1;
-    const int across = parts(width), down = parts(height);
-    std::vector<std::uint32_t> column_cell(static_cast<std::size_t>(width));
-    for (int x = 0; x < width; ++x)
-        column_cell[static_cast<std::size_t>(x)] = static_cast<std::uint32_t>(x * across / width);
-    const auto cell = [&](const LatticeSample& s) {
-        return static_cast<std::size_t>((s.row - all.y0) * down / height * across) +
-               column_cell[static_cast<std::size_t>(s.column - all.x0)];
-    };
-    std::vector<std::size_t> start(static_cast<std::size_t>(across * down) + 1, 0);
-    LatticeWalk to_count(grid_), to_bin(grid_);
-    for (const Id s : samples) ++start[cell(to_count.at(s)) + 1];
+    const CellsOfFacet cells(all, parts(all.x1 - all.x0 + 1), parts(all.y1 - all.y0 + 1));
+    std::vector<std::size_t> start(cells.count() + 1, 0);
+    cells.for_each_part(grid_, samples, [&](std::size_t cell, const LatticeRun& part) {
+        start[cell + 1] += static_cast<std::size_t>(part.count);
+    });
     for (std::size_t c = 1; c < start.size(); ++c) start[c] += start[c - 1];
     std::vector<LatticeExtent> extent(start.size());
     std::vector<std::size_t> next(start.begin(), start.end() - 1);
     binned.emplace_back(samples.size());
-    for (const Id s : samples) {
-        const LatticeSample at = to_bin.at(s);
-        const std::size_t c = cell(at);
-        binned.back()[next[c]++] = s;
-        extent[c].include(at);
-    }
+    cells.for_each_part(grid_, samples, [&](std::size_t cell, const LatticeRun& part) {
+        Id* const to = binned.back().data() + next[cell];
+        std::iota(to, to + part.count, part.sample);
+        next[cell] += static_cast<std::size_t>(part.count);
+        extent[cell].include(part.first);
+        extent[cell].include(part.last());
+    });
     for (std::size_t c = 0; c + 1 < start.size(); ++c) {
         if (start[c] == start[c + 1]) continue;
         const std::span<const Id> own = std::span(binned.back()).subspan(start[c], start[c + 1] - start[c]);

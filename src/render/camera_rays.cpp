@@ -24,19 +24,6 @@ CameraRays make_camera_rays(const Scene& scene, std::size_t index) {
     return camera;
 }
 
-void set_camera_rays(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
-                     std::span<SampleView> views) {
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-        if (!mesh.has_rays(f)) continue;
-        const FacetWeights weights = facet_weights(mesh, f);
-        const std::span<const Id> samples = owned.of(f);
-        parallel_for(samples.size(), 1024, [&](std::size_t from, std::size_t to) {
-            for (const Id s : samples.subspan(from, to - from))
-                views[s].ray = sample_ray(mesh, f, weights, grid.position(s));
-        });
-    }
-}
-
 FacetSamples set_exact_rays(const CameraModel& model, const SampleGrid& grid, std::span<SampleView> views) {
     std::vector<Id> owner(grid.size(), kNone);
     parallel_for(owner.size(), 256, [&](std::size_t from, std::size_t to) {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "base/facet_samples.h"
+#include "base/parallel.h"
 #include "base/ray_mesh.h"
 #include "base/sample_grid.h"
 #include "camera/camera.h"
@@ -19,9 +20,20 @@ using CameraRays = Camera;
 /// optics, whose grids then lie on its film. Throws InputError with its place where it is none.
 CameraRays make_camera_rays(const Scene& scene, std::size_t index);
 
-/// Sets the camera's ray of every sample that `owned` gives to a facet.
-void set_camera_rays(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
-                     std::span<SampleView> views);
+/// Calls use(sample, ray) with the camera's ray of every sample that `owned` gives to a facet, from several
+/// threads.
+template <typename Use>
+void for_each_camera_ray(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid, Use&& use) {
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        if (!mesh.has_rays(f)) continue;
+        const FacetWeights weights = facet_weights(mesh, f);
+        const std::span<const Id> samples = owned.of(f);
+        parallel_for(samples.size(), 1024, [&](std::size_t from, std::size_t to) {
+            for (const Id s : samples.subspan(from, to - from))
+                use(s, sample_ray(mesh, f, weights, grid.position(s)));
+        });
+    }
+}
 
 /// Sets the exact ray of every sample of a camera that is not linear, and returns the samples that have one
 /// (those of facet 0), ascending. For the limit truth.

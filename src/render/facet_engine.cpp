@@ -99,26 +99,21 @@ void FacetViewer::describe_optic(std::size_t index, const Hit& hit, SampleView& 
 
 /// Starts the views: the camera's rays, and what they see first of the objects.
 void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const {
-    const RayMesh& mesh = frame.camera.mesh;
     std::vector<Hit> hits(grid.size());
-    draw_first(mesh, owned, grid, hits);
-    views.restart(grid.size());
-    if (owned.sample.size() < grid.size()) views.reset(grid.size());
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-        if (!mesh.has_rays(f)) continue;
-        const FacetWeights weights = facet_weights(mesh, f);
-        const std::span<const Id> samples = owned.of(f);
-        parallel_for(samples.size(), 1024, [&](std::size_t from, std::size_t to) {
-            for (const Id s : samples.subspan(from, to - from)) {
-                SampleView& view = views.samples[s];
-                view = {};
-                view.ray = sample_ray(mesh, f, weights, grid.position(s));
-                if (!hits[s].seen() || hits[s].t > reach()) continue;
-                view.hit = hits[s];
-                view.depth = hits[s].t;
-            }
-        });
-    }
+    draw_first(frame.camera.mesh, owned, grid, hits);
+    // Samples of no facet stay as they are made here; all others are set below.
+    if (owned.sample.size() < grid.size())
+        views.reset(grid.size());
+    else
+        views.restart(grid.size());
+    for_each_camera_ray(frame.camera.mesh, owned, grid, [&](Id s, const Ray& ray) {
+        SampleView& view = views.samples[s];
+        view = {};
+        view.ray = ray;
+        if (!hits[s].seen() || hits[s].t > reach()) return;
+        view.hit = hits[s];
+        view.depth = hits[s].t;
+    });
 }
 
 /// Of two optics that touch where a ray meets them, whether this one's turn comes before that of the one that
@@ -185,11 +180,12 @@ void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     if (redraws_direct) redraw_direct(owned, grid, views);
     count_from_eye(frame.camera, views.samples);
     std::vector<OpticEnds> ends;
+    ends.reserve(frame.optics.size());
     for (std::size_t i = 0; i < frame.optics.size(); ++i)
         ends.push_back(
             draw_optic_paths({*world, static_cast<Id>(i), draw_paths, frame.optics[i], layers[i].get()},
                              *paths[i], grid, views));
-    collect_ends(ends, views);
+    collect_ends(std::move(ends), views);
 }
 
 }  // namespace

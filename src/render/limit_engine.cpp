@@ -81,7 +81,8 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
         owned = set_exact_rays(*camera.model, grid, views.samples);
     } else {
         owned = rasterize_facets(camera.mesh, grid);
-        set_camera_rays(camera.mesh, owned, grid, views.samples);
+        for_each_camera_ray(camera.mesh, owned, grid,
+                            [&](Id s, const Ray& ray) { views.samples[s].ray = ray; });
     }
 
     set_surroundings(surroundings, views);

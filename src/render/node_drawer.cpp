@@ -45,6 +45,17 @@ bool lies_where_rays_start(const PathNode& node, Id facet, const Vec3& place) {
            std::fabs(dot(place - a, normal)) <= kOnPlane * std::max(length(along_b), length(along_c));
 }
 
+/// Where the ends of each facet's samples begin in a list that has `before` already.
+std::vector<std::size_t> first_ends(const FacetSamples& owned, const std::vector<char>& is_end,
+                                    std::size_t before) {
+    std::vector<std::size_t> first(owned.first.size(), before);
+    for (std::size_t l = 0; l + 1 < first.size(); ++l) {
+        first[l + 1] = first[l];
+        for (std::size_t i = owned.first[l]; i < owned.first[l + 1]; ++i) first[l + 1] += is_end[i] != 0;
+    }
+    return first;
+}
+
 }  // namespace
 
 /// Whether what a sample sees lies before the next optic or on it: the path ends there.
@@ -76,35 +87,11 @@ std::vector<Id> NodeDrawer::owners(const PathNode& node) const {
     return owner;
 }
 
-void NodeDrawer::finish(const PathNode& node, Id sample, const FacetWeights& weights, PathEnd& end) const {
-    const Id leaf = leaf_[sample];
-    const Vec3 share = share_of(weights, grid_.position(sample));
-    const IdTriple& corner = node.mesh.facets[leaf];
-    end.path = node.path;
-    end.principal = node.principal[leaf];
-    end.colours = node.colours;
-    end.medium = node.medium;
-    end.ray = interpolated_ray(node.mesh, leaf, share);
-    end.weight = Vec3(0);
-    for (int k = 0; k < 3; ++k) end.weight += share[k] * node.weight[corner[static_cast<std::size_t>(k)]];
-    end.weight = glm::max(end.weight, Vec3(0));
-}
-
-void NodeDrawer::draw(Id index, OpticEnds& out) {
+/// Which of the owned samples end here; those whose path goes on are marked.
+std::vector<char> NodeDrawer::find_ends(Id index, const FacetSamples& owned, std::span<const Hit> hits) {
     const PathNode& node = paths_.nodes()[index];
-    const FacetSamples owned = group_by_facet(owners(node), node.mesh.facets.size());
-    if (owned.sample.empty()) return;
-    std::vector<Hit> hits(grid_.size());
-    draw_mesh_(node.mesh, owned, grid_, hits);
-
-    // The history, once for all its ends.
-    const std::size_t first_step = out.steps.size();
-    for (Id n = index; n != kNone; n = paths_.nodes()[n].parent) out.steps.push_back(paths_.nodes()[n].step);
-    std::reverse(out.steps.begin() + static_cast<std::ptrdiff_t>(first_step), out.steps.end());
-
     std::vector<char>& goes_on = goes_on_[index];
     goes_on.resize(grid_.size(), 0);
-    std::vector<PathEnd> ends(owned.sample.size());
     std::vector<char> is_end(owned.sample.size(), 0);
     parallel_for(node.mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
         for (std::size_t l = from; l < to; ++l) {
@@ -113,28 +100,64 @@ void NodeDrawer::draw(Id index, OpticEnds& out) {
             if (weights.edge_on) continue;
             for (std::size_t i = owned.first[l]; i < owned.first[l + 1]; ++i) {
                 const Id s = owned.sample[i];
-                if (!node.ends[l]) {
-                    goes_on[s] = !(hits[s].seen() && ends_before_next(index, static_cast<Id>(l), hits[s],
-                                                                      share_of(weights, grid_.position(s))));
-                    if (goes_on[s]) continue;
-                }
-                finish(node, s, weights, ends[i]);
-                ends[i].node = index;
-                ends[i].first_step = first_step;
-                ends[i].step_count = node.step_count;
-                ends[i].hit = hits[s];
-                if (hits[s].seen())
-                    ends[i].magnification = magnification(node.mesh, static_cast<Id>(l),
-                                                          share_of(weights, grid_.position(s)), hits[s].t);
-                is_end[i] = 1;
+                is_end[i] = node.ends[l] ||
+                            (hits[s].seen() && ends_before_next(index, static_cast<Id>(l), hits[s],
+                                                                share_of(weights, grid_.position(s))));
+                goes_on[s] = !is_end[i];
             }
         }
     });
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        if (!is_end[i]) continue;
-        out.ends.push_back(ends[i]);
-        out.sample.push_back(owned.sample[i]);
-    }
+    return is_end;
+}
+
+/// Sets the end of a sample over facet `leaf`, all but its steps.
+void NodeDrawer::set_end(Id index, Id leaf, const Vec3& share, PathEnd& end) const {
+    const PathNode& node = paths_.nodes()[index];
+    const IdTriple& corner = node.mesh.facets[leaf];
+    end.path = node.path;
+    end.principal = node.principal[leaf];
+    end.colours = node.colours;
+    end.node = index;
+    end.medium = node.medium;
+    end.ray = interpolated_ray(node.mesh, leaf, share);
+    end.weight = Vec3(0);
+    for (int k = 0; k < 3; ++k) end.weight += share[k] * node.weight[corner[static_cast<std::size_t>(k)]];
+    end.weight = glm::max(end.weight, Vec3(0));
+    if (end.hit.seen()) end.magnification = magnification(node.mesh, leaf, share, end.hit.t);
+}
+
+void NodeDrawer::draw(Id index, OpticEnds& out) {
+    const PathNode& node = paths_.nodes()[index];
+    const FacetSamples owned = group_by_facet(owners(node), node.mesh.facets.size());
+    if (owned.sample.empty()) return;
+    std::vector<Hit> hits(grid_.size());
+    draw_mesh_(node.mesh, owned, grid_, hits);
+    const std::vector<char> is_end = find_ends(index, owned, hits);
+
+    // The history, once for all its ends.
+    const std::size_t first_step = out.steps.size();
+    for (Id n = index; n != kNone; n = paths_.nodes()[n].parent) out.steps.push_back(paths_.nodes()[n].step);
+    std::reverse(out.steps.begin() + static_cast<std::ptrdiff_t>(first_step), out.steps.end());
+
+    const std::vector<std::size_t> first_end = first_ends(owned, is_end, out.ends.size());
+    out.ends.resize(first_end.back());
+    out.sample.resize(first_end.back());
+    parallel_for(node.mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
+        for (std::size_t l = from; l < to; ++l) {
+            if (first_end[l] == first_end[l + 1]) continue;
+            const FacetWeights weights = facet_weights(node.mesh, l);
+            std::size_t next = first_end[l];
+            for (std::size_t i = owned.first[l]; i < owned.first[l + 1]; ++i) {
+                if (!is_end[i]) continue;
+                const Id s = out.sample[next] = owned.sample[i];
+                PathEnd& end = out.ends[next++];
+                end.hit = hits[s];
+                end.first_step = first_step;
+                end.step_count = node.step_count;
+                set_end(index, static_cast<Id>(l), share_of(weights, grid_.position(s)), end);
+            }
+        }
+    });
 }
 
 }  // namespace trilens

@@ -243,15 +243,24 @@ OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, con
     return out;
 }
 
-void collect_ends(const std::vector<OpticEnds>& optics, SampleViews& views) {
+void collect_ends(std::vector<OpticEnds> optics, SampleViews& views) {
     constexpr std::size_t kUnplaced = ~std::size_t{0};
     std::size_t total = 0;
+    bool alone = true;  // each end is its sample's only one
     for (const OpticEnds& one : optics) {
         total += one.ends.size();
         for (const Id s : one.sample) {
-            ++views.of_optics[s].end_count;
-            views.of_optics[s].first_end = kUnplaced;
+            OpticView& view = views.of_optics[s];
+            alone = alone && view.end_count == 0;
+            ++view.end_count;
+            view.first_end = kUnplaced;
         }
+    }
+    if (alone && optics.size() == 1) {
+        views.ends = std::move(optics.front().ends);
+        views.steps = std::move(optics.front().steps);
+        for (std::size_t i = 0; i < total; ++i) views.of_optics[optics.front().sample[i]].first_end = i;
+        return;
     }
     views.ends.resize(total);
     std::size_t placed = 0;

@@ -27,7 +27,7 @@ struct OpticEndsParams {
 OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, const SampleGrid& grid,
                            SampleViews& views);
 
-/// Puts the ends of all optics into the record, those of one sample side by side.
-void collect_ends(const std::vector<OpticEnds>& optics, SampleViews& views);
+/// Puts the ends of all optics into the record, which has none, those of one sample side by side.
+void collect_ends(std::vector<OpticEnds> optics, SampleViews& views);
 
 }  // namespace trilens
