@@ -9,6 +9,16 @@
 namespace trilens::python {
 namespace {
 
+/// What bench() returns: the race, and what both sides have in common.
+struct Race : RaceResult {
+    bool direct = false;
+    double surface_ms = 0, corner_rays_ms = 0, shade_ms = 0;
+};
+
+Race race_of(const BenchResult& result) {
+    return {result.race, result.direct, result.surface_ms, result.rays_ms, result.shade_ms};
+}
+
 void bind_race(py::module_& module) {
     py::class_<RaceResult::Ratios> ratios(
         module, "RaceRatios", "Embree's time over the projector's: above 1 where the projector is faster.");
@@ -23,13 +33,19 @@ void bind_race(py::module_& module) {
                 field("edge", &Mismatches::edge, "Both triangles are met within a thousandth of an edge."),
                 field("depth", &Mismatches::depth, "Both at one depth to a thousandth."),
                 field("unexplained", &Mismatches::unexplained, "The others."));
-    py::class_<RaceResult> race(module, "Race", "Medians over the rounds, milliseconds of wall time.");
+    py::class_<Race> race(module, "Race", "Medians over the rounds, milliseconds of wall time.");
     bind_fields(
         race, field("pixels", &RaceResult::pixels, "Samples whose rays were raced."),
         field("facets", &RaceResult::facets, "Facets with such samples."),
         field("triangles", &RaceResult::triangles, "Of the scene."),
         field("threads", &RaceResult::threads, "Of both sides."),
         field("isa", &RaceResult::projector_isa, "The projector's instruction set."),
+        field("direct", &Race::direct,
+              "The camera's own rays were raced, since it sees no optic; else those that leave the optics."),
+        field("surface_ms", &Race::surface_ms, "Both: the optics' surfaces and the scene's triangles."),
+        field("corner_rays_ms", &Race::corner_rays_ms,
+              "Both: the camera's rays, the optics' grids and their corner rays up to the first optic."),
+        field("shade_ms", &Race::shade_ms, "Both: colours of all samples of the film."),
         field("prepare_ms", &RaceResult::prepare_ms, "Projector: its tree."),
         field("samples_ms", &RaceResult::samples_ms, "Projector: samples in vectors."),
         field("draw_ms", &RaceResult::draw_ms, "Projector: hits left in vectors' order."),
@@ -60,7 +76,7 @@ void bind_bench(py::module_& module) {
             request.frame.resolution = resolution;
             request.race = {repeat, isa};
             const Warn warner = talk.warner();
-            return talk.run([&] { return run_bench(scene, request, warner).race; });
+            return talk.run([&] { return race_of(run_bench(scene, request, warner)); });
         },
         py::arg("scene"), py::kw_only(), py::arg("resolution") = 0, py::arg("camera") = py::none(),
         py::arg("repeat") = 9, py::arg("isa") = "", py::arg("warn") = py::none(),

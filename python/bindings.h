@@ -59,9 +59,10 @@ Field<Record, Value> field(const char* name, Value Record::*member, const char* 
     return {name, member, doc};
 }
 
-/// Binds a plain record: its fields for reading, to_dict(), and a repr that shows them.
-template <class Record, class... Bound, class... Values>
-void bind_fields(py::class_<Record, Bound...>& bound, const Field<Record, Values>&... fields) {
+/// Binds a plain record: its fields (or those of records that it extends) for reading, to_dict(), and a repr
+/// that shows them.
+template <class Record, class... Bound, class... Records, class... Values>
+void bind_fields(py::class_<Record, Bound...>& bound, const Field<Records, Values>&... fields) {
     (bound.def_readonly(fields.name, fields.member, fields.doc), ...);
     const auto to_dict = [fields...](const Record& record) {
         py::dict values;

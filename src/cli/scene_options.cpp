@@ -11,8 +11,6 @@
 namespace trilens {
 namespace {
 
-constexpr int kMostFilmSide = 32768;  // as the schema of scenes has it
-
 std::vector<SceneOverride> file_overrides(const SceneOptions& options) {
     std::vector<SceneOverride> overrides;
     for (const std::string& text : options.set) {

@@ -108,6 +108,9 @@ void AxisReader::add(const std::string& item) {
         if (!width || !height || *width < 1 || *height < 1 || *width != std::floor(*width) ||
             *height != std::floor(*height))
             refuse("\"" + item + "\" is no size such as 640x480");
+        if (std::max(*width, *height) > kind.most_side || *width * *height > kind.most)
+            refuse(item + " is too large: at most " + shortest_text(kind.most_side) + " a side, " +
+                   shortest_text(kind.most) + " pixels");
         values.push_back({item, *width * *height});
     } else if (kind.values == ValueKind::kWord &&
                std::find(kind.words.begin(), kind.words.end(), item) == kind.words.end()) {

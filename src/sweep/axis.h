@@ -24,6 +24,7 @@ struct AxisKind {
     double most = std::numeric_limits<double>::infinity();
     bool is_scale = false;  // errors follow a power of it: fits are made along it
     std::vector<std::string> words = {};
+    double most_side = std::numeric_limits<double>::infinity();  // kSize: of W and H
 };
 
 /// A value as it was written, and the number that it stands for.

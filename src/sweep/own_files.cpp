@@ -147,8 +147,11 @@ void require_inputs_apart(const std::string& folder, const std::vector<PlannedRu
 }
 
 void begin_report_lists(const std::string& folder) {
-    for (const char* below : kReportFolders)
-        if (!is_there(list_file(folder, below))) replace_text_file(list_file(folder, below), "");
+    for (const char* below : kReportFolders) begin_report_list(folder, below);
+}
+
+void begin_report_list(const std::string& folder, const std::string& below) {
+    if (!is_there(list_file(folder, below))) replace_text_file(list_file(folder, below), "");
 }
 
 void remove_own_files(const std::string& folder, bool is_sweep) {

@@ -19,8 +19,9 @@ void require_no_foreign_files(const std::string& folder);
 void require_inputs_apart(const std::string& folder, const std::vector<PlannedRun>& plan,
                           std::span<const std::string> inputs);
 
-/// Begins the lists that OwnReportFiles keeps, where there are none.
+/// Begins the lists that OwnReportFiles keeps, where there are none: all of them, or the one for a folder.
 void begin_report_lists(const std::string& folder);
+void begin_report_list(const std::string& folder, const std::string& below);
 
 /// Removes the files of runs, truths and reports, and the fixed names, the manifest last; folders where
 /// nothing else is left in them. `is_sweep`: that the manifest tells of a sweep; otherwise the fixed names go

@@ -10,6 +10,7 @@
 #include "base/stopwatch.h"
 #include "render/engine.h"
 #include "report/plot.h"
+#include "sweep/own_files.h"
 #include "trilens/render.h"
 
 namespace trilens {
@@ -178,6 +179,18 @@ std::vector<ClassicParams> ways_to_clip() {
     return ways;
 }
 
+/// Refuses a folder in which a file of somebody's would be lost: a plot of this name that no study wrote, or
+/// an input.
+void claim_folder(const std::string& folder, const std::vector<std::string>& scenes) {
+    make_folder(folder);
+    for (const char* name : {"engines.csv", "clipping.csv"}) check_writable(folder + "/" + name, scenes);
+    std::vector<std::string> plots{"engines.svg"};
+    for (const std::string& scene : scenes)
+        plots.push_back(std::filesystem::path(scene).stem().string() + ".svg");
+    if (!std::filesystem::exists(folder + "/engines.csv")) begin_report_list(folder, "plots");
+    OwnReportFiles(folder, "plots").will_write(plots);
+}
+
 }  // namespace
 
 EngineStudy study_engines(const StudyRequest& request, const SweepTalk& talk) {
@@ -187,9 +200,7 @@ EngineStudy study_engines(const StudyRequest& request, const SweepTalk& talk) {
     EngineStudy study;
     std::vector<StudyRow> complete;  // of the scenes that could be drawn in every way
     int complete_scenes = 0;
-    make_folder(request.folder + "/plots");
-    for (const char* name : {"engines.csv", "clipping.csv"})
-        check_writable(request.folder + "/" + name, files);
+    claim_folder(request.folder, files);
     for (const SceneRequest& file : request.scenes) {
         Scene scene = load_scene(file);
         if (talk.warn)

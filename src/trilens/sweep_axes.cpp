@@ -97,7 +97,7 @@ const std::vector<AxisEntry>& axis_entries() {
         {{"grid", "", "facets' grid", ValueKind::kWord, 0, 0, false, {"surface", "screen"}}, set_grid},
         {{"max-error", "px", "largest predicted error [px]", ValueKind::kNumber, 0, 1000},
          [](const auto& v, auto& r) { r.picture.frame.max_error = number_of(v); }},
-        {{"size", "", "pixels", ValueKind::kSize, 1, kMostPixels, true}, set_size},
+        {{"size", "", "pixels", ValueKind::kSize, 1, kMostPixels, true, {}, kMostFilmSide}, set_size},
         {{"spp", "spp", "samples per pixel, across", kWhole, 1, kMaxSpp},
          [](const auto& v, auto& r) { override_with("/film/spp", v.text, r); }},
         {{"max-depth", "depth", "optic hits after the first", kWhole, 0, 64},

@@ -14,7 +14,7 @@ namespace {
 
 const AxisKind kResolution{"resolution", "n", "n", ValueKind::kWhole, 1, 1024, true};
 const AxisKind kEngine{"engine", "", "engine", ValueKind::kWord, 0, 0, false, {"exact", "classic"}};
-const AxisKind kSize{"size", "", "pixels", ValueKind::kSize, 1, 1e9, true};
+const AxisKind kSize{"size", "", "pixels", ValueKind::kSize, 1, 1e9, true, {}, 32768};
 const AxisKind kScene{"scene", "", "scene", ValueKind::kText};
 
 Axis parse_axis(const std::string& text, bool keeps_order = false) {
@@ -106,7 +106,9 @@ TEST_CASE("sweep: axes that make no sense are refused, and the text is quoted") 
                                           "resolution=1..8:x2:x2",
                                           "resolution=1..1025:+1",
                                           "engine=exat",
-                                          "size=12"};
+                                          "size=12",
+                                          "size=10x32769",
+                                          "size=32000x32000"};
     for (const std::string& text : bad) {
         INFO(text);
         REQUIRE_THROWS_AS(parse_axis(text), UsageError);
