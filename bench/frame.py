@@ -32,7 +32,7 @@ GROUPS = [
                     r"|::solve|__fma"),
     ("shading", r"shade_|Shaded|Contributions|sample_colour|lookup_|optic_weights|fresnel|light_of_view"),
     ("compression and packing", r"isal|deflate|zip_block|pack_|OpenEXR|libdeflate|libz|png|ExrStrips"),
-    ("rays and views of samples", r"set_camera_rays|SampleViews|FacetViewer|collect_ends|NodeDrawer|ShownDrawer|OpticPaths"
+    ("rays and views of samples", r"for_each_camera_ray|SampleViews|FacetViewer|collect_ends|NodeDrawer|ShownDrawer|OpticPaths"
                                   r"|draw_optic_paths|sample_ray|follow|surroundings"),
     ("pixels of the layers", r"Canvas|put_band|mean_colour|draw_layers|::add\b"),
     ("operating system: pages, files", r"\[k\]|kernel|mem(set|cpy|move)"),

@@ -96,11 +96,11 @@ class FilteredSamples {
     std::vector<SampleColour> colours_;
 };
 
-/// How many rows of pixels are drawn together: whole blocks where they are many, one for each thread at
-/// least.
+/// How many rows of pixels are drawn together: whole blocks where they are many, one for every two threads at
+/// least, since several bands are on their way.
 int band_rows(std::size_t samples_per_row) {
-    const std::size_t wanted =
-        std::max(kBandSamples / samples_per_row, kBlockRows * static_cast<std::size_t>(thread_count()));
+    const std::size_t wanted = std::max(kBandSamples / samples_per_row,
+                                        kBlockRows * ((static_cast<std::size_t>(thread_count()) + 1) / 2));
     const std::size_t rows = std::max<std::size_t>(1, std::min(wanted, kMostBandSamples / samples_per_row));
     return static_cast<int>(rows > kBlockRows ? rows / kBlockRows * kBlockRows : rows);
 }
