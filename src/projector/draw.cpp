@@ -23,7 +23,7 @@ void draw_tile_in_blocks(const KernelScene& scene, const SampleTile& tile) {
         for (std::uint32_t v = first; v < last; ++v) {
             const VectorSamples& own = scene.tiles->samples[tile.first_vector + v];
             for (std::size_t k = 0; k < kLanes; ++k)
-                if (own.valid >> k & 1) sample[count++] = own.sample[k];
+                if (scene.tiles->valid[tile.first_vector + v] >> k & 1) sample[count++] = own.sample[k];
         }
         draw_block(*scene.data, scene.tiles->rays[tile.rays], *scene.grid, std::span(sample).first(count),
                    std::span(hit).first(count));
@@ -32,7 +32,7 @@ void draw_tile_in_blocks(const KernelScene& scene, const SampleTile& tile) {
             const std::uint32_t vector = tile.first_vector + v;
             const VectorSamples& own = scene.tiles->samples[vector];
             for (std::size_t k = 0; k < kLanes; ++k) {
-                if (!(own.valid >> k & 1)) continue;
+                if (!(scene.tiles->valid[vector] >> k & 1)) continue;
                 const Hit& seen = hit[count++];
                 if (!scene.hits.empty()) scene.hits[own.sample[k]] = seen;
                 if (!scene.vector_hits.empty()) set_lane(scene.vector_hits[vector], k, seen);
@@ -45,7 +45,7 @@ void draw_mixed_in_blocks(const KernelScene& scene, const MixedGroup& group, std
     const std::uint32_t vector = group.first_vector + number;
     const VectorSamples& own = scene.tiles->samples[vector];
     for (std::size_t k = 0; k < kLanes; ++k) {
-        if (!(own.valid >> k & 1)) continue;
+        if (!(scene.tiles->valid[vector] >> k & 1)) continue;
         Hit seen;
         const FacetRays& facet = scene.tiles->rays[scene.tiles->lanes[group.first_lanes + number].rays[k]];
         draw_block(*scene.data, facet, *scene.grid, std::span(&own.sample[k], 1), std::span(&seen, 1));
@@ -73,6 +73,7 @@ void clear(SampleTiles& tiles) {
     tiles.lanes.clear();
     tiles.vectors.clear();
     tiles.samples.clear();
+    tiles.valid.clear();
     tiles.boxes.clear();
     tiles.slot.clear();
 }

@@ -41,7 +41,7 @@ HWY_INLINE void begin_vectors(const KernelScene& scene, std::size_t samples, Ker
         if (!wait) clear_nearest(state.nearest[i]);
         hwy::Prefetch(vector[i].u);
         hwy::Prefetch(vector[i].v);
-        hwy::Prefetch(&scene.tiles->samples[state.first_vector + i]);
+        if (!scene.hits.empty()) hwy::Prefetch(&scene.tiles->samples[state.first_vector + i]);
     }
 }
 

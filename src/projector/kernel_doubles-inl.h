@@ -102,6 +102,14 @@ HWY_INLINE Floats narrow(const DoubleLanes& v) {
     return r;
 }
 
+HWY_INLINE void widen(const Floats& v, DoubleLanes& to) {
+    const hn::Rebind<float, DoubleTag> some;
+    for (std::size_t i = 0; i < kParts; ++i) {
+        to.part[2 * i] = hn::PromoteTo(kDouble, hn::LowerHalf(some, v.part[i]));
+        to.part[2 * i + 1] = hn::PromoteTo(kDouble, hn::UpperHalf(some, v.part[i]));
+    }
+}
+
 /// Three axes of 16 doubles.
 struct DoubleLanes3 {
     DoubleLanes axis[3];

@@ -30,15 +30,16 @@ using PairTag = hn::FixedTag<double, 2>;
 using Pair = hn::Vec<PairTag>;
 inline constexpr std::size_t kPairs = kDoubles / 2;
 
-/// Pairs side by side.
-template <typename Tag>
-HWY_INLINE hn::Vec<Tag> join(Tag tag, const Pair* pair) {
-    if constexpr (hn::MaxLanes(Tag()) == 2) {
-        return pair[0];
-    } else {
-        const hn::Half<Tag> half;
-        return hn::Combine(tag, join(half, pair + hn::MaxLanes(half) / 2), join(half, pair));
-    }
+/// From each of kPairs triangles, `step` apart, two of its numbers: pairs side by side. Loads that repeat a
+/// pair and blends take no part in the machine's one unit that moves lanes.
+HWY_INLINE Double load_pairs(const PreparedTriangle* const* from, std::size_t step, std::size_t number) {
+    const auto load = [&](std::size_t i) HWY_ATTR {
+        return hn::LoadDup128(kDouble, reinterpret_cast<const double*>(from[i * step]) + number);
+    };
+    Double pairs = load(0);
+    for (std::size_t i = 1; i < kPairs; ++i)
+        pairs = hn::IfThenElse(mask_of_doubles(3u << 2 * i), load(i), pairs);
+    return pairs;
 }
 
 /// PreparedTriangles, one per lane: as numbers, 9 of corners and the name.
@@ -48,18 +49,11 @@ struct TriangleLanes {
 
 HWY_INLINE TriangleLanes gather_triangles(const PreparedTriangle* const (&from)[kDoubles]) {
     static_assert(sizeof(PreparedTriangle) == 10 * sizeof(double));
-    const PairTag pair_tag;
     TriangleLanes triangles;
     for (std::size_t n = 0; n < 10; n += 2) {
-        Pair even[kPairs], odd[kPairs];
-        for (std::size_t i = 0; i < kPairs; ++i) {
-            const Pair a = hn::LoadU(pair_tag, reinterpret_cast<const double*>(from[2 * i]) + n),
-                       b = hn::LoadU(pair_tag, reinterpret_cast<const double*>(from[2 * i + 1]) + n);
-            even[i] = hn::InterleaveLower(pair_tag, a, b);
-            odd[i] = hn::InterleaveUpper(pair_tag, a, b);
-        }
-        triangles.number[n] = join(kDouble, even);
-        triangles.number[n + 1] = join(kDouble, odd);
+        const Double even = load_pairs(from, 2, n), odd = load_pairs(from + 1, 2, n);
+        triangles.number[n] = hn::InterleaveLower(kDouble, even, odd);
+        triangles.number[n + 1] = hn::InterleaveUpper(kDouble, even, odd);
     }
     return triangles;
 }

@@ -111,6 +111,7 @@ HWY_INLINE Mask without(const Mask& b, const Mask& a) {
         return r;                                          \
     }
 TRILENS_LANES_FUNCTION(absolute, Abs)
+TRILENS_LANES_FUNCTION(round, Round)
 TRILENS_LANES_FUNCTION(round_up, Ceil)
 TRILENS_LANES_FUNCTION(round_down, Floor)
 #undef TRILENS_LANES_FUNCTION

@@ -232,7 +232,7 @@ HWY_NOINLINE void draw_ray_lanes(const KernelScene& scene, const Leaf& leaf, con
                 doubts = ray_doubts(state.lanes, tile, leaf);
             }
             const VectorRays& rays = state.rays[vector];
-            const std::uint32_t samples = scene.tiles->samples[state.first_vector + vector].valid &
+            const std::uint32_t samples = scene.tiles->valid[state.first_vector + vector] &
                                           rays_at_leaf(rays, doubts, state.nearest[vector]);
             if (!samples) continue;
             const std::uint32_t triangles = triangles_in_vector(state.beams[g], *lane, leaf, middle);

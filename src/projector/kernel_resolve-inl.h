@@ -10,7 +10,7 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "projector/kernel_placed-inl.h"
+#include "projector/kernel_rounded-inl.h"
 #include "projector/kernel_whole-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -145,39 +145,59 @@ HWY_INLINE bool write_one(const TilePlacing& tile, const TileVector& at, Id tria
     return sure;
 }
 
-/// The covered tile of lane j.
-HWY_INLINE void resolve_covered(const TilePlacing& placing, const SampleTile& tile, std::size_t j,
+/// A vector of the covered tile of lane j.
+HWY_INLINE void resolve_covered(const TilePlacing& placing, const TileVector& at, std::size_t j,
                                 KernelState& state, std::size_t& next) {
-    const Id triangle = state.whole[j].triangle;
     Placed placed;
-    for (std::uint32_t i = 0; i < tile.vectors; ++i) {
-        const TileVector at{tile.first_vector + i, tile.first_vector + i - state.first_vector};
-        if (HWY_LIKELY(write_one(placing, at, triangle, state, next, placed))) continue;
-        touch_tile(placing.scene, j, state);
-        finish_vector(
-            placing.scene, state, at.in_group,
-            [&](std::size_t) HWY_ATTR -> const FacetRays& { return placing.facet; }, next, placed);
+    if (HWY_LIKELY(write_one(placing, at, state.whole[j].triangle, state, next, placed))) return;
+    touch_tile(placing.scene, j, state);
+    finish_vector(
+        placing.scene, state, at.in_group,
+        [&](std::size_t) HWY_ATTR -> const FacetRays& { return placing.facet; }, next, placed);
+}
+
+/// A vector of another tile.
+HWY_INLINE void resolve_vector(const TilePlacing& placing, const TileVector& at, KernelState& state,
+                               std::size_t& next) {
+    const Nearest& nearest = state.nearest[at.in_group];
+    Placed placed;
+    if (all_see_one(nearest)) {
+        if (write_one(placing, at, nearest.triangle[0], state, next, placed)) return;
+    } else {
+        place_several(placing, placing.scene.tiles->vectors[at.vector], nearest, placed);
+    }
+    finish_vector(
+        placing.scene, state, at.in_group,
+        [&](std::size_t) HWY_ATTR -> const FacetRays& { return placing.facet; }, next, placed);
+}
+
+/// The vectors that round_tile() left, of the tile of lane j.
+HWY_NOINLINE void resolve_left(const TilePlacing& placing, std::size_t j, KernelState& state,
+                               std::size_t& next) {
+    for (const std::uint32_t vector : state.quotients.left) {
+        const TileVector at{vector, vector - state.first_vector};
+        if (state.covered >> j & 1)
+            resolve_covered(placing, at, j, state, next);
+        else
+            resolve_vector(placing, at, state, next);
     }
 }
 
-/// A tile whose vectors from `known` on are not set.
-HWY_INLINE void resolve_tile(const TilePlacing& placing, const SampleTile& tile, std::uint32_t known,
-                             KernelState& state, std::size_t& next) {
-    const KernelScene& scene = placing.scene;
-    Placed placed;
-    for (std::uint32_t i = 0; i < tile.vectors; ++i) {
-        const TileVector at{tile.first_vector + i, tile.first_vector + i - state.first_vector};
-        const Nearest& nearest = state.nearest[at.in_group];
-        if (at.in_group + kPlacedAhead < known)
-            prefetch_triangles(scene, state.nearest[at.in_group + kPlacedAhead]);
-        if (all_see_one(nearest)) {
-            if (write_one(placing, at, nearest.triangle[0], state, next, placed)) continue;
-        } else {
-            place_several(placing, scene.tiles->vectors[at.vector], nearest, placed);
+/// The tile of lane j, whose vectors from `known` on are not set.
+HWY_INLINE void resolve_tile(const TilePlacing& placing, const SampleTile& tile, std::size_t j,
+                             std::uint32_t known, KernelState& state, std::size_t& next) {
+    const bool covered = state.covered >> j & 1;
+    if (round_tile(placing, tile, covered ? state.whole[j].triangle : kNone, next, state))
+        return resolve_left(placing, j, state, next);
+    const std::uint32_t first = tile.first_vector - state.first_vector;
+    for (std::uint32_t i = first; i < first + tile.vectors; ++i) {
+        const TileVector at{state.first_vector + i, i};
+        if (covered) {
+            resolve_covered(placing, at, j, state, next);
+            continue;
         }
-        finish_vector(
-            scene, state, at.in_group,
-            [&](std::size_t) HWY_ATTR -> const FacetRays& { return placing.facet; }, next, placed);
+        if (i + kPlacedAhead < known) prefetch_triangles(placing.scene, state.nearest[i + kPlacedAhead]);
+        resolve_vector(placing, at, state, next);
     }
 }
 
@@ -195,10 +215,7 @@ HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
         }
         const TilePlacing placing{scene, facet, spots_of(*scene.grid, facet, tile, state.lanes, j)};
         const std::uint32_t end = tile.first_vector + tile.vectors - state.first_vector;
-        if (state.covered >> j & 1)
-            resolve_covered(placing, tile, j, state, next);
-        else
-            resolve_tile(placing, tile, state.covered ? end : state.vectors, state, next);
+        resolve_tile(placing, tile, j, state.covered ? end : state.vectors, state, next);
     }
 }
 

@@ -26,14 +26,14 @@ struct TileDrawing {
 /// What meets vectors of a tile needs, in registers.
 struct TileVectors {
     const SampleVector* vectors;
-    const VectorSamples* samples;
+    const std::uint16_t* valid;
     Nearest* nearest;
     TileDoubts doubts;
 };
 
 HWY_INLINE TileVectors vectors_of(const TileDrawing& drawing) {
     return {&drawing.scene.tiles->vectors[drawing.tile.first_vector],
-            &drawing.scene.tiles->samples[drawing.tile.first_vector],
+            &drawing.scene.tiles->valid[drawing.tile.first_vector],
             &drawing.state.nearest[drawing.first_vector], drawing.doubts};
 }
 
@@ -55,8 +55,7 @@ HWY_INLINE void meet_vector(const TileDrawing& drawing, const TileVectors& tile,
     const Floats along = linear(forms.along), inverse = reciprocal(along), t = linear(forms.above) * inverse;
     const Meeting meeting{low<set(-doubts.edge), low> set(doubts.edge), along > set(doubts.along), t,
                           doubt_of_time(t, inverse, set(doubts.above), set(doubts.along))};
-    const std::uint32_t doubtful =
-        tile.samples[vector].valid & keep_nearest(tile.nearest[vector], triangle, meeting);
+    const std::uint32_t doubtful = tile.valid[vector] & keep_nearest(tile.nearest[vector], triangle, meeting);
     if (HWY_UNLIKELY(doubtful != 0))
         list_doubts(drawing.state, drawing.first_vector + vector, doubtful, triangle);
 }

@@ -58,7 +58,7 @@ HWY_NOINLINE void refresh_farthest(const KernelScene& scene, KernelState& state)
         }
         Floats high = set(-kNever);
         for (std::uint32_t i = state.tile_vectors[k]; i < state.tile_vectors[k + 1]; ++i) {
-            const Mask valid = mask_of(scene.tiles->samples[state.first_vector + i].valid);
+            const Mask valid = mask_of(scene.tiles->valid[state.first_vector + i]);
             const Floats own = choose(valid, load(state.nearest[i].high), set(-kNever));
             high = largest(high, own);
             if (state.beams_made) state.beams[i / kLanes].farthest[i % kLanes] = largest_lane(own);

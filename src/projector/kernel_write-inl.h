@@ -67,7 +67,7 @@ HWY_NOINLINE void write_samples(const KernelScene& scene, std::uint32_t vector, 
     prefetch_hits(scene, std::min<std::size_t>(vector + kAhead, scene.tiles->samples.size() - 1));
     const VectorSamples& samples = scene.tiles->samples[vector];
     Hit* const hits = scene.hits.data();
-    const std::size_t count = static_cast<std::size_t>(std::popcount(samples.valid));
+    const std::size_t count = static_cast<std::size_t>(std::popcount(scene.tiles->valid[vector]));
     std::size_t k = 0;
     for (; k + 1 < count; k += 2)
         write_two_samples(placed, k, {hits + samples.sample[k], hits + samples.sample[k + 1]});
@@ -93,17 +93,18 @@ HWY_INLINE Mask sound(const PlacedFloats& placed) {
     return (least_weight > set(kInside)) & (absolute(placed.t) < set(kNever));
 }
 
+/// Past the caches: nobody here reads it again.
+HWY_INLINE void stream_hits(const PlacedFloats& floats, VectorHits& out) {
+    stream_words(floats.triangle, out.triangle);
+    stream(floats.t, out.t);
+    stream(floats.second, out.u);
+    stream(floats.third, out.v);
+}
+
 /// `floats`: of `placed`.
 HWY_INLINE void write_hits(const KernelScene& scene, std::uint32_t vector, const Placed& placed,
                            const PlacedFloats& floats) {
-    if (!scene.vector_hits.empty()) {
-        // Past the caches: nobody here reads it again.
-        VectorHits& out = scene.vector_hits[vector];
-        stream_words(floats.triangle, out.triangle);
-        stream(floats.t, out.t);
-        stream(floats.second, out.u);
-        stream(floats.third, out.v);
-    }
+    if (!scene.vector_hits.empty()) stream_hits(floats, scene.vector_hits[vector]);
     if (!scene.hits.empty()) write_samples(scene, vector, placed);
 }
 

@@ -169,7 +169,7 @@ void TileMaker::add_mixed(const TilePlan& plan, std::size_t number, SampleTiles&
         SampleVector& vector = tiles.vectors.emplace_back();
         LaneFacets& lanes = tiles.lanes.emplace_back();
         VectorSamples& ids = tiles.samples.emplace_back();
-        ids.valid = (1u << own) - 1;
+        tiles.valid.push_back(static_cast<std::uint16_t>((1u << own) - 1));
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const std::size_t i = first + std::min(lane, own - 1);
             const LatticeSample at = walk.at(samples[i].sample);

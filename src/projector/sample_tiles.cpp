@@ -242,6 +242,7 @@ SampleTiles make_sample_tiles(const RayMesh& mesh, const FacetSamples& owned, co
     SampleTiles tiles;
     tiles.vectors.reserve(owned.sample.size() / kLanes * 3 / 2 + 16);
     tiles.samples.reserve(owned.sample.size() / kLanes * 3 / 2 + 16);
+    tiles.valid.reserve(owned.sample.size() / kLanes * 3 / 2 + 16);
     tiles.tiles.reserve(plan.tiles.size());
     TileMaker maker(grid);
     for (std::size_t b = 0; b < plan.batches.size(); ++b) maker.add_batch(plan, b, tiles);

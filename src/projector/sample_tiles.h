@@ -23,9 +23,8 @@ struct alignas(64) SampleVector {
 };
 
 /// Which samples a vector holds.
-struct VectorSamples {
+struct alignas(64) VectorSamples {
     Id sample[kLanes];
-    std::uint32_t valid;  // bit k: lane k holds a sample; those are the first lanes
 };
 
 /// Rectangles, in local coordinates, of 16 consecutive vectors of a tile; lanes without a vector are far
@@ -76,6 +75,7 @@ struct SampleTiles {
     std::vector<LaneFacets> lanes;       // by vector of a mixed group
     std::vector<SampleVector> vectors;   // of mixed groups: columns and rows from the window's corner
     std::vector<VectorSamples> samples;  // by vector
+    std::vector<std::uint16_t> valid;    // likewise, bit k: lane k holds a sample; those are the first lanes
     std::vector<VectorBoxes> boxes;
     std::vector<std::uint16_t> slot;  // by cell: 16 vector + lane inside the tile, or kNoSlot
 };

@@ -154,7 +154,7 @@ void TileMaker::add_vector(const SampleTile& tile, std::size_t first, std::size_
     // There is room for a whole vector after the last sample.
     Lines x, y;
     VectorSamples& ids = tiles.samples.emplace_back();
-    ids.valid = (1u << count) - 1;
+    tiles.valid.push_back(static_cast<std::uint16_t>((1u << count) - 1));
     std::copy_n(&column_[first], kLanes, x.begin());
     std::copy_n(&row_[first], kLanes, y.begin());
     std::copy_n(&sample_[first], kLanes, ids.sample);

@@ -62,7 +62,8 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
                 for (std::uint32_t v = 0; v < tile.vectors; ++v) {
                     const SampleVector& vector = tiles.vectors[tile.first_vector + v];
                     const VectorSamples& ids = tiles.samples[tile.first_vector + v];
-                    not_first += (ids.valid & (ids.valid + 1)) != 0;
+                    const std::uint32_t valid = tiles.valid[tile.first_vector + v];
+                    not_first += (valid & (valid + 1)) != 0;
                     const VectorBoxes& box = tiles.boxes[tile.first_boxes + v / kLanes];
                     for (std::size_t k = 0; k < kLanes; ++k) {
                         outside += std::fabs(vector.u[k] - box.centre_u[v % kLanes]) > box.half_u[v % kLanes];
@@ -70,7 +71,7 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
                         const Vec2 gap =
                             on_screen(tile, grid, vector.u[k], vector.v[k]) - grid.position(ids.sample[k]);
                         misplaced += length(gap) > 1e-5;
-                        if (!(ids.valid >> k & 1)) continue;
+                        if (!(valid >> k & 1)) continue;
                         ++seen[ids.sample[k]];
                         foreign += !of_facet.count(ids.sample[k]);
                         const Vec2 from =
@@ -95,12 +96,13 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
                 for (std::uint32_t v = 0; v < group.vectors; ++v) {
                     const SampleVector& vector = tiles.vectors[group.first_vector + v];
                     const VectorSamples& ids = tiles.samples[group.first_vector + v];
-                    not_first += (ids.valid & (ids.valid + 1)) != 0;
+                    const std::uint32_t valid = tiles.valid[group.first_vector + v];
+                    not_first += (valid & (valid + 1)) != 0;
                     for (std::size_t k = 0; k < kLanes; ++k) {
                         const Vec2 place =
                             (Vec2(vector.u[k], vector.v[k]) + 0.5) / double(side) + Vec2(grid.x0, grid.y0);
                         misplaced += length(place - grid.position(ids.sample[k])) > 1e-9;
-                        if (!(ids.valid >> k & 1)) continue;
+                        if (!(valid >> k & 1)) continue;
                         ++seen[ids.sample[k]];
                         ++mixed;
                         // The rays of a facet that owns the sample: the same bits as its own.

@@ -128,36 +128,113 @@ TEST_CASE("tiles that one triangle covers, with others before, behind and throug
     }
 }
 
+/// What the engine leaves in the vectors' order against the plain engine's hits as floats.
+void compare_in_order(const Case& c, Tally& tally) {
+    const PreparedScene scene(c.scene);
+    std::vector<Hit> plain(c.grid.size());
+    draw(scene, c.mesh, c.owned, c.grid, plain, {.vectors = false});
+    const SampleTiles tiles = make_sample_tiles(c.mesh, c.owned, c.grid, {});
+    std::vector<VectorHits> hits(tiles.vectors.size());
+    draw_tiles({&scene.data(), &scene.data().leaves, &c.mesh, &c.grid, &tiles, {}, hits}, {});
+    for (std::size_t v = 0; v < hits.size(); ++v) {
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            if (!(tiles.valid[v] >> k & 1)) continue;
+            VectorHits expected{};
+            set_lane(expected, k, plain[tiles.samples[v].sample[k]]);
+            ++tally.samples;
+            tally.seen += expected.triangle[k] != kNone;
+            tally.different += hits[v].triangle[k] != expected.triangle[k] ||
+                               (expected.triangle[k] != kNone &&
+                                (hits[v].t[k] != expected.t[k] || hits[v].u[k] != expected.u[k] ||
+                                 hits[v].v[k] != expected.v[k]));
+        }
+    }
+}
+
 TEST_CASE("hits left in the order of vectors are those of the samples, as floats") {
     Random random(26);
-    std::size_t seen = 0, different = 0;
+    Tally tally;
     for (int i = 0; i < 20; ++i) {
         const SampleGrid grid{0, 0, 131, 97, 1};
         const Frame frame = random_frame(random);
         const RayMesh mesh = bowed_mesh(grid, frame, 1 + random.below(20));
-        const PreparedScene scene(i % 2 == 0 ? sheets(random, frame, 1 + random.below(40))
-                                             : bumpy_room(frame, 1 + random.below(12)));
-        const FacetSamples owned = rasterize_facets(mesh, grid);
-        std::vector<Hit> plain(grid.size());
-        draw(scene, mesh, owned, grid, plain, {.vectors = false});
-        const SampleTiles tiles = make_sample_tiles(mesh, owned, grid, {});
-        std::vector<VectorHits> hits(tiles.vectors.size());
-        draw_tiles({&scene.data(), &scene.data().leaves, &mesh, &grid, &tiles, {}, hits}, {});
-        for (std::size_t v = 0; v < hits.size(); ++v) {
-            for (std::size_t k = 0; k < kLanes; ++k) {
-                if (!(tiles.samples[v].valid >> k & 1)) continue;
-                VectorHits expected{};
-                set_lane(expected, k, plain[tiles.samples[v].sample[k]]);
-                seen += expected.triangle[k] != kNone;
-                different += hits[v].triangle[k] != expected.triangle[k] ||
-                             (expected.triangle[k] != kNone &&
-                              (hits[v].t[k] != expected.t[k] || hits[v].u[k] != expected.u[k] ||
-                               hits[v].v[k] != expected.v[k]));
-            }
-        }
+        const TriangleScene scene = i % 2 == 0 ? sheets(random, frame, 1 + random.below(40))
+                                               : bumpy_room(frame, 1 + random.below(12));
+        compare_in_order({scene, mesh, grid, rasterize_facets(mesh, grid)}, tally);
     }
-    CHECK(different == 0);
-    CHECK(seen > 100000);
+    CHECK(tally.different == 0);
+    CHECK(tally.seen > 100000);
+}
+
+TEST_CASE("floats in the order of vectors are the plain engine's where rays that meet see a tiny triangle") {
+    for (const std::string& set : kernel_instruction_sets()) {
+        REQUIRE(use_instruction_set(set));
+        Random random(28);
+        Tally tally;
+        for (int i = 0; i < 60; ++i) {
+            const int x0 = random.below(3000), side = 1 + i % 3;
+            const SampleGrid grid{x0, 11, x0 + 180 / side, 11 + 150 / side, side};
+            const Frame frame = random_frame(random);
+            // How large everything is where they meet, in units of how far they come.
+            const double waist = random.log_uniform(1e-10, 1e-2);
+            const RayMesh mesh = film_mesh(grid, 1 + random.below(3), [&](double x, double y) {
+                return Ray{frame(Vec3(x, y, 0)), frame.scale * Vec3(-(1 - waist) * x, -(1 - waist) * y, 1)};
+            });
+            TriangleScene scene;
+            for (int k = 0; k < 1 + random.below(4); ++k) {
+                const double depth = 1 + waist * random.uniform(-1, 1), lean = random.uniform(-2, 2);
+                const Vec2 turn(random.uniform(-3, 3), random.uniform(-3, 3));
+                const auto at = [&](double x, double y) {
+                    return frame(
+                        Vec3(waist * (x + turn.x * y), waist * (y + turn.y * x), depth + waist * lean * x));
+                };
+                add_triangle(scene, at(-4, -4), at(4, -3), at(0, 5));
+            }
+            compare_in_order({scene, mesh, grid, rasterize_facets(mesh, grid)}, tally);
+        }
+        INFO(set << " samples " << tally.samples << " seen " << tally.seen);
+        CHECK(tally.different == 0);
+        CHECK(tally.seen > 100000);
+    }
+    CHECK(use_instruction_set(""));
+}
+
+// Where floats come from polynomials: tiles of many vectors that see one triangle or few, at every size of
+// sample, far from the world's origin and from the triangles, near planes seen edge-on, and slivers over the
+// whole film.
+TEST_CASE("floats in the order of vectors are the plain engine's for hits that doubles can hardly tell") {
+    for (const std::string& set : kernel_instruction_sets()) {
+        REQUIRE(use_instruction_set(set));
+        Random random(27);
+        Tally tally;
+        for (int i = 0; i < 72; ++i) {
+            const int x0 = random.below(3000), side = 1 + i % 3;
+            const SampleGrid grid{x0, 11, x0 + 120 / side, 11 + 90 / side, side};
+            Frame frame = random_frame(random);
+            if (i % 4 == 0) frame.offset = random.in_cube(random.log_uniform(1, 1e7));
+            const RayMesh mesh = i % 5 < 3 ? bowed_mesh(grid, frame, 1 + random.below(4))
+                                           : random_facet(random, grid, frame, static_cast<Rays>(i % 5),
+                                                          static_cast<Screen>(i / 5 % 4));
+            TriangleScene scene = i % 3 == 0 ? bumpy_room(frame, 1 + random.below(3)) : TriangleScene{};
+            for (int k = 0; k < 1 + random.below(6); ++k) {
+                // Small near the rays, or large and far; leaning until they are seen edge-on.
+                const double far = random.log_uniform(1e-3, 1e5), lean = random.log_uniform(1e-12, 1);
+                const Vec3 tilt = far * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0) / lean;
+                const double thin = random.log_uniform(1e-9, 1);
+                const auto at = [&](double x, double y) {
+                    return frame(
+                        Vec3(3 * far * x, 3 * far * y * thin, far + (tilt.x * x + tilt.y * y) * thin));
+                };
+                add_triangle(scene, at(-1, -1), at(1.1, -1), at(0, 1.2));
+                if (k % 2 == 0) add_triangle(scene, at(-1, -1), at(0, 1.2), at(-2, 3));
+            }
+            compare_in_order({scene, mesh, grid, rasterize_facets(mesh, grid)}, tally);
+        }
+        INFO(set << " samples " << tally.samples << " seen " << tally.seen);
+        CHECK(tally.different == 0);
+        CHECK(tally.seen > 100000);
+    }
+    CHECK(use_instruction_set(""));
 }
 
 TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens of every kind") {
