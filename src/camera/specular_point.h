@@ -30,12 +30,6 @@ struct SpecularQuery {
     bool operator==(const SpecularQuery&) const = default;
 };
 
-/// A parameter position of a surface.
-struct SurfaceParameter {
-    Id face = kNone;
-    Vec2 uv{0};
-};
-
 /// One image of the point.
 struct SpecularPoint {
     SurfaceParameter at;

@@ -1,12 +1,14 @@
 // A surface's cells as one camera sees them, halved as far as anybody came.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <utility>
 #include <vector>
 
 #include "camera/specular_bounds.h"
 #include "camera/specular_cells.h"
+#include "camera/specular_lanes.h"
 
 namespace trilens {
 
@@ -18,6 +20,8 @@ struct TreeNode {
     const SurfaceBounds* bounds = nullptr;  // of a cell; null for a group
     std::size_t stored = 0;            // of a group: its index; of a cell: that of its stored halves, or 0
     const CellTerms* terms = nullptr;  // of a cell, where terms_of was asked
+    std::uint32_t asked = 0;           // of a cell: by which group of points the Newton operator was,
+    LaneBits open = 0, narrow = 0;     // and what it said of the points
     bool is_halved = false;            // whether `halves` is known
     TreeNode* halves[2] = {nullptr,
                            nullptr};  // null: has nothing of the face; a leaf group has its cell alone

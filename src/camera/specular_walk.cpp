@@ -13,8 +13,6 @@ namespace trilens {
 namespace {
 
 constexpr double kBorder = kCellBorder;
-/// The interval Newton operator shrinks a cell to this share, so that Newton's method converges.
-constexpr double kContraction = 0.5;
 /// A refined image this far from the zero of the law that it began at is another one.
 constexpr double kSameZero = 1e-6;
 constexpr int kNewtonSteps = 30;
@@ -157,7 +155,7 @@ bool SpecularWalk::must_split(TreeNode& cell) {
 }
 
 /// The zero near `start`, by its cell.
-void SpecularWalk::settle_near(SurfaceParameter start, const IsOpen& is_open) {
+void SpecularWalk::settle_near(SurfaceParameter start, const AskCell& ask) {
     for (int step = 0; step < kNearSteps; ++step) {
         const SurfacePoint point = surface_.eval(start.face, start.uv);
         const SpecularPath path = specular_path(query_, point.position);
@@ -166,24 +164,26 @@ void SpecularWalk::settle_near(SurfaceParameter start, const IsOpen& is_open) {
         const bool inside = start.uv.x >= 0 && start.uv.y >= 0 && start.uv.x <= 1 && start.uv.y <= 1;
         if (!inside || !in_domain(start.face, start.uv)) return;
     }
-    settle_at(start, is_open);
+    settle_at(start, ask);
 }
 
 /// A zero that was settled in a smaller cell than a search of the whole has it in: in that one.
 void SpecularWalk::settle_again(const SurfaceParameter& zero) {
     if (has_settled({zero.face, zero.uv, zero.uv})) return;
     const std::size_t known = zeros_.size();
-    settle_at(zero, [](TreeNode&) { return false; });
+    settle_at(zero, [](TreeNode&) { return CellWord::kUnknown; });
     is_lost_ = is_lost_ || zeros_.size() == known;
 }
 
 /// Goes down through the cells that hold the place to the one where a search of the whole settles it, if
 /// there is, and notes the largest in which it stands alone.
-void SpecularWalk::settle_at(const SurfaceParameter& zero, const IsOpen& is_open) {
+void SpecularWalk::settle_at(const SurfaceParameter& zero, const AskCell& ask) {
     if (has_settled({zero.face, zero.uv, zero.uv})) return;
     TreeNode* alone = nullptr;
     for (TreeNode* cell = &tree_.face(zero.face); cell; cell = half_around(*cell, zero.uv)) {
-        if (is_open(*cell)) continue;
+        const CellWord word = ask(*cell);
+        if (!alone && word == CellWord::kNarrow) alone = cell;
+        if (word != CellWord::kUnknown) continue;
         const Verdict verdict = ask_newton(*cell);
         if (!alone && share_ <= kAloneShare) alone = cell;
         if (verdict == Verdict::kSettled) {
@@ -237,9 +237,15 @@ SpecularSearch SpecularWalk::run(const SpecularQuery& query) {
 }
 
 void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const LawZero> near,
-                              const IsOpen& is_open) {
+                              const AskCell& ask) {
     begin(query);
-    for (const LawZero& start : near) settle_near(start.at, is_open);
+    for (const LawZero& start : near) settle_near(start.at, ask);
+}
+
+void SpecularWalk::begin_at(const SpecularQuery& query, std::span<const SurfaceParameter> zeros,
+                            const AskCell& ask) {
+    begin(query);
+    for (const SurfaceParameter& zero : zeros) settle_at(zero, ask);
 }
 
 std::optional<SpecularSearch> SpecularWalk::end_near() {
