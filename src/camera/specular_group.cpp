@@ -18,6 +18,9 @@ constexpr double kTurnAround = 0.03;
 /// A point that lies further from a surface than this, in units of its faces, leaves no cell undecided.
 constexpr double kFarInCells = 0x1p-10;
 
+/// h . normal of zeros at which eye and point are on the same side is no less; where they are not it is zero.
+constexpr double kClearOfEdge = 0.01;
+
 template <typename Act>
 void for_each_lane(LaneBits lanes, Act act) {
     for (; lanes != 0; lanes &= lanes - 1) act(static_cast<std::size_t>(std::countr_zero(lanes)));
@@ -65,16 +68,20 @@ void SpecularGroup::note_zeros(std::size_t lane) {
 
 /// Whether a lane's walk has both zeros of a sphere that has two.
 bool SpecularGroup::knows_all(std::size_t lane) const {
-    const std::vector<LawZero>& zeros = walks_[lane].zeros();
-    return sphere_zeros_.two >> lane & 1 && zeros.size() == 2 &&
-           (zeros[0].along < 0) != (zeros[1].along < 0);
+    std::size_t outside = 0, inside = 0;
+    for (const LawZero& zero : walks_[lane].zeros()) {
+        outside += zero.along < -kClearOfEdge;
+        inside += zero.along > kClearOfEdge;
+    }
+    return (sphere_zeros_.lit >> lane & 1 && outside == 1 && inside == 1) ||
+           (sphere_zeros_.shaded >> lane & 1 && outside == 0 && inside == 2);
 }
 
 /// The zeros of a sphere that has two, roughly; else no faces.
 std::array<SurfaceParameter, 2> SpecularGroup::places_on_sphere(std::size_t lane) const {
-    if (!(sphere_zeros_.two >> lane & 1)) return {};
-    return {surface_.sphere_place(sphere_zeros_.front.at(lane)),
-            surface_.sphere_place(sphere_zeros_.back.at(lane))};
+    if (!((sphere_zeros_.lit | sphere_zeros_.shaded) >> lane & 1)) return {};
+    return {surface_.sphere_place(sphere_zeros_.first.at(lane)),
+            surface_.sphere_place(sphere_zeros_.second.at(lane))};
 }
 
 /// Asks for all lanes at once.
@@ -97,7 +104,7 @@ CellWord SpecularGroup::ask(TreeNode& cell, std::size_t lane) {
 void SpecularGroup::settle(std::span<const Vec3> points) {
     for (std::size_t lane = 0; lane < kPointLanes; ++lane)
         points_.set(lane, points[std::min(lane, points.size() - 1)]);
-    if (may_count_) find_two_zeros(sphere_, query_.camera.eye, points_, sphere_zeros_);
+    if (may_count_) find_zeros(sphere_, query_.camera.eye, points_, sphere_zeros_);
     ++turn_;
     for (std::size_t lane = 0; lane < points.size(); ++lane) {
         SpecularWalk& walk = walks_[lane];

@@ -58,7 +58,7 @@ class SpecularGroup {
     std::vector<SpecularWalk> walks_;  // one for each lane
     std::vector<LawZero> zeros_;       // of the last point
     const double curvature_;           // Surface::sphere_curvature
-    const bool may_count_;             // whether find_two_zeros speaks of such queries
+    const bool may_count_;             // whether find_zeros speaks of such queries
     SphereShape sphere_;
     SphereZeros sphere_zeros_;
     std::size_t count_ = 0;  // of points

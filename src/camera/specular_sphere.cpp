@@ -12,9 +12,12 @@ using namespace lanes::HWY_NAMESPACE;
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Eye and point lie further from the sphere than this share of its radius, and the way between them further
-/// than that share of its length: then |h| > 0.04 where their sides differ. Many times what the smallest cells
-/// of a search need.
+/// from it, or deeper in it, than that share more for each of its lengths: then |h| > 0.04 where their sides
+/// differ and neither is far from edge-on. Many times what the smallest cells of a search need.
 constexpr double kClearOfSphere = 0.02, kClearOfWay = 0.01;
+/// Sine of the angle between eye and point, seen from the centre, where the way between them leads through the
+/// sphere; and at zeros the least second derivatives of the path, per length of the sphere's radius.
+constexpr double kClearOfLine = 0.05, kClearOfSingular = 0.05;
 /// From where a plane mirror would have the image.
 constexpr int kNewtonSteps = 5;
 
@@ -31,16 +34,23 @@ HWY_INLINE Vector unit(const Vector& v) {
     return over(v, size_of(v));
 }
 
-HWY_INLINE Truth is_clear(const Pair& pair) {
-    const Number outside = number(1 + kClearOfSphere);
+struct Ways {
+    Truth clear, through;
+};
+
+HWY_INLINE Ways ways_of(const Pair& pair) {
     const Vector way = minus(pair.point, pair.eye);
     const Number length = size_of(way);
     const Number along = hn::Div(hn::Neg(inner(pair.eye, way)), inner(way, way));
     const Number inside = hn::Min(hn::Max(along, number(0)), number(1));
-    const Vector nearest = plus(pair.eye, times(inside, way));
-    const Number least = hn::Add(outside, hn::Mul(number(kClearOfWay), length));
-    const Truth apart = hn::And(hn::Gt(size_of(pair.eye), outside), hn::Gt(size_of(pair.point), outside));
-    return hn::And(hn::And(apart, hn::Gt(length, number(0))), hn::Gt(size_of(nearest), least));
+    const Number nearest = size_of(plus(pair.eye, times(inside, way)));
+    const Number margin = hn::Add(number(kClearOfSphere), hn::Mul(number(kClearOfWay), length));
+    const Number eye = size_of(pair.eye), point = size_of(pair.point), outside = number(1 + kClearOfSphere);
+    const Truth apart = hn::And(hn::Gt(length, number(0)), hn::And(hn::Gt(eye, outside), hn::Gt(point, outside)));
+    const Truth aside = hn::Gt(size_of(outer(pair.eye, pair.point)),
+                               hn::Mul(number(kClearOfLine), hn::Mul(eye, point)));
+    return {hn::And(apart, hn::Gt(nearest, hn::Add(number(1), margin))),
+            hn::And(hn::And(apart, aside), hn::Lt(nearest, hn::Sub(number(1), margin)))};
 }
 
 /// One step of Newton's method along the circle.
@@ -64,32 +74,60 @@ HWY_INLINE Vector zero_near(const Pair& pair, Vector normal) {
     return normal;
 }
 
+/// Whether the path's second derivatives along the circle and across are clear of zero.
+HWY_INLINE Truth is_regular(const Pair& pair, const Vector& normal) {
+    Number along = number(0), across = number(0);
+    for (const Vector& from : {pair.eye, pair.point}) {
+        const Vector way = minus(normal, from);
+        const Number by_distance = hn::Div(number(1), size_of(way));
+        const Number cosine = hn::Mul(by_distance, inner(way, normal));
+        along = hn::Add(along, hn::Mul(cosine, hn::Sub(hn::Mul(cosine, by_distance), number(1))));
+        across = hn::Add(across, hn::Sub(by_distance, cosine));
+    }
+    const Number least = number(kClearOfSingular);
+    return hn::And(hn::Gt(hn::Abs(along), least), hn::Gt(hn::Abs(across), least));
+}
+
+/// Where light from `from` towards `other` touches the sphere.
+HWY_INLINE Vector edge_of(const Vector& from, const Vector& other) {
+    const Number by_size = hn::Div(number(1), size_of(from));
+    const Vector direction = times(by_size, from);
+    const Vector across = unit(minus(other, times(inner(other, direction), direction)));
+    const Number sine = hn::Sqrt(hn::Sub(number(1), hn::Mul(by_size, by_size)));
+    return plus(times(by_size, direction), times(sine, across));
+}
+
+/// Between eye and point, by their heights over planes at this distance from the centre.
+HWY_INLINE Vector between(const Pair& pair, double plane) {
+    const Number eye = size_of(pair.eye), point = size_of(pair.point);
+    return unit(plus(times(hn::Div(hn::Sub(point, number(plane)), eye), pair.eye),
+                     times(hn::Div(hn::Sub(eye, number(plane)), point), pair.point)));
+}
+
 HWY_INLINE void store(const Vector& v, PointLanes& to, std::size_t first) {
     hn::Store(v.x, kTag, to.x + first);
     hn::Store(v.y, kTag, to.y + first);
     hn::Store(v.z, kTag, to.z + first);
 }
 
-void two_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
-                    SphereZeros& result) {
-    const Number by_radius = number(1 / sphere.radius), one = number(1);
+void find_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
+                     SphereZeros& result) {
+    const Number by_radius = number(1 / sphere.radius);
     const Vector center = vector(sphere.center);
     const Vector from_center = times(by_radius, minus(vector(eye), center));
-    const Number eye_size = size_of(from_center);
-    const Vector eye_direction = over(from_center, eye_size);
-    result.two = 0;
+    result.lit = result.shaded = 0;
     for (std::size_t first = 0; first < kPointLanes; first += kWidth) {
         const Vector point = vector_at(points.x + first, points.y + first, points.z + first);
         const Pair pair{from_center, times(by_radius, minus(point, center))};
-        result.two |= bits_of(is_clear(pair)) << first;
-        const Number size = size_of(pair.point);
-        const Vector direction = over(pair.point, size);
-        const auto between = [&](Number side) {
-            return unit(plus(times(hn::Sub(size, side), eye_direction),
-                             times(hn::Sub(eye_size, side), direction)));
-        };
-        store(zero_near(pair, between(one)), result.front, first);
-        store(zero_near(pair, opposite(between(hn::Neg(one)))), result.back, first);
+        const Ways ways = ways_of(pair);
+        const Vector edge = unit(plus(edge_of(pair.eye, pair.point), edge_of(pair.point, pair.eye)));
+        const Vector near = zero_near(pair, either(ways.through, edge, between(pair, 1)));
+        const Vector far = zero_near(pair, opposite(between(pair, -1)));
+        store(near, result.first, first);
+        store(far, result.second, first);
+        const Truth regular = hn::And(is_regular(pair, near), is_regular(pair, far));
+        result.lit |= bits_of(hn::And(ways.clear, regular)) << first;
+        result.shaded |= bits_of(hn::And(ways.through, regular)) << first;
     }
 }
 
@@ -100,13 +138,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace trilens {
 namespace specular {
-HWY_EXPORT(two_zeros_here);
+HWY_EXPORT(find_zeros_here);
 }  // namespace specular
 
-void find_two_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
+void find_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
                     SphereZeros& zeros) {
     using namespace specular;
-    HWY_DYNAMIC_DISPATCH(two_zeros_here)(sphere, eye, points, zeros);
+    HWY_DYNAMIC_DISPATCH(find_zeros_here)(sphere, eye, points, zeros);
 }
 
 }  // namespace trilens

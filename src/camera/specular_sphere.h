@@ -11,24 +11,28 @@ struct SphereShape {
     double radius = 1;
 };
 
-/// Of lanes whose law of reflection has two zeros on the sphere.
+/// Of lanes for which it is known that the law of reflection has two zeros on the sphere at which eye and point
+/// lie on the same side of it.
 struct SphereZeros {
-    LaneBits two = 0;
-    PointLanes front, back;  // unit normals where the zeros are seen from outside and from inside, roughly
+    LaneBits lit = 0;           // one is seen from outside, the other from inside
+    LaneBits shaded = 0;        // both are seen from inside
+    PointLanes first, second;  // unit normals there, roughly; the first the one in front or between
 };
 
-/// Finds for which lanes it is known that the law has two zeros on the sphere, one where it is seen
-/// from outside by eye and point, one where from inside by both, and stays clear of zero at a distance from
-/// them. Said only where both lie well outside, and the way from one to the other well clear of the sphere.
+/// Said only where the law stays clear of zero at a distance from the zeros, and clear of singular at them:
+/// where eye and point lie well outside, and the way between them passes well clear of the sphere, or well
+/// inside it but well aside of its centre.
 ///
 /// Zeros lie in the plane of eye, point and centre, where h vanishes along the circle. Let the circle have
 /// radius 1; r be the distance from the eye or the point, and c the cosine of its direction and the normal.
 /// The optical path's second derivative along the circle is the sum of c^2 / r - c over both. On the arc seen
-/// from outside by both each c is below zero, and the sum above. On the arc seen from inside by both r > 2 c,
-/// since the way has come through the circle: the sum is below zero. So each of these two arcs has one zero at
-/// most. On the arcs between, where the signs of c differ, h along the circle vanishes only where both
-/// directions are opposite, that is between eye and point. The path has a minimum and a maximum somewhere on
-/// the circle: one on each arc.
-void find_two_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points, SphereZeros& zeros);
+/// from outside by both each c is below zero, and the sum above. On arcs seen from inside by both r > 2 c,
+/// since the way has come through the circle: the sum is below zero. So each of these arcs has one zero at
+/// most, a minimum of the path on the first and a maximum on the others. On the arcs between, where the signs
+/// of c differ, h along the circle vanishes only where both directions are opposite: where the way between
+/// eye and point meets the circle, a minimum. So as often as not at all where that way is clear of the sphere,
+/// and there is one arc of each kind; and twice where it is not, and there are two arcs seen from inside by
+/// both. Minima and maxima take turns around the circle.
+void find_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points, SphereZeros& zeros);
 
 }  // namespace trilens
