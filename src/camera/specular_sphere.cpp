@@ -12,14 +12,13 @@ using namespace lanes::HWY_NAMESPACE;
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Eye and point lie further from the sphere than this share of its radius, and the way between them further
-/// from it, or deeper in it, than that share more for each of its lengths: then |h| > 0.04 where their sides
+/// from it, or deeper in it, than that share more for each of its lengths: then |h| > 0.016 where their sides
 /// differ and neither is far from edge-on. Many times what the smallest cells of a search need.
-constexpr double kClearOfSphere = 0.02, kClearOfWay = 0.01;
+constexpr double kClearOfSphere = 0.01, kClearOfWay = 0.004;
 /// Sine of the angle between eye and point, seen from the centre, where the way between them leads through the
 /// sphere; and at zeros the least second derivatives of the path, per length of the sphere's radius.
 constexpr double kClearOfLine = 0.05, kClearOfSingular = 0.05;
-/// From where a plane mirror would have the image.
-constexpr int kNewtonSteps = 5;
+constexpr int kNewtonSteps = 6;
 
 /// In units of the sphere, from its centre.
 struct Pair {
@@ -88,20 +87,35 @@ HWY_INLINE Truth is_regular(const Pair& pair, const Vector& normal) {
     return hn::And(hn::Gt(hn::Abs(along), least), hn::Gt(hn::Abs(across), least));
 }
 
-/// Where light from `from` towards `other` touches the sphere.
-HWY_INLINE Vector edge_of(const Vector& from, const Vector& other) {
+/// Where rays from `from` touch the sphere, in the plane of it and the other: on that one's side, and beyond.
+struct Edges {
+    Vector near, far;
+};
+
+HWY_INLINE Edges edges_of(const Vector& from, const Vector& other) {
     const Number by_size = hn::Div(number(1), size_of(from));
     const Vector direction = times(by_size, from);
     const Vector across = unit(minus(other, times(inner(other, direction), direction)));
-    const Number sine = hn::Sqrt(hn::Sub(number(1), hn::Mul(by_size, by_size)));
-    return plus(times(by_size, direction), times(sine, across));
+    const Vector out = times(by_size, direction);
+    const Vector side = times(hn::Sqrt(hn::Sub(number(1), hn::Mul(by_size, by_size))), across);
+    return {plus(out, side), minus(out, side)};
 }
 
-/// Between eye and point, by their heights over planes at this distance from the centre.
-HWY_INLINE Vector between(const Pair& pair, double plane) {
-    const Number eye = size_of(pair.eye), point = size_of(pair.point);
-    return unit(plus(times(hn::Div(hn::Sub(point, number(plane)), eye), pair.eye),
-                     times(hn::Div(hn::Sub(eye, number(plane)), point), pair.point)));
+/// Where a plane mirror would have the image, if that is seen from both; else the middle of the arc that is
+/// seen from both or from none.
+HWY_INLINE Vector near_start(const Pair& pair, const Edges& of_eye, const Edges& of_point) {
+    const Number eye = size_of(pair.eye), point = size_of(pair.point), one = number(1);
+    const Vector plane = unit(plus(times(hn::Div(hn::Sub(point, one), eye), pair.eye),
+                                   times(hn::Div(hn::Sub(eye, one), point), pair.point)));
+    const Truth seen = hn::And(hn::Gt(inner(plane, pair.eye), one), hn::Gt(inner(plane, pair.point), one));
+    return either(seen, plane, unit(plus(of_eye.near, of_point.near)));
+}
+
+/// The middle of the arc beyond.
+HWY_INLINE Vector far_start(const Pair& pair, const Edges& of_eye, const Edges& of_point) {
+    const Vector middle = unit(plus(of_eye.far, of_point.far));
+    const Vector between = plus(unit(pair.eye), unit(pair.point));
+    return either(hn::Gt(inner(middle, between), number(0)), opposite(middle), middle);
 }
 
 HWY_INLINE void store(const Vector& v, PointLanes& to, std::size_t first) {
@@ -120,9 +134,9 @@ void find_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLane
         const Vector point = vector_at(points.x + first, points.y + first, points.z + first);
         const Pair pair{from_center, times(by_radius, minus(point, center))};
         const Ways ways = ways_of(pair);
-        const Vector edge = unit(plus(edge_of(pair.eye, pair.point), edge_of(pair.point, pair.eye)));
-        const Vector near = zero_near(pair, either(ways.through, edge, between(pair, 1)));
-        const Vector far = zero_near(pair, opposite(between(pair, -1)));
+        const Edges of_eye = edges_of(pair.eye, pair.point), of_point = edges_of(pair.point, pair.eye);
+        const Vector near = zero_near(pair, near_start(pair, of_eye, of_point));
+        const Vector far = zero_near(pair, far_start(pair, of_eye, of_point));
         store(near, result.first, first);
         store(far, result.second, first);
         const Truth regular = hn::And(is_regular(pair, near), is_regular(pair, far));
