@@ -56,6 +56,10 @@ struct SpecularPoint {
 std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
                                                    const SpecularQuery& query);
 
+/// The same for a start in the face's domain, of which surface.eval(start.face, start.uv) is known.
+std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
+                                                   const SurfacePoint& point, const SpecularQuery& query);
+
 /// All images that refining from `starts` finds, each once, by ascending t. Starts near the images suffice: a
 /// facet's image of the point; regular_starts where nothing is known.
 std::vector<SpecularPoint> specular_points(const Surface& surface, std::span<const SurfaceParameter> starts,

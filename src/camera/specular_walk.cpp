@@ -44,11 +44,14 @@ SurfacePoint SpecularWalk::point_at(Id face, const Vec2& uv) const {
     return bounder_.bounds(face, uv, uv).middle;
 }
 
-/// True if the zero's image is listed, or the zero is none: seen from a wrong side or behind the camera.
-bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& point) {
-    const SpecularPath path = specular_path(query_, point.position);
+/// True if the zero's image is listed, or the zero is none: seen from a wrong side or behind the camera. `point`
+/// and `path` are of a place close by, or of the zero where `is_there`.
+bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& point,
+                             const SpecularPath& path, bool is_there) {
     if (sides_fit(query_, path, point.normal) && screen_from_world(query_.camera, point.position).z > 0) {
-        const auto image = refine_specular_point(surface_, zero, query_);
+        const bool is_inside = surface_.domain(zero.face) == FaceDomain::kSquare || zero.uv.x + zero.uv.y <= 1;
+        const auto image = is_there && is_inside ? refine_specular_point(surface_, zero, point, query_)
+                                                 : refine_specular_point(surface_, zero, query_);
         if (!image || largest(image->at.uv - zero.uv) > kSameZero) return false;
         result_.images.push_back(*image);
     }
@@ -62,10 +65,11 @@ SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoin
     const Vec2 half = box.half();
     Vec2 uv = glm::clamp(box.middle() + newton.step, box.low, box.high);
     SurfacePoint point = middle;
+    SpecularPath path;
     Vec2 law(0);
     for (int step = 0; step < kNewtonSteps; ++step) {
         point = point_at(box.face, uv);
-        const SpecularPath path = specular_path(query_, point.position);
+        path = specular_path(query_, point.position);
         law = {dot(path.bend, point.du), dot(path.bend, point.dv)};
         const Vec2 next = uv - glm::inverse(path_hessian(query_, path, point)) * law;
         if (!std::isfinite(next.x + next.y)) return Verdict::kSplit;
@@ -74,7 +78,7 @@ SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoin
         const bool is_zero = largest(next - uv) <= kBorder;
         if (is_zero) {
             if (!in_domain(box.face, uv)) return Verdict::kEmpty;
-            return add_image({box.face, uv}, point) ? Verdict::kSettled : Verdict::kSplit;
+            return add_image({box.face, uv}, point, path, true) ? Verdict::kSettled : Verdict::kSplit;
         }
         if (at_rest) break;
         uv = inside;
@@ -95,7 +99,7 @@ SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoin
         std::fabs(step.x) <= kBorder + newton.rounding.x && std::fabs(step.y) <= kBorder + newton.rounding.y;
     if (!rounding) return Verdict::kSplit;
     if (!in_domain(box.face, uv)) return Verdict::kEmpty;
-    return add_image({box.face, uv}, point) ? Verdict::kSettled : Verdict::kSplit;
+    return add_image({box.face, uv}, point, path, false) ? Verdict::kSettled : Verdict::kSplit;
 }
 
 SpecularWalk::Verdict SpecularWalk::ask_newton(TreeNode& cell) {

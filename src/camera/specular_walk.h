@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "camera/specular_law.h"
 #include "camera/specular_search.h"
 #include "camera/specular_tree.h"
 
@@ -78,7 +79,8 @@ class SpecularWalk {
     Verdict judge_cell(TreeNode& cell);
     Verdict ask_newton(TreeNode& cell);
     Verdict settle(const CellBox& box, const SurfacePoint& middle, const NewtonBounds& newton);
-    bool add_image(const SurfaceParameter& zero, const SurfacePoint& point);
+    bool add_image(const SurfaceParameter& zero, const SurfacePoint& point, const SpecularPath& path,
+                   bool is_there);
     SurfacePoint point_at(Id face, const Vec2& uv) const;
     bool in_domain(Id face, const Vec2& uv) const;
     void refine_undecided();
