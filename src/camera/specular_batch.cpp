@@ -21,7 +21,7 @@ constexpr double kNewtonTurn = 0.06;
 /// points.
 constexpr double kFlatPart = 0.05;
 constexpr double kSmallPart = 0x1p-10;
-/// A tree of more nodes (some 600 bytes each) grows no further, and one of more than so many is not kept.
+/// A tree of more nodes (some 900 bytes each) grows no further, and one of more than so many is not kept.
 constexpr std::size_t kMostNodes = 1u << 16;
 constexpr std::size_t kMostKept = 1u << 15;
 
@@ -97,6 +97,7 @@ void SpecularBatch::search(Level& level) {
 void SpecularBatch::descend(std::span<std::size_t> some, Level* above) {
     Level level{above, some, false, {}};
     if (some.size() <= kFewPoints) {
+        if (some.size() > SpecularGroup::kNearPoints) halve_points(points_, some, SpecularGroup::kNearPoints);
         search(level);
         return;
     }

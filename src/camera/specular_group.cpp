@@ -84,17 +84,22 @@ std::array<SurfaceParameter, 2> SpecularGroup::places_on_sphere(std::size_t lane
             surface_.sphere_place(sphere_zeros_.second.at(lane))};
 }
 
-/// Asks for all lanes at once.
+/// Asks for the lane and those next to it at once.
 CellWord SpecularGroup::ask(TreeNode& cell, std::size_t lane) {
     if (!cell.view.is_apart || walks_.front().is_last(cell)) return CellWord::kUnknown;
     if (cell.place.normal_radius > kHopelessTurn) return CellWord::kOpen;
-    if (cell.asked != turn_) {
+    if (cell.asked_by != turn_) {
+        cell.asked_by = turn_;
+        cell.asked = cell.open = cell.narrow = 0;
+    }
+    if (!(cell.asked >> lane & 1)) {
+        const LaneBits neighbours = ((LaneBits{1} << kNearPoints) - 1) << (lane / kNearPoints * kNearPoints);
         const LaneQuestion question{query_.event == SpecularEvent::kReflect, path_indices(query_), points_,
-                                    under_way_};
+                                    neighbours};
         const NewtonLanes newton = newton_lanes(question, tree_.terms_of(cell), cell.box.half());
-        cell.asked = turn_;
-        cell.open = newton.open;
-        cell.narrow = newton.narrow;
+        cell.asked |= neighbours;
+        cell.open |= newton.open;
+        cell.narrow |= newton.narrow;
     }
     if (cell.open >> lane & 1) return CellWord::kOpen;
     return cell.narrow >> lane & 1 ? CellWord::kNarrow : CellWord::kUnknown;

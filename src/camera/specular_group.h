@@ -27,6 +27,9 @@ class SpecularGroup {
     /// none where something stays undecided, or a zero lies on the border of a cell.
     std::vector<std::optional<SpecularSearch>> end(std::span<TreeNode* const> parts);
 
+    /// So many points, counted from the first, best lie together once more.
+    static constexpr std::size_t kNearPoints = 8;
+
   private:
     /// So many zeros of a point are thought of where others are excluded.
     static constexpr std::size_t kMostZeros = 3;
