@@ -201,8 +201,8 @@ HWY_INLINE Verdicts newton_of(const CellTerms& cell, const Vector& points, const
     const Truth known = hn::And(point.apart, finite);
     const Truth leaving = hn::And(
         known, hn::Or(leaves(half.x, step.x, spread.x, lost.x), leaves(half.y, step.y, spread.y, lost.y)));
-    const Truth contracting =
-        hn::And(hn::Le(spread.x, number(kContraction * half.x)), hn::Le(spread.y, number(kContraction * half.y)));
+    const Truth contracting = hn::And(hn::Le(spread.x, number(kContraction * half.x)),
+                                      hn::Le(spread.y, number(kContraction * half.y)));
     const Truth inside =
         hn::And(hn::Le(hn::Abs(step.x), number(half.x)), hn::Le(hn::Abs(step.y), number(half.y)));
     // With room for rounding.

@@ -15,8 +15,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// from it, or deeper in it, than that share more for each of its lengths: then |h| > 0.016 where their sides
 /// differ and neither is far from edge-on. Many times what the smallest cells of a search need.
 constexpr double kClearOfSphere = 0.01, kClearOfWay = 0.004;
-/// Sine of the angle between eye and point, seen from the centre, where the way between them leads through the
-/// sphere; and at zeros the least second derivatives of the path, per length of the sphere's radius.
+/// Sine of the angle between eye and point, seen from the centre, where the way between them leads through
+/// the sphere; and at zeros the least second derivatives of the path, per length of the sphere's radius.
 constexpr double kClearOfLine = 0.05, kClearOfSingular = 0.05;
 constexpr int kNewtonSteps = 6;
 
@@ -45,9 +45,10 @@ HWY_INLINE Ways ways_of(const Pair& pair) {
     const Number nearest = size_of(plus(pair.eye, times(inside, way)));
     const Number margin = hn::Add(number(kClearOfSphere), hn::Mul(number(kClearOfWay), length));
     const Number eye = size_of(pair.eye), point = size_of(pair.point), outside = number(1 + kClearOfSphere);
-    const Truth apart = hn::And(hn::Gt(length, number(0)), hn::And(hn::Gt(eye, outside), hn::Gt(point, outside)));
-    const Truth aside = hn::Gt(size_of(outer(pair.eye, pair.point)),
-                               hn::Mul(number(kClearOfLine), hn::Mul(eye, point)));
+    const Truth apart =
+        hn::And(hn::Gt(length, number(0)), hn::And(hn::Gt(eye, outside), hn::Gt(point, outside)));
+    const Truth aside =
+        hn::Gt(size_of(outer(pair.eye, pair.point)), hn::Mul(number(kClearOfLine), hn::Mul(eye, point)));
     return {hn::And(apart, hn::Gt(nearest, hn::Add(number(1), margin))),
             hn::And(hn::And(apart, aside), hn::Lt(nearest, hn::Sub(number(1), margin)))};
 }
@@ -155,8 +156,7 @@ namespace specular {
 HWY_EXPORT(find_zeros_here);
 }  // namespace specular
 
-void find_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
-                    SphereZeros& zeros) {
+void find_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points, SphereZeros& zeros) {
     using namespace specular;
     HWY_DYNAMIC_DISPATCH(find_zeros_here)(sphere, eye, points, zeros);
 }

@@ -11,11 +11,11 @@ struct SphereShape {
     double radius = 1;
 };
 
-/// Of lanes for which it is known that the law of reflection has two zeros on the sphere at which eye and point
-/// lie on the same side of it.
+/// Of lanes for which it is known that the law of reflection has two zeros on the sphere at which eye and
+/// point lie on the same side of it.
 struct SphereZeros {
-    LaneBits lit = 0;           // one is seen from outside, the other from inside
-    LaneBits shaded = 0;        // both are seen from inside
+    LaneBits lit = 0;          // one is seen from outside, the other from inside
+    LaneBits shaded = 0;       // both are seen from inside
     PointLanes first, second;  // unit normals there, roughly; the first the one in front or between
 };
 
@@ -30,9 +30,9 @@ struct SphereZeros {
 /// since the way has come through the circle: the sum is below zero. So each of these arcs has one zero at
 /// most, a minimum of the path on the first and a maximum on the others. On the arcs between, where the signs
 /// of c differ, h along the circle vanishes only where both directions are opposite: where the way between
-/// eye and point meets the circle, a minimum. So as often as not at all where that way is clear of the sphere,
-/// and there is one arc of each kind; and twice where it is not, and there are two arcs seen from inside by
-/// both. Minima and maxima take turns around the circle.
+/// eye and point meets the circle, a minimum. So as often as not at all where that way is clear of the
+/// sphere, and there is one arc of each kind; and twice where it is not, and there are two arcs seen from
+/// inside by both. Minima and maxima take turns around the circle.
 void find_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points, SphereZeros& zeros);
 
 }  // namespace trilens

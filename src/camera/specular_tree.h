@@ -22,7 +22,7 @@ struct TreeNode {
     const CellTerms* terms = nullptr;  // of a cell, where terms_of was asked
     std::uint32_t asked_by = 0;        // of a cell: which group of points asked the Newton operator,
     LaneBits asked = 0, open = 0, narrow = 0;  // for which of them, and what it said
-    bool is_halved = false;            // whether `halves` is known
+    bool is_halved = false;                    // whether `halves` is known
     TreeNode* halves[2] = {nullptr,
                            nullptr};  // null: has nothing of the face; a leaf group has its cell alone
 };

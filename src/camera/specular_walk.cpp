@@ -44,12 +44,13 @@ SurfacePoint SpecularWalk::point_at(Id face, const Vec2& uv) const {
     return bounder_.bounds(face, uv, uv).middle;
 }
 
-/// True if the zero's image is listed, or the zero is none: seen from a wrong side or behind the camera. `point`
-/// and `path` are of a place close by, or of the zero where `is_there`.
+/// True if the zero's image is listed, or the zero is none: seen from a wrong side or behind the camera.
+/// `point` and `path` are of a place close by, or of the zero where `is_there`.
 bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& point,
                              const SpecularPath& path, bool is_there) {
     if (sides_fit(query_, path, point.normal) && screen_from_world(query_.camera, point.position).z > 0) {
-        const bool is_inside = surface_.domain(zero.face) == FaceDomain::kSquare || zero.uv.x + zero.uv.y <= 1;
+        const bool is_inside =
+            surface_.domain(zero.face) == FaceDomain::kSquare || zero.uv.x + zero.uv.y <= 1;
         const auto image = is_there && is_inside ? refine_specular_point(surface_, zero, point, query_)
                                                  : refine_specular_point(surface_, zero, query_);
         if (!image || largest(image->at.uv - zero.uv) > kSameZero) return false;
@@ -240,8 +241,7 @@ SpecularSearch SpecularWalk::run(const SpecularQuery& query) {
     return end();
 }
 
-void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const LawZero> near,
-                              const AskCell& ask) {
+void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const LawZero> near, const AskCell& ask) {
     begin(query);
     for (const LawZero& start : near) settle_near(start.at, ask);
 }
