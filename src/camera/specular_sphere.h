@@ -29,10 +29,10 @@ struct SphereZeros {
 /// from outside by both each c is below zero, and the sum above. On arcs seen from inside by both r > 2 c,
 /// since the way has come through the circle: the sum is below zero. So each of these arcs has one zero at
 /// most, a minimum of the path on the first and a maximum on the others. On the arcs between, where the signs
-/// of c differ, h along the circle vanishes only where both directions are opposite: where the way between
-/// eye and point meets the circle, a minimum. So as often as not at all where that way is clear of the
-/// sphere, and there is one arc of each kind; and twice where it is not, and there are two arcs seen from
-/// inside by both. Minima and maxima take turns around the circle.
+/// of c differ, h along the circle vanishes only where both directions are opposite, a minimum: where the way
+/// between eye and point meets the circle. Minima and maxima take turns around the circle. So where that way
+/// is clear of the sphere there is one arc of each kind, and each has a zero; where it leads through, there
+/// are two minima on it, none on an arc seen from outside by both, and a maximum on each of two arcs.
 void find_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points, SphereZeros& zeros);
 
 }  // namespace trilens
