@@ -77,7 +77,7 @@ class Sphere final : public PrimitiveShape {
                 dot(ray.direction, ray.direction)};
     }
 
-    Place place(const Vec3& point) const override {
+    SurfaceParameter place(const Vec3& point) const override {
         Id face = 0;
         for (Id other = 1; other < 6; ++other)
             if (dot(point, kAxes[other].out) > dot(point, kAxes[face].out)) face = other;
@@ -156,7 +156,7 @@ class Paraboloid final : public PrimitiveShape {
         return {dot(o, o) - four_f_ * ray.origin.z, dot(o, d) - four_f_ / 2 * ray.direction.z, dot(d, d)};
     }
 
-    Place place(const Vec3& point) const override {
+    SurfaceParameter place(const Vec3& point) const override {
         const Vec2 p(point);
         if (!(length(p) <= rim_)) return {};
         if (std::abs(p.x) <= inner_ && std::abs(p.y) <= inner_)
@@ -219,7 +219,7 @@ class Cylinder final : public PrimitiveShape {
         return {(distance - radius_) * (distance + radius_), dot(o, d), dot(d, d)};
     }
 
-    Place place(const Vec3& point) const override {
+    SurfaceParameter place(const Vec3& point) const override {
         const double v = point.z / height_ + 0.5;
         if (!(v >= 0 && v <= 1)) return {};
         const Vec2 p(point);
@@ -250,7 +250,7 @@ class Plane final : public PrimitiveShape {
     std::array<double, 3> equation(const Ray& ray) const override {
         return {ray.origin.z, ray.direction.z / 2, 0};
     }
-    Place place(const Vec3& point) const override {
+    SurfaceParameter place(const Vec3& point) const override {
         const Vec2 uv = Vec2(point) / size_ + 0.5;
         if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1)) return {};
         return {0, uv};

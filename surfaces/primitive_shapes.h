@@ -24,11 +24,7 @@ class PrimitiveShape {
     virtual std::array<double, 3> equation(const Ray& ray) const = 0;
 
     /// The face and (u, v) of a point of the uncut shape; face kNone where it is cut off.
-    struct Place {
-        Id face = kNone;
-        Vec2 uv{0};
-    };
-    virtual Place place(const Vec3& point) const = 0;
+    virtual SurfaceParameter place(const Vec3& point) const = 0;
     /// Whether it is not cut off there.
     virtual bool has(const Vec3& point) const { return place(point).face != kNone; }
 };

@@ -50,6 +50,10 @@ class PrimitiveSurface final : public Surface {
     double sphere_curvature() const override {
         return primitive_.type == Primitive::Type::kSphere ? 1 / primitive_.radius : 0;
     }
+    SurfaceParameter sphere_place(const Vec3& normal) const override {
+        if (primitive_.type != Primitive::Type::kSphere) return {};
+        return shape_->place(glm::transpose(world_from_local_) * normal);
+    }
     std::unique_ptr<const SurfaceBounder> make_bounder() const override {
         return make_primitive_bounder(primitive_, *this);
     }
@@ -67,7 +71,7 @@ class PrimitiveSurface final : public Surface {
     std::optional<SurfaceHit> intersect(const Ray& ray, double t_min) const override {
         std::optional<SurfaceHit> first;
         for_each_root(ray, t_min, [&](double t, const Vec3& point) {
-            const PrimitiveShape::Place place = shape_->place(point);
+            const SurfaceParameter place = shape_->place(point);
             if (place.face != kNone) first = {place.face, place.uv, t, eval(place.face, place.uv)};
             return first.has_value();
         });

@@ -41,6 +41,12 @@ struct FaceBorder {
     std::array<FaceSide, 4> sides{};
 };
 
+/// A parameter position of a surface.
+struct SurfaceParameter {
+    Id face = kNone;
+    Vec2 uv{0};
+};
+
 /// Where a ray meets a surface.
 struct SurfaceHit {
     Id face = kNone;
@@ -95,6 +101,8 @@ class Surface {
 
     /// 1 / radius of the sphere that the whole surface lies on, normals outward; 0 of every other surface.
     virtual double sphere_curvature() const { return 0; }
+    /// Of a sphere, where its normal is along `normal`, to rounding; no face where that is not known.
+    virtual SurfaceParameter sphere_place(const Vec3& /*normal*/) const { return {}; }
 
     /// Bytes that it holds now, but for the allocator's own and what does not grow with the surface.
     virtual std::size_t bytes_held() const { return 0; }

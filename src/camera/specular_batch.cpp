@@ -21,9 +21,9 @@ constexpr double kNewtonTurn = 0.06;
 /// points.
 constexpr double kFlatPart = 0.05;
 constexpr double kSmallPart = 0x1p-10;
-/// A tree of more nodes (some 600 bytes each) grows no further, and one of more than so many is not kept.
+/// A tree of more nodes (some 900 bytes each) grows no further, and one of more than so many is not kept.
 constexpr std::size_t kMostNodes = 1u << 16;
-constexpr std::size_t kMostKept = 1u << 15;
+constexpr std::size_t kMostKept = 1u << 13;
 
 }  // namespace
 
@@ -66,42 +66,53 @@ SpecularSearch SpecularBatch::search_whole(const Vec3& point) {
     return SpecularWalk(surface_, *cells_.bounder(), tree, limits_).run(query);
 }
 
+/// Sifted when first asked for: most points need no parts.
+const SpecularBatch::Parts& SpecularBatch::parts_of(Level& level) {
+    if (level.is_sifted) return level.parts;
+    level.is_sifted = true;
+    Parts whole;
+    if (!level.above && tree_.root()) whole.push_back(tree_.root());
+    const Parts& from = level.above ? parts_of(*level.above) : whole;
+    const PointBall ball = ball_around(points_, level.some);
+    ball_.point = ball.middle;
+    radius_ = ball.radius;
+    for (TreeNode* part : from) sift(*part, level.parts);
+    return level.parts;
+}
+
 /// As a walk through the whole surface has it: where something stays undecided, by that walk.
-void SpecularBatch::search(std::span<const std::size_t> some, const Parts& parts) {
+void SpecularBatch::search(Level& level) {
+    const std::span<const std::size_t> some = level.some;
     std::vector<std::optional<SpecularSearch>> found(some.size());
     if (tree_.size() < kMostNodes) {
         std::vector<Vec3> points;
         for (const std::size_t p : some) points.push_back(points_[p]);
-        found = group_.run(points, parts);
+        group_.begin(points);
+        found = group_.end(group_.is_done() ? Parts() : parts_of(level));
     }
     for (std::size_t k = 0; k < some.size(); ++k)
         found_[some[k]] = found[k] ? std::move(*found[k]) : search_whole(points_[some[k]]);
 }
 
-void SpecularBatch::descend(std::span<std::size_t> some, const Parts& parts) {
-    const PointBall ball = ball_around(points_, some);
-    ball_.point = ball.middle;
-    radius_ = ball.radius;
-    Parts left;
-    for (TreeNode* part : parts) sift(*part, left);
-    if (some.size() > kFewPoints) {
-        const std::size_t half = halve_points(points_, some, kFewPoints);
-        descend(some.first(half), left);
-        descend(some.subspan(half), left);
+void SpecularBatch::descend(std::span<std::size_t> some, Level* above) {
+    Level level{above, some, false, {}};
+    if (some.size() <= kFewPoints) {
+        if (some.size() > SpecularGroup::kNearPoints) halve_points(points_, some, SpecularGroup::kNearPoints);
+        search(level);
         return;
     }
-    search(some, left);
+    const std::size_t half = halve_points(points_, some, kFewPoints);
+    descend(some.first(half), &level);
+    descend(some.subspan(half), &level);
 }
 
 std::vector<SpecularSearch> SpecularBatch::run(std::span<const Vec3> points) {
     if (tree_.size() > kMostKept) tree_.begin_anew();
     points_ = points;
     found_ = std::vector<SpecularSearch>(points.size());
-    Parts whole;
-    if (tree_.root()) whole.push_back(tree_.root());
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    if (!points.empty()) descend(order, whole);
+    if (!points.empty()) descend(order, nullptr);
     return std::move(found_);
 }
 

@@ -30,9 +30,18 @@ class SpecularBatch {
   private:
     using Parts = std::vector<TreeNode*>;
 
-    void descend(std::span<std::size_t> some, const Parts& parts);
-    void search(std::span<const std::size_t> some, const Parts& parts);
+    /// Points that lie together, and the parts of the surface that may hold an image of any of them.
+    struct Level {
+        Level* above = nullptr;
+        std::span<const std::size_t> some;
+        bool is_sifted = false;
+        Parts parts;
+    };
+
+    void descend(std::span<std::size_t> some, Level* above);
+    void search(Level& level);
     SpecularSearch search_whole(const Vec3& point);
+    const Parts& parts_of(Level& level);
     void sift(TreeNode& part, Parts& left);
 
     const Surface& surface_;

@@ -18,6 +18,9 @@ constexpr double kTurnAround = 0.03;
 /// A point that lies further from a surface than this, in units of its faces, leaves no cell undecided.
 constexpr double kFarInCells = 0x1p-10;
 
+/// h . normal of zeros at which eye and point are on the same side is no less; where they are not it is zero.
+constexpr double kClearOfEdge = 0.01;
+
 template <typename Act>
 void for_each_lane(LaneBits lanes, Act act) {
     for (; lanes != 0; lanes &= lanes - 1) act(static_cast<std::size_t>(std::countr_zero(lanes)));
@@ -27,10 +30,19 @@ void for_each_lane(LaneBits lanes, Act act) {
 
 SpecularGroup::SpecularGroup(const Surface& surface, const SurfaceBounder& bounder, SpecularTree& tree,
                              const SpecularQuery& query, const SearchLimits& limits)
-    : tree_(tree),
+    : surface_(surface),
+      tree_(tree),
       query_(query),
       walks_(kPointLanes, SpecularWalk(surface, bounder, tree, limits)),
-      curvature_(surface.sphere_curvature()) {}
+      curvature_(surface.sphere_curvature()),
+      may_count_(curvature_ > 0 && query.event == SpecularEvent::kReflect && !query.camera.parallel &&
+                 limits.smallest_cell <= SearchLimits().smallest_cell &&
+                 limits.most_cells >= SearchLimits().most_cells) {
+    if (!may_count_) return;
+    const SurfacePoint at = surface.eval(0, Vec2(0.5));
+    sphere_.radius = 1 / curvature_;
+    sphere_.center = at.position - sphere_.radius * at.normal;
+}
 
 /// Of a sphere: by the normal at some place of it, and in units of its cells.
 bool SpecularGroup::is_far_from_surface(const Vec3& place, const LawZero& zero) const {
@@ -54,35 +66,70 @@ void SpecularGroup::note_zeros(std::size_t lane) {
     }
 }
 
-/// Asks for all lanes at once.
-bool SpecularGroup::is_open(TreeNode& cell, std::size_t lane) {
-    if (!cell.view.is_apart || walks_.front().is_last(cell)) return false;
-    if (cell.place.normal_radius > kHopelessTurn) return true;
-    auto asked = std::find_if(asked_.begin(), asked_.end(), [&](const Wait& a) { return a.node == &cell; });
-    if (asked == asked_.end()) {
-        const LaneQuestion question{query_.event == SpecularEvent::kReflect, path_indices(query_), points_,
-                                    under_way_};
-        asked_.push_back({&cell, newton_lanes(question, tree_.terms_of(cell), cell.box.half()).open});
-        asked = asked_.end() - 1;
+/// Whether a lane's walk has both zeros of a sphere that has two.
+bool SpecularGroup::knows_all(std::size_t lane) const {
+    std::size_t outside = 0, inside = 0;
+    for (const LawZero& zero : walks_[lane].zeros()) {
+        outside += zero.along < -kClearOfEdge;
+        inside += zero.along > kClearOfEdge;
     }
-    return asked->lanes >> lane & 1;
+    return (sphere_zeros_.lit >> lane & 1 && outside == 1 && inside == 1) ||
+           (sphere_zeros_.shaded >> lane & 1 && outside == 0 && inside == 2);
 }
 
-/// Each point begins where its neighbour ended.
+/// The zeros of a sphere that has two, roughly; else no faces.
+std::array<SurfaceParameter, 2> SpecularGroup::places_on_sphere(std::size_t lane) const {
+    if (!((sphere_zeros_.lit | sphere_zeros_.shaded) >> lane & 1)) return {};
+    return {surface_.sphere_place(sphere_zeros_.first.at(lane)),
+            surface_.sphere_place(sphere_zeros_.second.at(lane))};
+}
+
+/// Asks for the lane and those next to it at once.
+CellWord SpecularGroup::ask(TreeNode& cell, std::size_t lane) {
+    if (!cell.view.is_apart || walks_.front().is_last(cell)) return CellWord::kUnknown;
+    if (cell.place.normal_radius > kHopelessTurn) return CellWord::kOpen;
+    if (cell.asked_by != turn_) {
+        cell.asked_by = turn_;
+        cell.asked = cell.open = cell.narrow = 0;
+    }
+    if (!(cell.asked >> lane & 1)) {
+        const LaneBits neighbours = ((LaneBits{1} << kNearPoints) - 1) << (lane / kNearPoints * kNearPoints);
+        const LaneQuestion question{query_.event == SpecularEvent::kReflect, path_indices(query_), points_,
+                                    neighbours};
+        const NewtonLanes newton = newton_lanes(question, tree_.terms_of(cell), cell.box.half());
+        cell.asked |= neighbours;
+        cell.open |= newton.open;
+        cell.narrow |= newton.narrow;
+    }
+    if (cell.open >> lane & 1) return CellWord::kOpen;
+    return cell.narrow >> lane & 1 ? CellWord::kNarrow : CellWord::kUnknown;
+}
+
+/// Each point begins where its neighbour ended, if not where a sphere has its zeros.
 void SpecularGroup::settle(std::span<const Vec3> points) {
     for (std::size_t lane = 0; lane < kPointLanes; ++lane)
         points_.set(lane, points[std::min(lane, points.size() - 1)]);
-    asked_.clear();
+    if (may_count_) find_zeros(sphere_, query_.camera.eye, points_, sphere_zeros_);
+    ++turn_;
     for (std::size_t lane = 0; lane < points.size(); ++lane) {
+        SpecularWalk& walk = walks_[lane];
+        const auto ask_in_lanes = [this, lane](TreeNode& cell) { return ask(cell, lane); };
         query_.point = points[lane];
-        walks_[lane].begin_near(query_, zeros_, [&](TreeNode& cell) { return is_open(cell, lane); });
-        if (walks_[lane].is_lost()) under_way_ &= ~(LaneBits{1} << lane);
-        if (walks_[lane].zeros().size() >= zeros_.size()) zeros_ = walks_[lane].zeros();
+        const std::array<SurfaceParameter, 2> on_sphere = places_on_sphere(lane);
+        if (on_sphere[0].face != kNone)
+            walk.begin_at(query_, on_sphere, ask_in_lanes);
+        else
+            walk.begin_near(query_, zeros_, ask_in_lanes);
+        if (walk.is_lost()) under_way_ &= ~(LaneBits{1} << lane);
+        if (walk.zeros().size() >= zeros_.size()) zeros_ = walk.zeros();
     }
 }
 
 void SpecularGroup::note_settled() {
     settled_.clear();
+    for_each_lane(under_way_, [&](std::size_t lane) {
+        if (knows_all(lane)) under_way_ &= ~(LaneBits{1} << lane);
+    });
     if (curvature_ > 0) for_each_lane(under_way_, [&](std::size_t lane) { note_zeros(lane); });
     for_each_lane(under_way_, [&](std::size_t lane) {
         for (const CellBox& box : walks_[lane].settled()) {
@@ -145,12 +192,15 @@ void SpecularGroup::visit(const Wait& wait) {
         if (half) waiting_.push_back({half, lanes});
 }
 
-std::vector<std::optional<SpecularSearch>> SpecularGroup::run(std::span<const Vec3> points,
-                                                              std::span<TreeNode* const> parts) {
+void SpecularGroup::begin(std::span<const Vec3> points) {
     TRILENS_CHECK(!points.empty() && points.size() <= kPointLanes, "a group has a lane for each point");
+    count_ = points.size();
     under_way_ = static_cast<LaneBits>((std::uint64_t{1} << points.size()) - 1);
     settle(points);
     note_settled();
+}
+
+std::vector<std::optional<SpecularSearch>> SpecularGroup::end(std::span<TreeNode* const> parts) {
     waiting_.clear();
     looked_at_.fill(0);
     for (TreeNode* part : parts) waiting_.push_back({part, under_way_});
@@ -162,11 +212,11 @@ std::vector<std::optional<SpecularSearch>> SpecularGroup::run(std::span<const Ve
         if (++looked_at == kMostNear) lose(under_way_);
     }
     std::vector<std::optional<SpecularSearch>> found;
-    for (std::size_t lane = 0; lane < points.size(); ++lane) {
+    for (std::size_t lane = 0; lane < count_; ++lane) {
         walks_[lane].look(looked_at_[lane]);
         found.push_back(walks_[lane].end_near());
     }
-    zeros_ = walks_[points.size() - 1].zeros();
+    zeros_ = walks_[count_ - 1].zeros();
     return found;
 }
 

@@ -132,7 +132,7 @@ struct Pair {
 };
 
 struct Verdicts {
-    Truth leaves, contracts, open;
+    Truth leaves, contracts, open, narrow;
 };
 
 HWY_INLINE Number turning_radius(const Sights& point, Number stretch, const CellTerms::Reach& a,
@@ -201,8 +201,8 @@ HWY_INLINE Verdicts newton_of(const CellTerms& cell, const Vector& points, const
     const Truth known = hn::And(point.apart, finite);
     const Truth leaving = hn::And(
         known, hn::Or(leaves(half.x, step.x, spread.x, lost.x), leaves(half.y, step.y, spread.y, lost.y)));
-    const Truth contracting =
-        hn::And(hn::Le(spread.x, number(0.5 * half.x)), hn::Le(spread.y, number(0.5 * half.y)));
+    const Truth contracting = hn::And(hn::Le(spread.x, number(kContraction * half.x)),
+                                      hn::Le(spread.y, number(kContraction * half.y)));
     const Truth inside =
         hn::And(hn::Le(hn::Abs(step.x), number(half.x)), hn::Le(hn::Abs(step.y), number(half.y)));
     // With room for rounding.
@@ -210,11 +210,14 @@ HWY_INLINE Verdicts newton_of(const CellTerms& cell, const Vector& points, const
     const auto stays = [&](double side, Number at, Number wide) {
         return hn::Le(hn::Abs(at), scaled(1 - kSurely, hn::Add(number(side), wide)));
     };
-    const Truth wide = hn::Or(hn::Gt(spread.x, number((kAloneShare + kSurely) * half.x)),
-                              hn::Gt(spread.y, number((kAloneShare + kSurely) * half.y)));
+    const auto is_wider = [&](double part) {
+        return hn::Or(hn::Gt(spread.x, number(part * half.x)), hn::Gt(spread.y, number(part * half.y)));
+    };
+    const Truth wide = is_wider(kAloneShare + kSurely);
+    const Truth narrow = hn::AndNot(is_wider(kAloneShare - kSurely), is_wider(kContraction + kSurely));
     const Truth staying = hn::And(stays(half.x, step.x, spread.x), stays(half.y, step.y, spread.y));
     return {leaving, hn::AndNot(leaving, hn::And(known, hn::And(contracting, inside))),
-            hn::And(known, hn::And(wide, staying))};
+            hn::And(known, hn::And(wide, staying)), hn::And(known, hn::And(narrow, staying))};
 }
 
 NewtonLanes newton_lanes_here(const LaneQuestion& question, const CellTerms& cell, const Vec2& half) {
@@ -225,10 +228,12 @@ NewtonLanes newton_lanes_here(const LaneQuestion& question, const CellTerms& cel
         result.leaves |= bits_of(verdicts.leaves) << first;
         result.contracts |= bits_of(verdicts.contracts) << first;
         result.open |= bits_of(verdicts.open) << first;
+        result.narrow |= bits_of(verdicts.narrow) << first;
     }
     result.leaves &= question.asked;
     result.contracts &= question.asked;
     result.open &= question.asked;
+    result.narrow &= question.asked;
     return result;
 }
 

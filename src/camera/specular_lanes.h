@@ -60,10 +60,14 @@ LaneBits alone_lanes(const LaneQuestion& question, const PlaceBounds& place, con
 /// - q), J a mean of the Jacobians between them, and no such mean is singular.
 inline constexpr double kAloneShare = 0.9;
 
+/// The interval Newton operator shrinks a cell to this share, so that Newton's method converges.
+inline constexpr double kContraction = 0.5;
+
 struct NewtonLanes {
     LaneBits leaves = 0;     // proven: the cell has no zero
     LaneBits contracts = 0;  // of the others: the operator shrinks the cell by half or more
     LaneBits open = 0;       // newton_bounds says neither, nor shrinks to kAloneShare, however it rounds
+    LaneBits narrow = 0;     // newton_bounds says neither, but shrinks to kAloneShare, however it rounds
 };
 
 /// newton_bounds of a cell with these half sides, for the lanes asked.

@@ -32,10 +32,13 @@ std::array<Vec3, 2> tangents(const SpecularQuery& query, const SurfacePoint& poi
     return {point.du - dot(point.du, n) * n, point.dv - dot(point.dv, n) * n};
 }
 
-Vec2 gradient(const SpecularQuery& query, const SurfacePoint& point) {
-    const SpecularPath path = specular_path(query, point.position);
+Vec2 gradient(const SpecularQuery& query, const SpecularPath& path, const SurfacePoint& point) {
     const std::array<Vec3, 2> along = tangents(query, point);
     return {dot(path.bend, along[0]), dot(path.bend, along[1])};
+}
+
+Vec2 gradient(const SpecularQuery& query, const SurfacePoint& point) {
+    return gradient(query, specular_path(query, point.position), point);
 }
 
 Vec2 clamped(FaceDomain domain, Vec2 uv) {
@@ -51,14 +54,15 @@ Vec2 clamped(FaceDomain domain, Vec2 uv) {
 struct Iterate {
     SurfaceParameter at;
     SurfacePoint point;
+    SpecularPath path;
     bool regular = false;  // du and dv span the tangent plane
     Mat2 metric_root{0};   // L, lower: L L^T = (du, dv)^T (du, dv)
     Vec2 law{0};           // L^-1 gradient: h along the surface
     double residual = std::numeric_limits<double>::infinity();
 };
 
-Iterate evaluate(const Surface& surface, const SurfaceParameter& at, const SpecularQuery& query) {
-    Iterate result{at, surface.eval(at.face, at.uv)};
+Iterate evaluate_at(const SurfaceParameter& at, const SurfacePoint& point, const SpecularQuery& query) {
+    Iterate result{at, point, specular_path(query, point.position)};
     const Vec3 &du = result.point.du, &dv = result.point.dv;
 
     // Cholesky's root of the first fundamental form; the second pivot is the height of dv over du.
@@ -70,12 +74,16 @@ Iterate evaluate(const Surface& surface, const SurfaceParameter& at, const Specu
     result.regular = true;
     result.metric_root = Mat2(Vec2(size_u, shear), Vec2(0, height));
 
-    const Vec2 g = gradient(query, result.point);
+    const Vec2 g = gradient(query, result.path, result.point);
     const double first = g.x / size_u;
     result.law = {first, (g.y - shear * first) / height};
     const double residual = length(result.law);
     if (std::isfinite(residual)) result.residual = residual;
     return result;
+}
+
+Iterate evaluate(const Surface& surface, const SurfaceParameter& at, const SpecularQuery& query) {
+    return evaluate_at(at, surface.eval(at.face, at.uv), query);
 }
 
 /// The gradient's derivatives by central differences, one-sided at the domain's border.
@@ -97,7 +105,7 @@ Mat2 difference_jacobian(const Surface& surface, const SurfaceParameter& at, con
 
 /// L^-1 J L^-T: the Jacobian per length along the surface.
 Mat2 metric_jacobian(const Surface& surface, const Iterate& iterate, const SpecularQuery& query) {
-    const Mat2 plain = query.own_normals ? path_hessian(query, iterate.point)
+    const Mat2 plain = query.own_normals ? path_hessian(query, iterate.path, iterate.point)
                                          : difference_jacobian(surface, iterate.at, query);
     const Mat2 inverse_root = glm::inverse(iterate.metric_root);
     return inverse_root * plain * glm::transpose(inverse_root);
@@ -152,9 +160,9 @@ void polish(const Surface& surface, const SpecularQuery& query, const Mat2& jaco
     if (next.residual < iterate.residual) iterate = next;
 }
 
-Rest solve_law(const Surface& surface, const SurfaceParameter& start, const SpecularQuery& query) {
-    const FaceDomain domain = surface.domain(start.face);
-    Rest rest{evaluate(surface, {start.face, clamped(domain, start.uv)}, query)};
+Rest solve_law(const Surface& surface, const Iterate& start, const SpecularQuery& query) {
+    const FaceDomain domain = surface.domain(start.at.face);
+    Rest rest{start};
     Iterate& now = rest.iterate;
     double damping = kFirstDamping;
     while (now.regular && std::isfinite(now.residual)) {
@@ -184,16 +192,13 @@ Rest solve_law(const Surface& surface, const SurfaceParameter& start, const Spec
     return rest;
 }
 
-}  // namespace
-
-std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
-                                                   const SpecularQuery& query) {
-    TRILENS_CHECK(query.eye_index > 0 && query.point_index > 0, "a refractive index is positive");
+std::optional<SpecularPoint> refine_from(const Surface& surface, const Iterate& start,
+                                         const SpecularQuery& query) {
     const Rest rest = solve_law(surface, start, query);
     if (!rest.solved) return std::nullopt;
 
     const SurfacePoint& point = rest.iterate.point;
-    const SpecularPath path = specular_path(query, point.position);
+    const SpecularPath& path = rest.iterate.path;
     const Vec3 screen = screen_from_world(query.camera, point.position);
     if (!sides_fit(query, path, point.normal) || !(screen.z > 0)) return std::nullopt;
 
@@ -207,6 +212,21 @@ std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const
     image.residual = rest.iterate.residual;
     image.iterations = rest.iterations;
     return image;
+}
+
+}  // namespace
+
+std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
+                                                   const SpecularQuery& query) {
+    TRILENS_CHECK(query.eye_index > 0 && query.point_index > 0, "a refractive index is positive");
+    const Vec2 uv = clamped(surface.domain(start.face), start.uv);
+    return refine_from(surface, evaluate(surface, {start.face, uv}, query), query);
+}
+
+std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
+                                                   const SurfacePoint& point, const SpecularQuery& query) {
+    TRILENS_CHECK(clamped(surface.domain(start.face), start.uv) == start.uv, "the start lies in the domain");
+    return refine_from(surface, evaluate_at(start, point, query), query);
 }
 
 }  // namespace trilens

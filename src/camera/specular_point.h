@@ -30,12 +30,6 @@ struct SpecularQuery {
     bool operator==(const SpecularQuery&) const = default;
 };
 
-/// A parameter position of a surface.
-struct SurfaceParameter {
-    Id face = kNone;
-    Vec2 uv{0};
-};
-
 /// One image of the point.
 struct SpecularPoint {
     SurfaceParameter at;
@@ -61,6 +55,10 @@ struct SpecularPoint {
 /// length of h along the surface, in 0..n1 + n2, and always falls.
 std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
                                                    const SpecularQuery& query);
+
+/// The same for a start in the face's domain, of which surface.eval(start.face, start.uv) is known.
+std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const SurfaceParameter& start,
+                                                   const SurfacePoint& point, const SpecularQuery& query);
 
 /// All images that refining from `starts` finds, each once, by ascending t. Starts near the images suffice: a
 /// facet's image of the point; regular_starts where nothing is known.

@@ -16,10 +16,10 @@ void SpecularTree::begin_anew() {
 }
 
 TreeNode* SpecularTree::add(const PlaceBounds& place) {
-    TreeNode& node = nodes_.emplace_back();
+    TreeNode node;
     node.place = place;
     node.view = eye_view(query_, place);
-    return &node;
+    return &nodes_.add(node);
 }
 
 TreeNode* SpecularTree::add_group(std::size_t index) {
@@ -44,7 +44,7 @@ TreeNode* SpecularTree::add_stored(std::size_t index) {
 
 TreeNode* SpecularTree::add_fresh(const CellBox& box) {
     if (is_outside(surface_.domain(box.face), box)) return nullptr;
-    return add_cell(box, fresh_.emplace_back(cells_.bounder()->bounds(box.face, box.low, box.high)), 0);
+    return add_cell(box, fresh_.add(cells_.bounder()->bounds(box.face, box.low, box.high)), 0);
 }
 
 TreeNode& SpecularTree::face(Id face) {
@@ -53,7 +53,7 @@ TreeNode& SpecularTree::face(Id face) {
 }
 
 const CellTerms& SpecularTree::terms_of(TreeNode& cell) {
-    if (!cell.terms) cell.terms = &terms_.emplace_back(cell_terms(query_, *cell.bounds, cell.view));
+    if (!cell.terms) cell.terms = &terms_.add(cell_terms(query_, *cell.bounds, cell.view));
     return *cell.terms;
 }
 

@@ -1,12 +1,14 @@
 // A surface's cells as one camera sees them, halved as far as anybody came.
 #pragma once
 
-#include <deque>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "camera/node_pool.h"
 #include "camera/specular_bounds.h"
 #include "camera/specular_cells.h"
+#include "camera/specular_lanes.h"
 
 namespace trilens {
 
@@ -18,7 +20,9 @@ struct TreeNode {
     const SurfaceBounds* bounds = nullptr;  // of a cell; null for a group
     std::size_t stored = 0;            // of a group: its index; of a cell: that of its stored halves, or 0
     const CellTerms* terms = nullptr;  // of a cell, where terms_of was asked
-    bool is_halved = false;            // whether `halves` is known
+    std::uint32_t asked_by = 0;        // of a cell: which group of points asked the Newton operator,
+    LaneBits asked = 0, open = 0, narrow = 0;  // for which of them, and what it said
+    bool is_halved = false;                    // whether `halves` is known
     TreeNode* halves[2] = {nullptr,
                            nullptr};  // null: has nothing of the face; a leaf group has its cell alone
 };
@@ -51,9 +55,9 @@ class SpecularTree {
     const Surface& surface_;
     const SurfaceCells& cells_;
     const SpecularQuery query_;
-    std::deque<TreeNode> nodes_;
-    std::deque<SurfaceBounds> fresh_;
-    std::deque<CellTerms> terms_;
+    NodePool<TreeNode> nodes_;
+    NodePool<SurfaceBounds> fresh_;
+    NodePool<CellTerms> terms_;
     std::vector<TreeNode*> faces_;
     TreeNode* root_ = nullptr;
 };

@@ -13,8 +13,6 @@ namespace trilens {
 namespace {
 
 constexpr double kBorder = kCellBorder;
-/// The interval Newton operator shrinks a cell to this share, so that Newton's method converges.
-constexpr double kContraction = 0.5;
 /// A refined image this far from the zero of the law that it began at is another one.
 constexpr double kSameZero = 1e-6;
 constexpr int kNewtonSteps = 30;
@@ -47,10 +45,14 @@ SurfacePoint SpecularWalk::point_at(Id face, const Vec2& uv) const {
 }
 
 /// True if the zero's image is listed, or the zero is none: seen from a wrong side or behind the camera.
-bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& point) {
-    const SpecularPath path = specular_path(query_, point.position);
+/// `point` and `path` are of a place close by, or of the zero where `is_there`.
+bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& point,
+                             const SpecularPath& path, bool is_there) {
     if (sides_fit(query_, path, point.normal) && screen_from_world(query_.camera, point.position).z > 0) {
-        const auto image = refine_specular_point(surface_, zero, query_);
+        const bool is_inside =
+            surface_.domain(zero.face) == FaceDomain::kSquare || zero.uv.x + zero.uv.y <= 1;
+        const auto image = is_there && is_inside ? refine_specular_point(surface_, zero, point, query_)
+                                                 : refine_specular_point(surface_, zero, query_);
         if (!image || largest(image->at.uv - zero.uv) > kSameZero) return false;
         result_.images.push_back(*image);
     }
@@ -64,10 +66,11 @@ SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoin
     const Vec2 half = box.half();
     Vec2 uv = glm::clamp(box.middle() + newton.step, box.low, box.high);
     SurfacePoint point = middle;
+    SpecularPath path;
     Vec2 law(0);
     for (int step = 0; step < kNewtonSteps; ++step) {
         point = point_at(box.face, uv);
-        const SpecularPath path = specular_path(query_, point.position);
+        path = specular_path(query_, point.position);
         law = {dot(path.bend, point.du), dot(path.bend, point.dv)};
         const Vec2 next = uv - glm::inverse(path_hessian(query_, path, point)) * law;
         if (!std::isfinite(next.x + next.y)) return Verdict::kSplit;
@@ -76,7 +79,7 @@ SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoin
         const bool is_zero = largest(next - uv) <= kBorder;
         if (is_zero) {
             if (!in_domain(box.face, uv)) return Verdict::kEmpty;
-            return add_image({box.face, uv}, point) ? Verdict::kSettled : Verdict::kSplit;
+            return add_image({box.face, uv}, point, path, true) ? Verdict::kSettled : Verdict::kSplit;
         }
         if (at_rest) break;
         uv = inside;
@@ -97,7 +100,7 @@ SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoin
         std::fabs(step.x) <= kBorder + newton.rounding.x && std::fabs(step.y) <= kBorder + newton.rounding.y;
     if (!rounding) return Verdict::kSplit;
     if (!in_domain(box.face, uv)) return Verdict::kEmpty;
-    return add_image({box.face, uv}, point) ? Verdict::kSettled : Verdict::kSplit;
+    return add_image({box.face, uv}, point, path, false) ? Verdict::kSettled : Verdict::kSplit;
 }
 
 SpecularWalk::Verdict SpecularWalk::ask_newton(TreeNode& cell) {
@@ -157,7 +160,7 @@ bool SpecularWalk::must_split(TreeNode& cell) {
 }
 
 /// The zero near `start`, by its cell.
-void SpecularWalk::settle_near(SurfaceParameter start, const IsOpen& is_open) {
+void SpecularWalk::settle_near(SurfaceParameter start, const AskCell& ask) {
     for (int step = 0; step < kNearSteps; ++step) {
         const SurfacePoint point = surface_.eval(start.face, start.uv);
         const SpecularPath path = specular_path(query_, point.position);
@@ -166,24 +169,26 @@ void SpecularWalk::settle_near(SurfaceParameter start, const IsOpen& is_open) {
         const bool inside = start.uv.x >= 0 && start.uv.y >= 0 && start.uv.x <= 1 && start.uv.y <= 1;
         if (!inside || !in_domain(start.face, start.uv)) return;
     }
-    settle_at(start, is_open);
+    settle_at(start, ask);
 }
 
 /// A zero that was settled in a smaller cell than a search of the whole has it in: in that one.
 void SpecularWalk::settle_again(const SurfaceParameter& zero) {
     if (has_settled({zero.face, zero.uv, zero.uv})) return;
     const std::size_t known = zeros_.size();
-    settle_at(zero, [](TreeNode&) { return false; });
+    settle_at(zero, [](TreeNode&) { return CellWord::kUnknown; });
     is_lost_ = is_lost_ || zeros_.size() == known;
 }
 
 /// Goes down through the cells that hold the place to the one where a search of the whole settles it, if
 /// there is, and notes the largest in which it stands alone.
-void SpecularWalk::settle_at(const SurfaceParameter& zero, const IsOpen& is_open) {
+void SpecularWalk::settle_at(const SurfaceParameter& zero, const AskCell& ask) {
     if (has_settled({zero.face, zero.uv, zero.uv})) return;
     TreeNode* alone = nullptr;
     for (TreeNode* cell = &tree_.face(zero.face); cell; cell = half_around(*cell, zero.uv)) {
-        if (is_open(*cell)) continue;
+        const CellWord word = ask(*cell);
+        if (!alone && word == CellWord::kNarrow) alone = cell;
+        if (word != CellWord::kUnknown) continue;
         const Verdict verdict = ask_newton(*cell);
         if (!alone && share_ <= kAloneShare) alone = cell;
         if (verdict == Verdict::kSettled) {
@@ -236,10 +241,15 @@ SpecularSearch SpecularWalk::run(const SpecularQuery& query) {
     return end();
 }
 
-void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const LawZero> near,
-                              const IsOpen& is_open) {
+void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const LawZero> near, const AskCell& ask) {
     begin(query);
-    for (const LawZero& start : near) settle_near(start.at, is_open);
+    for (const LawZero& start : near) settle_near(start.at, ask);
+}
+
+void SpecularWalk::begin_at(const SpecularQuery& query, std::span<const SurfaceParameter> zeros,
+                            const AskCell& ask) {
+    begin(query);
+    for (const SurfaceParameter& zero : zeros) settle_at(zero, ask);
 }
 
 std::optional<SpecularSearch> SpecularWalk::end_near() {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "camera/specular_law.h"
 #include "camera/specular_search.h"
 #include "camera/specular_tree.h"
 
@@ -15,6 +16,10 @@ namespace trilens {
 
 /// Over a cell whose normals turn by more than this the Newton operator decides nothing, and is not asked.
 inline constexpr double kHopelessTurn = 0.25;
+
+/// What NewtonLanes say of a cell for a point.
+enum class CellWord { kUnknown, kOpen, kNarrow };
+
 /// A zero of the law, of an image or not.
 struct LawZero {
     SurfaceParameter at;
@@ -30,15 +35,17 @@ class SpecularWalk {
                  const SearchLimits& limits)
         : surface_(surface), bounder_(bounder), tree_(tree), limits_(limits) {}
 
-    using IsOpen = std::function<bool(TreeNode& cell)>;
+    using AskCell = std::function<CellWord(TreeNode& cell)>;
 
     /// Searches the whole surface.
     SpecularSearch run(const SpecularQuery& query);
 
     /// Begins a search that ends sooner, with `near`, zeros of the law for a point close by. What it settles
     /// has the bits that run has; the caller goes through the cells, by `has_settled` and `must_split`. Cells
-    /// that are open, as NewtonLanes has it, are not asked one by one.
-    void begin_near(const SpecularQuery& query, std::span<const LawZero> near, const IsOpen& is_open);
+    /// of which `ask` has a word are not asked one by one.
+    void begin_near(const SpecularQuery& query, std::span<const LawZero> near, const AskCell& ask);
+    /// The same from where zeros are for all that is known.
+    void begin_at(const SpecularQuery& query, std::span<const SurfaceParameter> zeros, const AskCell& ask);
     /// Whether the cell, with all that it holds, has no zero but those that are settled.
     bool has_settled(const CellBox& box) const;
     std::span<const CellBox> settled() const { return isolated_; }
@@ -72,12 +79,13 @@ class SpecularWalk {
     Verdict judge_cell(TreeNode& cell);
     Verdict ask_newton(TreeNode& cell);
     Verdict settle(const CellBox& box, const SurfacePoint& middle, const NewtonBounds& newton);
-    bool add_image(const SurfaceParameter& zero, const SurfacePoint& point);
+    bool add_image(const SurfaceParameter& zero, const SurfacePoint& point, const SpecularPath& path,
+                   bool is_there);
     SurfacePoint point_at(Id face, const Vec2& uv) const;
     bool in_domain(Id face, const Vec2& uv) const;
     void refine_undecided();
-    void settle_near(SurfaceParameter start, const IsOpen& is_open);
-    void settle_at(const SurfaceParameter& zero, const IsOpen& is_open);
+    void settle_near(SurfaceParameter start, const AskCell& ask);
+    void settle_at(const SurfaceParameter& zero, const AskCell& ask);
     void settle_again(const SurfaceParameter& zero);
     TreeNode* half_around(TreeNode& cell, const Vec2& uv);
 

@@ -266,16 +266,16 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
     return first;
 }
 
+bool LimitTracer::meets(const Ray& ray, double t_min, double t_max) const {
+    if (data_->surface.has_closed_form()) return data_->surface.meets(ray, t_min, t_max);
+    const std::optional<SurfaceHit> hit = first_hit(ray, t_min);
+    return hit && hit->t < t_max;
+}
+
 Segments::Bits LimitTracer::occluded(const Segments& segments, Segments::Bits asked) const {
     Segments::Bits found = 0;
     for_each_of(may_meet(segments, data_->around) & asked, [&](std::size_t i) {
-        const Ray ray = segments.ray(i);
-        if (data_->surface.has_closed_form()) {
-            if (data_->surface.meets(ray, 0, 1)) found |= Segments::bit(i);
-            return;
-        }
-        const std::optional<SurfaceHit> hit = first_hit(ray);
-        if (hit && hit->t < 1) found |= Segments::bit(i);
+        if (meets(segments.ray(i), 0, 1)) found |= Segments::bit(i);
     });
     return found;
 }

@@ -39,6 +39,9 @@ class LimitTracer {
     /// see self_hit_t_min.
     std::optional<SurfaceHit> first_hit(const Ray& ray, double t_min = 0) const;
 
+    /// Whether first_hit(ray, t_min) has t < t_max.
+    bool meets(const Ray& ray, double t_min, double t_max) const;
+
     /// The segments that meet the surface, of those in `asked`: for each whether first_hit's t is below 1.
     Segments::Bits occluded(const Segments& segments, Segments::Bits asked) const;
 

@@ -1,7 +1,5 @@
 #include "render/sightlines.h"
 
-#include <optional>
-
 namespace trilens {
 namespace {
 
@@ -19,8 +17,7 @@ bool Sightlines::is_free_of_facets(const Ray& segment, std::size_t optic) const 
 }
 
 bool Sightlines::is_free_of_surface(const Ray& segment, std::size_t optic) const {
-    const std::optional<SurfaceHit> hit = limit_tracer(world_, optic).first_hit(segment, kFreeShare);
-    return !hit || hit->t >= 1 - kFreeShare;
+    return !limit_tracer(world_, optic).meets(segment, kFreeShare, 1 - kFreeShare);
 }
 
 bool Sightlines::is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const {

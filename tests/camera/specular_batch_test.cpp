@@ -119,6 +119,29 @@ TEST_CASE("points on caustics, on the surface and on one another have the lists 
     CHECK(compare(in_bowl, query, around).different == 0);
 }
 
+TEST_CASE("points that a sphere lights, shades or hides have the lists that they have alone") {
+    Draw draw(88);
+    const CubeSphere sphere({0.1, -0.2, 0.3}, 0.7);
+    const SpecularSearcher searcher(sphere);
+    for (int round = 0; round < 12; ++round) {
+        SpecularQuery query;
+        const double far = draw.log_uniform(0.71, 20);
+        query.camera = camera_at(sphere.center + far * draw.unit(), sphere.center + Vec3(0.1, 0, 0.2));
+        const Vec3 axis = normalize(sphere.center - query.camera.eye);
+        std::vector<Vec3> points = scattered(draw, 60, 0.02, 3);
+        // Close behind the sphere, around the cone that touches it, and along the axis.
+        const double tangent = 0.7 / std::sqrt(far * far - 0.49);
+        for (int p = 0; p < 180; ++p) {
+            const Vec3 way = draw.unit(), across = normalize(way - dot(way, axis) * axis);
+            const double depth = draw.log_uniform(0.8, 30);
+            const double wide = draw.uniform(-0.1, 0.1);
+            const double share = p % 3 == 0 ? 1 + wide : p % 3 == 1 ? 1 + 1e-3 * wide : wide;
+            points.push_back(query.camera.eye + (far + depth) * (axis + share * tangent * across));
+        }
+        CHECK(compare(searcher, query, points).different == 0);
+    }
+}
+
 TEST_CASE("the order of the points changes no list") {
     Draw draw(83);
     const CubeSphere sphere(Vec3(0), 1);

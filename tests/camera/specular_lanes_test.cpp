@@ -27,7 +27,8 @@ Vec3 goes_on(const SpecularQuery& query, const Vec3& in, const Vec3& normal) {
 }
 
 struct Tally {
-    int places = 0, empty = 0, leaving = 0, contracting = 0, open = 0, different = 0, not_asked = 0;
+    int places = 0, empty = 0, leaving = 0, contracting = 0, open = 0, narrow = 0, different = 0,
+        not_asked = 0;
 };
 
 bool has(LaneBits bits, std::size_t lane) {
@@ -47,7 +48,7 @@ bool is_clear(const NewtonBounds& newton, const Vec2& half) {
 
 void compare_newton(const LaneQuestion& question, const CellTerms& terms, const Vec2& half, Tally& tally) {
     const NewtonLanes lanes = newton_lanes(question, terms, half);
-    tally.not_asked += ((lanes.leaves | lanes.contracts | lanes.open) & ~question.asked) != 0;
+    tally.not_asked += ((lanes.leaves | lanes.contracts | lanes.open | lanes.narrow) & ~question.asked) != 0;
     for (std::size_t i = 0; i < kPointLanes; ++i) {
         if (!has(question.asked, i)) continue;
         const Vec3 point(question.points.x[i], question.points.y[i], question.points.z[i]);
@@ -61,6 +62,9 @@ void compare_newton(const LaneQuestion& question, const CellTerms& terms, const 
         tally.different +=
             has(lanes.open, i) && (!alone.known || leaves || std::max(share.x, share.y) <= kAloneShare);
         tally.open += has(lanes.open, i);
+        tally.different += has(lanes.narrow, i) &&
+                           (!alone.known || leaves || contracts || std::max(share.x, share.y) > kAloneShare);
+        tally.narrow += has(lanes.narrow, i);
         if (alone.known && !is_clear(alone, half)) continue;
         tally.different += has(lanes.leaves, i) != leaves || has(lanes.contracts, i) != contracts;
         tally.leaving += leaves;
@@ -116,6 +120,7 @@ void check(const Tally& tally) {
     CHECK(tally.leaving > tally.places / 50);
     CHECK(tally.contracting > 0);
     CHECK(tally.open > tally.places / 50);
+    CHECK(tally.narrow > 0);
 }
 
 }  // namespace

@@ -14,17 +14,6 @@ using namespace trilens_test;
 
 namespace {
 
-/// The parameters of the cube-sphere's point in a direction.
-SurfaceParameter parameter_at(const Vec3& direction) {
-    int axis = 0;
-    for (int k = 1; k < 3; ++k) {
-        if (std::fabs(direction[k]) > std::fabs(direction[axis])) axis = k;
-    }
-    const double high = std::fabs(direction[axis]);
-    const Vec2 uv(direction[(axis + 1) % 3] / high, direction[(axis + 2) % 3] / high);
-    return {static_cast<Id>(2 * axis + (direction[axis] < 0 ? 1 : 0)), 0.5 + 0.5 * uv};
-}
-
 /// How far the reflected or refracted direction at an image misses the point: sine of the angle, from the
 /// laws themselves.
 double mirror_miss(const LinearCamera& camera, const Vec3& position, const Vec3& normal, const Vec3& x) {
@@ -56,7 +45,7 @@ TEST_CASE("images in a mirror sphere are the solutions of Alhazen's problem") {
             const Vec3 normal = (p - sphere.center) / size;
             const double cosine = std::fabs(dot(normalize(eye - p), normal));
             const double reach = 0.05 * cosine * std::fmin(1, length(eye - p) / size);
-            SurfaceParameter start = parameter_at(normal);
+            SurfaceParameter start = sphere.sphere_place(normal);
             start.uv += reach * Vec2(draw.in_cube(1));
             const auto image = refine_specular_point(sphere, start, query);
 

@@ -79,6 +79,14 @@ struct CubeSphere : Surface {
         return std::make_unique<SlopeBounder>(*this, std::array{2 * radius, 4 * radius, 24 * radius}, 2);
     }
     double sphere_curvature() const override { return 1 / radius; }
+    SurfaceParameter sphere_place(const Vec3& normal) const override {
+        int axis = 0;
+        for (const int other : {1, 2})
+            if (std::fabs(normal[other]) > std::fabs(normal[axis])) axis = other;
+        const double out = std::fabs(normal[axis]);
+        const Vec2 across(normal[(axis + 1) % 3], normal[(axis + 2) % 3]);
+        return {static_cast<Id>(2 * axis + (normal[axis] < 0)), 0.5 * (across / out + 1.0)};
+    }
 };
 
 /// One face z = bend (x^2 + y^2) over a square of the plane z = 0 around `center`: a plane, or a paraboloid

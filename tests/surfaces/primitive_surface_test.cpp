@@ -250,7 +250,11 @@ TEST_CASE("Of primitives the sphere alone has the curvature of a sphere", "[surf
         const SurfacePoint point = surface->eval(2, {0.3, 0.8});
         CHECK(length(point.position - point.normal / surface->sphere_curvature() - sphere.center) <
               1e-14 * radius);
+        const SurfaceParameter there = surface->sphere_place(3.0 * point.normal);
+        CHECK(there.face == 2);
+        CHECK(length(there.uv - Vec2(0.3, 0.8)) < 1e-14);
     }
+    CHECK(make_primitive_surface({.type = Type::kPlane})->sphere_place({0, 0, 1}).face == kNone);
     std::mt19937 random(7);
     for (const Type type : kTypes)
         if (type != Type::kSphere)

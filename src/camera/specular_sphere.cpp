@@ -1,0 +1,165 @@
+#include "camera/specular_sphere.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "camera/specular_sphere.cpp"
+#include <hwy/foreach_target.h>
+#include "base/double_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace trilens::specular {
+namespace HWY_NAMESPACE {
+using namespace lanes::HWY_NAMESPACE;
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Eye and point lie further from the sphere than this share of its radius, and the way between them further
+/// from it, or deeper in it, than that share more for each of its lengths: then |h| > 0.016 where their sides
+/// differ and neither is far from edge-on. Many times what the smallest cells of a search need.
+constexpr double kClearOfSphere = 0.01, kClearOfWay = 0.004;
+/// Sine of the angle between eye and point, seen from the centre, where the way between them leads through
+/// the sphere; and at zeros the least second derivatives of the path, per length of the sphere's radius.
+constexpr double kClearOfLine = 0.05, kClearOfSingular = 0.05;
+constexpr int kNewtonSteps = 6;
+
+/// In units of the sphere, from its centre.
+struct Pair {
+    Vector eye, point;
+};
+
+HWY_INLINE Number size_of(const Vector& v) {
+    return hn::Sqrt(inner(v, v));
+}
+
+HWY_INLINE Vector unit(const Vector& v) {
+    return over(v, size_of(v));
+}
+
+struct Ways {
+    Truth clear, through;
+};
+
+HWY_INLINE Ways ways_of(const Pair& pair) {
+    const Vector way = minus(pair.point, pair.eye);
+    const Number length = size_of(way);
+    const Number along = hn::Div(hn::Neg(inner(pair.eye, way)), inner(way, way));
+    const Number inside = hn::Min(hn::Max(along, number(0)), number(1));
+    const Number nearest = size_of(plus(pair.eye, times(inside, way)));
+    const Number margin = hn::Add(number(kClearOfSphere), hn::Mul(number(kClearOfWay), length));
+    const Number eye = size_of(pair.eye), point = size_of(pair.point), outside = number(1 + kClearOfSphere);
+    const Truth apart =
+        hn::And(hn::Gt(length, number(0)), hn::And(hn::Gt(eye, outside), hn::Gt(point, outside)));
+    const Truth aside =
+        hn::Gt(size_of(outer(pair.eye, pair.point)), hn::Mul(number(kClearOfLine), hn::Mul(eye, point)));
+    return {hn::And(apart, hn::Gt(nearest, hn::Add(number(1), margin))),
+            hn::And(hn::And(apart, aside), hn::Lt(nearest, hn::Sub(number(1), margin)))};
+}
+
+/// One step of Newton's method along the circle.
+HWY_INLINE Vector nearer(const Pair& pair, const Vector& normal) {
+    Vector bend = vector(Vec3(0));
+    Number slope = number(0);
+    for (const Vector& from : {pair.eye, pair.point}) {
+        const Vector way = minus(normal, from);
+        const Number by_distance = hn::Div(number(1), size_of(way));
+        const Vector direction = times(by_distance, way);
+        const Number cosine = inner(direction, normal);
+        bend = plus(bend, direction);
+        slope = hn::Add(slope, hn::Mul(cosine, hn::Sub(hn::Mul(cosine, by_distance), number(1))));
+    }
+    const Vector along = minus(bend, times(inner(bend, normal), normal));
+    return unit(minus(normal, over(along, slope)));
+}
+
+HWY_INLINE Vector zero_near(const Pair& pair, Vector normal) {
+    for (int step = 0; step < kNewtonSteps; ++step) normal = nearer(pair, normal);
+    return normal;
+}
+
+/// Whether the path's second derivatives along the circle and across are clear of zero.
+HWY_INLINE Truth is_regular(const Pair& pair, const Vector& normal) {
+    Number along = number(0), across = number(0);
+    for (const Vector& from : {pair.eye, pair.point}) {
+        const Vector way = minus(normal, from);
+        const Number by_distance = hn::Div(number(1), size_of(way));
+        const Number cosine = hn::Mul(by_distance, inner(way, normal));
+        along = hn::Add(along, hn::Mul(cosine, hn::Sub(hn::Mul(cosine, by_distance), number(1))));
+        across = hn::Add(across, hn::Sub(by_distance, cosine));
+    }
+    const Number least = number(kClearOfSingular);
+    return hn::And(hn::Gt(hn::Abs(along), least), hn::Gt(hn::Abs(across), least));
+}
+
+/// Where rays from `from` touch the sphere, in the plane of it and the other: on that one's side, and beyond.
+struct Edges {
+    Vector near, far;
+};
+
+HWY_INLINE Edges edges_of(const Vector& from, const Vector& other) {
+    const Number by_size = hn::Div(number(1), size_of(from));
+    const Vector direction = times(by_size, from);
+    const Vector across = unit(minus(other, times(inner(other, direction), direction)));
+    const Vector out = times(by_size, direction);
+    const Vector side = times(hn::Sqrt(hn::Sub(number(1), hn::Mul(by_size, by_size))), across);
+    return {plus(out, side), minus(out, side)};
+}
+
+/// Where a plane mirror would have the image, if that is seen from both; else the middle of the arc that is
+/// seen from both or from none.
+HWY_INLINE Vector near_start(const Pair& pair, const Edges& of_eye, const Edges& of_point) {
+    const Number eye = size_of(pair.eye), point = size_of(pair.point), one = number(1);
+    const Vector plane = unit(plus(times(hn::Div(hn::Sub(point, one), eye), pair.eye),
+                                   times(hn::Div(hn::Sub(eye, one), point), pair.point)));
+    const Truth seen = hn::And(hn::Gt(inner(plane, pair.eye), one), hn::Gt(inner(plane, pair.point), one));
+    return either(seen, plane, unit(plus(of_eye.near, of_point.near)));
+}
+
+/// The middle of the arc beyond.
+HWY_INLINE Vector far_start(const Pair& pair, const Edges& of_eye, const Edges& of_point) {
+    const Vector middle = unit(plus(of_eye.far, of_point.far));
+    const Vector between = plus(unit(pair.eye), unit(pair.point));
+    return either(hn::Gt(inner(middle, between), number(0)), opposite(middle), middle);
+}
+
+HWY_INLINE void store(const Vector& v, PointLanes& to, std::size_t first) {
+    hn::Store(v.x, kTag, to.x + first);
+    hn::Store(v.y, kTag, to.y + first);
+    hn::Store(v.z, kTag, to.z + first);
+}
+
+void find_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLanes& points,
+                     SphereZeros& result) {
+    const Number by_radius = number(1 / sphere.radius);
+    const Vector center = vector(sphere.center);
+    const Vector from_center = times(by_radius, minus(vector(eye), center));
+    result.lit = result.shaded = 0;
+    for (std::size_t first = 0; first < kPointLanes; first += kWidth) {
+        const Vector point = vector_at(points.x + first, points.y + first, points.z + first);
+        const Pair pair{from_center, times(by_radius, minus(point, center))};
+        const Ways ways = ways_of(pair);
+        const Edges of_eye = edges_of(pair.eye, pair.point), of_point = edges_of(pair.point, pair.eye);
+        const Vector near = zero_near(pair, near_start(pair, of_eye, of_point));
+        const Vector far = zero_near(pair, far_start(pair, of_eye, of_point));
+        store(near, result.first, first);
+        store(far, result.second, first);
+        const Truth regular = hn::And(is_regular(pair, near), is_regular(pair, far));
+        result.lit |= bits_of(hn::And(ways.clear, regular)) << first;
+        result.shaded |= bits_of(hn::And(ways.through, regular)) << first;
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace trilens::specular
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace trilens {
+namespace specular {
+HWY_EXPORT(find_zeros_here);
+}  // namespace specular
+
+void find_zeros(const SphereShape& sphere, const Vec3& eye, const PointLanes& points, SphereZeros& zeros) {
+    using namespace specular;
+    HWY_DYNAMIC_DISPATCH(find_zeros_here)(sphere, eye, points, zeros);
+}
+
+}  // namespace trilens
+#endif
