@@ -23,20 +23,23 @@ namespace HWY_NAMESPACE {
 // the sum of its terms' absolute values, here called sizes: w, d and s of a component of W, D and s, |n| d of
 // A, |n| s of B, 2 |e| d s of Q, w |n| d of P, with |n| and |e| sums of absolute components, and with the
 // offset from the facet's screen as what it is summed of. Roundings:
-// - place(): the offset 1; W, O, D 4; s 6; A 7, B 9; D x s 12, Q 15; P 12; B W 13.
-// - Here, coefficients: the first line's offset 4; parts of W, O, D 7; s 9; A 10, B 12; Q, as (e x D) . s, 9
-// + 9
-//   + 3 and 1 for a mixed term, 22. Horner's rule adds 3 to a linear and 5 to a quadratic function: W 10, A
-//   13, B 15, Q 27; P 24, B W 26.
+//
+// In place(): the offset 1; W, O, D 4; s 6; A 7, B 9; D x s 12, Q 15; P 12; B W 13.
+//
+// Here, in coefficients: the first line's offset 4; parts of W, O, D 7; s 9; A 10, B 12; Q, summed as
+// (e x D) . s, 22: 9 and 9 of its factors, 3 of their products' sums, 1 of a mixed term. Horner's rule adds 3
+// to a linear and 5 to a quadratic function: W 10, A 13, B 15, Q 27; P 24, B W 26.
+//
 // Let p be the least |P| over the tile. As Q_1 / P_1 - Q_2 / P_2 = (Q_1 - Q_2) / P_1 + (Q_2 / P_2) (P_2 -
 // P_1) / P_1 and b is at most 1.01, b's two values differ by at most (42 size(Q) + 36.4 size(P)) u / p, and
 // those of t, which is at most size(B) w / p, by (39 + 36 size(P) / p) u size(B) w / p. The weight of the
 // first corner is 1 - b_1 - b_2 there, off by 4 u, by 6.1 u for what b_1 and b_2 round relative to
-// themselves, and by 15 size(Q)
-// + 12.2 size(P) for each of them; here it is (P - Q_1 - Q_2) / P, off by 29 size(Q), each, 26 size(P) and
-// for the denominator 24.3 size(P). All are less than kQuotientDoubt (size(P) + size(Q_1) + size(Q_2)) / p,
-// and for t than kQuotientDoubt (1 + size(P) / p) size(B) w / p. What is relative to the values is below
-// kQuotientRound: the roundings of 1 / P and of the products with it, 3 u each way, and those of the ends.
+// themselves, and for each of them by 15 size(Q) and 12.2 size(P); here it is (P - Q_1 - Q_2) / P, off by
+// 29 size(Q) for each, by 26 size(P), and by 24.3 size(P) for the denominator.
+//
+// All are less than kQuotientDoubt (size(P) + size(Q_1) + size(Q_2)) / p, and for t than
+// kQuotientDoubt (1 + size(P) / p) size(B) w / p. What is relative to the values is below kQuotientRound: the
+// roundings of 1 / P and of the products with it, 3 u each way, and those of the ends.
 inline constexpr double kQuotientDoubt = 96 * 0x1p-53;
 // The reciprocal is right to 2^-21 before one step of Newton's method squares that.
 inline constexpr double kQuotientRound = 0x1p-40;
