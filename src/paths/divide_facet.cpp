@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <span>
+#include <utility>
 
 #include "paths/film_reach.h"
 #include "paths/same_histories.h"
@@ -35,7 +38,10 @@ class Divider {
     static Point point_of(const PartCorner& corner) {
         return {corner.look, corner.look->screen, corner.chord, corner.shared};
     }
-    Point between(std::initializer_list<const Point*> points, double least_weight);
+    Point between(std::initializer_list<const Point*> points);
+    Point middle_of(const Point& a, const Point& b);
+    void follow_all_at(const Point& point, double least_weight);
+    bool may_agree(std::span<const Point> points) const;
     void divide(Id cell, const Triangle& corners, int level);
     void split(Id cell, const Triangle& corners, const Inside& inside, int level);
     bool is_least(const Triangle& corners, int level) const;
@@ -56,7 +62,8 @@ class Divider {
     double reach_ = 0;
     bool mirror_ = true;
     DividedFacet divided_;
-    FacetPart projected_;  // what `project` found
+    FacetPart projected_;                                           // what `project` found
+    std::map<std::pair<const Look*, const Look*>, Point> middles_;  // of edges, by their ends
 };
 
 void Divider::note(const CutPaths& cut) {
@@ -65,7 +72,8 @@ void Divider::note(const CutPaths& cut) {
     divided_.cut.lost = std::max(divided_.cut.lost, cut.lost);
 }
 
-Point Divider::between(std::initializer_list<const Point*> points, double least_weight) {
+/// Of the paths there the principal ones alone are followed.
+Point Divider::between(std::initializer_list<const Point*> points) {
     Point middle;
     const double share = 1.0 / static_cast<double>(points.size());
     for (const Point* one : points) {
@@ -73,11 +81,37 @@ Point Divider::between(std::initializer_list<const Point*> points, double least_
         middle.chord += share * one->chord;
     }
     divided_.looks.push_back(look_through(looking_, {middle.screen, middle.chord, reach_},
-                                          {.side = side_, .least_weight = least_weight}));
+                                          {.side = side_, .principal_only = true}));
     middle.look = &divided_.looks.back();
-    if (!params_.estimates) set_beside(looking_, *middle.look);
     note(middle.look->cut);
     return middle;
+}
+
+/// Of an edge: two parts of the facet have it.
+Point Divider::middle_of(const Point& a, const Point& b) {
+    std::pair<const Look*, const Look*> ends{a.look, b.look};
+    if (std::less<>()(ends.second, ends.first)) std::swap(ends.first, ends.second);
+    const auto [known, is_new] = middles_.try_emplace(ends);
+    if (is_new) known->second = between({&a, &b});
+    return known->second;
+}
+
+void Divider::follow_all_at(const Point& point, double least_weight) {
+    if (!point.look->principal_only) return;
+    follow_all(looking_, *point.look, least_weight);
+    if (!params_.estimates) set_beside(looking_, *point.look);
+    note(point.look->cut);
+}
+
+/// False where no fainter paths at these points could make project() true.
+bool Divider::may_agree(std::span<const Point> points) const {
+    if (mirror_) return true;
+    const Look& first = *points[0].look;
+    return std::all_of(points.begin(), points.end(), [&](const Point& point) {
+        const Look& look = *point.look;
+        return look.state == LookState::kSeen && look.front == first.front &&
+               (&look == &first || same_principal(first.segments, look.segments));
+    });
 }
 
 FacetPart Divider::part_of(const Triangle& corners, int level) const {
@@ -210,13 +244,20 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
     if (level > 0 &&
         !may_reach_film({corners[0].screen, corners[1].screen, corners[2].screen}, looking_.camera.film))
         return trace(cell, corners, level);
-    const double fainter = kFainter * kLeastWeight;
-    const Inside inside{between({&corners[1], &corners[2]}, fainter),
-                        between({&corners[2], &corners[0]}, fainter),
-                        between({&corners[0], &corners[1]}, fainter),
-                        between({&corners[0], &corners[1], &corners[2]}, kLeastWeight)};
-    if (layered(corners, inside, level) || project(corners, inside, level))
-        return end(cell, std::move(projected_));
+    // Nobody looks into a part that would be traced anyway.
+    if (is_least(corners, level) && !may_agree(corners)) return trace(cell, corners, level);
+    Inside inside{middle_of(corners[1], corners[2]), middle_of(corners[2], corners[0]),
+                  middle_of(corners[0], corners[1])};
+    if (may_agree(std::array{corners[0], corners[1], corners[2], inside[0], inside[1], inside[2]})) {
+        inside[3] = between({&corners[0], &corners[1], &corners[2]});
+        if (may_agree(std::array{corners[0], inside[3]})) {
+            for (const Point& corner : corners) follow_all_at(corner, kFainter * kLeastWeight);
+            for (std::size_t k = 0; k < 3; ++k) follow_all_at(inside[k], kFainter * kLeastWeight);
+            follow_all_at(inside[3], kLeastWeight);
+            if (layered(corners, inside, level) || project(corners, inside, level))
+                return end(cell, std::move(projected_));
+        }
+    }
     split(cell, corners, inside, level);
 }
 

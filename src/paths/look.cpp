@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "paths/kappa.h"
 
@@ -20,6 +21,16 @@ Meeting meeting_at(const Looking& looking, const Place& place, const Vec3& incid
     return {looking.optic, normalize_or_zero(incident), place.point, place.normal, front};
 }
 
+/// Follows the paths of a look that is otherwise set.
+void follow(const Looking& looking, Look& look, double least_weight) {
+    FollowedPaths followed = follow_paths(
+        *looking.world,
+        {meeting_at(looking, look.place, look.incident, look.front), length(look.incident), look.around},
+        {.objects = nullptr, .least_weight = least_weight});
+    look.segments = std::move(followed.segments);
+    look.cut = followed.cut;
+}
+
 /// The paths from `place`, where this ray of the camera arrives.
 Look arrive(const Looking& looking, const Place& place, const CornerView& view, const LookParams& params) {
     const Vec3& incident = view.incident;
@@ -35,11 +46,13 @@ Look arrive(const Looking& looking, const Place& place, const CornerView& view, 
     }
     look.state = LookState::kSeen;
     look.around = looking.camera.media(view.screen);
-    FollowedPaths followed = follow_paths(
-        *looking.world, {meeting_at(looking, place, incident, look.front), length(incident), look.around},
-        {.objects = nullptr, .least_weight = params.least_weight});
-    look.segments = std::move(followed.segments);
-    look.cut = followed.cut;
+    look.principal_only = params.principal_only;
+    if (!params.principal_only) {
+        follow(looking, look, params.least_weight);
+        return look;
+    }
+    follow(looking, look, std::numeric_limits<double>::infinity());
+    look.cut.faint = 0;
     return look;
 }
 
@@ -143,6 +156,12 @@ Look look_through(const Looking& looking, const Chord& chord, const LookParams& 
     }
     look.screen = chord.screen;
     return look;
+}
+
+void follow_all(const Looking& looking, Look& look, double least_weight) {
+    if (!look.principal_only) return;
+    follow(looking, look, least_weight);
+    look.principal_only = false;
 }
 
 void set_beside(const Looking& looking, Look& look) {

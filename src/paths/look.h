@@ -69,7 +69,8 @@ struct Look {
     Media around;       // what the camera's ray starts in
     Place place;
     std::vector<PathSegment> segments;  // of kSeen
-    CutPaths cut;
+    bool principal_only = false;        // of its paths none but the principal ones were followed
+    CutPaths cut;                       // of those that were
     std::vector<Beside>
         beside;  // two, where set_beside was asked: along u and along v, or where the camera is
                  // not linear along the film's x and y; fewer where the surface ends; else none
@@ -79,10 +80,11 @@ struct Look {
 /// Which side of the surface is looked at. kNearest: the one that the ray meets first.
 enum class LookSide : std::uint8_t { kFront, kBack, kNearest };
 
-/// A side to look at, and how faint paths are followed.
+/// A side to look at, and which paths are followed.
 struct LookParams {
     LookSide side = LookSide::kFront;
     double least_weight = kLeastWeight;
+    bool principal_only = false;  // follow_all() may follow the others later
 };
 
 /// The paths from a place that is known to lie on the surface, and which the camera sees so. Not for
@@ -99,6 +101,9 @@ struct Chord {
     double reach = 0;
 };
 Look look_through(const Looking& looking, const Chord& chord, const LookParams& params);
+
+/// Follows all paths of a look of which the principal ones alone were followed, down to `least_weight`.
+void follow_all(const Looking& looking, Look& look, double least_weight);
 
 /// Follows the paths of a look once more from two places beside it.
 void set_beside(const Looking& looking, Look& look);

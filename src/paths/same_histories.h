@@ -15,4 +15,8 @@ std::vector<std::size_t> matched(const std::vector<PathSegment>& histories,
 /// Whether no principal path and none that carries much light is left out of `match`.
 bool covers(const std::vector<std::size_t>& match, const std::vector<PathSegment>& segments);
 
+/// Whether the principal paths have the same histories: if not, no two lists with these among them are
+/// matched() and covered both ways, whatever fainter paths there are.
+bool same_principal(const std::vector<PathSegment>& a, const std::vector<PathSegment>& b);
+
 }  // namespace trilens
