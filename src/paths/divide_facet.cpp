@@ -3,56 +3,50 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <map>
 #include <span>
-#include <utility>
 
+#include "paths/facet_looks.h"
 #include "paths/film_reach.h"
 #include "paths/same_histories.h"
 
 namespace trilens {
 namespace {
 
-struct Point {
-    Look* look = nullptr;
-    Vec3 screen{0}, chord{0};
-    Id shared = kNone;
-};
-
 class Divider {
   public:
     Divider(const Looking& looking, LookSide side, double reach, const DivideParams& params)
-        : looking_(looking), side_(side), params_(params), reach_(reach) {
+        : looking_(looking),
+          side_(side),
+          params_(params),
+          reach_(reach),
+          looks_(looking, {side, reach, !params.estimates}) {
         mirror_ = looking.world->optics[looking.optic].mirror;
     }
     DividedFacet divide(const std::array<PartCorner, 3>& from);
     DividedFacet divide_on(const FacetPart& part);
 
   private:
-    using Triangle = std::array<Point, 3>;
+    using Triangle = std::array<FacetPoint, 3>;
 
-    using Inside = std::array<Point, 4>;  // the edges' middles, opposite to the corners, and the centre
+    using Inside = std::array<FacetPoint, 4>;  // the edges' middles, opposite to the corners, and the centre
 
-    static Point point_of(const PartCorner& corner) {
+    static FacetPoint point_of(const PartCorner& corner) {
         return {corner.look, corner.look->screen, corner.chord, corner.shared};
     }
-    Point between(std::initializer_list<const Point*> points);
-    Point middle_of(const Point& a, const Point& b);
-    void follow_all_at(const Point& point, double least_weight);
-    bool may_agree(std::span<const Point> points) const;
     void divide(Id cell, const Triangle& corners, int level);
     void split(Id cell, const Triangle& corners, const Inside& inside, int level);
     bool is_least(const Triangle& corners, int level) const;
     bool has_break(const Triangle& corners) const;
-    bool project(const Triangle& corners, std::span<const Point> inside, int level);
-    bool mirror_alone(const Triangle& corners, std::span<const Point> inside) const;
-    bool layered(const Triangle& corners, std::span<const Point> inside, int level);
+    bool project(const Triangle& corners, std::span<const FacetPoint> inside, int level);
+    bool mirror_alone(const Triangle& corners, std::span<const FacetPoint> inside) const;
+    bool layered(const Triangle& corners, std::span<const FacetPoint> inside, int level);
     bool divide_plain(Id cell, const Triangle& corners);
     void trace(Id cell, const Triangle& corners, int level);
+    /// False where no fainter paths at these points could make project() true. A mirror's are all principal.
+    bool may_project(std::span<const FacetPoint> points) const { return mirror_ || may_agree(points); }
+    DividedFacet take();
     void project_mirror(const Triangle& corners);
-    void note(const CutPaths& cut);
     void end(Id cell, FacetPart part);
     FacetPart part_of(const Triangle& corners, int level) const;
 
@@ -61,58 +55,10 @@ class Divider {
     const DivideParams& params_;
     double reach_ = 0;
     bool mirror_ = true;
+    FacetLooks looks_;
     DividedFacet divided_;
-    FacetPart projected_;                                           // what `project` found
-    std::map<std::pair<const Look*, const Look*>, Point> middles_;  // of edges, by their ends
+    FacetPart projected_;  // what `project` found
 };
-
-void Divider::note(const CutPaths& cut) {
-    divided_.cut.faint = std::max(divided_.cut.faint, cut.faint);
-    divided_.cut.too_deep = std::max(divided_.cut.too_deep, cut.too_deep);
-    divided_.cut.lost = std::max(divided_.cut.lost, cut.lost);
-}
-
-/// Of the paths there the principal ones alone are followed.
-Point Divider::between(std::initializer_list<const Point*> points) {
-    Point middle;
-    const double share = 1.0 / static_cast<double>(points.size());
-    for (const Point* one : points) {
-        middle.screen += share * one->screen;
-        middle.chord += share * one->chord;
-    }
-    divided_.looks.push_back(look_through(looking_, {middle.screen, middle.chord, reach_},
-                                          {.side = side_, .principal_only = true}));
-    middle.look = &divided_.looks.back();
-    note(middle.look->cut);
-    return middle;
-}
-
-/// Of an edge: two parts of the facet have it.
-Point Divider::middle_of(const Point& a, const Point& b) {
-    std::pair<const Look*, const Look*> ends{a.look, b.look};
-    if (std::less<>()(ends.second, ends.first)) std::swap(ends.first, ends.second);
-    const auto [known, is_new] = middles_.try_emplace(ends);
-    if (is_new) known->second = between({&a, &b});
-    return known->second;
-}
-
-void Divider::follow_all_at(const Point& point, double least_weight) {
-    if (!point.look->principal_only) return;
-    follow_all(looking_, *point.look, least_weight);
-    if (!params_.estimates) set_beside(looking_, *point.look);
-    note(point.look->cut);
-}
-
-/// False where no fainter paths at these points could make project() true.
-bool Divider::may_agree(std::span<const Point> points) const {
-    if (mirror_) return true;
-    const Look& first = *points[0].look;
-    return std::all_of(points.begin(), points.end(), [&](const Point& point) {
-        const Look& look = *point.look;
-        return look.state == LookState::kSeen && look.front == first.front &&
-               (&look == &first || same_principal(first.segments, look.segments));
-    });
-}
 
 FacetPart Divider::part_of(const Triangle& corners, int level) const {
     FacetPart part;
@@ -125,16 +71,17 @@ FacetPart Divider::part_of(const Triangle& corners, int level) const {
 }
 
 /// A mirror that shows no other optic there has rays beyond its silhouette too: the mirror law goes on.
-bool Divider::mirror_alone(const Triangle& corners, std::span<const Point> inside) const {
+bool Divider::mirror_alone(const Triangle& corners, std::span<const FacetPoint> inside) const {
     if (!mirror_) return false;
     const auto alone = [](const Look& look) {
         return look.state != LookState::kSeen || (look.segments.size() == 1 && look.segments[0].ends);
     };
     return std::all_of(corners.begin(), corners.end(),
-                       [&](const Point& corner) {
+                       [&](const FacetPoint& corner) {
                            return corner.look->state != LookState::kMissed && alone(*corner.look);
                        }) &&
-           std::all_of(inside.begin(), inside.end(), [&](const Point& point) { return alone(*point.look); });
+           std::all_of(inside.begin(), inside.end(),
+                       [&](const FacetPoint& point) { return alone(*point.look); });
 }
 
 /// The optic that the path over a mirror goes on to; kNone: to none.
@@ -157,9 +104,9 @@ void Divider::project_mirror(const Triangle& corners) {
 }
 
 /// Whether the layers over this mirror show what the exact paths meet next, wherever they were looked at.
-bool Divider::layered(const Triangle& corners, std::span<const Point> inside, int level) {
+bool Divider::layered(const Triangle& corners, std::span<const FacetPoint> inside, int level) {
     if (!params_.layers_agree || level > 0 || !mirror_) return false;
-    const auto agrees = [&](const Point& point) {
+    const auto agrees = [&](const FacetPoint& point) {
         const Look& look = *point.look;
         if (look.state != LookState::kSeen) return true;
         return !look.segments.empty() && look.screen.z > 0 &&
@@ -170,7 +117,8 @@ bool Divider::layered(const Triangle& corners, std::span<const Point> inside, in
         return false;
     projected_ = part_of(corners, level);
     projected_.layered = true;
-    for (const Point& point : inside) projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
+    for (const FacetPoint& point : inside)
+        projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
     project_mirror(corners);
     return true;
 }
@@ -180,7 +128,7 @@ bool Divider::has_break(const Triangle& corners) const {
     for (int axis = 0; axis < 2; ++axis)
         for (const double at : looking_.camera.breaks[static_cast<std::size_t>(axis)]) {
             int before = 0, behind = 0;
-            for (const Point& corner : corners) {
+            for (const FacetPoint& corner : corners) {
                 before += corner.screen[axis] < at * corner.screen.z;
                 behind += corner.screen[axis] > at * corner.screen.z;
             }
@@ -189,10 +137,11 @@ bool Divider::has_break(const Triangle& corners) const {
     return false;
 }
 
-bool Divider::project(const Triangle& corners, std::span<const Point> inside, int level) {
+bool Divider::project(const Triangle& corners, std::span<const FacetPoint> inside, int level) {
     if (has_break(corners)) return false;
     projected_ = part_of(corners, level);
-    for (const Point& point : inside) projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
+    for (const FacetPoint& point : inside)
+        projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
     if (!looking_.world->reflect && mirror_) return true;
     if (mirror_alone(corners, inside)) {
         project_mirror(corners);
@@ -222,8 +171,8 @@ void Divider::end(Id cell, FacetPart part) {
 }
 
 /// Infinite where the eye's plane passes through.
-double screen_area(const std::array<Point, 3>& corners) {
-    const auto behind = [](const Point& corner) { return !(corner.screen.z > 0); };
+double screen_area(const std::array<FacetPoint, 3>& corners) {
+    const auto behind = [](const FacetPoint& corner) { return !(corner.screen.z > 0); };
     if (std::all_of(corners.begin(), corners.end(), behind)) return 0;
     std::array<Vec2, 3> at;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -245,15 +194,15 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
         !may_reach_film({corners[0].screen, corners[1].screen, corners[2].screen}, looking_.camera.film))
         return trace(cell, corners, level);
     // Nobody looks into a part that would be traced anyway.
-    if (is_least(corners, level) && !may_agree(corners)) return trace(cell, corners, level);
-    Inside inside{middle_of(corners[1], corners[2]), middle_of(corners[2], corners[0]),
-                  middle_of(corners[0], corners[1])};
-    if (may_agree(std::array{corners[0], corners[1], corners[2], inside[0], inside[1], inside[2]})) {
-        inside[3] = between({&corners[0], &corners[1], &corners[2]});
-        if (may_agree(std::array{corners[0], inside[3]})) {
-            for (const Point& corner : corners) follow_all_at(corner, kFainter * kLeastWeight);
-            for (std::size_t k = 0; k < 3; ++k) follow_all_at(inside[k], kFainter * kLeastWeight);
-            follow_all_at(inside[3], kLeastWeight);
+    if (is_least(corners, level) && !may_project(corners)) return trace(cell, corners, level);
+    Inside inside{looks_.middle_of(corners[1], corners[2]), looks_.middle_of(corners[2], corners[0]),
+                  looks_.middle_of(corners[0], corners[1])};
+    if (may_project(std::array{corners[0], corners[1], corners[2], inside[0], inside[1], inside[2]})) {
+        inside[3] = looks_.between({&corners[0], &corners[1], &corners[2]});
+        if (may_project(std::array{corners[0], inside[3]})) {
+            for (const FacetPoint& corner : corners) looks_.follow_all_at(corner, kFainter * kLeastWeight);
+            for (std::size_t k = 0; k < 3; ++k) looks_.follow_all_at(inside[k], kFainter * kLeastWeight);
+            looks_.follow_all_at(inside[3], kLeastWeight);
             if (layered(corners, inside, level) || project(corners, inside, level))
                 return end(cell, std::move(projected_));
         }
@@ -290,6 +239,12 @@ void Divider::split(Id cell, const Triangle& corners, const Inside& inside, int 
     divide(first + 3, {inside[0], inside[1], inside[2]}, level + 1);
 }
 
+DividedFacet Divider::take() {
+    divided_.looks = std::move(looks_.looks());
+    divided_.cut = looks_.cut();
+    return std::move(divided_);
+}
+
 DividedFacet Divider::divide(const std::array<PartCorner, 3>& from) {
     Triangle corners;
     bool has_normals = true;
@@ -297,14 +252,14 @@ DividedFacet Divider::divide(const std::array<PartCorner, 3>& from) {
         corners[k] = point_of(from[k]);
         const bool missed = from[k].look->state == LookState::kMissed;
         has_normals = has_normals && (missed || from[k].look->place.normal != Vec3(0));
-        note(from[k].look->cut);
+        looks_.note(from[k].look->cut);
     }
     divided_.cells.resize(1);
     if (!has_normals)
         end(0, part_of(corners, 0));
     else if (!divide_plain(0, corners))
         divide(0, corners, 0);
-    return std::move(divided_);
+    return take();
 }
 
 DividedFacet Divider::divide_on(const FacetPart& part) {
@@ -314,7 +269,7 @@ DividedFacet Divider::divide_on(const FacetPart& part) {
     for (std::size_t k = 0; k < 4; ++k) inside[k] = point_of(part.inside[k].at);
     divided_.cells.resize(1);
     split(0, corners, inside, part.level);
-    return std::move(divided_);
+    return take();
 }
 
 }  // namespace
