@@ -84,6 +84,19 @@ HWY_INLINE Sides sides_of(const Floats (&conic)[3][6], const Floats& doubt) {
     return {kAllLanes & ~bits(no_front), kAllLanes & ~bits(no_back)};
 }
 
+/// Those of the sides that the triangles' planes face somewhere in the tile. The conics' sum is along times
+/// the samples' weight, at least kLeastWeight: where that is below -3 edge_doubt, one of them is below
+/// -edge_doubt.
+HWY_INLINE Sides facing_sides(const Sides& sides, const Floats (&along)[3], const Floats& edge_doubt,
+                              const Floats& along_doubt) {
+    constexpr float kEdges = 8;
+    static_assert(kEdges * kLeastWeight > 3.1);
+    const Floats swing = absolute(along[1]) + absolute(along[2]);
+    const Floats doubt = multiply_add(set(kEdges), edge_doubt, along_doubt);
+    return {sides.front & ~bits(along[0] + swing + doubt < set(0.0f)),
+            sides.back & ~bits(along[0] - swing - doubt > set(0.0f))};
+}
+
 /// Lanes whose conics, turned, are not surely positive over the whole tile.
 HWY_INLINE std::uint32_t partly_outside(const Floats (&conic)[3][6], const Floats& doubt,
                                         const Floats& flip) {

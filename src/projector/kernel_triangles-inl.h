@@ -183,7 +183,7 @@ HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf
     Floats conic[3][6], above[3], along[3];
     triangle_forms(in_leaf, state.edges, conic, above, along);
     const Floats doubt = set(in_leaf.doubts.edge);
-    const Sides sides = sides_of(conic, doubt);
+    const Sides sides = facing_sides(sides_of(conic, doubt), along, doubt, set(in_leaf.doubts.along));
     const std::uint32_t live = first_lanes(leaf.count);
     const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
     const TileDrawing drawing{scene,          state, tile,
