@@ -107,12 +107,12 @@ struct alignas(64) LeafEdges {
     float normal[3][kLanes], height[kLanes];         // n and n . p_0
 };
 
-/// A node or leaf that waits, the smallest t at which a ray of the group can meet it, and a node's box from
-/// the tree's centre.
+/// A node or leaf that waits, the smallest t at which a ray of the group can meet it, and where its box is:
+/// in which node, in which lane.
 struct Waiting {
     float nearest;
     std::int32_t child;
-    float middle[3], half[3];
+    std::uint32_t parent, lane;
 };
 
 /// The rays of a vector's samples, weight divided out, from their facet's centre; 1 / direction, and origin /
