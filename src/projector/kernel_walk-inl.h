@@ -111,8 +111,9 @@ HWY_INLINE bool reaches_some_vector(const LeafTree& tree, const KernelState& sta
         middle[a] = 0.5f * (low + high);
         half[a] = 0.500001f * (high - low);
     }
+    PlaneHeights unused;
     for (const VectorBeams& beams : state.beams) {
-        if (vectors_at_box(beams, middle, half, next.nearest)) return true;
+        if (vectors_at_box(beams, middle, half, next.nearest, unused)) return true;
     }
     return false;
 }
