@@ -200,8 +200,8 @@ HWY_NOINLINE void draw_facet_lanes(const KernelScene& scene, const Leaf& leaf, s
                 if (is_settled({forms, *lane, leaf.triangle[*triangle], *lane}, doubts, whole, state))
                     continue;
                 touch_tile(scene, *lane, state);
-                meet_tile({scene, state, tile, doubts, leaf, tile.first_vector - state.first_vector}, forms,
-                          bound, *lane, leaf.triangle[*triangle], whole);
+                meet_tile({scene, state, tile, doubts, leaf, tile.first_vector - state.first_vector, nullptr},
+                          forms, bound, *lane, leaf.triangle[*triangle], whole);
             }
         }
     }

@@ -58,6 +58,7 @@ HWY_NOINLINE void move_tile_to_leaf(const TileLanes& lanes, std::size_t j, const
 /// Linear bounds of the three conics over the tile: conic <= bound[k] + u slope_u[k] + v slope_v[k].
 struct EdgeBounds {
     Floats slope_u[3], slope_v[3], bound[3];
+    Floats nearest;  // no sample meets it at less than this
 };
 
 /// Of which lanes may be seen from the front, where the conics are positive, and from the back.
@@ -127,6 +128,20 @@ HWY_INLINE Mask behind_tile(const TurnedDepth& depth, const Floats& above_doubt,
     const Floats slowest = depth.along[0] - absolute(depth.along[1]) - absolute(depth.along[2]);
     const Floats highest = depth.above[0] + absolute(depth.above[1]) + absolute(depth.above[2]);
     return (slowest > along_doubt) & (highest + above_doubt < set(0.0f));
+}
+
+/// The least t at which rays of the tile can meet the triangles, or nothing.
+HWY_INLINE Floats least_depth(const TurnedDepth& depth, const Floats& above_doubt,
+                              const Floats& along_doubt) {
+    // The doubts are at most a quarter of what they are of, so that t is more than half its value.
+    constexpr float kRound = 1e-4f;
+    const Floats along_swing = absolute(depth.along[1]) + absolute(depth.along[2]);
+    const Floats lowest = depth.above[0] - absolute(depth.above[1]) - absolute(depth.above[2]);
+    const Mask known =
+        (depth.along[0] - along_swing > set(4.0f) * along_doubt) & (lowest > set(4.0f) * above_doubt);
+    const Floats least =
+        (lowest - above_doubt) * reciprocal(depth.along[0] + along_swing + along_doubt) * set(1 - kRound);
+    return choose(known, least, set(-kNever));
 }
 
 /// The conics and the depth of 16 triangles through one tile.

@@ -179,12 +179,18 @@ struct QuotientCache {
     std::vector<std::uint32_t> left;  // vectors that they do not decide
 };
 
+/// By vector of a tile, like VectorBoxes: no farther hit can matter.
+struct alignas(64) VectorLimits {
+    float farthest[kLanes];
+};
+
 /// Everything that one thread needs for one batch.
 struct KernelState {
     TileLanes lanes;
     GroupBeam beam;
     LeafEdges edges;
     alignas(64) float farthest[kLanes];  // by tile: no farther hit can matter
+    std::vector<VectorLimits> limits;    // like the boxes of the group's tiles
     float group_farthest = kNever;
     // By tile: what is known of all its samples at once, until one of its vectors meets another triangle.
     std::array<WholeTile, kLanes> whole;

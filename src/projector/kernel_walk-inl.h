@@ -67,11 +67,15 @@ HWY_NOINLINE void refresh_farthest(const KernelScene& scene, KernelState& state)
             continue;
         }
         Floats high = set(-kNever);
+        VectorLimits* limits = limits_of(scene, j, state);
+        const std::uint32_t first = state.tile_vectors[k];
         for (std::uint32_t i = state.tile_vectors[k]; i < state.tile_vectors[k + 1]; ++i) {
             const Mask valid = mask_of(scene.tiles->valid[state.first_vector + i]);
             const Floats own = choose(valid, load(state.nearest[i].high), set(-kNever));
             high = largest(high, own);
-            if (state.beams_made) state.beams[i / kLanes].farthest[i % kLanes] = largest_lane(own);
+            const float farthest = largest_lane(own);
+            if (limits) limits[(i - first) / kLanes].farthest[(i - first) % kLanes] = farthest;
+            if (state.beams_made) state.beams[i / kLanes].farthest[i % kLanes] = farthest;
         }
         state.farthest[state.first_lane + k] = largest_lane(high);
         state.group_farthest = std::max(state.group_farthest, state.farthest[state.first_lane + k]);
