@@ -56,6 +56,9 @@ HWY_INLINE void begin_group(const KernelScene& scene, const TileGroup& group, Ke
         state.tile_vectors[i] = tile[i].first_vector - state.first_vector;
         state.vectors = state.tile_vectors[i + 1] = state.tile_vectors[i] + tile[i].vectors;
     }
+    const SampleTile& last = tile[group.count - 1];
+    state.limits.resize(last.first_boxes + (last.vectors + kLanes - 1) / kLanes - tile[0].first_boxes);
+    for (VectorLimits& limits : state.limits) store(set(kNever), limits.farthest);
     state.covered = 0;
     state.untouched = first_lanes(group.count) << state.first_lane;
     begin_vectors(scene, samples, state);
@@ -115,6 +118,7 @@ HWY_INLINE bool draw_mixed_vectors(const KernelScene& scene, const MixedGroup& g
     state.tile_vectors[0] = 0;
     state.tile_vectors[1] = count;
     state.untouched = state.covered = 0;
+    state.limits.clear();
     begin_vectors(scene, count * kLanes, state);
     if (!set_up_mixed(scene, group, state)) return false;
     walk_group(scene, LeafMode::kRays, state);

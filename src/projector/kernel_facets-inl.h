@@ -173,7 +173,7 @@ HWY_NOINLINE void draw_facet_lanes(const KernelScene& scene, const Leaf& leaf, s
     for (Each triangle(triangles); triangle; ++triangle) {
         Floats conic[3][6], above[3], along[3];
         facet_forms(in_leaf, state.edges, *triangle, conic, above, along);
-        const Sides sides = sides_of(conic, doubt);
+        const Sides sides = facing_sides(sides_of(conic, doubt), along, doubt, load(in_leaf.along_doubt));
         const std::uint32_t first_back = sides.back & ~sides.front, second_back = sides.back & sides.front;
         for (int pass = 0; pass < 2; ++pass) {
             std::uint32_t lanes = tiles & (pass == 0 ? sides.front | sides.back : second_back);
@@ -200,8 +200,8 @@ HWY_NOINLINE void draw_facet_lanes(const KernelScene& scene, const Leaf& leaf, s
                 if (is_settled({forms, *lane, leaf.triangle[*triangle], *lane}, doubts, whole, state))
                     continue;
                 touch_tile(scene, *lane, state);
-                meet_tile({scene, state, tile, doubts, leaf, tile.first_vector - state.first_vector}, forms,
-                          bound, *lane, leaf.triangle[*triangle], whole);
+                meet_tile({scene, state, tile, doubts, leaf, tile.first_vector - state.first_vector, nullptr},
+                          forms, bound, *lane, leaf.triangle[*triangle], whole);
             }
         }
     }

@@ -58,6 +58,7 @@ HWY_NOINLINE void move_tile_to_leaf(const TileLanes& lanes, std::size_t j, const
 /// Linear bounds of the three conics over the tile: conic <= bound[k] + u slope_u[k] + v slope_v[k].
 struct EdgeBounds {
     Floats slope_u[3], slope_v[3], bound[3];
+    Floats nearest;  // no sample meets it at less than this
 };
 
 /// Of which lanes may be seen from the front, where the conics are positive, and from the back.
@@ -82,6 +83,19 @@ HWY_INLINE Sides sides_of(const Floats (&conic)[3][6], const Floats& doubt) {
         no_back = no_back | (middle - swing > set(0.0f));
     }
     return {kAllLanes & ~bits(no_front), kAllLanes & ~bits(no_back)};
+}
+
+/// Those of the sides that the triangles' planes face somewhere in the tile. The conics' sum is along times
+/// the samples' weight, at least kLeastWeight: where that is below -3 edge_doubt, one of them is below
+/// -edge_doubt.
+HWY_INLINE Sides facing_sides(const Sides& sides, const Floats (&along)[3], const Floats& edge_doubt,
+                              const Floats& along_doubt) {
+    constexpr float kEdges = 8;
+    static_assert(kEdges * kLeastWeight > 3.1);
+    const Floats swing = absolute(along[1]) + absolute(along[2]);
+    const Floats doubt = multiply_add(set(kEdges), edge_doubt, along_doubt);
+    return {sides.front & ~bits(along[0] + swing + doubt < set(0.0f)),
+            sides.back & ~bits(along[0] - swing - doubt > set(0.0f))};
 }
 
 /// Lanes whose conics, turned, are not surely positive over the whole tile.
@@ -114,6 +128,20 @@ HWY_INLINE Mask behind_tile(const TurnedDepth& depth, const Floats& above_doubt,
     const Floats slowest = depth.along[0] - absolute(depth.along[1]) - absolute(depth.along[2]);
     const Floats highest = depth.above[0] + absolute(depth.above[1]) + absolute(depth.above[2]);
     return (slowest > along_doubt) & (highest + above_doubt < set(0.0f));
+}
+
+/// The least t at which rays of the tile can meet the triangles, or nothing.
+HWY_INLINE Floats least_depth(const TurnedDepth& depth, const Floats& above_doubt,
+                              const Floats& along_doubt) {
+    // The doubts are at most a quarter of what they are of, so that t is more than half its value.
+    constexpr float kRound = 1e-4f;
+    const Floats along_swing = absolute(depth.along[1]) + absolute(depth.along[2]);
+    const Floats lowest = depth.above[0] - absolute(depth.above[1]) - absolute(depth.above[2]);
+    const Mask known =
+        (depth.along[0] - along_swing > set(4.0f) * along_doubt) & (lowest > set(4.0f) * above_doubt);
+    const Floats least =
+        (lowest - above_doubt) * reciprocal(depth.along[0] + along_swing + along_doubt) * set(1 - kRound);
+    return choose(known, least, set(-kNever));
 }
 
 /// The conics and the depth of 16 triangles through one tile.

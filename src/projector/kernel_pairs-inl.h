@@ -55,18 +55,20 @@ HWY_NOINLINE Extent extent_of(const EdgeBounds& e) {
 /// A tile's vectors' boxes, 16 in each element.
 struct TileBoxes {
     const VectorBoxes* boxes;
+    const VectorLimits* limits;
     std::uint32_t vectors;
 };
 
 /// Rectangles of local coordinates: middles and half sizes.
 struct BoxLanes {
-    Floats u, v, half_u, half_v;
+    Floats u, v, half_u, half_v, farthest;
 };
 
 /// Where the triangle is surely not in the box. Lanes are triangles with one box, or boxes with one triangle.
 HWY_INLINE Mask outside_box(const EdgeBounds& bounds, const Extent& extent, const BoxLanes& box) {
     Mask outside = (box.u + box.half_u < extent.u_low) | (box.u - box.half_u > extent.u_high) |
-                   (box.v + box.half_v < extent.v_low) | (box.v - box.half_v > extent.v_high);
+                   (box.v + box.half_v < extent.v_low) | (box.v - box.half_v > extent.v_high) |
+                   (bounds.nearest > box.farthest);
     for (int k = 0; k < 3; ++k) {
         const Floats u = bounds.slope_u[k], v = bounds.slope_v[k];
         const Floats highest =
@@ -81,7 +83,7 @@ HWY_INLINE Mask outside_box(const EdgeBounds& bounds, const Extent& extent, cons
 /// The bounds and the extents of 16 triangles, for one of them at a time.
 struct alignas(64) StoredBounds {
     float slope_u[3][kLanes], slope_v[3][kLanes], bound[3][kLanes];
-    float u_low[kLanes], u_high[kLanes], v_low[kLanes], v_high[kLanes];
+    float u_low[kLanes], u_high[kLanes], v_low[kLanes], v_high[kLanes], nearest[kLanes];
 };
 
 HWY_INLINE void store_bounds(const EdgeBounds& bounds, const Extent& extent, StoredBounds& stored) {
@@ -90,6 +92,7 @@ HWY_INLINE void store_bounds(const EdgeBounds& bounds, const Extent& extent, Sto
         store(bounds.slope_v[k], stored.slope_v[k]);
         store(bounds.bound[k], stored.bound[k]);
     }
+    store(bounds.nearest, stored.nearest);
     store(extent.u_low, stored.u_low);
     store(extent.u_high, stored.u_high);
     store(extent.v_low, stored.v_low);
@@ -99,6 +102,7 @@ HWY_INLINE void store_bounds(const EdgeBounds& bounds, const Extent& extent, Sto
 /// One triangle against 16 boxes.
 HWY_INLINE Mask one_outside_boxes(const StoredBounds& stored, std::size_t lane, const BoxLanes& boxes) {
     EdgeBounds bounds;
+    bounds.nearest = set(stored.nearest[lane]);
     for (int k = 0; k < 3; ++k) {
         bounds.slope_u[k] = set(stored.slope_u[k][lane]);
         bounds.slope_v[k] = set(stored.slope_v[k][lane]);
@@ -128,7 +132,9 @@ HWY_NOINLINE std::size_t list_pairs(const TileBoxes& tile, const EdgeBounds& all
     std::size_t count = 0;
     for (std::uint32_t first = 0; first < tile.vectors; first += kLanes) {
         const VectorBoxes& box = tile.boxes[first / kLanes];
-        const BoxLanes boxes{load(box.centre_u), load(box.centre_v), load(box.half_u), load(box.half_v)};
+        const float* const limits = tile.limits[first / kLanes].farthest;
+        const BoxLanes boxes{load(box.centre_u), load(box.centre_v), load(box.half_u), load(box.half_v),
+                             load(limits)};
         const Mask near = (boxes.u + boxes.half_u >= u_low) & (boxes.u - boxes.half_u <= u_high) &
                           (boxes.v + boxes.half_v >= v_low) & (boxes.v - boxes.half_v <= v_high);
         const std::uint32_t vectors = bits(near);
@@ -142,7 +148,7 @@ HWY_NOINLINE std::size_t list_pairs(const TileBoxes& tile, const EdgeBounds& all
         for (Each vector(vectors); vector; ++vector) {
             const std::size_t z = *vector;
             const BoxLanes one{set(box.centre_u[z]), set(box.centre_v[z]), set(box.half_u[z]),
-                               set(box.half_v[z])};
+                               set(box.half_v[z]), set(limits[z])};
             count += list_lanes(without(of, outside_box(bounds, extent, one)), (first + *vector) * kStep,
                                 pairs + count);
         }

@@ -223,7 +223,9 @@ HWY_NOINLINE void draw_ray_lanes(const KernelScene& scene, const Leaf& leaf, con
     RayDoubts doubts{};
     for (std::uint32_t g = 0; g * kLanes < state.vectors; ++g) {
         const std::uint32_t live = first_lanes(state.vectors - g * static_cast<std::uint32_t>(kLanes));
-        for (Each lane(live & vectors_at_box(state.beams[g], middle, leaf.half, nearest)); lane; ++lane) {
+        PlaneHeights heights;
+        for (Each lane(live & vectors_at_box(state.beams[g], middle, leaf.half, nearest, heights)); lane;
+             ++lane) {
             const std::uint32_t vector = g * static_cast<std::uint32_t>(kLanes) + *lane;
             if (!state.rays_made[vector]) make_vector_rays(scene, state, vector);
             if (state.tile_of_vector[vector] != tile) {
@@ -235,7 +237,7 @@ HWY_NOINLINE void draw_ray_lanes(const KernelScene& scene, const Leaf& leaf, con
             const std::uint32_t samples = scene.tiles->valid[state.first_vector + vector] &
                                           rays_at_leaf(rays, doubts, state.nearest[vector]);
             if (!samples) continue;
-            const std::uint32_t triangles = triangles_in_vector(state.beams[g], *lane, leaf, middle);
+            const std::uint32_t triangles = triangles_in_vector(state.beams[g], heights, *lane, leaf);
             if (!triangles) continue;
             RaysInLeaf r;
             move_rays_to_leaf(rays, doubts, leaf, r);

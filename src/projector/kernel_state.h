@@ -107,12 +107,12 @@ struct alignas(64) LeafEdges {
     float normal[3][kLanes], height[kLanes];         // n and n . p_0
 };
 
-/// A node or leaf that waits, the smallest t at which a ray of the group can meet it, and a node's box from
-/// the tree's centre.
+/// A node or leaf that waits, the smallest t at which a ray of the group can meet it, and where its box is:
+/// in which node, in which lane.
 struct Waiting {
     float nearest;
     std::int32_t child;
-    float middle[3], half[3];
+    std::uint32_t parent, lane;
 };
 
 /// The rays of a vector's samples, weight divided out, from their facet's centre; 1 / direction, and origin /
@@ -179,12 +179,18 @@ struct QuotientCache {
     std::vector<std::uint32_t> left;  // vectors that they do not decide
 };
 
+/// By vector of a tile, like VectorBoxes: no farther hit can matter.
+struct alignas(64) VectorLimits {
+    float farthest[kLanes];
+};
+
 /// Everything that one thread needs for one batch.
 struct KernelState {
     TileLanes lanes;
     GroupBeam beam;
     LeafEdges edges;
     alignas(64) float farthest[kLanes];  // by tile: no farther hit can matter
+    std::vector<VectorLimits> limits;    // like the boxes of the group's tiles
     float group_farthest = kNever;
     // By tile: what is known of all its samples at once, until one of its vectors meets another triangle.
     std::array<WholeTile, kLanes> whole;

@@ -21,6 +21,7 @@ struct TileDrawing {
     const TileDoubts& doubts;
     const Leaf& leaf;
     std::uint32_t first_vector;  // of the tile, in the group
+    const VectorLimits* limits;  // of its vectors
 };
 
 /// What meets vectors of a tile needs, in registers.
@@ -58,6 +59,13 @@ HWY_INLINE void meet_vector(const TileDrawing& drawing, const TileVectors& tile,
     const std::uint32_t doubtful = tile.valid[vector] & keep_nearest(tile.nearest[vector], triangle, meeting);
     if (HWY_UNLIKELY(doubtful != 0))
         list_doubts(drawing.state, drawing.first_vector + vector, doubtful, triangle);
+}
+
+/// Of the tile of lane j. None: the group has no tiles.
+HWY_INLINE VectorLimits* limits_of(const KernelScene& scene, std::size_t j, KernelState& state) {
+    if (state.limits.empty()) return nullptr;
+    const SampleTile* tiles = &scene.tiles->tiles[state.first_tile];
+    return &state.limits[tiles[j].first_boxes - tiles[state.first_lane].first_boxes];
 }
 
 /// Cells of the tile's lattice.
@@ -142,8 +150,8 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
     std::vector<std::uint32_t>& list = drawing.state.pairs;
     if (list.size() < (drawing.tile.vectors + 1) * kLanes) list.resize((drawing.tile.vectors + 1) * kLanes);
     const VectorBoxes* boxes = &drawing.scene.tiles->boxes[drawing.tile.first_boxes];
-    const std::size_t pairs =
-        list_pairs({boxes, drawing.tile.vectors}, bounds, extent, lanes & ~small, list.data());
+    const std::size_t pairs = list_pairs({boxes, drawing.limits, drawing.tile.vectors}, bounds, extent,
+                                         lanes & ~small, list.data());
     const TileVectors tile = vectors_of(drawing);
     const std::uint32_t* const pair = list.data();
     for (std::size_t p = 0; p < pairs; ++p)
@@ -183,11 +191,16 @@ HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf
     Floats conic[3][6], above[3], along[3];
     triangle_forms(in_leaf, state.edges, conic, above, along);
     const Floats doubt = set(in_leaf.doubts.edge);
-    const Sides sides = sides_of(conic, doubt);
+    const Sides sides = facing_sides(sides_of(conic, doubt), along, doubt, set(in_leaf.doubts.along));
     const std::uint32_t live = first_lanes(leaf.count);
     const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
-    const TileDrawing drawing{scene,          state, tile,
-                              in_leaf.doubts, leaf,  tile.first_vector - state.first_vector};
+    const TileDrawing drawing{scene,
+                              state,
+                              tile,
+                              in_leaf.doubts,
+                              leaf,
+                              tile.first_vector - state.first_vector,
+                              limits_of(scene, j, state)};
 
     // Front where it may be seen, else back; then the back of those that may be seen from both sides.
     const std::uint32_t first_back = sides.back & ~sides.front, second_back = sides.back & sides.front;
@@ -200,6 +213,7 @@ HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf
         if (!lanes) continue;
         Forms forms;
         EdgeBounds bounds;
+        bounds.nearest = least_depth(depth, set(in_leaf.doubts.above), set(in_leaf.doubts.along));
         for (int k = 0; k < 3; ++k) {
             bounds.slope_u[k] = flip_signs(conic[k][1], flip);
             bounds.slope_v[k] = flip_signs(conic[k][2], flip);

@@ -57,36 +57,42 @@ HWY_NOINLINE void make_vector_beams(const KernelScene& scene, KernelState& state
     }
 }
 
-/// Which of 16 vectors' beams reach a box, before their samples all see something nearer.
+/// The offsets of vectors' planes as seen from a box's middle.
+struct alignas(64) PlaneHeights {
+    float from_middle[4][kLanes];
+};
+
+/// Which of 16 vectors' beams reach a box, before their samples all see something nearer. Fills `heights`.
 HWY_INLINE std::uint32_t vectors_at_box(const VectorBeams& beams, const float* middle, const float* half,
-                                        float nearest) {
+                                        float nearest, PlaneHeights& heights) {
     const Floats cx = set(middle[0]), cy = set(middle[1]), cz = set(middle[2]);
     const Floats hx = set(half[0]), hy = set(half[1]), hz = set(half[2]);
     Mask missed = set(nearest) > load(beams.farthest);
     for (int k = 0; k < 4; ++k) {
         const Floats x = load(beams.plane[k][0]), y = load(beams.plane[k][1]), z = load(beams.plane[k][2]);
         const Floats swing = multiply_add(absolute(x), hx, multiply_add(absolute(y), hy, absolute(z) * hz));
-        const Floats height = multiply_add(x, cx, multiply_add(y, cy, multiply_add(z, cz, swing)));
-        missed = missed | (height < load(beams.offset[k]));
+        const Floats height =
+            subtract_product(x, cx, subtract_product(y, cy, subtract_product(z, cz, load(beams.offset[k]))));
+        store(height, heights.from_middle[k]);
+        missed = missed | (swing < height);
     }
     return kAllLanes & ~bits(missed);
 }
 
-/// The leaf's triangles that reach into one vector's beam.
-HWY_INLINE std::uint32_t triangles_in_vector(const VectorBeams& beams, std::size_t lane, const Leaf& leaf,
-                                             const float* middle) {
-    std::uint32_t missed = 0;
+/// The leaf's triangles that reach into one vector's beam. `heights`: of the planes over the leaf's middle.
+HWY_INLINE std::uint32_t triangles_in_vector(const VectorBeams& beams, const PlaneHeights& heights,
+                                             std::size_t lane, const Leaf& leaf) {
+    Mask missed = mask_of(0);
     for (int p = 0; p < 4; ++p) {
-        const float nx = beams.plane[p][0][lane], ny = beams.plane[p][1][lane], nz = beams.plane[p][2][lane];
-        const Floats x = set(nx), y = set(ny), z = set(nz);
-        const Floats at = set(nx * middle[0] + ny * middle[1] + nz * middle[2]);
+        const Floats x = set(beams.plane[p][0][lane]), y = set(beams.plane[p][1][lane]),
+                     z = set(beams.plane[p][2][lane]);
         Floats height = set(-kNever);
         for (int k = 0; k < 3; ++k)
             height = largest(height, multiply_add(x, load(leaf.x[k]),
                                                   multiply_add(y, load(leaf.y[k]), z * load(leaf.z[k]))));
-        missed |= bits(height + at < set(beams.offset[p][lane]));
+        missed = missed | (height < set(heights.from_middle[p][lane]));
     }
-    return first_lanes(leaf.count) & ~missed;
+    return first_lanes(leaf.count) & ~bits(missed);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,4 +1,4 @@
-// Builds the wide tree top down by medians, so that all leaves but the last are full.
+// Builds the wide tree top down by medians, so that almost all leaves are full.
 #include "projector/leaf_tree.h"
 
 #include <algorithm>
@@ -87,6 +87,9 @@ class Builder {
     std::vector<Range> cut(const Range& range);
     Part make_leaf(const Range& range) const;
     Part make(const Range& range);
+    Part make_node(const std::vector<Range>& ranges);
+    std::size_t put_large_last();
+    Part make_all();
 
     std::vector<Item> items_, scratch_;
     std::vector<FloatBox> box_;  // by triangle
@@ -204,9 +207,14 @@ Part Builder::make_leaf(const Range& range) const {
 
 Part Builder::make(const Range& range) {
     if (range.size() <= kLanes) return make_leaf(range);
-    const std::vector<Range> ranges = cut(range);
+    return make_node(cut(range));
+}
+
+/// Over consecutive ranges.
+Part Builder::make_node(const std::vector<Range>& ranges) {
+    const std::size_t all = ranges.back().last - ranges.front().first;
     std::vector<Part> children(ranges.size());
-    parallel_for(ranges.size(), std::max<std::size_t>(1, kTogether * ranges.size() / range.size()),
+    parallel_for(ranges.size(), std::max<std::size_t>(1, kTogether * ranges.size() / all),
                  [&](std::size_t first, std::size_t last) {
                      for (std::size_t i = first; i < last; ++i) children[i] = make(ranges[i]);
                  });
@@ -230,9 +238,37 @@ Part Builder::make(const Range& range) {
     return part;
 }
 
+/// Puts the triangles that span much of the tree behind all others. Returns how many others there are.
+std::size_t Builder::put_large_last() {
+    constexpr double kLarge = 0.25;
+    const double side = 2 * std::max(tree_.half.x, std::max(tree_.half.y, tree_.half.z));
+    const auto is_small = [&](const Item& item) {
+        const FloatBox& box = box_[item.triangle];
+        float longest = 0;
+        for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, box.high[k] - box.low[k]);
+        return longest < kLarge * side;
+    };
+    return static_cast<std::size_t>(std::stable_partition(items_.begin(), items_.end(), is_small) -
+                                    items_.begin());
+}
+
+/// Large triangles, as of a ground, have leaves of their own: among small ones they would spread the leaves'
+/// boxes and doubts over all.
+Part Builder::make_all() {
+    const Range all{0, items_.size()};
+    if (all.size() <= kLanes) return make(all);
+    const Range small{0, put_large_last()}, large{small.last, all.last};
+    if (small.size() == 0 || large.size() == 0) return make(all);
+    std::vector<Range> ranges;
+    if (small.size() > kLanes) ranges = cut(small);
+    if (ranges.empty() || ranges.size() == kLanes) ranges = {small};
+    ranges.push_back(large);
+    return make_node(ranges);
+}
+
 LeafTree Builder::build(std::vector<Id>& order) {
     if (items_.empty()) return {};
-    Part all = make({0, items_.size()});
+    Part all = make_all();
     tree_.root = all.root;
     tree_.nodes = std::move(all.nodes);
     order.resize(items_.size());

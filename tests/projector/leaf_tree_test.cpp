@@ -84,6 +84,34 @@ TEST_CASE("triangles that all coincide still make a tree") {
     CHECK(std::count(count.seen.begin(), count.seen.end(), 1) == kCount);
 }
 
+TEST_CASE("a large triangle shares no leaf with small ones") {
+    Random random(33);
+    for (const int small : {1, 30, 300, 5000}) {
+        for (const int large : {1, 12, 40}) {
+            if (small + large <= static_cast<int>(kLanes)) continue;
+            const auto is_large = [&](Id place) { return static_cast<int>(place) < large; };
+            TriangleScene scene;
+            for (int i = 0; i < small + large; ++i) {
+                const double half = is_large(static_cast<Id>(i)) ? 9 : 0.1;
+                const Vec3 p = random.in_cube(10 - half);
+                add_triangle(scene, p, p + Vec3(half, 0, 0.1 * half), p + Vec3(0, half, half));
+            }
+            const PreparedScene prepared(scene);
+            Count count;
+            count.seen.resize(scene.size(), 0);
+            visit(prepared.data(), prepared.data().leaves.root, {}, count);
+            CHECK(std::count(count.seen.begin(), count.seen.end(), 1) == small + large);
+            CHECK(count.outside == 0);
+            for (const Leaf& leaf : prepared.data().leaves.leaves) {
+                std::uint32_t of_large = 0;
+                for (std::size_t k = 0; k < leaf.count; ++k)
+                    of_large += is_large(prepared.data().triangles[leaf.triangle[k]].triangle());
+                CHECK((of_large == 0 || of_large == leaf.count));
+            }
+        }
+    }
+}
+
 TEST_CASE("any number of threads makes the same tree") {
     Random random(32);
     const TriangleScene scene = random_triangles(random, random_frame(random), 40000);
