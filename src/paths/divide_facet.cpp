@@ -43,6 +43,7 @@ class Divider {
     bool layered(const Triangle& corners, std::span<const FacetPoint> inside, int level);
     bool divide_plain(Id cell, const Triangle& corners);
     void trace(Id cell, const Triangle& corners, int level);
+    bool look_inside(const Triangle& corners, Inside& inside, int level);
     /// False where no fainter paths at these points could make project() true. A mirror's are all principal.
     bool may_project(std::span<const FacetPoint> points) const { return mirror_ || may_agree(points); }
     DividedFacet take();
@@ -188,6 +189,19 @@ bool Divider::is_least(const Triangle& corners, int level) const {
     return level >= params_.most_levels || screen_area(corners) < params_.least_area;
 }
 
+/// Whether projected_ stands for the part. Sets the centre, and has all paths followed, where the principal
+/// ones leave that open.
+bool Divider::look_inside(const Triangle& corners, Inside& inside, int level) {
+    const auto& [a, b, c, centre] = inside;
+    if (!may_project(std::array{corners[0], corners[1], corners[2], a, b, c})) return false;
+    inside[3] = looks_.between({&corners[0], &corners[1], &corners[2]});
+    if (!may_project(std::array{corners[0], centre})) return false;
+    for (const FacetPoint& point : {corners[0], corners[1], corners[2], a, b, c})
+        looks_.follow_all_at(point, kFainter * kLeastWeight);
+    looks_.follow_all_at(centre, kLeastWeight);
+    return layered(corners, inside, level) || project(corners, inside, level);
+}
+
 void Divider::divide(Id cell, const Triangle& corners, int level) {
     // Nobody sees what is off the film.
     if (level > 0 &&
@@ -197,16 +211,7 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
     if (is_least(corners, level) && !may_project(corners)) return trace(cell, corners, level);
     Inside inside{looks_.middle_of(corners[1], corners[2]), looks_.middle_of(corners[2], corners[0]),
                   looks_.middle_of(corners[0], corners[1])};
-    if (may_project(std::array{corners[0], corners[1], corners[2], inside[0], inside[1], inside[2]})) {
-        inside[3] = looks_.between({&corners[0], &corners[1], &corners[2]});
-        if (may_project(std::array{corners[0], inside[3]})) {
-            for (const FacetPoint& corner : corners) looks_.follow_all_at(corner, kFainter * kLeastWeight);
-            for (std::size_t k = 0; k < 3; ++k) looks_.follow_all_at(inside[k], kFainter * kLeastWeight);
-            looks_.follow_all_at(inside[3], kLeastWeight);
-            if (layered(corners, inside, level) || project(corners, inside, level))
-                return end(cell, std::move(projected_));
-        }
-    }
+    if (look_inside(corners, inside, level)) return end(cell, std::move(projected_));
     split(cell, corners, inside, level);
 }
 

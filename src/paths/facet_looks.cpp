@@ -15,7 +15,7 @@ FacetPoint FacetLooks::between(std::initializer_list<const FacetPoint*> points) 
         middle.chord += share * one->chord;
     }
     looks_.push_back(look_through(looking_, {middle.screen, middle.chord, params_.reach},
-                                  {.side = params_.side, .principal_only = true}));
+                                  {.side = params_.side, .least_weight = kPrincipalOnly}));
     middle.look = &looks_.back();
     note(middle.look->cut);
     return middle;
@@ -34,12 +34,6 @@ void FacetLooks::follow_all_at(const FacetPoint& point, double least_weight) {
     follow_all(looking_, *point.look, least_weight);
     if (params_.beside) set_beside(looking_, *point.look);
     note(point.look->cut);
-}
-
-void FacetLooks::note(const CutPaths& cut) {
-    cut_.faint = std::max(cut_.faint, cut.faint);
-    cut_.too_deep = std::max(cut_.too_deep, cut.too_deep);
-    cut_.lost = std::max(cut_.lost, cut.lost);
 }
 
 bool may_agree(std::span<const FacetPoint> points) {

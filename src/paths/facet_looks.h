@@ -42,7 +42,7 @@ class FacetLooks {
     void follow_all_at(const FacetPoint& point, double least_weight);
 
     /// Counts what the paths left out at a look, which need not be one of these.
-    void note(const CutPaths& cut);
+    void note(const CutPaths& cut) { cut_ = most_cut(cut_, cut); }
 
     /// The looks, at places that stay, and the most that any left out.
     std::deque<Look>& looks() { return looks_; }

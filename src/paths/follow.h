@@ -1,6 +1,7 @@
 // All paths of one ray over the exact optics: a tree of segments.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -34,6 +35,11 @@ struct CutPaths {
     double too_deep = 0;  // paths that would meet an optic after the last that is followed: they see past it
     double lost = 0;      // paths inside of more bodies at once than can be told
 };
+
+/// Of each share the larger one.
+inline CutPaths most_cut(const CutPaths& a, const CutPaths& b) {
+    return {std::max(a.faint, b.faint), std::max(a.too_deep, b.too_deep), std::max(a.lost, b.lost)};
+}
 
 /// Less of a sample's light than this is not followed: half a step of 8 bits.
 inline constexpr double kLeastWeight = 1.0 / 512;

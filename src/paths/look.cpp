@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "paths/kappa.h"
 
@@ -29,6 +28,8 @@ void follow(const Looking& looking, Look& look, double least_weight) {
         {.objects = nullptr, .least_weight = least_weight});
     look.segments = std::move(followed.segments);
     look.cut = followed.cut;
+    look.principal_only = least_weight == kPrincipalOnly;
+    if (look.principal_only) look.cut.faint = 0;  // nobody asked for those
 }
 
 /// The paths from `place`, where this ray of the camera arrives.
@@ -46,13 +47,7 @@ Look arrive(const Looking& looking, const Place& place, const CornerView& view, 
     }
     look.state = LookState::kSeen;
     look.around = looking.camera.media(view.screen);
-    look.principal_only = params.principal_only;
-    if (!params.principal_only) {
-        follow(looking, look, params.least_weight);
-        return look;
-    }
-    follow(looking, look, std::numeric_limits<double>::infinity());
-    look.cut.faint = 0;
+    follow(looking, look, params.least_weight);
     return look;
 }
 
@@ -159,9 +154,7 @@ Look look_through(const Looking& looking, const Chord& chord, const LookParams& 
 }
 
 void follow_all(const Looking& looking, Look& look, double least_weight) {
-    if (!look.principal_only) return;
-    follow(looking, look, least_weight);
-    look.principal_only = false;
+    if (look.principal_only) follow(looking, look, least_weight);
 }
 
 void set_beside(const Looking& looking, Look& look) {

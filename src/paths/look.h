@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -80,11 +81,13 @@ struct Look {
 /// Which side of the surface is looked at. kNearest: the one that the ray meets first.
 enum class LookSide : std::uint8_t { kFront, kBack, kNearest };
 
-/// A side to look at, and which paths are followed.
+/// As a least weight: the principal paths alone are followed. follow_all() may follow the others later.
+inline constexpr double kPrincipalOnly = std::numeric_limits<double>::infinity();
+
+/// A side to look at, and how faint paths are followed.
 struct LookParams {
     LookSide side = LookSide::kFront;
     double least_weight = kLeastWeight;
-    bool principal_only = false;  // follow_all() may follow the others later
 };
 
 /// The paths from a place that is known to lie on the surface, and which the camera sees so. Not for

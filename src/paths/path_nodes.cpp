@@ -27,9 +27,7 @@ void OpticPaths::append(Id facet, Id cell, DividedFacet& divided) {
         ++projected_count_;
         append_part(static_cast<Id>(leaves_.size() - 1), part);
     }
-    cut_.faint = std::max(cut_.faint, divided.cut.faint);
-    cut_.too_deep = std::max(cut_.too_deep, divided.cut.too_deep);
-    cut_.lost = std::max(cut_.lost, divided.cut.lost);
+    cut_ = most_cut(cut_, divided.cut);
 }
 
 Id OpticPaths::node_of(Id parent, const PathSegment& segment) {

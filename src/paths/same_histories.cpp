@@ -12,17 +12,18 @@ double largest(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
-/// The principal segments, and no others.
-std::vector<PathSegment> principal_of(const std::vector<PathSegment>& segments) {
-    std::vector<PathSegment> principal;
-    std::vector<Id> place(segments.size(), kNone);
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-        if (!segments[i].principal) continue;
-        place[i] = static_cast<Id>(principal.size());
-        PathSegment& segment = principal.emplace_back(segments[i]);
-        if (segment.parent != kNone) segment.parent = place[segment.parent];
-    }
-    return principal;
+/// The segment of the same kind as `wanted` behind `parent`; kNone where there is none.
+Id same_behind(Id parent, const PathSegment& wanted, const std::vector<PathSegment>& segments) {
+    const auto same = std::find_if(segments.begin(), segments.end(), [&](const PathSegment& one) {
+        return one.parent == parent && one.step == wanted.step && one.colours == wanted.colours &&
+               one.medium == wanted.medium && one.ends == wanted.ends && one.principal == wanted.principal;
+    });
+    return same == segments.end() ? kNone : static_cast<Id>(same - segments.begin());
+}
+
+std::ptrdiff_t count_principal(const std::vector<PathSegment>& segments) {
+    return std::count_if(segments.begin(), segments.end(),
+                         [](const PathSegment& segment) { return segment.principal; });
 }
 
 }  // namespace
@@ -32,13 +33,9 @@ std::vector<std::size_t> matched(const std::vector<PathSegment>& histories,
     std::vector<std::size_t> found;
     for (const PathSegment& wanted : histories) {
         const Id parent = wanted.parent == kNone ? kNone : static_cast<Id>(found[wanted.parent]);
-        const auto same = std::find_if(segments.begin(), segments.end(), [&](const PathSegment& one) {
-            return one.parent == parent && one.step == wanted.step && one.colours == wanted.colours &&
-                   one.medium == wanted.medium && one.ends == wanted.ends &&
-                   one.principal == wanted.principal;
-        });
-        if (same == segments.end()) return {};
-        found.push_back(static_cast<std::size_t>(same - segments.begin()));
+        const Id same = same_behind(parent, wanted, segments);
+        if (same == kNone) return {};
+        found.push_back(same);
     }
     return found;
 }
@@ -52,8 +49,14 @@ bool covers(const std::vector<std::size_t>& match, const std::vector<PathSegment
 }
 
 bool same_principal(const std::vector<PathSegment>& a, const std::vector<PathSegment>& b) {
-    const std::vector<PathSegment> of_a = principal_of(a), of_b = principal_of(b);
-    return of_a.size() == of_b.size() && matched(of_a, of_b).size() == of_a.size();
+    if (count_principal(a) != count_principal(b)) return false;
+    std::vector<Id> found(a.size(), kNone);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (!a[i].principal) continue;
+        found[i] = same_behind(a[i].parent == kNone ? kNone : found[a[i].parent], a[i], b);
+        if (found[i] == kNone) return false;
+    }
+    return true;
 }
 
 }  // namespace trilens

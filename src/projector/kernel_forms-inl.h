@@ -130,17 +130,19 @@ HWY_INLINE Mask behind_tile(const TurnedDepth& depth, const Floats& above_doubt,
     return (slowest > along_doubt) & (highest + above_doubt < set(0.0f));
 }
 
+/// Where the doubts are at most a quarter of what they are of, t is more than half its value, and bounds of
+/// it round by less than this.
+inline constexpr float kSureDepth = 4, kDepthRound = 1e-4f;
+
 /// The least t at which rays of the tile can meet the triangles, or nothing.
 HWY_INLINE Floats least_depth(const TurnedDepth& depth, const Floats& above_doubt,
                               const Floats& along_doubt) {
-    // The doubts are at most a quarter of what they are of, so that t is more than half its value.
-    constexpr float kRound = 1e-4f;
     const Floats along_swing = absolute(depth.along[1]) + absolute(depth.along[2]);
     const Floats lowest = depth.above[0] - absolute(depth.above[1]) - absolute(depth.above[2]);
-    const Mask known =
-        (depth.along[0] - along_swing > set(4.0f) * along_doubt) & (lowest > set(4.0f) * above_doubt);
-    const Floats least =
-        (lowest - above_doubt) * reciprocal(depth.along[0] + along_swing + along_doubt) * set(1 - kRound);
+    const Mask known = (depth.along[0] - along_swing > set(kSureDepth) * along_doubt) &
+                       (lowest > set(kSureDepth) * above_doubt);
+    const Floats least = (lowest - above_doubt) * reciprocal(depth.along[0] + along_swing + along_doubt) *
+                         set(1 - kDepthRound);
     return choose(known, least, set(-kNever));
 }
 

@@ -21,7 +21,7 @@ struct TileDrawing {
     const TileDoubts& doubts;
     const Leaf& leaf;
     std::uint32_t first_vector;  // of the tile, in the group
-    const VectorLimits* limits;  // of its vectors
+    const VectorLimits* limits;  // of its vectors; none where no pairs are listed
 };
 
 /// What meets vectors of a tile needs, in registers.

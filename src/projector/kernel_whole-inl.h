@@ -65,11 +65,9 @@ HWY_INLINE WholeDepth whole_depth(const Forms& forms, std::size_t lane, const Ti
     const float along_swing = swing(forms.along), above_swing = swing(forms.above);
     const float slowest = forms.along[0][lane] - along_swing, fastest = forms.along[0][lane] + along_swing;
     const float lowest = forms.above[0][lane] - above_swing, highest = forms.above[0][lane] + above_swing;
-    // The doubts are at most a quarter of what they are of, so that t is more than half its value.
-    if (!(slowest > 4 * doubts.along && lowest > 4 * doubts.above)) return {};
-    constexpr float kRound = 1e-4f;
-    return {true, (1 - kRound) * (lowest - doubts.above) / (fastest + doubts.along),
-            (1 + kRound) * (highest + doubts.above) / (slowest - doubts.along)};
+    if (!(slowest > kSureDepth * doubts.along && lowest > kSureDepth * doubts.above)) return {};
+    return {true, (1 - kDepthRound) * (lowest - doubts.above) / (fastest + doubts.along),
+            (1 + kDepthRound) * (highest + doubts.above) / (slowest - doubts.along)};
 }
 
 /// A triangle, whose forms are in `lane`, over the tile of lane `tile`.

@@ -103,14 +103,11 @@ void ShownDrawer::note(const Shown& shown, const std::vector<Id>& leaf) {
         const PathLeaf& of_sample = shown.paths.leaves()[leaf[s]];
         SampleView& view = views_.samples[s];
         OpticView& on_optic = views_.on_optic(view);
-        const CutPaths& cut = shown.paths.cut();
         if (shown.depth == 0) view.leaf = leaf[s];
         view.layers = shown.depth;
         view.level = of_sample.level;
         on_optic.predicted = of_sample.predicted;
-        on_optic.cut.faint = std::max(on_optic.cut.faint, cut.faint);
-        on_optic.cut.too_deep = std::max(on_optic.cut.too_deep, cut.too_deep);
-        on_optic.cut.lost = std::max(on_optic.cut.lost, cut.lost);
+        on_optic.cut = most_cut(on_optic.cut, shown.paths.cut());
         if (of_sample.method == LeafMethod::kTraced) traced_.push_back(static_cast<Id>(s));
     }
     views_.projected_facets += shown.paths.projected_count();

@@ -94,7 +94,7 @@ TEST_CASE("a look's principal paths are the same whether others are followed or 
         const Vec3 point(random.uniform(-1, 1), random.uniform(-1, 1), 0.2);
         const Chord chord{looking.camera.screen(point), point, 1.5};
         const Look all = look_through(looking, chord, {.least_weight = kFainter * kLeastWeight});
-        Look one = look_through(looking, chord, {.principal_only = true});
+        Look one = look_through(looking, chord, {.least_weight = kPrincipalOnly});
         REQUIRE(all.state == one.state);
         if (all.state != LookState::kSeen) continue;
         ++seen;
