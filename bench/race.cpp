@@ -56,22 +56,23 @@ struct Cell {
 void print(const Cell& c, std::FILE* csv) {
     const RaceResult& r = c.result;
     std::printf(
-        "%-5s %8zu %3d %9s %2d %7s %7zu | %8.2f %8.2f %8.1f %8.1f | %8.2f %8.2f %8.1f %8.1f | %5.2f %5.2f "
-        "%5.2f %5.2f | %zu = %zu + %zu + %zu\n",
+        "%-5s %8zu %3d %9s %2d %7s %7zu | %8.2f %8.2f %8.2f %8.1f %8.1f | %8.2f %8.2f %8.1f %8.1f | %5.2f "
+        "%5.2f %5.2f %5.2f %5.2f | %zu = %zu + %zu + %zu\n",
         c.workload.c_str(), r.triangles, c.n, c.film.c_str(), r.threads, r.projector_isa.c_str(), r.pixels,
-        r.draw_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms, r.trace_written_ms, r.rays_ms,
-        r.build_ms, r.ratio.draw, r.ratio.written, r.ratio.with_build, r.ratio.whole, r.mismatches.pixels,
-        r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);
+        r.visible_ms, r.draw_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms, r.trace_written_ms,
+        r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.draw, r.ratio.written, r.ratio.with_build,
+        r.ratio.whole, r.mismatches.pixels, r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);
     std::fflush(stdout);
     if (!csv) return;
-    std::fprintf(csv,
-                 "%s,%zu,%d,%s,%d,%s,%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%."
-                 "4f,%.4f,%zu,%zu,%zu,%zu\n",
-                 c.workload.c_str(), r.triangles, c.n, c.film.c_str(), r.threads, r.projector_isa.c_str(),
-                 r.pixels, r.facets, r.draw_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms,
-                 r.trace_written_ms, r.rays_ms, r.build_ms, r.ratio.draw, r.ratio.written, r.ratio.with_build,
-                 r.ratio.whole, r.slowest_ratio, r.fastest_ratio, r.mismatches.pixels, r.mismatches.edge,
-                 r.mismatches.depth, r.mismatches.unexplained);
+    std::fprintf(
+        csv,
+        "%s,%zu,%d,%s,%d,%s,%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%."
+        "4f,%.4f,%zu,%zu,%zu,%zu\n",
+        c.workload.c_str(), r.triangles, c.n, c.film.c_str(), r.threads, r.projector_isa.c_str(), r.pixels,
+        r.facets, r.visible_ms, r.draw_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms,
+        r.trace_written_ms, r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.draw, r.ratio.written,
+        r.ratio.with_build, r.ratio.whole, r.slowest_ratio, r.fastest_ratio, r.mismatches.pixels,
+        r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);
     std::fflush(csv);
 }
 
@@ -81,16 +82,18 @@ int run(const std::map<std::string, Values>& chosen) {
     std::FILE* csv = file.empty() ? nullptr : std::fopen(file.c_str(), "w");
     if (!file.empty() && !csv) throw std::runtime_error("cannot write " + file);
     if (csv)
-        std::fprintf(csv,
-                     "workload,triangles,n,film,threads,isa,pixels,facets,draw_ms,written_ms,samples_ms,"
-                     "prepare_ms,trace_ms,"
-                     "trace_written_ms,rays_ms,build_ms,ratio_draw,ratio_written,ratio_with_build,ratio_"
-                     "whole,lowest,highest,"
-                     "mismatches,edge,depth,unexplained\n");
+        std::fprintf(
+            csv,
+            "workload,triangles,n,film,threads,isa,pixels,facets,visible_ms,draw_ms,written_ms,samples_ms,"
+            "prepare_ms,trace_ms,"
+            "trace_written_ms,rays_ms,build_ms,ratio_visible,ratio_draw,ratio_written,ratio_with_build,ratio_"
+            "whole,lowest,highest,"
+            "mismatches,edge,depth,unexplained\n");
     std::printf(
-        "milliseconds, medians; projector: hits in order, by sample, samples, tree | Embree: likewise, rays, "
-        "tree | "
-        "Embree / projector: draw, written, with build, whole | mismatches = at an edge + at one depth + "
+        "milliseconds, medians; projector: visible in order, hits in order, hits by sample, samples, "
+        "tree | Embree: hits in order, by sample, rays, tree | "
+        "Embree / projector: visible, draw, written, with build, whole | mismatches = at an edge + at one "
+        "depth + "
         "others\n");
     std::size_t unexplained = 0;
     for (const std::string& threads : chosen.at("threads")) {

@@ -23,6 +23,8 @@ void bind_race(py::module_& module) {
     py::class_<RaceResult::Ratios> ratios(
         module, "RaceRatios", "Embree's time over the projector's: above 1 where the projector is faster.");
     bind_fields(ratios,
+                field("visible", &RaceResult::Ratios::visible,
+                      "What is seen left in order: triangles, and t within bounds."),
                 field("draw", &RaceResult::Ratios::draw, "Hits left in order, rays and samples made before."),
                 field("written", &RaceResult::Ratios::written, "Hits written per sample."),
                 field("with_build", &RaceResult::Ratios::with_build, "Hits left in order, with both trees."),
@@ -48,6 +50,8 @@ void bind_race(py::module_& module) {
         field("shade_ms", &Race::shade_ms, "Both: colours of all samples of the film."),
         field("prepare_ms", &RaceResult::prepare_ms, "Projector: its tree."),
         field("samples_ms", &RaceResult::samples_ms, "Projector: samples in vectors."),
+        field("visible_ms", &RaceResult::visible_ms,
+              "Projector: triangles seen and bounds of t left in vectors' order."),
         field("draw_ms", &RaceResult::draw_ms, "Projector: hits left in vectors' order."),
         field("written_ms", &RaceResult::written_ms, "Projector: hits by sample."),
         field("whole_ms", &RaceResult::whole_ms, "Projector: hits by sample, vectors made while drawing."),

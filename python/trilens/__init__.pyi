@@ -685,7 +685,20 @@ def draw_through(
     primitive: Optional[ArrayLike] = None,
 ) -> dict[str, NDArray[Any]]: ...
 
+def visible_through(
+    mesh: RayMesh,
+    points: ArrayLike,
+    triangles: ArrayLike,
+    window: _Window,
+    side: int = 1,
+    *,
+    object: Optional[ArrayLike] = None,
+    primitive: Optional[ArrayLike] = None,
+) -> dict[str, NDArray[Any]]: ...
+
 class RaceRatios:
+    @property
+    def visible(self) -> float: ...
     @property
     def draw(self) -> float: ...
     @property
@@ -730,6 +743,8 @@ class Race:
     def prepare_ms(self) -> float: ...
     @property
     def samples_ms(self) -> float: ...
+    @property
+    def visible_ms(self) -> float: ...
     @property
     def draw_ms(self) -> float: ...
     @property

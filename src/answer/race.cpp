@@ -19,6 +19,7 @@ Json fields(const BenchResult& bench) {
             {"projector",
              {{"prepare_ms", r.prepare_ms},
               {"samples_ms", r.samples_ms},
+              {"visible_ms", r.visible_ms},
               {"draw_ms", r.draw_ms},
               {"written_ms", r.written_ms},
               {"whole_ms", r.whole_ms}}},
@@ -30,7 +31,8 @@ Json fields(const BenchResult& bench) {
               {"configuration", r.embree_configuration},
               {"rays_at_once", r.rays_at_once}}},
             {"ratio",
-             {{"draw", r.ratio.draw},
+             {{"visible", r.ratio.visible},
+              {"draw", r.ratio.draw},
               {"draw_low", r.slowest_ratio},
               {"draw_high", r.fastest_ratio},
               {"written", r.ratio.written},
@@ -59,6 +61,7 @@ std::string text(const BenchResult& bench) {
     text += fmt::format("{:<34} {:>10} {:>10} {:>7}\n", "medians, ms", "projector", "Embree", "ratio");
     text += line("tree", r.prepare_ms, r.build_ms);
     text += line("samples in vectors, rays in packets", r.samples_ms, r.rays_ms);
+    text += line("triangles seen, t within bounds", r.visible_ms, r.trace_ms);
     text +=
         fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>7.2f}  ({:.2f} to {:.2f})\n", "hits left in that order",
                     r.draw_ms, r.trace_ms, r.ratio.draw, r.slowest_ratio, r.fastest_ratio);

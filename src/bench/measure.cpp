@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/check.h"
 #include "base/check_data.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -68,6 +69,7 @@ struct View {
     SampleTiles tiles;
     std::vector<RayPacket> packets;
     std::vector<VectorHits> vector_hits;
+    std::vector<VectorVisible> vector_visible;
     std::vector<PacketHits> packet_hits;
 };
 
@@ -98,14 +100,31 @@ void explain(const RaceCourse& course, const View& view, const SampleHits& hits,
     }
 }
 
+/// What is visible must be what was drawn.
+void check_visible(const View& view, const std::vector<Hit>& hits) {
+    for (std::size_t v = 0; v < view.vector_visible.size(); ++v) {
+        const VectorVisible& visible = view.vector_visible[v];
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            if (!(view.tiles.valid[v] >> k & 1)) continue;
+            const Hit& hit = hits[view.tiles.samples[v].sample[k]];
+            TRILENS_CHECK(visible.triangle[k] == hit.triangle, "visible is what is hit");
+            TRILENS_CHECK(!hit.seen() || (static_cast<double>(visible.t_low[k]) <= hit.t &&
+                                          hit.t <= static_cast<double>(visible.t_high[k])),
+                          "a hit lies within its bounds");
+        }
+    }
+}
+
 View make_view(const RaceView& view, const SampleGrid& grid, std::size_t triangles) {
     View made{*view.mesh,
               *view.owned,
               make_sample_tiles(*view.mesh, *view.owned, grid, tile_params(triangles)),
               make_ray_packets(*view.mesh, *view.owned, grid),
               {},
+              {},
               {}};
     made.vector_hits.resize(made.tiles.vectors.size());
+    made.vector_visible.resize(made.tiles.vectors.size());
     made.packet_hits.resize(made.packets.size());
     return made;
 }
@@ -119,18 +138,27 @@ struct Sides {
 };
 
 struct Times {
-    std::vector<double> draw, written, whole, trace, trace_written, ratio, ratio_written;
+    std::vector<double> visible, draw, written, whole, trace, trace_written, ratio_visible, ratio,
+        ratio_written;
 };
 
 void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
     const PreparedScene::Data& data = sides.prepared.data();
+    const auto draw_all = [&](auto&& ask) {
+        for (View& v : sides.views) {
+            KernelScene scene{&data, &data.leaves, &v.mesh, &grid, &v.tiles};
+            ask(v, scene);
+            draw_tiles(scene, {});
+        }
+    };
+    const auto visible = [&] {
+        draw_all([](View& v, KernelScene& scene) { scene.vector_visible = v.vector_visible; });
+    };
     const auto draw = [&] {
-        for (View& v : sides.views)
-            draw_tiles({&data, &data.leaves, &v.mesh, &grid, &v.tiles, {}, v.vector_hits}, {});
+        draw_all([](View& v, KernelScene& scene) { scene.vector_hits = v.vector_hits; });
     };
     const auto draw_written = [&] {
-        for (View& v : sides.views)
-            draw_tiles({&data, &data.leaves, &v.mesh, &grid, &v.tiles, sides.hits.ours, {}}, {});
+        draw_all([&](View&, KernelScene& scene) { scene.hits = sides.hits.ours; });
     };
     const auto draw_whole = [&] {
         for (View& v : sides.views) trilens::draw(sides.prepared, v.mesh, v.owned, grid, sides.hits.ours);
@@ -142,8 +170,8 @@ void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
         for (View& v : sides.views) sides.tracer.trace(v.packets, sides.hits.theirs);
     };
     // There and back, so that a slow change of the machine's speed cancels.
-    const double t1 = milliseconds(trace), d1 = milliseconds(draw), d2 = milliseconds(draw),
-                 t2 = milliseconds(trace);
+    const double s1 = milliseconds(visible), t1 = milliseconds(trace), d1 = milliseconds(draw),
+                 d2 = milliseconds(draw), t2 = milliseconds(trace), s2 = milliseconds(visible);
     const double v1 = milliseconds(trace_written), w1 = milliseconds(draw_written),
                  w2 = milliseconds(draw_written), v2 = milliseconds(trace_written);
     times.whole.push_back(milliseconds(draw_whole));
@@ -151,6 +179,8 @@ void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
     times.draw.insert(times.draw.end(), {d1, d2});
     times.trace_written.insert(times.trace_written.end(), {v1, v2});
     times.written.insert(times.written.end(), {w1, w2});
+    times.visible.insert(times.visible.end(), {s1, s2});
+    times.ratio_visible.push_back((t1 + t2) / (s1 + s2));
     times.ratio.push_back((t1 + t2) / (d1 + d2));
     times.ratio_written.push_back((v1 + v2) / (w1 + w2));
 }
@@ -198,11 +228,13 @@ RaceResult race(const RaceCourse& course, const RaceParams& params) {
     Times times, warm_up;
     run_round(course.grid, sides, warm_up);
     for (int i = 0; i < params.repeats; ++i) run_round(course.grid, sides, times);
+    result.visible_ms = median(times.visible);
     result.draw_ms = median(times.draw);
     result.written_ms = median(times.written);
     result.whole_ms = median(times.whole);
     result.trace_ms = median(times.trace);
     result.trace_written_ms = median(times.trace_written);
+    result.ratio.visible = median(times.ratio_visible);
     result.ratio.draw = median(times.ratio);
     result.ratio.written = median(times.ratio_written);
     result.ratio.with_build = (result.trace_ms + result.build_ms) / (result.draw_ms + result.prepare_ms);
@@ -214,6 +246,7 @@ RaceResult race(const RaceCourse& course, const RaceParams& params) {
         result.facets += view.tiles.rays.size();
         result.pixels += view.owned.sample.size();
         trilens::draw(sides.prepared, view.mesh, view.owned, course.grid, sides.hits.ours);
+        check_visible(view, sides.hits.ours);
         sides.tracer.trace(view.packets, sides.hits.theirs);
         for (const Id s : view.owned.sample) result.seen += sides.hits.ours[s].seen();
         explain(course, view, sides.hits, result.mismatches);

@@ -31,12 +31,15 @@ struct RaceResult {
     std::size_t pixels = 0, facets = 0, triangles = 0, seen = 0;
     // Projector: its tree; facets' rays and samples in vectors; hits left in vectors' order; hits by sample.
     double prepare_ms = 0, samples_ms = 0, draw_ms = 0, written_ms = 0;
+    // What is seen, left in vectors' order: the same exact triangles, but t within bounds, and no place on
+    // them.
+    double visible_ms = 0;
     // Samples in vectors made while drawing, as draw() does it, hits by sample: what a user waits for.
     double whole_ms = 0;
     // Embree: its tree; a ray per sample in packets; hits left in packets' order; hits by sample.
     double build_ms = 0, rays_ms = 0, trace_ms = 0, trace_written_ms = 0;
     struct Ratios {
-        double draw = 0, written = 0, with_build = 0, whole = 0;
+        double visible = 0, draw = 0, written = 0, with_build = 0, whole = 0;
     } ratio;
     double slowest_ratio = 0, fastest_ratio = 0;  // of `draw` over the rounds
     Mismatches mismatches;

@@ -41,15 +41,22 @@ void check_camera(const LinearCamera& camera) {
 }
 
 /// Refuses what would fill the machine's memory: the system would end the program without a word.
-void check_hits_fit(const SampleGrid& grid) {
-    constexpr double kBytesPerSample = sizeof(Hit) + 4 * sizeof(Id);  // owners, their lists, vectors of them
-    const double needed = kBytesPerSample * static_cast<double>(grid.size()),
+void check_answers_fit(const SampleGrid& grid, std::size_t bytes_per_answer) {
+    constexpr std::size_t kBytesPerSample = 4 * sizeof(Id);  // owners, their lists, vectors of them
+    const double needed = static_cast<double>(bytes_per_answer + kBytesPerSample) *
+                          static_cast<double>(grid.size()),
                  memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
                           static_cast<double>(sysconf(_SC_PAGESIZE));
     if (needed >= memory)
         throw InputError("", "grid",
                          fmt::format("{} samples need about {:.0f} GiB; this machine has {:.0f}", grid.size(),
                                      needed / (1 << 30), memory / (1 << 30)));
+}
+
+void check_drawing(const RayMesh& mesh, const TriangleScene& scene, const SampleGrid& grid) {
+    check_ray_mesh(mesh);
+    check_triangle_scene(scene);
+    check_sample_grid(grid);
 }
 
 }  // namespace
@@ -68,13 +75,20 @@ RayMesh make_lens_mesh(const SurfaceGrid& grid, const LinearCamera& camera, doub
 }
 
 std::vector<Hit> draw_through(const RayMesh& mesh, const TriangleScene& scene, const SampleGrid& grid) {
-    check_ray_mesh(mesh);
-    check_triangle_scene(scene);
-    check_sample_grid(grid);
-    check_hits_fit(grid);
+    check_drawing(mesh, scene, grid);
+    check_answers_fit(grid, sizeof(Hit));
     std::vector<Hit> hits(grid.size());
     draw(PreparedScene(scene), mesh, rasterize_facets(mesh, grid), grid, hits);
     return hits;
+}
+
+std::vector<Visible> visible_through(const RayMesh& mesh, const TriangleScene& scene,
+                                     const SampleGrid& grid) {
+    check_drawing(mesh, scene, grid);
+    check_answers_fit(grid, sizeof(Visible));
+    std::vector<Visible> visible(grid.size());
+    find_visible(PreparedScene(scene), mesh, rasterize_facets(mesh, grid), grid, visible);
+    return visible;
 }
 
 }  // namespace trilens

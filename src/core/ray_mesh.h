@@ -9,6 +9,7 @@
 #include "base/sample_grid.h"
 #include "base/surface.h"
 #include "base/triangle_scene.h"
+#include "base/visible.h"
 #include "camera/perspective.h"
 #include "trilinear/mesh_point_images.h"
 
@@ -31,5 +32,10 @@ RayMesh make_lens_mesh(const SurfaceGrid& grid, const LinearCamera& camera, doub
 /// check_triangle_scene and check_sample_grid do, and for more samples than this machine's memory
 /// holds.
 std::vector<Hit> draw_through(const RayMesh& mesh, const TriangleScene& scene, const SampleGrid& grid);
+
+/// The triangles of draw_through()'s hits, by the same exact decisions, with proven bounds of their t: most
+/// often a ten-thousandth of it apart, more where rays graze the triangle. For those who need no place on the
+/// triangle: in less time and memory. Throws as draw_through does.
+std::vector<Visible> visible_through(const RayMesh& mesh, const TriangleScene& scene, const SampleGrid& grid);
 
 }  // namespace trilens

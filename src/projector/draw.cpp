@@ -13,6 +13,15 @@
 namespace trilens {
 namespace {
 
+/// What lane k of a vector sees, to all who ask for it.
+void put_hit(const KernelScene& scene, std::uint32_t vector, std::size_t k, const Hit& seen) {
+    const Id sample = scene.tiles->samples[vector].sample[k];
+    if (!scene.hits.empty()) scene.hits[sample] = seen;
+    if (!scene.vector_hits.empty()) set_lane(scene.vector_hits[vector], k, seen);
+    if (!scene.visible.empty()) scene.visible[sample] = visible_of(seen);
+    if (!scene.vector_visible.empty()) set_lane(scene.vector_visible[vector], k, visible_of(seen));
+}
+
 void draw_tile_in_blocks(const KernelScene& scene, const SampleTile& tile) {
     constexpr std::uint32_t kVectors = kBlockSamples / kLanes;
     for (std::uint32_t first = 0; first < tile.vectors; first += kVectors) {
@@ -30,13 +39,8 @@ void draw_tile_in_blocks(const KernelScene& scene, const SampleTile& tile) {
         count = 0;
         for (std::uint32_t v = first; v < last; ++v) {
             const std::uint32_t vector = tile.first_vector + v;
-            const VectorSamples& own = scene.tiles->samples[vector];
-            for (std::size_t k = 0; k < kLanes; ++k) {
-                if (!(scene.tiles->valid[vector] >> k & 1)) continue;
-                const Hit& seen = hit[count++];
-                if (!scene.hits.empty()) scene.hits[own.sample[k]] = seen;
-                if (!scene.vector_hits.empty()) set_lane(scene.vector_hits[vector], k, seen);
-            }
+            for (std::size_t k = 0; k < kLanes; ++k)
+                if (scene.tiles->valid[vector] >> k & 1) put_hit(scene, vector, k, hit[count++]);
         }
     }
 }
@@ -49,8 +53,7 @@ void draw_mixed_in_blocks(const KernelScene& scene, const MixedGroup& group, std
         Hit seen;
         const FacetRays& facet = scene.tiles->rays[scene.tiles->lanes[group.first_lanes + number].rays[k]];
         draw_block(*scene.data, facet, *scene.grid, std::span(&own.sample[k], 1), std::span(&seen, 1));
-        if (!scene.hits.empty()) scene.hits[own.sample[k]] = seen;
-        if (!scene.vector_hits.empty()) set_lane(scene.vector_hits[vector], k, seen);
+        put_hit(scene, vector, k, seen);
     }
 }
 
@@ -92,6 +95,40 @@ void draw_one_mixed(const KernelScene& scene, std::size_t number) {
         if (left >> v & 1) draw_mixed_in_blocks(scene, scene.tiles->mixed[number], v);
 }
 
+/// What is drawn, but for what is asked for.
+KernelScene kernel_scene(const PreparedScene& scene, const RayMesh& mesh, const SampleGrid& grid) {
+    return {.data = &scene.data(), .tree = &scene.data().leaves, .mesh = &mesh, .grid = &grid};
+}
+
+void check_samples(const RayMesh& mesh, const FacetSamples& owned) {
+    TRILENS_CHECK(owned.first.size() == mesh.facets.size() + 1,
+                  "the samples must be grouped by the mesh's facets");
+}
+
+/// Draws what `asked` asks for, by sample, but for its tiles: a batch's vectors are made, drawn and forgotten
+/// while they are in cache.
+void draw_vectors(const KernelScene& asked, const FacetSamples& owned, const DrawOptions& options) {
+    const TilePlan plan =
+        plan_tiles(*asked.mesh, owned, *asked.grid, options.tiles.value_or(tile_params(asked.data->size())));
+    const std::size_t batches = plan.batches.size();
+    parallel_for(batches + plan.mixed_groups.size(), 1, [&](std::size_t first, std::size_t last) {
+        TileMaker maker(*asked.grid);
+        SampleTiles& tiles = own_tiles();
+        KernelScene kernel = asked;
+        kernel.tiles = &tiles;
+        for (std::size_t b = first; b < last; ++b) {
+            clear(tiles);
+            if (b < batches) {
+                maker.add_batch(plan, b, tiles);
+                draw_one_batch(kernel, 0, options.kernel);
+            } else {
+                maker.add_mixed(plan, b - batches, tiles);
+                draw_one_mixed(kernel, 0);
+            }
+        }
+    });
+}
+
 }  // namespace
 
 void draw_tiles(const KernelScene& scene, const KernelOptions& options) {
@@ -107,34 +144,32 @@ void draw_tiles(const KernelScene& scene, const KernelOptions& options) {
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
           std::span<Hit> hits, const DrawOptions& options) {
     TRILENS_CHECK(hits.size() == grid.size(), "one hit per sample of the grid");
-    TRILENS_CHECK(owned.first.size() == mesh.facets.size() + 1,
-                  "the samples must be grouped by the mesh's facets");
+    check_samples(mesh, owned);
     if (!options.vectors || !options.cull)
         return draw_in_blocks(scene, mesh, owned, grid, hits, options.cull);
-    // A batch's vectors are made, drawn and forgotten while they are in cache.
-    const TilePlan plan =
-        plan_tiles(mesh, owned, grid, options.tiles.value_or(tile_params(scene.data().size())));
-    const std::size_t batches = plan.batches.size();
-    parallel_for(batches + plan.mixed_groups.size(), 1, [&](std::size_t first, std::size_t last) {
-        TileMaker maker(grid);
-        SampleTiles& tiles = own_tiles();
-        for (std::size_t b = first; b < last; ++b) {
-            clear(tiles);
-            const KernelScene kernel{&scene.data(), &scene.data().leaves, &mesh, &grid, &tiles, hits, {}};
-            if (b < batches) {
-                maker.add_batch(plan, b, tiles);
-                draw_one_batch(kernel, 0, options.kernel);
-            } else {
-                maker.add_mixed(plan, b - batches, tiles);
-                draw_one_mixed(kernel, 0);
-            }
-        }
-    });
+    KernelScene asked = kernel_scene(scene, mesh, grid);
+    asked.hits = hits;
+    draw_vectors(asked, owned, options);
 }
 
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
           std::span<Hit> hits) {
     draw(scene, mesh, owned, grid, hits, DrawOptions{});
+}
+
+void find_visible(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                  const SampleGrid& grid, std::span<Visible> visible, const DrawOptions& options) {
+    TRILENS_CHECK(visible.size() == grid.size(), "one entry per sample of the grid");
+    check_samples(mesh, owned);
+    TRILENS_CHECK(options.vectors && options.cull, "only the vector engine leaves hits unplaced");
+    KernelScene asked = kernel_scene(scene, mesh, grid);
+    asked.visible = visible;
+    draw_vectors(asked, owned, options);
+}
+
+void find_visible(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                  const SampleGrid& grid, std::span<Visible> visible) {
+    find_visible(scene, mesh, owned, grid, visible, DrawOptions{});
 }
 
 }  // namespace trilens

@@ -19,4 +19,8 @@ struct DrawOptions {
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
           std::span<Hit> hits, const DrawOptions& options);
 
+/// Of `options` the vector engine's.
+void find_visible(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                  const SampleGrid& grid, std::span<Visible> visible, const DrawOptions& options);
+
 }  // namespace trilens

@@ -20,7 +20,7 @@
 #include <hwy/highway.h>
 
 #include "projector/kernel_mixed-inl.h"
-#include "projector/kernel_resolve-inl.h"
+#include "projector/kernel_visible-inl.h"
 #include "projector/kernel_walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -74,6 +74,11 @@ HWY_INLINE void prefetch_rays(const KernelScene& scene, std::uint32_t tiles, std
     }
 }
 
+/// Whether what is drawn goes past the caches.
+HWY_INLINE bool streams(const KernelScene& scene) {
+    return !scene.vector_hits.empty() || !scene.vector_visible.empty();
+}
+
 std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const KernelOptions& options,
                               KernelState& state) {
     const TileGroup groups = scene.tiles->batches[batch];
@@ -102,9 +107,12 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
             left |= lanes;
             continue;
         }
-        resolve_group(scene, state);
+        if (wants_visible(scene))
+            write_visible_group(scene, state);
+        else
+            resolve_group(scene, state);
     }
-    if (!scene.vector_hits.empty()) hwy::FlushStream();
+    if (streams(scene)) hwy::FlushStream();
     return left;
 }
 
@@ -123,7 +131,10 @@ HWY_INLINE bool draw_mixed_vectors(const KernelScene& scene, const MixedGroup& g
     if (!set_up_mixed(scene, group, state)) return false;
     walk_group(scene, LeafMode::kRays, state);
     if (state.doubts.size() > state.most_doubts) return false;
-    resolve_mixed(scene, group, state);
+    if (wants_visible(scene))
+        write_visible_mixed(scene, group, state);
+    else
+        resolve_mixed(scene, group, state);
     return true;
 }
 
@@ -134,7 +145,7 @@ std::uint32_t draw_mixed_here(const KernelScene& scene, std::size_t number, Kern
         for (std::uint32_t v = 0; v < group.vectors; ++v)
             left |= draw_mixed_vectors(scene, group, v, 1, state) ? 0 : 1u << v;
     }
-    if (!scene.vector_hits.empty()) hwy::FlushStream();
+    if (streams(scene)) hwy::FlushStream();
     return left;
 }
 

@@ -77,20 +77,19 @@ HWY_NOINLINE void sort_doubts(std::vector<Doubt>& doubts) {
     });
 }
 
-/// Decides the doubtful samples of a vector of the group, the next ones in the sorted list from `next` on.
-/// `facet_of`: of a lane.
-template <typename FacetOf>
+/// Decides the doubtful samples of a vector of the group, the next ones in the sorted list from `next` on,
+/// and hands each lane's hit to `put`. `facet_of`: of a lane.
+template <typename FacetOf, typename Put>
 HWY_INLINE void resolve_doubts(const KernelScene& scene, const KernelState& state, std::uint32_t in_group,
-                               const FacetOf& facet_of, std::size_t& next, Placed& placed) {
+                               const FacetOf& facet_of, std::size_t& next, const Put& put) {
     const std::vector<Doubt>& doubts = state.doubts;
     while (next < doubts.size() && doubts[next].vector == in_group) {
         const std::size_t lane = doubts[next].lane;
         std::size_t end = next;
         while (end < doubts.size() && doubts[end].vector == in_group && doubts[end].lane == lane) ++end;
-        set_lane(placed, lane,
-                 resolve_sample(
-                     scene, facet_of(lane), scene.tiles->samples[state.first_vector + in_group].sample[lane],
-                     state.nearest[in_group].triangle[lane], std::span(doubts).subspan(next, end - next)));
+        const Id sample = scene.tiles->samples[state.first_vector + in_group].sample[lane];
+        put(lane, resolve_sample(scene, facet_of(lane), sample, state.nearest[in_group].triangle[lane],
+                                 std::span(doubts).subspan(next, end - next)));
         next = end;
     }
 }
@@ -120,7 +119,8 @@ HWY_INLINE void finish_vector(const KernelScene& scene, const KernelState& state
     if (HWY_LIKELY(bad == 0 && !is_doubtful(state, next, in_group)))
         return write_hits(scene, state.first_vector + in_group, placed, floats);
     decide_lanes(scene, state, in_group, bad, facet_of, placed);
-    resolve_doubts(scene, state, in_group, facet_of, next, placed);
+    resolve_doubts(scene, state, in_group, facet_of, next,
+                   [&](std::size_t lane, const Hit& hit) HWY_ATTR { set_lane(placed, lane, hit); });
     write_hits(scene, state.first_vector + in_group, placed, narrow(placed));
 }
 

@@ -1,10 +1,12 @@
 // What the vector engine reads, and what it writes.
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include "base/ray_mesh.h"
 #include "base/sample_grid.h"
+#include "base/visible.h"
 #include "projector/leaf_tree.h"
 #include "projector/prepared_scene.h"
 #include "projector/sample_tiles.h"
@@ -27,15 +29,37 @@ inline void set_lane(VectorHits& hits, std::size_t lane, const Hit& hit) {
     hits.v[lane] = static_cast<float>(hit.barycentric.y);
 }
 
+/// What a vector's samples see, not yet placed.
+struct alignas(64) VectorVisible {
+    Id triangle[kLanes];  // index into the scene, or kNone
+    float t_low[kLanes], t_high[kLanes];
+};
+
+inline void set_lane(VectorVisible& visible, std::size_t lane, const Visible& seen) {
+    visible.triangle[lane] = seen.triangle;
+    visible.t_low[lane] = seen.t_low;
+    visible.t_high[lane] = seen.t_high;
+}
+
+/// Around a hit's t as closely as floats can.
+inline Visible visible_of(const Hit& hit) {
+    if (!hit.seen()) return {};
+    const auto near = static_cast<float>(hit.t);
+    return {hit.triangle, static_cast<double>(near) <= hit.t ? near : std::nextafter(near, -INFINITY),
+            static_cast<double>(near) >= hit.t ? near : std::nextafter(near, INFINITY)};
+}
+
 struct KernelScene {
     const PreparedScene::Data* data = nullptr;
     const LeafTree* tree = nullptr;
     const RayMesh* mesh = nullptr;
     const SampleGrid* grid = nullptr;
     const SampleTiles* tiles = nullptr;
-    // One of them, or both.
-    std::span<Hit> hits;                // by sample
-    std::span<VectorHits> vector_hits;  // by vector
+    // What is asked for: one of the first two or both, or else one of the last two or both.
+    std::span<Hit> hits{};                      // by sample
+    std::span<VectorHits> vector_hits{};        // by vector
+    std::span<Visible> visible{};               // by sample
+    std::span<VectorVisible> vector_visible{};  // by vector
 };
 
 }  // namespace trilens

@@ -8,6 +8,7 @@
 #include "base/ray_mesh.h"
 #include "base/sample_grid.h"
 #include "base/triangle_scene.h"
+#include "base/visible.h"
 
 namespace trilens {
 
@@ -36,5 +37,10 @@ class PreparedScene {
 /// triangles. The same hits for any number of threads.
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
           std::span<Hit> hits);
+
+/// As draw(), of the same samples: which triangle each sees, and bounds of its t, by the same exact
+/// decisions, but not where on the triangle. Takes less time and memory.
+void find_visible(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                  const SampleGrid& grid, std::span<Visible> visible);
 
 }  // namespace trilens

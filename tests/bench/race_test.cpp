@@ -51,8 +51,8 @@ TEST_CASE("a race counts its course and times both sides") {
     CHECK(r.seen == r.pixels);
     CHECK(r.facets == 2);
     CHECK(r.triangles == 800);
-    for (const double ms : {r.prepare_ms, r.samples_ms, r.draw_ms, r.written_ms, r.whole_ms, r.build_ms,
-                            r.rays_ms, r.trace_ms, r.trace_written_ms})
+    for (const double ms : {r.prepare_ms, r.samples_ms, r.visible_ms, r.draw_ms, r.written_ms, r.whole_ms,
+                            r.build_ms, r.rays_ms, r.trace_ms, r.trace_written_ms})
         CHECK(ms > 0);
     CHECK(r.slowest_ratio <= r.ratio.draw);
     CHECK(r.ratio.draw <= r.fastest_ratio);

@@ -24,10 +24,12 @@ TEST_CASE("bench prints one object with both sides' times and their ratios", "[c
     const CommandRun run = run_trilens("bench " + scene + " -n 4 --repeat 1 --threads 1 --json");
     REQUIRE(run.exit_code == 0);
     CHECK(run.out.find("\"schema\": \"trilens.bench/1\"") != std::string::npos);
-    for (const char* count : {"pixels", "facets", "triangles"}) CHECK(number_after(run.out, count, count) > 0);
-    for (const char* time : {"prepare_ms", "draw_ms"}) CHECK(number_after(run.out, time, "projector") > 0);
+    for (const char* count : {"pixels", "facets", "triangles"})
+        CHECK(number_after(run.out, count, count) > 0);
+    for (const char* time : {"prepare_ms", "visible_ms", "draw_ms"})
+        CHECK(number_after(run.out, time, "projector") > 0);
     for (const char* time : {"build_ms", "trace_ms"}) CHECK(number_after(run.out, time, "embree") > 0);
-    for (const char* ratio : {"draw", "written", "with_build", "whole"})
+    for (const char* ratio : {"visible", "draw", "written", "with_build", "whole"})
         CHECK(number_after(run.out, ratio, "ratio") > 0);
     CHECK(number_after(run.out, "mismatch_pixels", "mismatch_pixels") >= 0);
     CHECK(number_after(run.out, "unexplained", "mismatch") == 0);

@@ -116,11 +116,14 @@ TEST_CASE("a window of samples that is none, or too many, is refused by its name
           SampleGrid{0, 0, 4, 4, -3}, SampleGrid{4, 0, 0, 4, 1}, SampleGrid{kMost - 1, 0, kMost, 1, 1}}) {
         CAPTURE(grid.x0, grid.y0, grid.x1, grid.y1, grid.side);
         CHECK(refusal([&] { draw_through(mesh, scene, grid); }).rfind("grid: ", 0) == 0);
+        CHECK(refusal([&] { visible_through(mesh, scene, grid); }).rfind("grid: ", 0) == 0);
     }
     CHECK(draw_through(mesh, scene, {0, 0, 4, 4, 3}).size() == 144);
     // Far from the film there are samples too, which no facet covers.
     for (const Hit& hit : draw_through(mesh, scene, {-kFarthestPixel, 0, -kFarthestPixel + 2, 2, 1}))
         CHECK_FALSE(hit.seen());
+    for (const Visible& seen : visible_through(mesh, scene, {-kFarthestPixel, 0, -kFarthestPixel + 2, 2, 1}))
+        CHECK_FALSE(seen.seen());
 }
 
 TEST_CASE("a camera without film or rays is refused, and so are matrices of a volume without planes",
@@ -152,6 +155,7 @@ TEST_CASE("meshes that are none are refused wherever rays are looked through", "
     std::size_t refused = 0;
     for (const RayMesh& mesh : odd_meshes()) {
         only_errors("draw_through", [&] { draw_through(mesh, one_triangle(), {0, 0, 4, 4, 2}); });
+        only_errors("visible_through", [&] { visible_through(mesh, one_triangle(), {0, 0, 4, 4, 2}); });
         only_errors("MeshPointImages", [&] {
             const MeshPointImages images(mesh);
             images.images(Vec3(0, 0, -1));

@@ -24,6 +24,13 @@ bool same(const Hit& a, const Hit& b) {
     return a.triangle == b.triangle && (!a.seen() || (a.t == b.t && a.barycentric == b.barycentric));
 }
 
+/// The same triangle, and the hit's t within the bounds.
+bool around(const Visible& visible, const Hit& hit) {
+    return visible.triangle == hit.triangle &&
+           (!hit.seen() ||
+            (static_cast<double>(visible.t_low) <= hit.t && hit.t <= static_cast<double>(visible.t_high)));
+}
+
 struct Case {
     const TriangleScene& scene;
     const RayMesh& mesh;
@@ -36,10 +43,12 @@ void compare(const Case& c, const DrawOptions& options, Tally& tally) {
     std::vector<Hit> plain(c.grid.size()), fast(c.grid.size());
     draw(prepared, c.mesh, c.owned, c.grid, plain, {.vectors = false});
     draw(prepared, c.mesh, c.owned, c.grid, fast, options);
+    std::vector<Visible> visible(c.grid.size());
+    find_visible(prepared, c.mesh, c.owned, c.grid, visible, options);
     for (const Id s : c.owned.sample) {
         ++tally.samples;
         tally.seen += plain[s].seen();
-        tally.different += !same(plain[s], fast[s]);
+        tally.different += !same(plain[s], fast[s]) || !around(visible[s], plain[s]);
     }
 }
 
@@ -135,7 +144,13 @@ void compare_in_order(const Case& c, Tally& tally) {
     draw(scene, c.mesh, c.owned, c.grid, plain, {.vectors = false});
     const SampleTiles tiles = make_sample_tiles(c.mesh, c.owned, c.grid, {});
     std::vector<VectorHits> hits(tiles.vectors.size());
-    draw_tiles({&scene.data(), &scene.data().leaves, &c.mesh, &c.grid, &tiles, {}, hits}, {});
+    KernelScene asked{&scene.data(), &scene.data().leaves, &c.mesh, &c.grid, &tiles};
+    asked.vector_hits = hits;
+    draw_tiles(asked, {});
+    std::vector<VectorVisible> visible(tiles.vectors.size());
+    asked.vector_hits = {};
+    asked.vector_visible = visible;
+    draw_tiles(asked, {});
     for (std::size_t v = 0; v < hits.size(); ++v) {
         for (std::size_t k = 0; k < kLanes; ++k) {
             if (!(tiles.valid[v] >> k & 1)) continue;
@@ -143,6 +158,8 @@ void compare_in_order(const Case& c, Tally& tally) {
             set_lane(expected, k, plain[tiles.samples[v].sample[k]]);
             ++tally.samples;
             tally.seen += expected.triangle[k] != kNone;
+            tally.different += !around({visible[v].triangle[k], visible[v].t_low[k], visible[v].t_high[k]},
+                                       plain[tiles.samples[v].sample[k]]);
             tally.different += hits[v].triangle[k] != expected.triangle[k] ||
                                (expected.triangle[k] != kNone &&
                                 (hits[v].t[k] != expected.t[k] || hits[v].u[k] != expected.u[k] ||

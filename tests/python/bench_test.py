@@ -23,6 +23,7 @@ def test_both_sides_draw_the_rays_of_the_optic(scene):
     for name, value in race.to_dict().items():
         if name.endswith("_ms"):
             assert math.isfinite(value) and value >= 0, name
+    assert race.visible_ms > 0 and race.ratio.visible > 0
     assert race.draw_ms > 0 and race.trace_ms > 0
     assert race.surface_ms > 0 and race.corner_rays_ms > 0 and race.shade_ms > 0 and not race.direct
     assert set(race.to_dict()) == {name for name in vars(trilens.Race) if isinstance(vars(trilens.Race)[name], property)}

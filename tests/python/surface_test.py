@@ -143,6 +143,13 @@ def test_what_a_pinhole_sees_is_what_brute_force_finds(side):
     assert clear.mean() > 0.9 and 50 < (triangle != trilens.NONE).sum()
     assert np.array_equal(hits["triangle"].ravel()[clear], triangle[clear])
     assert np.allclose(hits["t"].ravel()[clear], t[clear], rtol=1e-9, equal_nan=True)
+
+    visible = trilens.visible_through(mesh, points, triangles, (4, 2, 36, 28), side)
+    assert np.array_equal(visible["triangle"], hits["triangle"])
+    seen = hits["triangle"] != trilens.NONE
+    low, high = (visible[name].astype(float) for name in ("t_low", "t_high"))
+    assert (low[seen] <= hits["t"][seen]).all() and (hits["t"][seen] <= high[seen]).all()
+    assert np.median(high[seen] / low[seen] - 1) < 1e-3 and np.isinf(low[~seen]).all() and np.isinf(high[~seen]).all()
     seen = hits["triangle"] != trilens.NONE
     corners = points[triangles[hits["triangle"][seen]]]
     beta, gamma = hits["barycentric"][seen].T
