@@ -192,7 +192,7 @@ std::vector<Hit> FacetDrawing::hits() const {
     for (const Candidate& c : candidate_) {
         if (!(c.hit.t <= nearest[c.place] * (1 + kDepthTie))) continue;
         const Candidate*& best = first[c.place];
-        if (!best || scene_.rank[c.index] < scene_.rank[best->index]) best = &c;
+        if (!best || scene_.rank(c.index) < scene_.rank(best->index)) best = &c;
     }
     std::vector<Hit> hits(rows_.size());
     for (std::size_t place = 0; place < hits.size(); ++place) {

@@ -59,7 +59,7 @@ void BlockDrawing::draw_one(Id index) {
         {scene_.corner(0, index, block_.centre), scene_.corner(1, index, block_.centre),
          scene_.corner(2, index, block_.centre)},
         index,
-        scene_.rank[index]};
+        scene_.rank(index)};
     draw_triangle(block_, triangle, hits_);
 }
 

@@ -40,7 +40,7 @@ HWY_NOINLINE Hit resolve_sample(const KernelScene& scene, const FacetRays& facet
         Id last = kNone;
         const auto offer = [&](Id triangle) {
             const std::optional<LineHit> hit = decide(ray, corners_of(*scene.data, triangle, facet.centre));
-            if (hit) hits.offer(0, *hit, triangle, scene.data->rank[triangle]);
+            if (hit) hits.offer(0, *hit, triangle, scene.data->rank(triangle));
         };
         if (sure != kNone) offer(sure);
         for (const Doubt& doubt : doubts) {

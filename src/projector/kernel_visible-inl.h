@@ -22,16 +22,13 @@ HWY_INLINE bool wants_visible(const KernelScene& scene) {
 
 /// In the scene's order what `nearest` names in the prepared one.
 HWY_INLINE Words scene_triangles(const PreparedScene::Data& data, const Nearest& nearest) {
-    const Words seen = load_words(nearest.triangle);
-    const Id first = nearest.triangle[0];
-    if (bits(same(seen, set_word(first))) == kAllLanes)
-        return set_word(first == kNone ? kNone : data.triangles[first].triangle());
-    alignas(64) Id own[kLanes];
-    for (std::size_t k = 0; k < kLanes; ++k) {
-        const Id triangle = nearest.triangle[k];
-        own[k] = triangle == kNone ? kNone : data.triangles[triangle].triangle();
-    }
-    return load_words(own);
+    constexpr hn::RebindToSigned<WordTag> kIndex;
+    static_assert(static_cast<std::int32_t>(kNone) == -1);  // where data.named has kNone
+    Words triangles = load_words(nearest.triangle);
+    for (std::size_t i = 0; i < kParts; ++i)
+        triangles.part[i] =
+            hn::GatherIndex(kWord, data.named.data() + 1, hn::BitCast(kIndex, triangles.part[i]));
+    return triangles;
 }
 
 HWY_INLINE void write_samples(const KernelScene& scene, std::uint32_t vector, const VectorVisible& visible) {
@@ -105,7 +102,6 @@ HWY_NOINLINE void write_visible_mixed(const KernelScene& scene, const MixedGroup
         &scene.tiles->lanes[group.first_lanes + state.first_vector - group.first_vector];
     std::size_t next = 0;
     for (std::uint32_t v = 0; v < state.vectors; ++v) {
-        if (v + kPlacedAhead < state.vectors) prefetch_triangles(scene, state.nearest[v + kPlacedAhead]);
         const auto facet_of = [&](std::size_t lane) HWY_ATTR -> const FacetRays& {
             return scene.tiles->rays[facets[v].rays[lane]];
         };

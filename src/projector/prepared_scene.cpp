@@ -31,13 +31,14 @@ void check_triangles(const TriangleScene& scene) {
 }
 
 /// Each triangle's place in the order of (object, primitive, index): the order that breaks ties in depth.
+/// Empty where that is its index.
 std::vector<Id> tie_ranks(const TriangleScene& scene) {
     std::vector<Id> sorted(scene.size());
     std::iota(sorted.begin(), sorted.end(), Id{0});
     const auto key = [&](Id i) { return std::tuple(scene.object[i], scene.primitive[i], i); };
     const auto before = [&](Id a, Id b) { return key(a) < key(b); };
     // Scenes come mesh by mesh, triangle by triangle: then the order is the ranks.
-    if (std::is_sorted(sorted.begin(), sorted.end(), before)) return sorted;
+    if (std::is_sorted(sorted.begin(), sorted.end(), before)) return {};
     std::sort(sorted.begin(), sorted.end(), before);
     std::vector<Id> rank(scene.size());
     for (std::size_t place = 0; place < sorted.size(); ++place) rank[sorted[place]] = static_cast<Id>(place);
@@ -81,12 +82,14 @@ PreparedScene::PreparedScene(const TriangleScene& scene) : data_(std::make_uniqu
         },
         order);
     const std::vector<Id> rank = tie_ranks(scene);
-    data.rank.resize(count);
     data.triangles.resize(count);
+    data.named.resize(count + 1, kNone);
+    data.ranks.resize(rank.size());
     parallel_for(count, kTogether, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             data.triangles[i] = prepared_triangle(scene, order[i]);
-            data.rank[i] = rank[order[i]];
+            data.named[i + 1] = order[i];
+            if (!rank.empty()) data.ranks[i] = rank[order[i]];
         }
     });
     fill_leaves(data, data.leaves);

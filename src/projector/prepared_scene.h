@@ -31,13 +31,16 @@ struct PreparedTriangle {
 /// One entry per triangle, in leaf order.
 struct PreparedScene::Data {
     std::vector<PreparedTriangle> triangles;
-    std::vector<Id> rank;  // its place in the order of (object, primitive, index)
-    LeafTree leaves;       // over the arrays above, for the vector engine
+    std::vector<Id> named;  // indices into the scene, after one that is kNone
+    std::vector<Id> ranks;  // as rank() gives them; none where they are the indices into the scene
+    LeafTree leaves;        // over the arrays above, for the vector engine
 
     /// A tree over the arrays above for the other engines, made when it is first asked for. Thread-safe.
     const Bvh& bvh() const;
 
     std::size_t size() const { return triangles.size(); }
+    /// The place of triangle i in the order of (object, primitive, index into the scene).
+    Id rank(std::size_t i) const { return ranks.empty() ? named[i + 1] : ranks[i]; }
     /// The sorted corner k of triangle i, from `centre`.
     Vec3 corner(std::size_t k, std::size_t i, const Vec3& centre) const {
         return triangles[i].corner[k] - centre;
