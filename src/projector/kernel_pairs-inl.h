@@ -21,8 +21,9 @@ struct Extent {
 };
 
 /// From the corners where two of the edges' bounds meet. Where their determinant is less than 2^-7 of its
-/// terms, or a bound is far outside the square, nothing is known. Else a corner inside 1.5 times the square
-/// is right to 2^-11: the determinant to 2^-14 of itself, the numerators to 2^-12 of it.
+/// terms or so small that products are below the normal range, or a bound is far outside the square, nothing
+/// is known. Else a corner inside 1.5 times the square is right to 2^-11: the determinant to 2^-14 of itself,
+/// the numerators to 2^-12 of it.
 HWY_NOINLINE Extent extent_of(const EdgeBounds& e) {
     Floats u[3], v[3];
     Mask turned_right = mask_of(kAllLanes), turned_left = turned_right;
@@ -31,7 +32,7 @@ HWY_NOINLINE Extent extent_of(const EdgeBounds& e) {
         const Floats determinant = multiply_subtract(e.slope_u[i], e.slope_v[j], e.slope_v[i] * e.slope_u[j]);
         const Floats size_i = absolute(e.slope_u[i]) + absolute(e.slope_v[i]),
                      size_j = absolute(e.slope_u[j]) + absolute(e.slope_v[j]);
-        const Floats trust = set(0x1p-7f) * (size_i * size_j);
+        const Floats trust = largest(set(0x1p-7f) * (size_i * size_j), set(kUnderflow));
         const Floats inverse = reciprocal(determinant);
         turned_right =
             turned_right & (determinant > trust) &

@@ -26,15 +26,26 @@ HWY_INLINE void invert_directions(VectorRays& rays) {
     }
 }
 
+/// Local coordinates from the lines of samples that the floats are nearest to, among so many: the floats' own
+/// rounding, a share of the tile, can be more than a small leaf forgives.
+HWY_INLINE Double exact_local(const float* local, int lines) {
+    const hn::Rebind<float, DoubleTag> some;
+    const float middle = static_cast<float>(lines - 1) / 2, half = std::max(0.5f, middle);
+    const auto line =
+        hn::Round(hn::MulAdd(hn::Load(some, local), hn::Set(some, half), hn::Set(some, middle)));
+    return hn::Mul(hn::Sub(hn::PromoteTo(kDouble, line), hn::Set(kDouble, static_cast<double>(middle))),
+                   hn::Set(kDouble, 1 / static_cast<double>(half)));
+}
+
 HWY_NOINLINE void make_vector_rays(const KernelScene& scene, KernelState& state, std::uint32_t vector) {
     const std::size_t j = state.tile_of_vector[vector];
     const SampleVector& samples = scene.tiles->vectors[state.first_vector + vector];
     const TileLanes& lanes = state.lanes;
     VectorRays& rays = state.rays[vector];
-    const hn::Rebind<float, DoubleTag> some;
+    const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
     for (std::size_t at = 0; at < kLanes; at += kDoubles) {
-        const Double u = hn::PromoteTo(kDouble, hn::Load(some, samples.u + at)),
-                     v = hn::PromoteTo(kDouble, hn::Load(some, samples.v + at));
+        const Double u = exact_local(samples.u + at, tile.width),
+                     v = exact_local(samples.v + at, tile.height);
         const auto linear = [&](const double(&c)[3][kLanes]) HWY_ATTR {
             return hn::MulAdd(u, hn::Set(kDouble, c[1][j]),
                               hn::MulAdd(v, hn::Set(kDouble, c[2][j]), hn::Set(kDouble, c[0][j])));
