@@ -66,7 +66,7 @@ Patch make_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t fa
     for (const auto& [a, b, c] : samples) {
         const Vec3 chord = a * patch.corner[0] + b * patch.corner[1] + c * patch.corner[2];
         const Vec2 uv = a * patch.uv[0] + b * patch.uv[1] + c * patch.uv[2];
-        patch.stray = std::max(patch.stray, length(surface.eval(patch.face, uv).position - chord));
+        patch.stray = std::max(patch.stray, length(surface.eval_first_order(patch.face, uv).position - chord));
     }
     for (int k = 0; k < 3; ++k) {
         const Vec2 edge = glm::abs(patch.uv[k] - patch.uv[(k + 1) % 3]);
@@ -159,7 +159,7 @@ struct LimitTracer::Data {
         Vec3 low(kInfinity), high(-kInfinity);
         for (Id face = 0; face < surface.face_count(); ++face) {
             for (const Vec2& uv : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(0.5, 0.5)}) {
-                const Vec3 p = surface.eval(face, uv).position;
+                const Vec3 p = surface.eval_first_order(face, uv).position;
                 low = glm::min(low, p), high = glm::max(high, p);
             }
         }
@@ -235,7 +235,11 @@ void LimitTracer::Data::for_each_hit(const Ray& ray, const RayFrame& frame, cons
     if (steep) return;
 
     // Near a silhouette a patch is met twice, and the hit found may be the farther one.
-    const auto second = hit ? predict_second_hit(*hit, ray.direction) : std::nullopt;
+    const auto predicted = [&](SurfaceHit full) {
+        full.point = surface.eval(full.face, full.uv);
+        return predict_second_hit(full, ray.direction);
+    };
+    const auto second = hit ? predicted(*hit) : std::nullopt;
     if (second && std::fabs(second->t_step) * frame.speed <= 2 * patch.size) solve(second->uv);
     solve(patch.uv[candidate.nearest_corner]);
     solve(patch.uv[candidate.farthest_corner]);

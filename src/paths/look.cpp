@@ -61,7 +61,7 @@ Place beside(const Surface& surface, const Place& place, int axis) {
     Vec2 uv = place.uv;
     const double room = surface.domain(place.face) == FaceDomain::kTriangle ? 1 - uv.x - uv.y : 1 - uv[axis];
     uv[axis] += room > kStep ? kStep : -kStep;
-    const SurfacePoint at = surface.eval(place.face, uv);
+    const SurfacePoint at = surface.eval_first_order(place.face, uv);
     return {place.face, uv, at.position, at.normal};
 }
 
