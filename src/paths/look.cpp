@@ -202,4 +202,12 @@ void set_kappa(const Looking& looking, Look& look) {
     if (!kept) look.beside.clear();
 }
 
+void set_corner_kappa(const Looking& looking, Look& look) {
+    if (look.segments.size() > 1 ||
+        (look.segments.size() == 1 && look.segments[0].step.event != Event::kReflect))
+        set_kappa(looking, look);
+    else
+        look.kappa.assign(look.segments.size(), 1.0);
+}
+
 }  // namespace trilens

@@ -46,7 +46,8 @@ std::array<Vec3, 2> normal_along(const ChainMirror& mirror, const SurfaceHit& hi
         const double step = hit.uv[axis] + kStep > most ? -kStep : kStep;
         Vec2 uv = hit.uv;
         uv[axis] += step;
-        along[static_cast<std::size_t>(axis)] = (surface.eval_first_order(hit.face, uv).normal - hit.point.normal) / step;
+        along[static_cast<std::size_t>(axis)] =
+            (surface.eval_first_order(hit.face, uv).normal - hit.point.normal) / step;
     }
     return along;
 }
