@@ -35,10 +35,10 @@ constexpr double kRoomAround = 0.01;
 /// A facet of the fine grid with the patch of surface that it stands for.
 struct Patch {
     std::array<Vec3, 3> corner;
-    std::array<Vec2, 3> uv;
-    Id face = kNone;
     double stray = 0;  // the surface lies within this distance of the facet
     double size = 0;   // longest edge
+    std::array<Vec2, 3> uv;
+    Id face = kNone;
     double reach = 0;  // largest extent in u or v
 };
 
@@ -121,8 +121,27 @@ struct Nearest {
     double distance = kInfinity;
 };
 
+double area(const Vec2& a, const Vec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+/// Whether the origin is farther than this from the triangle for sure, by one edge's line; no division, no
+/// root. What rounding does to areas is far below the room that is left for it; where it may have turned the
+/// triangle's own, the triangle is as good as its edge.
+bool is_surely_beyond(const std::array<Vec2, 3>& p, double distance) {
+    constexpr double kRelative = 1 + 1e-6, kRounding = 1e-13;
+    const std::array<double, 3> areas{area(p[0], p[1]), area(p[1], p[2]), area(p[2], p[0])};
+    const double sum = areas[0] + areas[1] + areas[2];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2 &a = p[k], &b = p[(k + 1) % 3];
+        const double outside = sum > 0 ? -areas[k] : areas[k];
+        const double edge = std::fabs(b.x - a.x) + std::fabs(b.y - a.y);  // or more
+        if (outside > kRelative * distance * edge + kRounding * (dot(a, a) + dot(b, b))) return true;
+    }
+    return false;
+}
+
 Nearest nearest_to_origin(const std::array<Vec2, 3>& p) {
-    const auto area = [](const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; };
     const Vec3 areas(area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1]));
     const double sum = areas.x + areas.y + areas.z;
     const Vec3 weights = areas / sum;
@@ -219,6 +238,7 @@ std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, Id 
         seen[k] = {local.x, local.y};
         z[k] = local.z;
     }
+    if (is_surely_beyond(seen, patch.stray)) return std::nullopt;
     const int low = z.x <= z.y && z.x <= z.z ? 0 : z.y <= z.z ? 1 : 2;
     const int high = z.x >= z.y && z.x >= z.z ? 0 : z.y >= z.z ? 1 : 2;
     const double t_far = (z[high] + patch.stray) / frame.speed;
