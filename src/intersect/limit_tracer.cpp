@@ -167,7 +167,7 @@ Nearest nearest_to_origin(const std::array<Vec2, 3>& p) {
 struct LimitTracer::Data {
     const Surface& surface;
     std::vector<Patch> patches;
-    double largest_patch = 0;  // some part of a patch lies this near to each other part of it
+    double largest_patch = 0;  // no patch is longer along any ray, its stray included
     double size = 0;           // half diagonal of a box about every face's corners and middle
     Box around;                // holds every hit
     BoxTree tree;
@@ -258,7 +258,7 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
     Candidates candidates;
     std::vector<Candidate>& found = candidates.found;
     double& complete_to = candidates.complete_to;
-    // The ray passes a candidate's box before the candidate's far end.
+    // A ray comes into the box of a candidate no later than so much after its t_near.
     const double beyond = largest_patch / query.frame.speed;
     tree.visit(query.ray, query.t_min, kInfinity, [&](Id index) {
         const auto one = candidate(query.frame, index, query.t_min);
