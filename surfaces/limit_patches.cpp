@@ -162,20 +162,33 @@ std::size_t LimitPatches::bytes() const {
     return impl_ ? impl_->mesh.bytes() + impl_->trees.bytes() + impl_->patches.bytes() : 0;
 }
 
-LimitPatches::Point LimitPatches::eval(int face, int sub_face, const Vec2& uv) const {
+template <bool kSecondOrder>
+LimitPatches::Point LimitPatches::eval_to_order(int face, int sub_face, const Vec2& uv) const {
     const FaceTree::Leaf leaf = impl_->mesh.tree.leaf(face, sub_face, uv);
     const auto make = [this](std::size_t f) { return impl_->make_patch(static_cast<int>(f)); };
     return impl_->patches.with(static_cast<std::size_t>(leaf.face), make, [&](const Patch& patch) {
         Point result;
         result.extent = patch.extent;
         SurfacePoint& point = result.point;
-        patch.surface.Evaluate(&leaf.uv.x, patch.points.data(), 3, &point.position.x, &point.du.x,
-                               &point.dv.x, &point.duu.x, &point.duv.x, &point.dvv.x);
+        if constexpr (kSecondOrder)
+            patch.surface.Evaluate(&leaf.uv.x, patch.points.data(), 3, &point.position.x, &point.du.x,
+                                   &point.dv.x, &point.duu.x, &point.duv.x, &point.dvv.x);
+        else
+            patch.surface.Evaluate(&leaf.uv.x, patch.points.data(), 3, &point.position.x, &point.du.x,
+                                   &point.dv.x);
         point.position += patch.origin;
         for (Vec3* first : {&point.du, &point.dv}) *first *= leaf.scale;
         for (Vec3* second : {&point.duu, &point.duv, &point.dvv}) *second *= leaf.scale * leaf.scale;
         return result;
     });
+}
+
+LimitPatches::Point LimitPatches::eval(int face, int sub_face, const Vec2& uv) const {
+    return eval_to_order<true>(face, sub_face, uv);
+}
+
+LimitPatches::Point LimitPatches::eval_first_order(int face, int sub_face, const Vec2& uv) const {
+    return eval_to_order<false>(face, sub_face, uv);
 }
 
 std::string surface_library_version() {

@@ -38,11 +38,16 @@ class LimitPatches {
     /// as in FaceBorder. Other faces: sub_face k is the quad from corner k over the middle of edge k and the
     /// centre to the middle of edge k - 1.
     Point eval(int face, int sub_face, const Vec2& uv) const;
+    /// The same without second derivatives.
+    Point eval_first_order(int face, int sub_face, const Vec2& uv) const;
 
     /// What is held now, in bytes; see Surface::bytes_held.
     std::size_t bytes() const;
 
   private:
+    template <bool kSecondOrder>
+    Point eval_to_order(int face, int sub_face, const Vec2& uv) const;
+
     struct Impl;
     std::unique_ptr<Impl> impl_;  // none for a cage without faces
 };

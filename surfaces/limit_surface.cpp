@@ -135,11 +135,14 @@ class LimitSurface final : public Surface {
 
     SurfacePoint eval(Id face, const Vec2& uv) const override {
         const Vec2 inside = clamp_to_domain(domain_, uv);
-        LimitPatches::Point here = eval_patch(face, inside);
+        LimitPatches::Point here = patches_.eval(faces_[face].cage_face, faces_[face].sub_face, inside);
         if (domain_ == FaceDomain::kTriangle) turn_second_derivatives(face, inside, here.point);
-        here.point.normal = normal_of(here);
-        if (here.point.normal == Vec3(0)) here.point.normal = normal_near(face, inside);
-        return here.point;
+        return with_normal(face, inside, here);
+    }
+
+    SurfacePoint eval_first_order(Id face, const Vec2& uv) const override {
+        const Vec2 inside = clamp_to_domain(domain_, uv);
+        return with_normal(face, inside, eval_patch(face, inside));
     }
 
     std::unique_ptr<const SurfaceBounder> make_bounder() const override {
@@ -147,8 +150,15 @@ class LimitSurface final : public Surface {
     }
 
   private:
+    /// Without second derivatives.
     LimitPatches::Point eval_patch(Id face, const Vec2& uv) const {
-        return patches_.eval(faces_[face].cage_face, faces_[face].sub_face, uv);
+        return patches_.eval_first_order(faces_[face].cage_face, faces_[face].sub_face, uv);
+    }
+
+    SurfacePoint with_normal(Id face, const Vec2& inside, LimitPatches::Point here) const {
+        here.point.normal = normal_of(here);
+        if (here.point.normal == Vec3(0)) here.point.normal = normal_near(face, inside);
+        return here.point;
     }
 
     /// OpenSubdiv 3.5 gives the second derivatives with the wrong sign where a triangle's patch is

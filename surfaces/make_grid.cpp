@@ -166,7 +166,8 @@ void evaluate(const Surface& surface, std::vector<GridFace>& faces, std::vector<
             GridFace& face = faces[f];
             face.normals.resize(face.points.size());
             for (std::size_t i = 0; i < face.points.size(); ++i) {
-                const SurfacePoint point = surface.eval(static_cast<Id>(f), face.lattice->uv()[i]);
+                const SurfacePoint point =
+                    surface.eval_first_order(static_cast<Id>(f), face.lattice->uv()[i]);
                 face.normals[i] = point.normal;
                 if (owner[face.points[i]] == f) points[face.points[i]] = point.position;
             }

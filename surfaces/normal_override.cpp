@@ -82,6 +82,9 @@ class BorrowedNormals final : public Surface {
     FaceBorder border(Id face) const override { return surface_->border(face); }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override { return turned(surface_->eval(face, uv)); }
+    SurfacePoint eval_first_order(Id face, const Vec2& uv) const override {
+        return turned(surface_->eval_first_order(face, uv));
+    }
 
     std::size_t bytes_held() const override { return surface_->bytes_held(); }
 

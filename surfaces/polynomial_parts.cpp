@@ -46,7 +46,7 @@ double lattice_basis(int i, int j, const Vec2& t) {
 /// The net over the unit square of the shape's own parameters t, which for negative sizes run against (u, v).
 BezierNet interpolated(const Surface& surface, Id face, const FacePart& part) {
     const auto position = [&](const Vec2& t) {
-        return surface.eval(face, at(part.shape, t)).position - part.origin;
+        return surface.eval_first_order(face, at(part.shape, t)).position - part.origin;
     };
     std::array<Vec3, 25> values;
     if (surface.domain(face) == FaceDomain::kSquare) {
@@ -161,7 +161,7 @@ std::array<BezierNet, kQuantities> part_nets(const BezierNet& net) {
 FacePart fit_part(const Surface& surface, Id face, const PartShape& shape) {
     FacePart part;
     part.shape = shape;
-    part.origin = surface.eval(face, at(shape, Vec2(0.3))).position;
+    part.origin = surface.eval_first_order(face, at(shape, Vec2(0.3))).position;
     part.net = interpolated(surface, face, part);
 
     double size = 0;

@@ -89,6 +89,8 @@ class Surface {
 
     /// Position and derivatives at (u, v) of a face; parameters outside the domain are clamped to it.
     virtual SurfacePoint eval(Id face, const Vec2& uv) const = 0;
+    /// The same bit for bit, but that the second derivatives may be left out.
+    virtual SurfacePoint eval_first_order(Id face, const Vec2& uv) const { return eval(face, uv); }
 
     /// The first hit with t > t_min in closed form, for surfaces that have one; `has_closed_form` says which.
     virtual bool has_closed_form() const { return false; }

@@ -35,20 +35,31 @@ constexpr double kRoomAround = 0.01;
 /// A facet of the fine grid with the patch of surface that it stands for.
 struct Patch {
     std::array<Vec3, 3> corner;
-    std::array<Vec2, 3> uv;
-    Id face = kNone;
     double stray = 0;  // the surface lies within this distance of the facet
     double size = 0;   // longest edge
+    std::array<Vec2, 3> uv;
+    Id face = kNone;
     double reach = 0;  // largest extent in u or v
 };
 
 /// A patch that the ray may meet.
 struct Candidate {
-    double t_near = 0;  // it meets none before this
+    double t_near = 0, t_far = 0;  // it meets none before and none after these
+    bool is_crossed = false;       // it goes through the facet itself
     Id patch = kNone;
     Vec3 weights{0};                              // of the facet's point nearest to the ray
     int nearest_corner = 0, farthest_corner = 0;  // along the ray
 };
+
+/// Candidates from near to far, and up to which t_near all of them are there.
+struct Candidates {
+    std::vector<Candidate> found;
+    double complete_to = kInfinity;
+};
+
+/// Which candidates are looked for: all, or those that may come before the first facet that the ray goes
+/// straight through, behind which it seldom goes on without a hit.
+enum class Reach { kToFirst, kAll };
 
 double largest(const Vec3& v) {
     return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
@@ -66,7 +77,8 @@ Patch make_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t fa
     for (const auto& [a, b, c] : samples) {
         const Vec3 chord = a * patch.corner[0] + b * patch.corner[1] + c * patch.corner[2];
         const Vec2 uv = a * patch.uv[0] + b * patch.uv[1] + c * patch.uv[2];
-        patch.stray = std::max(patch.stray, length(surface.eval(patch.face, uv).position - chord));
+        patch.stray =
+            std::max(patch.stray, length(surface.eval_first_order(patch.face, uv).position - chord));
     }
     for (int k = 0; k < 3; ++k) {
         const Vec2 edge = glm::abs(patch.uv[k] - patch.uv[(k + 1) % 3]);
@@ -109,8 +121,27 @@ struct Nearest {
     double distance = kInfinity;
 };
 
+double area(const Vec2& a, const Vec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+/// Whether the origin is farther than this from the triangle for sure, by one edge's line; no division, no
+/// root. What rounding does to areas is far below the room that is left for it; where it may have turned the
+/// triangle's own, the triangle is as good as its edge.
+bool is_surely_beyond(const std::array<Vec2, 3>& p, double distance) {
+    constexpr double kRelative = 1 + 1e-6, kRounding = 1e-13;
+    const std::array<double, 3> areas{area(p[0], p[1]), area(p[1], p[2]), area(p[2], p[0])};
+    const double sum = areas[0] + areas[1] + areas[2];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2 &a = p[k], &b = p[(k + 1) % 3];
+        const double outside = sum > 0 ? -areas[k] : areas[k];
+        const double edge = std::fabs(b.x - a.x) + std::fabs(b.y - a.y);  // or more
+        if (outside > kRelative * distance * edge + kRounding * (dot(a, a) + dot(b, b))) return true;
+    }
+    return false;
+}
+
 Nearest nearest_to_origin(const std::array<Vec2, 3>& p) {
-    const auto area = [](const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; };
     const Vec3 areas(area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1]));
     const double sum = areas.x + areas.y + areas.z;
     const Vec3 weights = areas / sum;
@@ -136,13 +167,15 @@ Nearest nearest_to_origin(const std::array<Vec2, 3>& p) {
 struct LimitTracer::Data {
     const Surface& surface;
     std::vector<Patch> patches;
-    double size = 0;  // half diagonal of a box about every face's corners and middle
-    Box around;       // holds every hit
+    double largest_patch = 0;  // no patch is longer along any ray, its stray included
+    double size = 0;           // half diagonal of a box about every face's corners and middle
+    Box around;                // holds every hit
     BoxTree tree;
 
     Data(const Surface& exact, const SurfaceGrid& fine, const std::string& isa)
         : surface(exact),
           patches(make_patches(exact, fine)),
+          largest_patch(largest_of(patches)),
           size(half_diagonal(exact)),
           around(box_around()),
           tree(boxes(), isa) {}
@@ -155,11 +188,16 @@ struct LimitTracer::Data {
         });
         return patches;
     }
+    static double largest_of(const std::vector<Patch>& patches) {
+        double largest = 0;
+        for (const Patch& patch : patches) largest = std::max(largest, patch.size + patch.stray);
+        return kStraySafety * largest;
+    }
     static double half_diagonal(const Surface& surface) {
         Vec3 low(kInfinity), high(-kInfinity);
         for (Id face = 0; face < surface.face_count(); ++face) {
             for (const Vec2& uv : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(0.5, 0.5)}) {
-                const Vec3 p = surface.eval(face, uv).position;
+                const Vec3 p = surface.eval_first_order(face, uv).position;
                 low = glm::min(low, p), high = glm::max(high, p);
             }
         }
@@ -180,7 +218,12 @@ struct LimitTracer::Data {
     }
 
     std::optional<Candidate> candidate(const RayFrame& frame, Id index, double t_min) const;
-    std::vector<Candidate> candidates(const Ray& ray, const RayFrame& frame, double t_min) const;
+    struct Query {
+        const Ray& ray;
+        const RayFrame& frame;
+        double t_min = 0;
+    };
+    Candidates candidates(const Query& query, Reach reach) const;
     template <typename Use>
     void for_each_hit(const Ray& ray, const RayFrame& frame, const Candidate& candidate, Use&& use) const;
 };
@@ -195,26 +238,43 @@ std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, Id 
         seen[k] = {local.x, local.y};
         z[k] = local.z;
     }
+    if (is_surely_beyond(seen, patch.stray)) return std::nullopt;
     const int low = z.x <= z.y && z.x <= z.z ? 0 : z.y <= z.z ? 1 : 2;
     const int high = z.x >= z.y && z.x >= z.z ? 0 : z.y >= z.z ? 1 : 2;
-    if (!((z[high] + patch.stray) / frame.speed > t_min)) return std::nullopt;
+    const double t_far = (z[high] + patch.stray) / frame.speed;
+    if (!(t_far > t_min)) return std::nullopt;
     const Nearest nearest = nearest_to_origin(seen);
     if (!(nearest.distance <= patch.stray)) return std::nullopt;
-    return Candidate{(z[low] - patch.stray) / frame.speed, index, nearest.weights, low, high};
+    return Candidate{(z[low] - patch.stray) / frame.speed,
+                     t_far,
+                     nearest.distance == 0,
+                     index,
+                     nearest.weights,
+                     low,
+                     high};
 }
 
-std::vector<Candidate> LimitTracer::Data::candidates(const Ray& ray, const RayFrame& frame,
-                                                     double t_min) const {
-    std::vector<Candidate> found;
-    tree.visit(ray, t_min, kInfinity, [&](Id index) {
-        if (const auto one = candidate(frame, index, t_min)) found.push_back(*one);
-        return kInfinity;
+Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const {
+    Candidates candidates;
+    std::vector<Candidate>& found = candidates.found;
+    double& complete_to = candidates.complete_to;
+    // A ray comes into the box of a candidate no later than so much after its t_near.
+    const double beyond = largest_patch / query.frame.speed;
+    tree.visit(query.ray, query.t_min, kInfinity, [&](Id index) {
+        const auto one = candidate(query.frame, index, query.t_min);
+        if (one && one->t_near <= complete_to) {
+            found.push_back(*one);
+            if (reach == Reach::kToFirst && one->is_crossed && one->t_near > query.t_min)
+                complete_to = std::min(complete_to, one->t_far);
+        }
+        return complete_to + beyond;
     });
+    std::erase_if(found, [&](const Candidate& one) { return !(one.t_near <= complete_to); });
     // The order of Embree's visits depends on the machine; this order does not.
     std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
         return a.t_near != b.t_near ? a.t_near < b.t_near : a.patch < b.patch;
     });
-    return found;
+    return candidates;
 }
 
 // Calls use(hit) for the hits that Newton's method reaches in the candidate's patch, with any t, some perhaps
@@ -235,7 +295,11 @@ void LimitTracer::Data::for_each_hit(const Ray& ray, const RayFrame& frame, cons
     if (steep) return;
 
     // Near a silhouette a patch is met twice, and the hit found may be the farther one.
-    const auto second = hit ? predict_second_hit(*hit, ray.direction) : std::nullopt;
+    const auto predicted = [&](SurfaceHit full) {
+        full.point = surface.eval(full.face, full.uv);
+        return predict_second_hit(full, ray.direction);
+    };
+    const auto second = hit ? predicted(*hit) : std::nullopt;
     if (second && std::fabs(second->t_step) * frame.speed <= 2 * patch.size) solve(second->uv);
     solve(patch.uv[candidate.nearest_corner]);
     solve(patch.uv[candidate.farthest_corner]);
@@ -254,14 +318,21 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
     if (!frame) return std::nullopt;
 
     std::optional<SurfaceHit> first;
-    for (const Candidate& candidate : data_->candidates(ray, *frame, t_min)) {
-        if (first && candidate.t_near > first->t) break;
-        const Patch& patch = data_->patches[candidate.patch];
-        data_->for_each_hit(ray, *frame, candidate, [&](const SurfaceHit& hit) {
-            if (!(hit.t > t_min) || (first && !(hit.t < first->t))) return;
-            first = hit;
-            if (hit.point.normal == Vec3(0)) first->point.normal = chord_normal(patch);
-        });
+    double tried = -kInfinity;
+    for (const Reach reach : {Reach::kToFirst, Reach::kAll}) {
+        const Candidates candidates = data_->candidates({ray, *frame, t_min}, reach);
+        for (const Candidate& candidate : candidates.found) {
+            if (candidate.t_near <= tried) continue;
+            if (first && candidate.t_near > first->t) return first;
+            const Patch& patch = data_->patches[candidate.patch];
+            data_->for_each_hit(ray, *frame, candidate, [&](const SurfaceHit& hit) {
+                if (!(hit.t > t_min) || (first && !(hit.t < first->t))) return;
+                first = hit;
+                if (hit.point.normal == Vec3(0)) first->point.normal = chord_normal(patch);
+            });
+        }
+        tried = candidates.complete_to;
+        if (tried == kInfinity || (first && first->t <= tried)) break;
     }
     return first;
 }

@@ -42,7 +42,7 @@ std::optional<Vec2> newton_step(const RayFrame& ray, const SurfacePoint& point, 
 Trial eval_trial(const Surface& surface, const RayFrame& ray, const SurfaceGuess& guess, const Vec2& uv) {
     Trial trial;
     trial.uv = clamp_to_domain(surface.domain(guess.face), uv);
-    trial.point = surface.eval(guess.face, trial.uv);
+    trial.point = surface.eval_first_order(guess.face, trial.uv);
     const Vec3 local = ray.from_world(trial.point.position);
     trial.z = local.z;
     trial.miss = std::hypot(local.x, local.y);

@@ -34,13 +34,14 @@ struct SurfaceGuess {
 
 /// The hit that Newton's method reaches from the guess, with any t; none where it reaches none within the
 /// face. The hit lies on the ray to kSurfaceResidual times the distances to the world's and the ray's origin;
-/// parameters that end up outside of the face by up to kDomainSlack are put on its border.
+/// parameters that end up outside of the face by up to kDomainSlack are put on its border. Its point is that
+/// of Surface::eval_first_order.
 std::optional<SurfaceHit> solve_surface_hit(const Surface& surface, const RayFrame& ray,
                                             const SurfaceGuess& guess);
 
 /// Where a ray that meets the surface at `hit` should meet it a second time close by, if it bends as it does
 /// at `hit` (near a silhouette the two are close, and either may be the first): parameters and the step in t.
-/// None for flat spots.
+/// None for flat spots. `hit` with second derivatives.
 struct SecondHit {
     Vec2 uv{0};
     double t_step = 0;

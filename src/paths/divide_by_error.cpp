@@ -1,7 +1,9 @@
 // Leaves divided until what they show is predicted to lie where the exact paths show it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
+#include <optional>
 
 #include "base/parallel.h"
 #include "paths/facet_paths.h"
@@ -24,6 +26,7 @@ struct LeafPoint {
     const PathNode& node;
     Id leaf = kNone;
     const Look& look;
+    std::optional<Look>& closer;  // the look with those beside it, once some history wanted them
     std::size_t segment = 0;
     const DivideParams& params;
 
@@ -32,9 +35,11 @@ struct LeafPoint {
         const double estimate =
             estimated_displacement({node.mesh, leaf, weights, look.segments[segment].ray, hit});
         if (estimate <= params.max_error / kSure) return estimate;
-        Look closer = look;  // others may look at the same
-        set_beside(looking, closer);
-        return predicted_displacement({looking, closer, segment, ray, hit});
+        if (!closer) {
+            closer = look;  // others may look at the same
+            set_beside(looking, *closer);
+        }
+        return predicted_displacement({looking, *closer, segment, ray, hit});
     }
 
     double predicted(const Vec3& weights) const {
@@ -55,28 +60,32 @@ struct LeafPoint {
 
 }  // namespace
 
+/// The most at any point; some number above the limit where one is above it.
 double OpticPaths::predicted(const FittedLeaf& open) const {
     const FacetPart& part = *open.part;
     double most = 0;
-    for (std::size_t h = 0; h < part.histories.size(); ++h) {
+    std::array<std::optional<Look>, kInsideWeights.size()> closer_inside;
+    std::array<std::optional<Look>, 3> closer_corner;
+    for (std::size_t h = 0; h < part.histories.size() && !(most > params_.max_error); ++h) {
         const PathNode& node = nodes_[part.node[h]];
         const IdTriple& corners = node.mesh.facets[open.leaf];
-        const auto look_at_point = [&](const Look& look, const std::vector<std::size_t>& segment,
-                                       Vec3 weights) {
+        const auto look_at_point = [&](const Look& look, std::optional<Look>& closer,
+                                       const std::vector<std::size_t>& segment, Vec3 weights) {
             if (segment.empty()) return;
             for (std::size_t k = 0; k < 3; ++k)
                 weights[static_cast<int>(k)] *=
                     part.corners[k].look->screen.z / node.mesh.screen[corners[k]].z;
-            const LeafPoint point{looking_, node, open.leaf, look, segment[h], params_};
+            const LeafPoint point{looking_, node, open.leaf, look, closer, segment[h], params_};
             most = std::max(most, point.predicted(weights / (weights.x + weights.y + weights.z)));
         };
         for (std::size_t i = 0; i < part.inside.size(); ++i)
-            look_at_point(*part.inside[i].at.look, part.inside[i].segment, kInsideWeights[i]);
+            look_at_point(*part.inside[i].at.look, closer_inside[i], part.inside[i].segment,
+                          kInsideWeights[i]);
         if (!params_.fit) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             Vec3 weights(0);
             weights[static_cast<int>(k)] = 1;
-            look_at_point(*part.corners[k].look, part.segment[k], weights);
+            look_at_point(*part.corners[k].look, closer_corner[k], part.segment[k], weights);
         }
     }
     return most;
@@ -103,6 +112,7 @@ void OpticPaths::divide_batch_by_error(std::vector<FittedLeaf> open) {
                 if (error[i] > params_.max_error) divided[i] = divide_part(looking_, *open[i].part, params_);
             }
         });
+        set_kappas(divided);
         std::vector<FittedLeaf> next;
         for (std::size_t i = 0; i < open.size(); ++i) {
             const FittedLeaf& leaf = open[i];

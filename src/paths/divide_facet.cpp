@@ -164,9 +164,6 @@ bool Divider::project(const Triangle& corners, std::span<const FacetPoint> insid
 }
 
 void Divider::end(Id cell, FacetPart part) {
-    if (part.method == LeafMethod::kProjected && !part.histories.empty())
-        for (const PartCorner& corner : part.corners)
-            if (corner.shared == kNone) set_kappa(looking_, *corner.look);
     divided_.cells[cell].part = static_cast<Id>(divided_.parts.size());
     divided_.parts.push_back(std::move(part));
 }

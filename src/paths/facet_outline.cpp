@@ -60,11 +60,7 @@ void OpticPaths::set_film_corner(Id corner, const Vec2& pixel) {
     if (look->state != LookState::kMissed) {
         chord.point = look->place.point;
         if (!looking_.camera.affine) chord.screen = look->screen = looking_.camera.screen(chord.point);
-        if (look->segments.size() > 1 ||
-            (look->segments.size() == 1 && look->segments[0].step.event != Event::kReflect))
-            set_kappa(looking_, *look);
-        else
-            look->kappa.assign(look->segments.size(), 1.0);
+        set_corner_kappa(looking_, *look);
     }
     places_[corner].point = chord.point;
     outline_.screen[corner] = chord.screen;

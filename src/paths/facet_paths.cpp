@@ -1,6 +1,7 @@
 #include "paths/facet_paths.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "base/parallel.h"
 #include "paths/divide_facet.h"
@@ -36,14 +37,27 @@ void OpticPaths::look_at_corners(std::span<const Id> facets) {
                                                        {.side = front ? LookSide::kFront : LookSide::kBack,
                                                         .least_weight = kFainter * kLeastWeight}));
             if (!params_.estimates) set_beside(looking_, *look);
-            // The first reflection alone needs no kappa.
-            if (look->segments.size() > 1 ||
-                (look->segments.size() == 1 && look->segments[0].step.event != Event::kReflect))
-                set_kappa(looking_, *look);
-            else
-                look->kappa.assign(look->segments.size(), 1.0);
             corner_looks_[wanted[i]] = std::move(look);
         }
+    });
+}
+
+/// At the corners of those parts alone that need it: see append_part.
+void OpticPaths::set_kappas(std::span<const DividedFacet> divided) const {
+    const auto is_later = [](const PathSegment& history) {
+        return history.parent != kNone || history.step.event != Event::kReflect;
+    };
+    std::vector<Look*> wanted;
+    for (const DividedFacet& facet : divided)
+        for (const FacetPart& part : facet.parts) {
+            if (std::none_of(part.histories.begin(), part.histories.end(), is_later)) continue;
+            for (const PartCorner& corner : part.corners)
+                if (corner.look->kappa.empty()) wanted.push_back(corner.look);
+        }
+    std::sort(wanted.begin(), wanted.end(), std::less<>());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    parallel_for(wanted.size(), kCornersPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) set_corner_kappa(looking_, *wanted[i]);
     });
 }
 
@@ -145,6 +159,7 @@ void OpticPaths::prepare(std::span<const Id> facets) {
             divided[i] = divide_facet(looking_, facet, params_);
         }
     });
+    set_kappas(divided);
     std::vector<FittedLeaf> whole, open;
     for (std::size_t i = 0; i < fresh.size(); ++i) {
         prepared_[fresh[i]] = 1;

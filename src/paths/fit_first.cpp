@@ -39,7 +39,7 @@ struct FacetFit {
         Vec2 uv(0);
         for (std::size_t k = 0; k < 3; ++k)
             uv += (k == place ? 2.0 / 3 : 1.0 / 6) * optic.grid.facet_uv[facet][k];
-        const SurfacePoint at = optic.surface.eval(optic.grid.facet_face[facet], uv);
+        const SurfacePoint at = optic.surface.eval_first_order(optic.grid.facet_face[facet], uv);
         if (at.normal == Vec3(0) || is_turned(at.position, at.normal)) return std::nullopt;
         const Vec3 screen = screen_from_world(optic.camera, at.position);
         if (!(screen.z > 0)) return std::nullopt;

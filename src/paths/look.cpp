@@ -61,7 +61,7 @@ Place beside(const Surface& surface, const Place& place, int axis) {
     Vec2 uv = place.uv;
     const double room = surface.domain(place.face) == FaceDomain::kTriangle ? 1 - uv.x - uv.y : 1 - uv[axis];
     uv[axis] += room > kStep ? kStep : -kStep;
-    const SurfacePoint at = surface.eval(place.face, uv);
+    const SurfacePoint at = surface.eval_first_order(place.face, uv);
     return {place.face, uv, at.position, at.normal};
 }
 
@@ -200,6 +200,14 @@ void set_kappa(const Looking& looking, Look& look) {
         look.kappa[i] = kappa_of(std::hypot(before, softened), std::hypot(after, softened));
     }
     if (!kept) look.beside.clear();
+}
+
+void set_corner_kappa(const Looking& looking, Look& look) {
+    if (look.segments.size() > 1 ||
+        (look.segments.size() == 1 && look.segments[0].step.event != Event::kReflect))
+        set_kappa(looking, look);
+    else
+        look.kappa.assign(look.segments.size(), 1.0);
 }
 
 }  // namespace trilens

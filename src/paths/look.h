@@ -118,4 +118,8 @@ void set_beside(const Looking& looking, Look& look);
 /// length times kappa long: the directions' second derivatives then have no part along the direction.
 void set_kappa(const Looking& looking, Look& look);
 
+/// The same for a corner of the grid, whose kappa is 1 where nothing follows a first reflection: that needs
+/// none.
+void set_corner_kappa(const Looking& looking, Look& look);
+
 }  // namespace trilens

@@ -31,16 +31,23 @@ std::array<Vec3, 2> own_normal_along(const SurfacePoint& at) {
 }
 
 std::array<Vec3, 2> normal_along(const ChainMirror& mirror, const SurfaceHit& hit) {
-    if (mirror.own_normals && dot(cross(hit.point.du, hit.point.dv), hit.point.normal) != 0)
-        return own_normal_along(hit.point);
     const Surface& surface = *mirror.surface;
+    if (mirror.own_normals && dot(cross(hit.point.du, hit.point.dv), hit.point.normal) != 0) {
+        SurfacePoint at = hit.point;
+        if (!surface.has_closed_form()) {
+            const SurfacePoint full = surface.eval(hit.face, hit.uv);
+            at.duu = full.duu, at.duv = full.duv, at.dvv = full.dvv;
+        }
+        return own_normal_along(at);
+    }
     std::array<Vec3, 2> along{};
     for (int axis = 0; axis < 2; ++axis) {
         const double most = surface.domain(hit.face) == FaceDomain::kTriangle ? 1 - hit.uv[1 - axis] : 1.0;
         const double step = hit.uv[axis] + kStep > most ? -kStep : kStep;
         Vec2 uv = hit.uv;
         uv[axis] += step;
-        along[static_cast<std::size_t>(axis)] = (surface.eval(hit.face, uv).normal - hit.point.normal) / step;
+        along[static_cast<std::size_t>(axis)] =
+            (surface.eval_first_order(hit.face, uv).normal - hit.point.normal) / step;
     }
     return along;
 }

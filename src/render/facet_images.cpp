@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/check_data.h"
+
 namespace trilens {
 namespace {
 
@@ -26,15 +28,18 @@ SpecularQuery specular_query(const World& world, std::size_t index, Path path, c
 }
 
 FacetImages::FacetImages(const World& world, const Frame& frame, std::size_t optic, const PathMesh& path)
-    : world_(world),
-      frame_(frame),
-      optic_(optic),
-      path_(path),
-      facets_(*frame.optics[optic].facets),
-      images_(path.mesh) {
-    const SurfaceGrid& grid = facets_.grid();
-    around_ =
-        facets_around(grid.facets, grid.points.size(), [&](Id corner) { return grid.corner_point[corner]; });
+    : world_(world), frame_(frame), optic_(optic), path_(path), facets_(*frame.optics[optic].facets) {
+    check_ray_mesh(path.mesh);
+}
+
+const FacetImages::Search& FacetImages::search() const {
+    return search_.get([this] {
+        const SurfaceGrid& grid = facets_.grid();
+        return std::make_unique<Search>(Search{MeshPointImages(path_.mesh),
+                                               facets_around(grid.facets, grid.points.size(), [&](Id corner) {
+                                                   return grid.corner_point[corner];
+                                               })});
+    });
 }
 
 /// Whether the film shows this facet there, not another place of the same one.
@@ -85,7 +90,7 @@ std::optional<SpecularPoint> FacetImages::refined(const MeshPointImage& image, c
     if (near(best)) return best;
     best.reset();
     for (const Id c : corner) {
-        for (const Id f : around_.of(grid.corner_point[c])) {
+        for (const Id f : search().around.of(grid.corner_point[c])) {
             const auto& uvs = grid.facet_uv[f];
             const auto found =
                 refine_specular_point(surface, {grid.facet_face[f], (uvs[0] + uvs[1] + uvs[2]) / 3.0}, query);
@@ -100,7 +105,7 @@ std::optional<SpecularPoint> FacetImages::refined(const MeshPointImage& image, c
 std::vector<OpticImage> FacetImages::images(const Vec3& point, bool refine,
                                             std::vector<SpecularPoint> known) const {
     std::vector<OpticImage> images;
-    for (const MeshPointImage& found : images_.images(point)) {
+    for (const MeshPointImage& found : search().images.images(point)) {
         if (!is_shown(found) || hidden(found)) continue;
         const Ray ray = interpolated_ray(path_.mesh, found.facet, found.weights);
         const Id facet = frame_.optics[optic_].grid_facet(found.facet);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/facets_around.h"
+#include "base/lazy.h"
 #include "camera/specular_point.h"
 #include "render/frame.h"
 #include "trilinear/mesh_point_images.h"
@@ -46,8 +47,12 @@ class FacetImages {
     std::size_t optic_;
     const PathMesh& path_;
     const OpticFacets& facets_;
-    MeshPointImages images_;
-    FacetsAround around_;  // facets at each point of the grid
+    struct Search {
+        MeshPointImages images;
+        FacetsAround around;  // facets at each point of the grid
+    };
+    const Search& search() const;
+    Lazy<Search> search_;  // where exact surfaces are searched completely nobody asks
 };
 
 }  // namespace trilens

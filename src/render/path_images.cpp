@@ -111,23 +111,29 @@ SeveralOpticsImages::SeveralOpticsImages(const World& world, const Frame& frame,
 
 SeveralOpticsImages::History& SeveralOpticsImages::history_of(const std::vector<PathSegment>& segments,
                                                               Id last) {
-    History wanted;
-    wanted.path = segments[last].path;
-    for (Id s = last; s != kNone; s = segments[s].parent) {
-        PathSegment segment;
-        segment.step = segments[s].step;
-        segment.colours = segments[s].colours;
-        segment.ends = wanted.chain.empty();
-        wanted.steps.insert(wanted.steps.begin(), segment.step);
-        wanted.chain.insert(wanted.chain.begin(), segment);
+    std::vector<Id> chain;
+    for (Id s = last; s != kNone; s = segments[s].parent) chain.push_back(s);
+    std::reverse(chain.begin(), chain.end());
+    Id place = kNone;
+    for (const Id s : chain) {
+        const Step& step = segments[s].step;
+        place = places_.try_emplace({place, step.optic, step.event}, static_cast<Id>(places_.size()))
+                    .first->second;
     }
-    for (std::size_t i = 0; i < wanted.chain.size(); ++i)
-        wanted.chain[i].parent = i == 0 ? kNone : static_cast<Id>(i - 1);
-    for (History& known : histories_)
-        if (known.steps == wanted.steps && known.chain.back().colours == wanted.chain.back().colours)
-            return known;
-    histories_.push_back(std::move(wanted));
-    return histories_.back();
+    const auto [known, is_new] = history_at_.try_emplace({place, segments[last].colours}, histories_.size());
+    if (!is_new) return histories_[known->second];
+
+    History& made = histories_.emplace_back();
+    made.path = segments[last].path;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        PathSegment& segment = made.chain.emplace_back();
+        segment.parent = i == 0 ? kNone : static_cast<Id>(i - 1);
+        segment.step = segments[chain[i]].step;
+        segment.colours = segments[chain[i]].colours;
+        segment.ends = chain[i] == last;
+        made.steps.push_back(segment.step);
+    }
+    return made;
 }
 
 void SeveralOpticsImages::add_lone_rays(const PathLeaf& leaf) {

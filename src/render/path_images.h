@@ -1,7 +1,10 @@
 // Where a point appears over several optics: seeds from the facets' RayMeshes, then exact.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "paths/facet_paths.h"
@@ -50,6 +53,10 @@ class SeveralOpticsImages {
         std::vector<LoneRay> lone;
     };
 
+    /// Histories told apart: a step after a place, kNone the beginning, is a place too.
+    using StepFrom = std::tuple<Id, Id, Event>;
+    using HistoryEnd = std::pair<Id, Colours>;  // its last place
+
     void add_lone_rays(const PathLeaf& leaf);
     History& history_of(const std::vector<PathSegment>& segments, Id last);
     std::vector<std::pair<Vec2, Id>> starts(const History& history, const Vec3& point) const;
@@ -58,6 +65,8 @@ class SeveralOpticsImages {
     const Frame& frame_;
     std::unique_ptr<OpticPaths> paths_;
     std::vector<History> histories_;
+    std::map<StepFrom, Id> places_;
+    std::map<HistoryEnd, std::size_t> history_at_;
     bool may_miss_ = false;
 };
 

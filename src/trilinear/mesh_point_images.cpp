@@ -27,13 +27,25 @@ Vec3 centroid_origin(const RayMesh& mesh, Id facet) {
     return (mesh.rays[c[0]].origin + mesh.rays[c[1]].origin + mesh.rays[c[2]].origin) / 3.0;
 }
 
-Vec3 mean_direction(const RayMesh& mesh, Id facet) {
-    Vec3 sum(0);
-    for (const Id c : mesh.facets[facet]) sum += normalize_or_zero(mesh.rays[c].direction);
-    return normalize_or_zero(sum);
-}
-
 }  // namespace
+
+/// What the tree is built by, worked out once.
+struct MeshPointImages::Means {
+    std::vector<Vec3> unit;               // per corner: its direction
+    std::vector<Vec3> origin, direction;  // per facet with rays
+
+    explicit Means(const RayMesh& mesh) : origin(mesh.facets.size()), direction(mesh.facets.size()) {
+        unit.reserve(mesh.rays.size());
+        for (const Ray& ray : mesh.rays) unit.push_back(normalize_or_zero(ray.direction));
+        for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+            if (!mesh.has_rays(f)) continue;
+            origin[f] = centroid_origin(mesh, static_cast<Id>(f));
+            Vec3 sum(0);
+            for (const Id c : mesh.facets[f]) sum += unit[c];
+            direction[f] = normalize_or_zero(sum);
+        }
+    }
+};
 
 MeshPointImages::MeshPointImages(const RayMesh& mesh) : corners_(mesh.facets), screen_(mesh.screen) {
     check_ray_mesh(mesh);
@@ -41,7 +53,7 @@ MeshPointImages::MeshPointImages(const RayMesh& mesh) : corners_(mesh.facets), s
         if (mesh.has_rays(f)) facet_.push_back(static_cast<Id>(f));
     }
     if (facet_.empty()) return;
-    build(mesh, 0, static_cast<std::uint32_t>(facet_.size()));
+    build(mesh, Means(mesh), 0, static_cast<std::uint32_t>(facet_.size()));
     coplanarity_.reserve(facet_.size());
     beam_.reserve(facet_.size());
     for (const Id f : facet_) {
@@ -50,13 +62,14 @@ MeshPointImages::MeshPointImages(const RayMesh& mesh) : corners_(mesh.facets), s
     }
 }
 
-MeshPointImages::Node MeshPointImages::cone(const RayMesh& mesh, std::span<const Id> facets) {
+MeshPointImages::Node MeshPointImages::cone(const RayMesh& mesh, const Means& means,
+                                            std::span<const Id> facets) {
     // A ball about the origins, and the mean direction.
     Box origins;
     Vec3 axis(0);
     for (const Id f : facets) {
         for (const Id c : mesh.facets[f]) origins.include(mesh.rays[c].origin);
-        axis += mean_direction(mesh, f);
+        axis += means.direction[f];
     }
     Node node;
     node.center = 0.5 * (origins.low + origins.high);
@@ -67,8 +80,7 @@ MeshPointImages::Node MeshPointImages::cone(const RayMesh& mesh, std::span<const
     for (const Id f : facets) {
         for (const Id c : mesh.facets[f]) {
             node.radius = std::max(node.radius, length(mesh.rays[c].origin - node.center));
-            smallest_cosine =
-                std::min(smallest_cosine, dot(normalize_or_zero(mesh.rays[c].direction), node.axis));
+            smallest_cosine = std::min(smallest_cosine, dot(means.unit[c], node.axis));
         }
     }
     const double sine = std::sqrt(std::max(0.0, 1 - smallest_cosine * smallest_cosine));
@@ -77,9 +89,10 @@ MeshPointImages::Node MeshPointImages::cone(const RayMesh& mesh, std::span<const
     return node;
 }
 
-std::uint32_t MeshPointImages::build(const RayMesh& mesh, std::uint32_t first, std::uint32_t end) {
+std::uint32_t MeshPointImages::build(const RayMesh& mesh, const Means& means, std::uint32_t first,
+                                     std::uint32_t end) {
     const std::uint32_t index = static_cast<std::uint32_t>(node_.size());
-    node_.push_back(cone(mesh, std::span(facet_).subspan(first, end - first)));
+    node_.push_back(cone(mesh, means, std::span(facet_).subspan(first, end - first)));
     if (end - first <= kLeaf) {
         node_[index].first = first, node_[index].end = end;
     } else {
@@ -87,8 +100,7 @@ std::uint32_t MeshPointImages::build(const RayMesh& mesh, std::uint32_t first, s
         // distance.
         Box places, directions;
         for (std::uint32_t i = first; i < end; ++i) {
-            places.include(centroid_origin(mesh, facet_[i])),
-                directions.include(mean_direction(mesh, facet_[i]));
+            places.include(means.origin[facet_[i]]), directions.include(means.direction[facet_[i]]);
         }
         const double reach = 2 * node_[0].radius;
         const Vec3 wide_place = places.size(), wide_direction = reach * directions.size();
@@ -96,15 +108,15 @@ std::uint32_t MeshPointImages::build(const RayMesh& mesh, std::uint32_t first, s
         const auto width = [&](int axis) { return axis < 3 ? wide_place[axis] : wide_direction[axis - 3]; };
         for (int axis = 1; axis < 6; ++axis) widest = width(axis) > width(widest) ? axis : widest;
         const auto key = [&](Id f) {
-            return widest < 3 ? centroid_origin(mesh, f)[widest] : mean_direction(mesh, f)[widest - 3];
+            return widest < 3 ? means.origin[f][widest] : means.direction[f][widest - 3];
         };
         const std::uint32_t half = first + (end - first) / 2;
         std::sort(facet_.begin() + first, facet_.begin() + end, [&](Id a, Id b) {
             const double ka = key(a), kb = key(b);
             return ka != kb ? ka < kb : a < b;
         });
-        build(mesh, first, half);
-        build(mesh, half, end);
+        build(mesh, means, first, half);
+        build(mesh, means, half, end);
     }
     node_[index].skip = static_cast<std::uint32_t>(node_.size());
     return index;

@@ -57,8 +57,9 @@ class MeshPointImages {
         std::uint32_t first = 0, end = 0;  // leaf: range of facet_; else empty
     };
 
-    std::uint32_t build(const RayMesh& mesh, std::uint32_t first, std::uint32_t end);
-    static Node cone(const RayMesh& mesh, std::span<const Id> facets);
+    struct Means;
+    std::uint32_t build(const RayMesh& mesh, const Means& means, std::uint32_t first, std::uint32_t end);
+    static Node cone(const RayMesh& mesh, const Means& means, std::span<const Id> facets);
     static bool may_see(const Node& node, const Vec3& point);
     void append(const Vec3& point, std::vector<MeshPointImage>& images) const;
     bool same_image(const MeshPointImage& a, const MeshPointImage& b) const;

@@ -218,3 +218,25 @@ TEST_CASE("Holes have no faces and change nothing else", "[surfaces]") {
         CHECK(with->eval(face, {0.3, 0.8}).position ==
               without->eval(face < 2 ? face : face + 1, {0.3, 0.8}).position);
 }
+
+TEST_CASE("the first order is the same bit for bit without the second", "[surfaces]") {
+    std::mt19937 random(29);
+    std::uniform_real_distribution<double> anywhere(0, 1), exponent(-9, -2);
+    for (const auto& [name, cage] : made_cages()) {
+        CAPTURE(name);
+        const std::unique_ptr<Surface> surface = quietly(cage);
+        for (Id face = 0; face < surface->face_count(); ++face) {
+            std::vector<Vec2> places{{0, 0}, {1, 0}, {0, 1}, {1, 1}, {0.5, 0.5}, {0.5, 0}, {-1, 2}};
+            for (int i = 0; i < 20; ++i) places.emplace_back(anywhere(random), anywhere(random));
+            for (int i = 0; i < 5; ++i)
+                places.emplace_back(std::pow(10, exponent(random)), std::pow(10, exponent(random)));
+            for (const Vec2& uv : places) {
+                const SurfacePoint full = surface->eval(face, uv),
+                                   first = surface->eval_first_order(face, uv);
+                const bool same = first.position == full.position && first.du == full.du &&
+                                  first.dv == full.dv && first.normal == full.normal;
+                REQUIRE(same);
+            }
+        }
+    }
+}

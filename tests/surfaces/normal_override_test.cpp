@@ -45,6 +45,8 @@ TEST_CASE("a grid and its exact surface borrow the same normals") {
                 CHECK(point.normal == grid.corner_normal[grid.facets[f][k]]);
                 CHECK(point.position == own.position);
                 CHECK(point.duv == own.duv);
+                CHECK(surface->eval_first_order(grid.facet_face[f], grid.facet_uv[f][k]).normal ==
+                      point.normal);
                 if (field.type == NormalField::Type::kSmooth) CHECK(point.normal == own.normal);
             }
         }
