@@ -94,11 +94,6 @@ namespace {
 int64_t write_to_memory(exr_const_context_t, void* user, const void* bytes, std::uint64_t size,
                         std::uint64_t offset, exr_stream_error_func_ptr_t) {
     std::vector<unsigned char>& file = static_cast<Sink*>(user)->file;
-    const auto* from = static_cast<const unsigned char*>(bytes);
-    if (offset == file.size()) {  // mostly: bytes that are not cleared first
-        file.insert(file.end(), from, from + size);
-        return static_cast<int64_t>(size);
-    }
     if (file.size() < offset + size) file.resize(offset + size);
     std::memcpy(file.data() + offset, bytes, size);
     return static_cast<int64_t>(size);

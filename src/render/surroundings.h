@@ -35,14 +35,8 @@ void warn_of_surroundings(const World& world, const Surroundings& around, const 
 /// Sets what each sample's ray starts in.
 void set_surroundings(const Surroundings& around, SampleViews& views);
 
-/// What is left of the light on the way through the glass that the camera's ray starts in, to what the sample
-/// shows first. `view.around` is set.
-Vec3 light_through_glass(const World& world, const SampleViews& views, const SampleView& view);
-
 /// What is left of the light on the way from where the camera's ray starts to what the sample shows first.
-inline Vec3 light_of_view(const World& world, const SampleViews& views, const SampleView& view) {
-    return view.around == kNone ? Vec3(1) : light_through_glass(world, views, view);
-}
+Vec3 light_of_view(const World& world, const SampleViews& views, const SampleView& view);
 
 /// The weights of the light at the first optic of a sample, the way there included.
 OpticWeights first_weights(const World& world, const SampleViews& views, const SampleView& view);
