@@ -27,6 +27,12 @@ struct SampleGrid {
                 static_cast<std::size_t>(x - x0)) *
                static_cast<std::size_t>(samples_per_pixel());
     }
+    /// The number that a sample of this window has in `whole`, a grid around it with as many per pixel.
+    std::size_t sample_in(const SampleGrid& whole, std::size_t sample) const {
+        const std::size_t row =
+            static_cast<std::size_t>(width()) * static_cast<std::size_t>(samples_per_pixel());
+        return whole.first_sample(x0, y0 + static_cast<int>(sample / row)) + sample % row;
+    }
     /// Position of a sample on the film, in pixels from its top left; a pixel's centre is at .5.
     Vec2 position(std::size_t sample) const {
         const std::size_t columns = static_cast<std::size_t>(width());

@@ -8,6 +8,7 @@
 #include "base/rasterize.h"
 #include "projector/classic.h"
 #include "render/optic_ends.h"
+#include "render/optic_window.h"
 
 namespace trilens {
 namespace {
@@ -30,7 +31,7 @@ DrawMesh classic_through(const PreparedScene& scene, const ClassicParams& params
 DrawMesh watched(const WatchMesh& watch, const DrawMesh& draw_mesh) {
     return [watch, draw_mesh](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
                               std::span<Hit> hits) {
-        watch(mesh, owned);
+        watch(mesh, owned, grid);
         draw_mesh(mesh, owned, grid, hits);
     };
 }
@@ -43,6 +44,7 @@ struct FacetViewer {
     DrawMesh draw_objects;              // objects, as the engine shows them
     DrawMesh draw_paths;                // the same, for the rays that leave optics
     std::vector<DrawMesh> draw_optics;  // each optic's facets
+    std::vector<SampleGrid> windows;    // where they may be seen
     bool redraws_direct = false;        // draw_objects is another engine than draw_first
     std::optional<LayerStage> stage;
     std::vector<std::unique_ptr<SeenLayers>> layers;  // per optic; null: it has none
@@ -59,6 +61,7 @@ struct FacetViewer {
     bool leaves_body(std::size_t index, const Hit& hit, const Ray& ray) const;
     void view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                     SampleViews& views) const;
+    void meet_optic(std::size_t index, const Hit& hit, std::size_t sample, SampleViews& views) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void describe_optic(std::size_t index, const Hit& hit, SampleView& view, OpticView& on_optic) const;
 };
@@ -134,28 +137,41 @@ bool FacetViewer::leaves_body(std::size_t index, const Hit& hit, const Ray& ray)
     return !world->optics[index].mirror && !faces_front(grid, grid.facets[hit.triangle], ray.direction);
 }
 
+/// What a sample shows by now that it meets the optic, too.
+void FacetViewer::meet_optic(std::size_t index, const Hit& hit, std::size_t sample,
+                             SampleViews& views) const {
+    SampleView& view = views.samples[sample];
+    const bool sees_optic = view.optic != kNone, sees_object = view.hit.seen();
+    if (sees_object && touches(hit.t, view.depth) && leaves_body(index, hit, view.ray)) return;
+    if (sees_optic || sees_object) {
+        const Id other =
+            sees_optic ? world->optics[view.optic].mesh : world->objects.object[view.hit.triangle];
+        if (sees_optic && touches(hit.t, view.depth)) {
+            if (!comes_first(index, hit, views, view)) return;
+        } else if (!comes_before(hit.t, world->optics[index].mesh, view.depth, other)) {
+            return;
+        }
+    }
+    describe_optic(index, hit, view, views.of_optics[sample]);
+}
+
 void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                              SampleViews& views) const {
-    std::vector<Hit> hits(grid.size());
-    draw_optics[index](frame.camera.mesh, owned, grid, hits);
-    const Id own = world->optics[index].mesh;
-    parallel_for(hits.size(), 1024, [&](std::size_t from, std::size_t to) {
-        for (std::size_t s = from; s < to; ++s) {
-            SampleView& view = views.samples[s];
-            if (!hits[s].seen() || hits[s].t > reach()) continue;
-            const bool sees_optic = view.optic != kNone, sees_object = view.hit.seen();
-            if (sees_object && touches(hits[s].t, view.depth) && leaves_body(index, hits[s], view.ray))
-                continue;
-            if (sees_optic || sees_object) {
-                const Id other =
-                    sees_optic ? world->optics[view.optic].mesh : world->objects.object[view.hit.triangle];
-                if (sees_optic && touches(hits[s].t, view.depth)) {
-                    if (!comes_first(index, hits[s], views, view)) continue;
-                } else if (!comes_before(hits[s].t, own, view.depth, other)) {
-                    continue;
-                }
+    const SampleGrid part = part_in(grid, windows[index]);
+    if (part.size() == 0) return;
+    std::vector<Hit> hits(part.size());
+    if (part.size() == grid.size())
+        draw_optics[index](frame.camera.mesh, owned, part, hits);
+    else
+        draw_optics[index](frame.camera.mesh, rasterize_facets(frame.camera.mesh, part), part, hits);
+    const std::size_t row = hits.size() / static_cast<std::size_t>(part.height());
+    parallel_for(static_cast<std::size_t>(part.height()), 1024 / row, [&](std::size_t from, std::size_t to) {
+        for (std::size_t y = from; y < to; ++y) {
+            const std::size_t first = part.sample_in(grid, y * row);
+            for (std::size_t x = 0; x < row; ++x) {
+                const Hit& hit = hits[y * row + x];
+                if (hit.seen() && hit.t <= reach()) meet_optic(index, hit, first + x, views);
             }
-            describe_optic(index, hits[s], view, views.of_optics[s]);
         }
     });
 }
@@ -182,9 +198,9 @@ void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     std::vector<OpticEnds> ends;
     ends.reserve(frame.optics.size());
     for (std::size_t i = 0; i < frame.optics.size(); ++i)
-        ends.push_back(
-            draw_optic_paths({*world, static_cast<Id>(i), draw_paths, frame.optics[i], layers[i].get()},
-                             *paths[i], grid, views));
+        ends.push_back(draw_optic_paths({*world, static_cast<Id>(i), draw_paths, frame.optics[i],
+                                         layers[i].get(), part_in(grid, windows[i])},
+                                        *paths[i], grid, views));
     collect_ends(std::move(ends), views);
 }
 
@@ -211,9 +227,11 @@ FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice&
     viewer->draw_first =
         traces ? trace_through(object_tracer(world)) : project_through(prepared_objects(world));
     viewer->draw_objects = viewer->draw_first;
-    for (const FramedOptic& optic : viewer->frame.optics)
+    for (const FramedOptic& optic : viewer->frame.optics) {
+        viewer->windows.push_back(optic_window(optic, viewer->frame.camera));
         viewer->draw_optics.push_back(traces ? trace_through(optic.facets->tracer())
                                              : project_through(optic.facets->prepared()));
+    }
     if (engine.engine == Engine::kClassic) {
         viewer->draw_objects = classic_through(prepared_objects(world), engine.classic);
         viewer->redraws_direct = true;

@@ -11,8 +11,8 @@ namespace trilens {
 Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine);
 
 /// The same with its paths. `watch`: told every RayMesh that leaves an optic and is drawn through, with the
-/// samples that it is drawn at; both only live for the call.
-using WatchMesh = std::function<void(const RayMesh&, const FacetSamples&)>;
+/// samples that it is drawn at and the grid that they count in; all only live for the call.
+using WatchMesh = std::function<void(const RayMesh&, const FacetSamples&, const SampleGrid&)>;
 FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine,
                             const WatchMesh& watch = {});
 

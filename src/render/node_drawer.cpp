@@ -140,7 +140,7 @@ void NodeDrawer::draw(Id index, OpticEnds& out) {
     std::reverse(out.steps.begin() + static_cast<std::ptrdiff_t>(first_step), out.steps.end());
 
     const std::vector<std::size_t> first_end = first_ends(owned, is_end, out.ends.size());
-    out.ends.resize(first_end.back());
+    out.ends.resize(first_end.back(), PathEnd());  // copied: made one by one they take longer (measured)
     out.sample.resize(first_end.back());
     parallel_for(node.mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
         for (std::size_t l = from; l < to; ++l) {

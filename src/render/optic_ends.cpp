@@ -12,19 +12,26 @@ namespace {
 
 constexpr std::size_t kSamplesPerTask = 256;
 
-/// The samples that see the optic, by facet of its paths.
+/// Calls body(sample of the part, sample of the whole) for all of a part.
+template <typename Body>
+void for_each_sample(const SampleGrid& part, const SampleGrid& whole, const Body& body) {
+    const std::size_t rows = static_cast<std::size_t>(part.height()), row = part.size() / rows;
+    for (std::size_t y = 0; y < rows; ++y) {
+        const std::size_t first = part.sample_in(whole, y * row);
+        for (std::size_t x = 0; x < row; ++x) body(y * row + x, first + x);
+    }
+}
+
+/// The part's samples that see the optic, by facet of its paths.
 FacetSamples samples_by_facet(const OpticEndsParams& params, const OpticPaths& paths, const SampleGrid& grid,
                               const SampleViews& views) {
-    std::vector<Id> owner(views.samples.size());
-    for (std::size_t s = 0; s < owner.size(); ++s) {
-        const SampleView& view = views.samples[s];
-        if (view.optic != params.optic)
-            owner[s] = kNone;
-        else if (paths.is_on_film())
-            owner[s] = paths.film_facet(grid.position(s));
-        else
-            owner[s] = params.framed.mesh_facet(view.facet, grid.position(s));
-    }
+    std::vector<Id> owner(params.part.size(), kNone);
+    for_each_sample(params.part, grid, [&](std::size_t s, std::size_t of_grid) {
+        const SampleView& view = views.samples[of_grid];
+        if (view.optic != params.optic) return;
+        const Vec2 at = params.part.position(s);
+        owner[s] = paths.is_on_film() ? paths.film_facet(at) : params.framed.mesh_facet(view.facet, at);
+    });
     return group_by_facet(owner, paths.outline().facets.size());
 }
 
@@ -73,16 +80,16 @@ struct LayerSamples {
     std::vector<Incidence> arrival;  // at the layer's optic
 };
 
-/// Draws an optic, and what is seen in it, and so on.
+/// Draws an optic, and what is seen in it, and so on. Samples are those of the part.
 class ShownDrawer {
   public:
-    ShownDrawer(const OpticEndsParams& params, const SampleGrid& grid, SampleViews& views)
-        : params_(params), grid_(grid), views_(views) {}
+    ShownDrawer(const OpticEndsParams& params, const SampleGrid& whole, SampleViews& views)
+        : params_(params), grid_(params.part), whole_(whole), views_(views) {}
 
     /// Appends the ends of all its samples, but for those to be traced.
     void draw(const Shown& shown, OpticEnds& out);
 
-    const std::vector<Id>& traced() const { return traced_; }
+    const std::vector<Id>& traced() const { return traced_; }  // samples of the whole
 
   private:
     void note(const Shown& shown, const std::vector<Id>& leaf);
@@ -92,24 +99,24 @@ class ShownDrawer {
     void put_behind(const SeenLayer& layer, const LayerSamples& samples, OpticEnds& ends) const;
 
     const OpticEndsParams& params_;
-    const SampleGrid& grid_;
+    const SampleGrid &grid_, &whole_;
     SampleViews& views_;
     std::vector<Id> traced_;
 };
 
 void ShownDrawer::note(const Shown& shown, const std::vector<Id>& leaf) {
-    for (std::size_t s = 0; s < leaf.size(); ++s) {
-        if (leaf[s] == kNone) continue;
+    for_each_sample(grid_, whole_, [&](std::size_t s, std::size_t of_whole) {
+        if (leaf[s] == kNone) return;
         const PathLeaf& of_sample = shown.paths.leaves()[leaf[s]];
-        SampleView& view = views_.samples[s];
+        SampleView& view = views_.samples[of_whole];
         OpticView& on_optic = views_.on_optic(view);
         if (shown.depth == 0) view.leaf = leaf[s];
         view.layers = shown.depth;
         view.level = of_sample.level;
         on_optic.predicted = of_sample.predicted;
         on_optic.cut = most_cut(on_optic.cut, shown.paths.cut());
-        if (of_sample.method == LeafMethod::kTraced) traced_.push_back(static_cast<Id>(s));
-    }
+        if (of_sample.method == LeafMethod::kTraced) traced_.push_back(static_cast<Id>(of_whole));
+    });
     views_.projected_facets += shown.paths.projected_count();
     views_.crowded_out += shown.paths.crowded_out();
 }
@@ -234,8 +241,10 @@ void ShownDrawer::draw(const Shown& shown, OpticEnds& out) {
 OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, const SampleGrid& grid,
                            SampleViews& views) {
     OpticEnds out;
+    if (params.part.size() == 0) return out;
     ShownDrawer drawer(params, grid, views);
     drawer.draw({paths, params.layers, samples_by_facet(params, paths, grid, views)}, out);
+    for (Id& s : out.sample) s = static_cast<Id>(params.part.sample_in(grid, s));
     trace_samples({params.world, params.optic, paths.looking().camera, grid}, drawer.traced(), views, out);
     return out;
 }

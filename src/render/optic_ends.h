@@ -18,6 +18,7 @@ struct OpticEndsParams {
     const DrawMesh& draw;  // of the objects
     const FramedOptic& framed;
     SeenLayers* layers = nullptr;  // optics seen in it; null: none is a layer
+    SampleGrid part;               // of the grid: no sample beyond it shows the optic
 };
 
 /// The ends of all samples whose first surface is the optic's, and their method, level, and what was not

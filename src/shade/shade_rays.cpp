@@ -36,6 +36,9 @@ ShadeBatch::Bits unhindered(const ShadeScene& scene, const ShadeBatch& batch, Sh
 
 /// A batch on its way, with what is not the same number in all lanes.
 struct Shaded {
+    explicit Shaded(const ShadeScene& of_scene)
+        : scene(of_scene) {}  // lanes hold anything until they are set
+
     const ShadeScene& scene;
     ShadeBatch batch;
     std::array<const Hit*, kShadeLanes> hit;
@@ -123,7 +126,7 @@ void Shaded::shade(std::span<Vec3> light) {
 
 void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::span<Vec3> light) {
     TRILENS_CHECK(light.size() == seen.size(), "one light per ray");
-    Shaded shaded{scene, {}, {}, {}};
+    Shaded shaded(scene);
     shaded.batch.has_normals = !scene.normals.empty();
     for (std::size_t i = 0; i < seen.size(); ++i) {
         if (!seen[i].hit->seen()) {

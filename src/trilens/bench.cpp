@@ -59,8 +59,8 @@ void draw_bands(const Preparation& made, const SampleGrid& film, ViewCollector* 
     const int rows = static_cast<int>(std::max<std::size_t>(1, kBandSamples / row));
     std::vector<double> shading(static_cast<std::size_t>(std::max(1, request.race.repeats / 3)), 0);
     SampleGrid band = film;
-    const auto keep = [&](const RayMesh& mesh, const FacetSamples& owned) {
-        if (collector) collector->add(mesh, owned, band);
+    const auto keep = [&](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& part) {
+        if (collector) collector->add(mesh, owned, part);
     };
     const FacetViews facets = make_facet_views(*made.world, made.frame, Engine::kExact, keep);
     SampleViews views;

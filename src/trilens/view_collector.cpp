@@ -28,13 +28,13 @@ FacetSamples grouped(const std::vector<std::pair<Id, Id>>& owned, std::size_t fa
 
 }  // namespace
 
-void ViewCollector::add(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& band) {
+void ViewCollector::add(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& part) {
     if (owned.sample.empty()) return;
-    auto part = std::find_if(parts_.begin(), parts_.end(), [&](const Part& p) { return same(p.mesh, mesh); });
-    if (part == parts_.end()) part = parts_.insert(part, Part{mesh, {}});
-    const auto before = static_cast<Id>(film_.first_sample(band.x0, band.y0));
+    auto own = std::find_if(parts_.begin(), parts_.end(), [&](const Part& p) { return same(p.mesh, mesh); });
+    if (own == parts_.end()) own = parts_.insert(own, Part{mesh, {}});
     for (std::size_t f = 0; f + 1 < owned.first.size(); ++f)
-        for (const Id sample : owned.of(f)) part->owned.emplace_back(static_cast<Id>(f), before + sample);
+        for (const Id sample : owned.of(f))
+            own->owned.emplace_back(static_cast<Id>(f), static_cast<Id>(part.sample_in(film_, sample)));
 }
 
 CollectedViews ViewCollector::take() {

@@ -37,8 +37,8 @@ class ViewCollector {
     /// `film`: the grid of the whole picture.
     explicit ViewCollector(const SampleGrid& film) : film_(film) {}
 
-    /// The samples of `owned` count in `band`, rows of the film in their whole width.
-    void add(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& band);
+    /// The samples of `owned` count in `part`, a window of the film; parts come from the top.
+    void add(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& part);
 
     /// All so far; the collector is empty then.
     CollectedViews take();

@@ -46,6 +46,27 @@ TEST_CASE("a mesh that comes in bands is one mesh with the samples of all", "[tr
     }
 }
 
+TEST_CASE("parts of a film that are narrower than it count in the film", "[trilens]") {
+    const SampleGrid film{0, 0, 9, 7, 2};
+    const RayMesh mesh = film_mesh(0);
+    ViewCollector collector(film);
+    const SampleGrid above{0, 0, 9, 3, 2}, below{2, 3, 6, 7, 2};
+    for (const SampleGrid& part : {above, below}) collector.add(mesh, rasterize_facets(mesh, part), part);
+    const CollectedViews views = collector.take();
+    REQUIRE(views.meshes.size() == 1);
+    REQUIRE(views.owned[0].sample.size() == above.size() + below.size());
+    const FacetSamples whole = rasterize_facets(mesh, film);
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        std::vector<Id> wanted;
+        for (const Id sample : whole.of(f)) {
+            const Vec2 at = film.position(sample);
+            if (at.y < 3 || (at.x > 2 && at.x < 6)) wanted.push_back(sample);
+        }
+        const auto found = views.owned[0].of(f);
+        CHECK(std::equal(found.begin(), found.end(), wanted.begin(), wanted.end()));
+    }
+}
+
 TEST_CASE("a benchmark of many bands races each sample on the optics once", "[trilens]") {
     Scene scene = parse_scene(
         scene_examples()[0].json, "",
