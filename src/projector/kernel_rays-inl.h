@@ -8,6 +8,7 @@
 #define TRILENS_KERNEL_RAYS_INL_H
 #endif
 
+#include "projector/kernel_spots-inl.h"
 #include "projector/kernel_triangles-inl.h"
 #include "projector/kernel_vector_beams-inl.h"
 
@@ -29,11 +30,8 @@ HWY_INLINE void invert_directions(VectorRays& rays) {
 /// Local coordinates from the lines of samples that the floats are nearest to, among so many: the floats' own
 /// rounding, a share of the tile, can be more than a small leaf forgives.
 HWY_INLINE Double exact_local(const float* local, int lines) {
-    const hn::Rebind<float, DoubleTag> some;
     const float middle = static_cast<float>(lines - 1) / 2, half = std::max(0.5f, middle);
-    const auto line =
-        hn::Round(hn::MulAdd(hn::Load(some, local), hn::Set(some, half), hn::Set(some, middle)));
-    return hn::Mul(hn::Sub(hn::PromoteTo(kDouble, line), hn::Set(kDouble, static_cast<double>(middle))),
+    return hn::Mul(hn::Sub(lines_at(local, half, middle), hn::Set(kDouble, static_cast<double>(middle))),
                    hn::Set(kDouble, 1 / static_cast<double>(half)));
 }
 

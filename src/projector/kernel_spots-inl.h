@@ -57,12 +57,16 @@ HWY_INLINE TileSpots spots_of(const SampleGrid& grid, const FacetRays& facet, co
             largest_direction(lanes, j)};
 }
 
+/// The lines of samples that kDoubles local coordinates are nearest to; `half`, `middle` as TileSpots'.
+HWY_INLINE Double lines_at(const float* local, float half, float middle) {
+    const hn::Rebind<float, DoubleTag> some;
+    return hn::PromoteTo(
+        kDouble, hn::Round(hn::MulAdd(hn::Load(some, local), hn::Set(some, half), hn::Set(some, middle))));
+}
+
 /// Offsets along axis a from `local` and the kDoubles - 1 after it.
 HWY_INLINE Double offsets_of(const TileSpots& spots, int a, const float* local) {
-    const hn::Rebind<float, DoubleTag> some;
-    const auto line = hn::Round(
-        hn::MulAdd(hn::Load(some, local), hn::Set(some, spots.half[a]), hn::Set(some, spots.middle[a])));
-    const Double own = hn::PromoteTo(kDouble, line);
+    const Double own = lines_at(local, spots.half[a], spots.middle[a]);
     const Double screen = hn::Set(kDouble, spots.screen[a]);
     // Whole numbers and halves: their sums are exact in any order.
     if (spots.side == 1) return hn::Sub(hn::Add(own, hn::Set(kDouble, spots.shift[a])), screen);
