@@ -67,12 +67,13 @@ void print(const Cell& c, std::FILE* csv) {
     std::fprintf(
         csv,
         "%s,%zu,%d,%s,%d,%s,%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%."
-        "4f,%.4f,%zu,%zu,%zu,%zu\n",
+        "4f,%.4f,%zu,%zu,%zu,%zu,%.6f,%.6f,%.6f,%.4f\n",
         c.workload.c_str(), r.triangles, c.n, c.film.c_str(), r.threads, r.projector_isa.c_str(), r.pixels,
         r.facets, r.visible_ms, r.draw_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms,
         r.trace_written_ms, r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.draw, r.ratio.written,
         r.ratio.with_build, r.ratio.whole, r.slowest_ratio, r.fastest_ratio, r.mismatches.pixels,
-        r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);
+        r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained, r.shared, r.doubtful, r.unbounded,
+        r.depth_complexity);
     std::fflush(csv);
 }
 
@@ -88,7 +89,7 @@ int run(const std::map<std::string, Values>& chosen) {
             "prepare_ms,trace_ms,"
             "trace_written_ms,rays_ms,build_ms,ratio_visible,ratio_draw,ratio_written,ratio_with_build,ratio_"
             "whole,lowest,highest,"
-            "mismatches,edge,depth,unexplained\n");
+            "mismatches,edge,depth,unexplained,shared,doubtful,unbounded,depth_complexity\n");
     std::printf(
         "milliseconds, medians; projector: visible in order, hits in order, hits by sample, samples, "
         "tree | Embree: hits in order, by sample, rays, tree | "

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Draws what bench_race measured: python3 bench/tables.py FILE.csv... FOLDER
 
-Writes FOLDER/table.md (today beside the aim) and plots of the ratio over triangles, over n, and over the film,
-one line per combination of the others.
+Writes FOLDER/table.md (today beside the aim), plots of the ratio over triangles, over n, over the film, over the
+samples of a facet and over the layers of the scene, one line per combination of the others, and where the engine
+goes from one facet's vectors to shared ones.
 """
 import collections
 import csv
@@ -27,7 +28,7 @@ def aim(row):
 
 def table(rows):
     head = ["workload", "triangles", "n", "film", "threads", "isa", "visible ms", "draw ms", "Embree ms", "visible", "draw",
-            "low..high", "aim", "at least", "written", "with build", "whole", "mismatches", "unexplained"]
+            "low..high", "aim", "at least", "written", "with build", "whole", "samples per facet", "shared", "layers", "doubtful", "mismatches", "unexplained"]
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     for r in rows:
         best, least = aim(r)
@@ -36,21 +37,27 @@ def table(rows):
                  f'{float(r["ratio_visible"]):.2f}', f'{float(r["ratio_draw"]):.2f}',
                  f'{float(r["lowest"]):.2f}..{float(r["highest"]):.2f}', str(best), str(least),
                  f'{float(r["ratio_written"]):.2f}', f'{float(r["ratio_with_build"]):.2f}',
-                 f'{float(r["ratio_whole"]):.2f}', r["mismatches"], r["unexplained"]]
+                 f'{float(r["ratio_whole"]):.2f}', f"{number(r, 'samples'):.0f}", f'{float(r["shared"]):.1%}',
+                 f'{float(r["depth_complexity"]):.1f}', f'{float(r["doubtful"]):.2%}', r["mismatches"], r["unexplained"]]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
 AXES = {"triangles": "triangles of the scene", "n": "n: facets along an edge of the sphere's six faces",
-        "film": "pixels of the film"}
+        "film": "pixels of the film", "samples": "samples of a facet", "layers": "layers of triangles that a ray meets"}
 OTHERS = {"workload": "{}", "triangles": "{} triangles", "n": "n = {}", "film": "{}", "threads": "{} threads",
           "isa": "{}"}
+MOVED_BY = {"samples": "n", "layers": "triangles"}  # what an axis that is measured, not chosen, follows
 
 
 def number(row, axis):
     if axis == "film":
         width, height = row["film"].split("x")
         return int(width) * int(height)
+    if axis == "samples":
+        return int(row["pixels"]) / int(row["facets"])
+    if axis == "layers":
+        return float(row["depth_complexity"])
     return int(row[axis])
 
 
@@ -60,11 +67,13 @@ COMMON = ("film", "threads", "isa")
 def plot(rows, axis, column, file):
     """Of the rows with the film, threads and instruction set that most have (but for the axis) the longest lines, if
     they have three values or more; nothing, and no file, where there is none."""
+    chosen = MOVED_BY.get(axis, axis)
     common = {name: collections.Counter(r[name] for r in rows).most_common(1)[0][0] for name in COMMON if name != axis}
     lines = {}
     for r in rows:
         if all(r[name] == value for name, value in common.items()):
-            key = ", ".join(text.format(r[name]) for name, text in OTHERS.items() if name != axis and name not in COMMON)
+            key = ", ".join(text.format(r[name]) for name, text in OTHERS.items()
+                            if name != chosen and name not in COMMON)
             lines.setdefault(key, {})[number(r, axis)] = float(r[column])
     most = max((len(points) for points in lines.values()), default=0)
     lines = {key: points for key, points in lines.items() if len(points) == most}
@@ -73,11 +82,14 @@ def plot(rows, axis, column, file):
     figure, axes = plt.subplots(figsize=(8, 5))
     for key, points in sorted(lines.items()):
         axes.plot(*zip(*sorted(points.items())), marker="o", label=key)
-    axes.axhline(1, color="grey", linewidth=0.8)
     axes.set_xscale("log")
-    axes.set_yscale("log")
     axes.set_xlabel(AXES[axis])
-    axes.set_ylabel("Embree's time / projector's time")
+    if column in SHARES:
+        axes.set_ylabel("share of the samples")
+    else:
+        axes.axhline(1, color="grey", linewidth=0.8)
+        axes.set_yscale("log")
+        axes.set_ylabel("Embree's time / projector's time")
     axes.set_title(f"{TITLES[column]}\n" + ", ".join(OTHERS[name].format(common[name]) for name in common))
     axes.legend(fontsize=7)
     axes.grid(True, which="both", alpha=0.3)
@@ -88,7 +100,10 @@ def plot(rows, axis, column, file):
 
 TITLES = {"ratio_visible": "Triangles seen left in order, t within bounds; rays and samples made beforehand",
           "ratio_draw": "Hits left in order, rays and samples made beforehand",
-          "ratio_written": "Hits written per sample", "ratio_whole": "With trees, rays and samples"}
+          "ratio_written": "Hits written per sample", "ratio_whole": "With trees, rays and samples",
+          "shared": "Samples in vectors that facets share: rays of their own, not one facet's functions",
+          "doubtful": "Samples that floats left in doubt, decided exactly"}
+SHARES = {"shared", "doubtful"}
 
 
 def main():

@@ -10,6 +10,7 @@ Json fields(const BenchResult& bench) {
     return {{"pixels", r.pixels},
             {"facets", r.facets},
             {"triangles", r.triangles},
+            {"depth_complexity", r.depth_complexity},
             {"rays", bench.direct ? "direct" : "optics"},
             {"threads", r.threads},
             {"isa", r.projector_isa},
@@ -22,7 +23,10 @@ Json fields(const BenchResult& bench) {
               {"visible_ms", r.visible_ms},
               {"draw_ms", r.draw_ms},
               {"written_ms", r.written_ms},
-              {"whole_ms", r.whole_ms}}},
+              {"whole_ms", r.whole_ms},
+              {"shared", r.shared},
+              {"doubtful", r.doubtful},
+              {"unbounded", r.unbounded}}},
             {"embree",
              {{"build_ms", r.build_ms},
               {"rays_ms", r.rays_ms},
@@ -52,12 +56,12 @@ std::string line(const std::string& phase, double projector, double embree) {
 std::string text(const BenchResult& bench) {
     const RaceResult& r = bench.race;
     std::string text = fmt::format(
-        "{} pixels through {} facets, {} rays; {} triangles; {} thread{}, {}\n"
+        "{} pixels through {} facets, {} rays; {} triangles in {:.1f} layers; {} thread{}, {}\n"
         "Embree: {}, packets of {}, coherent, triangles and rays in float\n"
         "medians: surfaces {:.1f} ms, corner rays {:.1f} ms, shading of all samples {:.1f} ms\n\n",
-        r.pixels, r.facets, bench.direct ? "the camera's own" : "the optics'", r.triangles, r.threads,
-        r.threads == 1 ? "" : "s", r.projector_isa, r.embree_configuration, r.rays_at_once, bench.surface_ms,
-        bench.rays_ms, bench.shade_ms);
+        r.pixels, r.facets, bench.direct ? "the camera's own" : "the optics'", r.triangles,
+        r.depth_complexity, r.threads, r.threads == 1 ? "" : "s", r.projector_isa, r.embree_configuration,
+        r.rays_at_once, bench.surface_ms, bench.rays_ms, bench.shade_ms);
     text += fmt::format("{:<34} {:>10} {:>10} {:>7}\n", "medians, ms", "projector", "Embree", "ratio");
     text += line("tree", r.prepare_ms, r.build_ms);
     text += line("samples in vectors, rays in packets", r.samples_ms, r.rays_ms);
@@ -69,6 +73,10 @@ std::string text(const BenchResult& bench) {
     text += line("samples, rays and hits per sample", r.whole_ms, r.rays_ms + r.trace_written_ms);
     text += fmt::format("with both trees {:.2f}, with samples, rays and trees {:.2f} times Embree's speed\n",
                         r.ratio.with_build, r.ratio.whole);
+    text += fmt::format(
+        "of the pixels {:.1f} % lie in vectors that facets share, {:.2f} % were decided exactly, {:.2f} % "
+        "block by block\n",
+        100 * r.shared, 100 * r.doubtful, 100 * r.unbounded);
     text += fmt::format(
         "{} pixels differ: {} within a thousandth of an edge, {} at one depth to a thousandth, {} otherwise",
         r.mismatches.pixels, r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);

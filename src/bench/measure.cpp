@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "base/check.h"
 #include "base/check_data.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "bench/depth_complexity.h"
 #include "bench/times.h"
 #include "intersect/packet_tracer.h"
 #include "projector/draw_options.h"
@@ -185,6 +187,31 @@ void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
     times.ratio_written.push_back((v1 + v2) / (w1 + w2));
 }
 
+/// How the projector draws the views' samples.
+void count_samples(const SampleGrid& grid, Sides& sides, RaceResult& result) {
+    const PreparedScene::Data& data = sides.prepared.data();
+    std::size_t shared = 0;
+    DrawCounts all;
+    for (View& v : sides.views) {
+        result.facets += v.tiles.rays.size();
+        result.pixels += v.owned.sample.size();
+        for (const MixedGroup& group : v.tiles.mixed)
+            for (std::uint32_t i = group.first_vector; i < group.first_vector + group.vectors; ++i)
+                shared += static_cast<std::size_t>(std::popcount(v.tiles.valid[i]));
+        KernelScene scene{&data, &data.leaves, &v.mesh, &grid, &v.tiles};
+        scene.vector_visible = v.vector_visible;
+        const DrawCounts counts = draw_tiles(scene, {});
+        all.doubtful += counts.doubtful;
+        all.unbounded += counts.unbounded;
+    }
+    const auto share = [&](std::size_t samples) {
+        return result.pixels == 0 ? 0 : static_cast<double>(samples) / static_cast<double>(result.pixels);
+    };
+    result.shared = share(shared);
+    result.doubtful = share(all.doubtful);
+    result.unbounded = share(all.unbounded);
+}
+
 /// Builds both sides several times over, then keeps one of each.
 Sides make_sides(const RaceCourse& course, const RaceParams& params, RaceResult& result) {
     const PacketTracer::Options options{params.isa, false};
@@ -242,9 +269,9 @@ RaceResult race(const RaceCourse& course, const RaceParams& params) {
         (result.trace_written_ms + result.build_ms + result.rays_ms) / (result.whole_ms + result.prepare_ms);
     result.slowest_ratio = *std::min_element(times.ratio.begin(), times.ratio.end());
     result.fastest_ratio = *std::max_element(times.ratio.begin(), times.ratio.end());
+    count_samples(course.grid, sides, result);
+    result.depth_complexity = depth_complexity(course);
     for (View& view : sides.views) {
-        result.facets += view.tiles.rays.size();
-        result.pixels += view.owned.sample.size();
         trilens::draw(sides.prepared, view.mesh, view.owned, course.grid, sides.hits.ours);
         check_visible(view, sides.hits.ours);
         sides.tracer.trace(view.packets, sides.hits.theirs);

@@ -1,5 +1,7 @@
 // The exact engine: the vector engine over tiles of samples, and blocks where it finds no bounds.
 #include <array>
+#include <atomic>
+#include <bit>
 #include <memory>
 
 #include "base/check.h"
@@ -81,18 +83,42 @@ void clear(SampleTiles& tiles) {
     tiles.slot.clear();
 }
 
-void draw_one_batch(const KernelScene& scene, std::size_t batch, const KernelOptions& options) {
-    const std::uint32_t left = draw_batch(scene, batch, options, own_state());
-    const TileGroup& groups = scene.tiles->batches[batch];
-    const std::uint32_t first_tile = scene.tiles->groups[groups.first].first;
-    for (std::uint32_t j = 0; j < kLanes; ++j)
-        if (left >> j & 1) draw_tile_in_blocks(scene, scene.tiles->tiles[first_tile + j]);
+/// Samples of these vectors.
+std::size_t samples_in(const SampleTiles& tiles, std::uint32_t first, std::uint32_t count) {
+    std::size_t samples = 0;
+    for (std::uint32_t v = first; v < first + count; ++v)
+        samples += static_cast<std::size_t>(std::popcount(tiles.valid[v]));
+    return samples;
 }
 
-void draw_one_mixed(const KernelScene& scene, std::size_t number) {
-    const std::uint32_t left = draw_mixed(scene, number, own_state());
-    for (std::uint32_t v = 0; v < kLanes; ++v)
-        if (left >> v & 1) draw_mixed_in_blocks(scene, scene.tiles->mixed[number], v);
+DrawCounts draw_one_batch(const KernelScene& scene, std::size_t batch, const KernelOptions& options) {
+    KernelState& state = own_state();
+    state.doubtful = 0;
+    const std::uint32_t left = draw_batch(scene, batch, options, state);
+    DrawCounts counts{state.doubtful, 0};
+    const TileGroup& groups = scene.tiles->batches[batch];
+    const std::uint32_t first_tile = scene.tiles->groups[groups.first].first;
+    for (std::uint32_t j = 0; j < kLanes; ++j) {
+        if (!(left >> j & 1)) continue;
+        const SampleTile& tile = scene.tiles->tiles[first_tile + j];
+        draw_tile_in_blocks(scene, tile);
+        counts.unbounded += samples_in(*scene.tiles, tile.first_vector, tile.vectors);
+    }
+    return counts;
+}
+
+DrawCounts draw_one_mixed(const KernelScene& scene, std::size_t number) {
+    KernelState& state = own_state();
+    state.doubtful = 0;
+    const std::uint32_t left = draw_mixed(scene, number, state);
+    DrawCounts counts{state.doubtful, 0};
+    const MixedGroup& group = scene.tiles->mixed[number];
+    for (std::uint32_t v = 0; v < kLanes; ++v) {
+        if (!(left >> v & 1)) continue;
+        draw_mixed_in_blocks(scene, group, v);
+        counts.unbounded += samples_in(*scene.tiles, group.first_vector + v, 1);
+    }
+    return counts;
 }
 
 /// What is drawn, but for what is asked for.
@@ -131,14 +157,18 @@ void draw_vectors(const KernelScene& asked, const FacetSamples& owned, const Dra
 
 }  // namespace
 
-void draw_tiles(const KernelScene& scene, const KernelOptions& options) {
+DrawCounts draw_tiles(const KernelScene& scene, const KernelOptions& options) {
+    std::atomic<std::size_t> doubtful = 0, unbounded = 0;
     const std::size_t batches = scene.tiles->batches.size();
     parallel_for(batches + scene.tiles->mixed.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t b = first; b < last; ++b) {
-            if (b < batches) draw_one_batch(scene, b, options);
-            if (b >= batches) draw_one_mixed(scene, b - batches);
+            const DrawCounts counts =
+                b < batches ? draw_one_batch(scene, b, options) : draw_one_mixed(scene, b - batches);
+            doubtful += counts.doubtful;
+            unbounded += counts.unbounded;
         }
     });
+    return {doubtful, unbounded};
 }
 
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,

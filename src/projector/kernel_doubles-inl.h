@@ -55,6 +55,11 @@ HWY_INLINE Vector3 load3(const double (*from)[kLanes], std::size_t at) {
     return {hn::Load(kDouble, from[0] + at), hn::Load(kDouble, from[1] + at),
             hn::Load(kDouble, from[2] + at)};
 }
+HWY_INLINE void store3(const Vector3& v, double (*to)[kLanes], std::size_t at) {
+    hn::Store(v.x, kDouble, to[0] + at);
+    hn::Store(v.y, kDouble, to[1] + at);
+    hn::Store(v.z, kDouble, to[2] + at);
+}
 template <typename A, typename B>
 HWY_INLINE VectorOf<A> plus(const VectorOf<A>& a, const VectorOf<B>& b) {
     return {plus(a.x, b.x), plus(a.y, b.y), plus(a.z, b.z)};

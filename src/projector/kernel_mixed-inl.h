@@ -17,41 +17,67 @@ HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
 
-/// A vector's rays, with the bits of FacetRays::at.
-HWY_NOINLINE void make_mixed_rays(const KernelScene& scene, std::uint32_t vector, const LaneFacets& facets,
-                                  MixedRays& rays) {
-    const SampleVector& samples = scene.tiles->vectors[vector];
+/// Those of the samples' rays that follow from their facets alone.
+struct OwnRays {
+    RayLanes ray;
+    Vector3 centre;  // of the facets, world frame
+    Vector3 shift;   // of the facets' centres from the group's
+};
+
+HWY_INLINE Vector3 choose(const hn::Mask<DoubleTag>& m, const Vector3& yes, const Vector3& no) {
+    return {hn::IfThenElse(m, yes.x, no.x), hn::IfThenElse(m, yes.y, no.y), hn::IfThenElse(m, yes.z, no.z)};
+}
+
+/// `x`, `y`: on the film.
+template <bool kPlaced>
+HWY_INLINE OwnRays rays_through(const FacetRays& facet, const Vec3& group, const Double& x, const Double& y) {
+    OwnRays own;
+    own.ray = ray_lanes(facet.rays, hn::Sub(x, hn::Set(kDouble, facet.screen.x)),
+                        hn::Sub(y, hn::Set(kDouble, facet.screen.y)));
+    own.shift = set3(facet.centre - group);
+    if constexpr (kPlaced) own.centre = set3(facet.centre);
+    return own;
+}
+
+/// The rays of a vector's samples: with the bits of FacetRays::at in `exact`, unless only what is visible is
+/// wanted; and in `to` with the weight divided out and origins from the group's centre.
+template <bool kPlaced>
+HWY_NOINLINE void make_mixed_rays(const KernelScene& scene, const MixedGroup& group, std::uint32_t in_group,
+                                  MixedRays* exact, VectorRays& to) {
+    const SampleVector& samples = scene.tiles->vectors[group.first_vector + in_group];
+    const LaneFacets& facets = scene.tiles->lanes[group.first_lanes + in_group];
     const SampleGrid& grid = *scene.grid;
     const TileSpots window{{1, 1},    {0, 0}, {0, 0}, {grid.x0, grid.y0}, {grid.x0 + 0.5, grid.y0 + 0.5},
                            grid.side, {0, 0}, 0};
-    Double x[kHalves], y[kHalves];
-    for (std::size_t i = 0; i < kHalves; ++i) {
-        x[i] = offsets_of(window, 0, samples.u + i * kDoubles);
-        y[i] = offsets_of(window, 1, samples.v + i * kDoubles);
-    }
     const Words ids = load_words(facets.rays);
-    for (std::uint32_t left = kAllLanes; left != 0;) {
-        const Id id = facets.rays[std::countr_zero(left)];
-        const std::uint32_t own = bits(same(ids, set_word(id)));
-        left &= ~own;
-        const FacetRays& facet = scene.tiles->rays[id];
-        for (std::size_t i = 0; i < kHalves; ++i) {
-            const std::size_t at = i * kDoubles;
-            const std::uint32_t lanes = own >> at & first_lanes(kDoubles);
-            if (!lanes) continue;
-            const RayLanes r = ray_lanes(facet.rays, hn::Sub(x[i], hn::Set(kDouble, facet.screen.x)),
-                                         hn::Sub(y[i], hn::Set(kDouble, facet.screen.y)));
+    for (std::size_t at = 0; at < kLanes; at += kDoubles) {
+        const Double x = offsets_of(window, 0, samples.u + at), y = offsets_of(window, 1, samples.v + at);
+        const auto lanes_of = [&](Id id) HWY_ATTR {
+            return bits(same(ids, set_word(id))) >> at & first_lanes(kDoubles);
+        };
+        const Id first = facets.rays[at];
+        OwnRays own = rays_through<kPlaced>(scene.tiles->rays[first], group.centre, x, y);
+        for (std::uint32_t left = first_lanes(kDoubles) & ~lanes_of(first); left != 0;) {
+            const Id id = facets.rays[at + static_cast<std::size_t>(std::countr_zero(left))];
+            const std::uint32_t lanes = lanes_of(id);
+            left &= ~lanes;
             const auto mask = mask_of_doubles(lanes);
-            const auto put = [&](const Vector3& v, double(*to)[kLanes]) HWY_ATTR {
-                hn::BlendedStore(v.x, mask, kDouble, to[0] + at);
-                hn::BlendedStore(v.y, mask, kDouble, to[1] + at);
-                hn::BlendedStore(v.z, mask, kDouble, to[2] + at);
-            };
-            put(r.origin, rays.origin);
-            put(r.direction, rays.direction);
-            put(set3(facet.centre), rays.centre);
-            hn::BlendedStore(r.weight, mask, kDouble, rays.weight + at);
+            const OwnRays other = rays_through<kPlaced>(scene.tiles->rays[id], group.centre, x, y);
+            own.ray.origin = choose(mask, other.ray.origin, own.ray.origin);
+            own.ray.direction = choose(mask, other.ray.direction, own.ray.direction);
+            own.ray.weight = hn::IfThenElse(mask, other.ray.weight, own.ray.weight);
+            own.shift = choose(mask, other.shift, own.shift);
+            if constexpr (kPlaced) own.centre = choose(mask, other.centre, own.centre);
         }
+        if constexpr (kPlaced) {
+            store3(own.ray.origin, exact->origin, at);
+            store3(own.ray.direction, exact->direction, at);
+            store3(own.centre, exact->centre, at);
+            hn::Store(own.ray.weight, kDouble, exact->weight + at);
+        }
+        const Double inverse = hn::Div(hn::Set(kDouble, 1.0), own.ray.weight);
+        store3(plus(times(inverse, own.ray.origin), own.shift), to.origin, at);
+        store3(times(inverse, own.ray.direction), to.direction, at);
     }
 }
 
@@ -69,51 +95,21 @@ HWY_INLINE void prefetch_mixed(const SampleTiles& tiles, const MixedGroup* next,
     fetch(&tiles.lanes[next->first_lanes + vector], 1);
 }
 
-/// Divides the weight out and measures origins from `centre`.
-HWY_NOINLINE void divide_rays(const MixedRays& rays, const Vec3& centre, VectorRays& to) {
-    const Vector3 from = set3(centre);
-    for (std::size_t at = 0; at < kLanes; at += kDoubles) {
-        const Double inverse = hn::Div(hn::Set(kDouble, 1.0), hn::Load(kDouble, rays.weight + at));
-        const Vector3 origin =
-            plus(times(inverse, load3(rays.origin, at)), minus(load3(rays.centre, at), from));
-        const Vector3 direction = times(inverse, load3(rays.direction, at));
-        const auto put = [&](const Vector3& v, double(*into)[kLanes]) HWY_ATTR {
-            hn::Store(v.x, kDouble, into[0] + at);
-            hn::Store(v.y, kDouble, into[1] + at);
-            hn::Store(v.z, kDouble, into[2] + at);
-        };
-        put(origin, to.origin);
-        put(direction, to.direction);
-    }
-    invert_directions(to);
-}
-
 /// An axis and two directions across it, and what the group's rays do along them.
 struct MixedFrame {
     float axis[3], side[2][3];
     float speed = 0, start = 0, behind = 0;  // most, most, least of the origins
-    float turn = 0;                          // by how much slopes are widened
     float doubt = 0;                         // of a height of unit normal
     // By vector: slopes of the directions to each side, and offsets of the planes that they make.
-    alignas(64) float low[2][kLanes], high[2][kLanes], offset[4][kLanes];
+    alignas(64) float low[2][kLanes] = {}, high[2][kLanes] = {}, offset[4][kLanes] = {};
 };
 
 HWY_INLINE Floats inner(const float* a, const Floats (&b)[3]) {
     return multiply_add(set(a[0]), b[0], multiply_add(set(a[1]), b[1], set(a[2]) * b[2]));
 }
-HWY_INLINE void load_narrow(const double (*from)[kLanes], Floats (&to)[3]) {
-    for (int a = 0; a < 3; ++a) to[a] = narrow(load_doubles(from[a]));
-}
 
-/// Fills low, high and speed. False: some ray goes too much across the axis for planes.
-HWY_NOINLINE bool measure_slopes(const KernelState& state, MixedFrame& frame) {
-    constexpr float kLeastSquare = 0.01f;  // of the cosine to the axis
-    Floats sum[3] = {set(0.0f), set(0.0f), set(0.0f)};
-    for (std::uint32_t v = 0; v < state.vectors; ++v) {
-        Floats d[3];
-        load_narrow(state.rays[v].direction, d);
-        for (int a = 0; a < 3; ++a) sum[a] = sum[a] + d[a];
-    }
+/// False: directions do not have a middle.
+HWY_INLINE bool set_axis(const Floats (&sum)[3], MixedFrame& frame) {
     double axis[3], across[2][3], square = 0;
     for (int a = 0; a < 3; ++a) {
         axis[a] = sum_of_lanes(sum[a]);
@@ -126,54 +122,66 @@ HWY_NOINLINE bool measure_slopes(const KernelState& state, MixedFrame& frame) {
         frame.axis[a] = static_cast<float>(axis[a]);
         for (int k = 0; k < 2; ++k) frame.side[k][a] = static_cast<float>(across[k][a]);
     }
-    Floats cosine = set(1.0f), speed = set(0.0f);
+    return true;
+}
+
+/// Widens slopes and lowers offsets by what the slopes may be off.
+HWY_INLINE void turn_planes(float least_cosine, MixedFrame& frame) {
+    // With c the least cosine and u = 2^-24: slopes are off by 28 u / c^2, the planes' normals by 7 u / c.
+    const float turn = 0x1p-18f / least_cosine;
+    const float lower = turn * std::max(std::fabs(frame.start), std::fabs(frame.behind));
+    for (int k = 0; k < 2; ++k) {
+        store(load(frame.low[k]) - set(turn), frame.low[k]);
+        store(load(frame.high[k]) + set(turn), frame.high[k]);
+        for (float* offset : {frame.offset[2 * k], frame.offset[2 * k + 1]})
+            store(load(offset) - set(lower), offset);
+    }
+}
+
+/// Fills the frame from the rays of the group's vectors that `state` names. False: some ray goes too much
+/// across the axis for planes.
+HWY_NOINLINE bool measure_rays(const KernelScene& scene, const MixedGroup& group, const KernelState& state,
+                               const NarrowRays* rays, MixedFrame& frame) {
+    constexpr float kLeastSquare = 0.01f;  // of the cosine to the axis
+    Floats sum[3] = {set(0.0f), set(0.0f), set(0.0f)};
+    for (std::uint32_t v = 0; v < state.vectors; ++v)
+        for (int a = 0; a < 3; ++a) sum[a] = sum[a] + rays[v].direction[a];
+    if (!set_axis(sum, frame)) return false;
+    const Vec3 from = group.centre - scene.tree->centre, half = scene.tree->half;
+    Floats cosine = set(1.0f), speed = set(0.0f), size = speed;
+    Floats start = set(-kNever), behind = set(kNever);
     for (std::uint32_t v = 0; v < state.vectors; ++v) {
-        Floats d[3];
-        load_narrow(state.rays[v].direction, d);
-        const Floats along = inner(frame.axis, d), inverse = set(1.0f) / along;
+        const Floats(&d)[3] = rays[v].direction;
+        const Floats(&own)[3] = rays[v].origin;
+        const Floats along = inner(frame.axis, d), inverse = reciprocal(along);
         const Floats length = multiply_add(d[0], d[0], multiply_add(d[1], d[1], d[2] * d[2]));
         cosine = least(cosine, along * absolute(along) / length);
         speed = largest(speed, along);
+        size = largest(size, absolute(own[0]) + absolute(own[1]) + absolute(own[2]));
+        Floats o[3];
+        for (int a = 0; a < 3; ++a) o[a] = own[a] + set(static_cast<float>(from[a]));
+        const Floats ahead = inner(frame.axis, o);
+        start = largest(start, ahead);
+        behind = least(behind, ahead);
         for (int k = 0; k < 2; ++k) {
-            const Floats slope = inner(frame.side[k], d) * inverse;
-            frame.low[k][v] = least_lane(slope);
-            frame.high[k][v] = largest_lane(slope);
+            const Floats slope = inner(frame.side[k], d) * inverse, beside = inner(frame.side[k], o);
+            const float low = least_lane(slope), high = largest_lane(slope);
+            frame.low[k][v] = low;
+            frame.high[k][v] = high;
+            frame.offset[2 * k][v] = least_lane(subtract_product(set(low), ahead, beside));
+            frame.offset[2 * k + 1][v] = least_lane(multiply_subtract(set(high), ahead, beside));
         }
     }
     const float least_cosine = least_lane(cosine);
     frame.speed = largest_lane(speed);
     if (!(least_cosine > kLeastSquare) || !std::isfinite(frame.speed)) return false;
-    // With c the least cosine and u = 2^-24: slopes are off by 24 u / c^2, the planes' normals by 7 u / c.
-    frame.turn = 0x1p-18f / least_cosine;
-    return true;
-}
-
-/// Fills the offsets, start and behind.
-HWY_NOINLINE void measure_offsets(const KernelScene& scene, const MixedGroup& group, const KernelState& state,
-                                  MixedFrame& frame) {
-    const Vec3 from = group.centre - scene.tree->centre, half = scene.tree->half;
-    Floats start = set(-kNever), behind = set(kNever), size = set(0.0f);
-    for (std::uint32_t v = 0; v < state.vectors; ++v) {
-        Floats o[3];
-        load_narrow(state.rays[v].origin, o);
-        size = largest(size, absolute(o[0]) + absolute(o[1]) + absolute(o[2]));
-        for (int a = 0; a < 3; ++a) o[a] = o[a] + set(static_cast<float>(from[a]));
-        const Floats ahead = inner(frame.axis, o);
-        start = largest(start, ahead);
-        behind = least(behind, ahead);
-        for (int k = 0; k < 2; ++k) {
-            const Floats beside = inner(frame.side[k], o);
-            frame.low[k][v] -= frame.turn;
-            frame.high[k][v] += frame.turn;
-            frame.offset[2 * k][v] = least_lane(subtract_product(set(frame.low[k][v]), ahead, beside));
-            frame.offset[2 * k + 1][v] = least_lane(multiply_subtract(set(frame.high[k][v]), ahead, beside));
-        }
-    }
     const double far = std::fabs(from.x) + std::fabs(from.y) + std::fabs(from.z);
     const double reach = half.x + half.y + half.z + 2 * far + static_cast<double>(largest_lane(size));
     frame.doubt = static_cast<float>(2 * kPlaneDoubt * (reach + 1e-6 * group.origin_terms));
     frame.start = largest_lane(start);
     frame.behind = least_lane(behind);
+    turn_planes(least_cosine, frame);
+    return true;
 }
 
 /// Beams of the vectors and of their group. The planes' normals are not unit, but no shorter.
@@ -226,22 +234,24 @@ HWY_NOINLINE bool set_up_mixed(const KernelScene& scene, const MixedGroup& group
     lanes.origin_terms[0] = group.origin_terms;
     lanes.weight_terms[0] = group.weight_terms;
     lanes.decision_doubt[0] = 1.001 * kDecisionDoubt * group.direction_terms;
-    state.mixed.resize(kLanes);
+    const bool placed = !wants_visible(scene);
+    if (placed) state.mixed.resize(kLanes);
     if (state.rays.size() < kLanes) state.rays.resize(kLanes);
     state.rays_made.assign(state.vectors, 1);
     state.tile_of_vector.assign(state.vectors, 0);
-    const LaneFacets* facets =
-        &scene.tiles->lanes[group.first_lanes + state.first_vector - group.first_vector];
+    const std::uint32_t first = state.first_vector - group.first_vector;
     const bool last = &group == &scene.tiles->mixed.back();
+    NarrowRays rays[kLanes];
     for (std::uint32_t v = 0; v < state.vectors; ++v) {
         prefetch_mixed(*scene.tiles, last ? nullptr : &group + 1, v);
-        make_mixed_rays(scene, state.first_vector + v, facets[v], state.mixed[v]);
+        if (placed)
+            make_mixed_rays<true>(scene, group, first + v, &state.mixed[v], state.rays[v]);
+        else
+            make_mixed_rays<false>(scene, group, first + v, nullptr, state.rays[v]);
+        rays[v] = invert_directions(state.rays[v]);
     }
-    for (std::uint32_t v = 0; v < state.vectors; ++v)
-        divide_rays(state.mixed[v], group.centre, state.rays[v]);
-    MixedFrame frame{};
-    if (!measure_slopes(state, frame)) return false;
-    measure_offsets(scene, group, state, frame);
+    MixedFrame frame;
+    if (!measure_rays(scene, group, state, rays, frame)) return false;
     put_mixed_planes(frame, state);
     return true;
 }
@@ -270,7 +280,7 @@ HWY_NOINLINE void place_mixed(const KernelScene& scene, const MixedRays& rays, c
 
 /// Writes the hits of all samples of the group's vectors that `state` names.
 HWY_NOINLINE void resolve_mixed(const KernelScene& scene, const MixedGroup& group, KernelState& state) {
-    sort_doubts(state.doubts);
+    begin_doubts(state);
     const LaneFacets* facets =
         &scene.tiles->lanes[group.first_lanes + state.first_vector - group.first_vector];
     std::size_t next = 0;

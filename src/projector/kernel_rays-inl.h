@@ -16,15 +16,24 @@ HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
 
-/// What the slab test takes of a vector's rays.
-HWY_INLINE void invert_directions(VectorRays& rays) {
+/// As floats.
+struct NarrowRays {
+    Floats origin[3], direction[3];
+};
+
+/// Sets what the slab test takes of a vector's rays.
+HWY_INLINE NarrowRays invert_directions(VectorRays& rays) {
     const Floats least = set(1e-30f), one = set(1.0f);
+    NarrowRays narrowed;
     for (int a = 0; a < 3; ++a) {
         const Floats d = narrow(load_doubles(rays.direction[a])), o = narrow(load_doubles(rays.origin[a]));
         const Floats inverse = one / choose(absolute(d) < least, least, d);
         store(inverse, rays.inverse[a]);
         store(o * inverse, rays.start[a]);
+        narrowed.direction[a] = d;
+        narrowed.origin[a] = o;
     }
+    return narrowed;
 }
 
 /// Local coordinates from the lines of samples that the floats are nearest to, among so many: the floats' own

@@ -77,6 +77,16 @@ HWY_NOINLINE void sort_doubts(std::vector<Doubt>& doubts) {
     });
 }
 
+/// Sorts the group's doubts, and counts their samples.
+HWY_INLINE void begin_doubts(KernelState& state) {
+    sort_doubts(state.doubts);
+    const Doubt* last = nullptr;
+    for (const Doubt& doubt : state.doubts) {
+        state.doubtful += !last || doubt.vector != last->vector || doubt.lane != last->lane;
+        last = &doubt;
+    }
+}
+
 /// Decides the doubtful samples of a vector of the group, the next ones in the sorted list from `next` on,
 /// and hands each lane's hit to `put`. `facet_of`: of a lane.
 template <typename FacetOf, typename Put>
@@ -203,7 +213,7 @@ HWY_INLINE void resolve_tile(const TilePlacing& placing, const SampleTile& tile,
 
 /// Writes the hits of all of the group's samples.
 HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
-    sort_doubts(state.doubts);
+    begin_doubts(state);
     std::size_t next = 0;
     for (Each lane(state.untouched & ~state.covered); lane; ++lane) set_nearest(scene, *lane, state);
     for (std::uint32_t j = state.first_lane; j < state.first_lane + state.tiles; ++j) {

@@ -62,4 +62,9 @@ struct KernelScene {
     std::span<VectorVisible> vector_visible{};  // by vector
 };
 
+/// Whether what is visible is asked for, not hits.
+inline bool wants_visible(const KernelScene& scene) {
+    return !scene.vector_visible.empty() || !scene.visible.empty();
+}
+
 }  // namespace trilens

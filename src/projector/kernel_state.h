@@ -210,6 +210,7 @@ struct KernelState {
     std::uint32_t first_vector = 0, vectors = 0;
     std::array<std::uint32_t, kLanes + 1> tile_vectors{};  // where the tiles' vectors begin, in the group
     std::size_t most_doubts = 0;
+    std::size_t doubtful = 0;  // samples of all groups so far
     FrameCache cache;
     QuotientCache quotients;
 };

@@ -15,11 +15,6 @@ HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
 
-/// Whether the engine is asked for what is visible, not for hits.
-HWY_INLINE bool wants_visible(const KernelScene& scene) {
-    return !scene.vector_visible.empty() || !scene.visible.empty();
-}
-
 /// In the scene's order what `nearest` names in the prepared one.
 HWY_INLINE Words scene_triangles(const PreparedScene::Data& data, const Nearest& nearest) {
     constexpr hn::RebindToSigned<WordTag> kIndex;
@@ -88,7 +83,7 @@ HWY_INLINE void write_visible_tile(const KernelScene& scene, std::size_t j, Kern
 
 /// What all of the group's samples see.
 HWY_NOINLINE void write_visible_group(const KernelScene& scene, KernelState& state) {
-    sort_doubts(state.doubts);
+    begin_doubts(state);
     std::size_t next = 0;
     for (Each lane(state.untouched & ~state.covered); lane; ++lane) set_nearest(scene, *lane, state);
     for (std::uint32_t j = state.first_lane; j < state.first_lane + state.tiles; ++j)
@@ -97,7 +92,7 @@ HWY_NOINLINE void write_visible_group(const KernelScene& scene, KernelState& sta
 
 /// What all samples of the mixed group's vectors that `state` names see.
 HWY_NOINLINE void write_visible_mixed(const KernelScene& scene, const MixedGroup& group, KernelState& state) {
-    sort_doubts(state.doubts);
+    begin_doubts(state);
     const LaneFacets* facets =
         &scene.tiles->lanes[group.first_lanes + state.first_vector - group.first_vector];
     std::size_t next = 0;

@@ -60,6 +60,50 @@ TEST_CASE("a race counts its course and times both sides") {
     CHECK(r.mismatches.pixels == r.mismatches.edge + r.mismatches.depth + r.mismatches.unexplained);
     CHECK(r.mismatches.unexplained == 0);
     CHECK(r.mismatches.pixels < r.pixels / 100);
+    CHECK(r.depth_complexity == 1);
+    CHECK(r.shared == 0);
+    CHECK(r.doubtful < 0.01);
+    CHECK(r.unbounded == 0);
+}
+
+TEST_CASE("a race counts layers, samples that share vectors, and samples that floats leave in doubt") {
+    Course course;
+    const RaceView view{&course.mesh, &course.owned};
+    TriangleScene twice = course.scene;
+    const auto points = static_cast<Id>(twice.points.size());
+    for (const Vec3& p : course.scene.points) twice.points.push_back(2.0 * p);
+    for (const IdTriple& t : course.scene.triangles) {
+        twice.triangles.push_back({t[0] + points, t[1] + points, t[2] + points});
+        twice.primitive.push_back(static_cast<Id>(twice.primitive.size()));
+        twice.object.push_back(1);
+    }
+    CHECK(race({twice, {view}, course.grid}, {1, ""}).depth_complexity == 2);
+
+    // The same wall again at the same place: floats cannot tell which is nearer.
+    TriangleScene same = twice;
+    for (std::size_t p = 0; p < course.scene.points.size(); ++p) same.points[points + p] = same.points[p];
+    const RaceResult doubtful = race({same, {view}, course.grid}, {1, ""});
+    CHECK(doubtful.depth_complexity == 1);
+    CHECK(doubtful.doubtful == 1);
+    CHECK(doubtful.unbounded == 0);
+
+    // A film of many small facets.
+    RayMesh small;
+    for (int j = 0; j <= 48; j += 2) {
+        for (int i = 0; i <= 64; i += 2) {
+            small.screen.push_back({Vec2(i, j), 1});
+            small.rays.push_back({Vec3(0), {(i - 32) / 32.0, (j - 24) / 32.0, 1}});
+        }
+    }
+    for (Id j = 0; j < 24; ++j) {
+        for (Id i = 0; i < 32; ++i) {
+            const Id a = j * 33 + i;
+            small.facets.push_back({a, a + 1, a + 34});
+            small.facets.push_back({a, a + 34, a + 33});
+        }
+    }
+    const FacetSamples owned = rasterize_facets(small, course.grid);
+    CHECK(race({course.scene, {{&small, &owned}}, course.grid}, {1, ""}).shared == 1);
 }
 
 TEST_CASE("two views of a course add up") {

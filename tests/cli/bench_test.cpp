@@ -28,6 +28,11 @@ TEST_CASE("bench prints one object with both sides' times and their ratios", "[c
         CHECK(number_after(run.out, count, count) > 0);
     for (const char* time : {"prepare_ms", "visible_ms", "draw_ms"})
         CHECK(number_after(run.out, time, "projector") > 0);
+    for (const char* share : {"shared", "doubtful", "unbounded"}) {
+        CHECK(number_after(run.out, share, "projector") >= 0);
+        CHECK(number_after(run.out, share, "projector") <= 1);
+    }
+    CHECK(number_after(run.out, "depth_complexity", "depth_complexity") > 0);
     for (const char* time : {"build_ms", "trace_ms"}) CHECK(number_after(run.out, time, "embree") > 0);
     for (const char* ratio : {"visible", "draw", "written", "with_build", "whole"})
         CHECK(number_after(run.out, ratio, "ratio") > 0);

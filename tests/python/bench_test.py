@@ -24,6 +24,9 @@ def test_both_sides_draw_the_rays_of_the_optic(scene):
         if name.endswith("_ms"):
             assert math.isfinite(value) and value >= 0, name
     assert race.visible_ms > 0 and race.ratio.visible > 0
+    for share in (race.shared, race.doubtful, race.unbounded):
+        assert 0 <= share < 1
+    assert race.depth_complexity > 0.5
     assert race.draw_ms > 0 and race.trace_ms > 0
     assert race.surface_ms > 0 and race.corner_rays_ms > 0 and race.shade_ms > 0 and not race.direct
     assert set(race.to_dict()) == {name for name in vars(trilens.Race) if isinstance(vars(trilens.Race)[name], property)}
