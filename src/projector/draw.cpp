@@ -161,12 +161,16 @@ DrawCounts draw_tiles(const KernelScene& scene, const KernelOptions& options) {
     std::atomic<std::size_t> doubtful = 0, unbounded = 0;
     const std::size_t batches = scene.tiles->batches.size();
     parallel_for(batches + scene.tiles->mixed.size(), 1, [&](std::size_t first, std::size_t last) {
+        DrawCounts own;
         for (std::size_t b = first; b < last; ++b) {
             const DrawCounts counts =
                 b < batches ? draw_one_batch(scene, b, options) : draw_one_mixed(scene, b - batches);
-            doubtful += counts.doubtful;
-            unbounded += counts.unbounded;
+            own.doubtful += counts.doubtful;
+            own.unbounded += counts.unbounded;
         }
+        // Locked additions wait for the hits on their way to memory.
+        if (own.doubtful > 0) doubtful += own.doubtful;
+        if (own.unbounded > 0) unbounded += own.unbounded;
     });
     return {doubtful, unbounded};
 }
