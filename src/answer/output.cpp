@@ -15,14 +15,18 @@ void write_bytes(const void* bytes, std::size_t size) {
 
 Answer answer_of(const std::string& output, const Stopwatch& watch, Console& console) {
     console.note_stage("wrote " + (is_standard_stream(output) ? "standard output" : output), watch);
+    return name_output(output);
+}
+
+}  // namespace
+
+Answer name_output(const std::string& output) {
     Answer answer;
     answer.is_report = true;
     answer.fields["output"] = output;
     if (!is_standard_stream(output)) answer.text = output;
     return answer;
 }
-
-}  // namespace
 
 void check_output(const std::string& output, Console& console) {
     if (is_standard_stream(output) && console.is_stdout_answered())

@@ -1,49 +1,18 @@
 #include "base/file_bytes.h"
 
-#include <unistd.h>
-
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 namespace trilens {
 namespace {
 
 std::string reason(int error_number) {
     return std::generic_category().message(error_number);
-}
-
-struct NewFile {
-    std::string name;
-    std::FILE* stream = nullptr;  // null where none could be made
-    int failed = 0;               // errno then
-};
-
-/// A new file beside `file`. Ids of processes come back, so that a name may be one that a killed process
-/// left: then the next one is tried.
-NewFile make_temporary(const std::string& file) {
-    static std::atomic<unsigned> counter{0};
-    constexpr int kMostTries = 1000;
-    NewFile made;
-    for (int tries = 0; tries < kMostTries && !made.stream; ++tries) {
-        made.name = file + "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".part";
-        made.stream = std::fopen(made.name.c_str(), "wbx");
-        made.failed = made.stream ? 0 : errno;
-        if (made.failed != 0 && made.failed != EEXIST) break;
-    }
-    return made;
-}
-
-/// Zero, or the errno of the first step that failed. fclose is a step: a full disk may speak only there.
-int write_all(std::FILE* out, std::span<const unsigned char> bytes) {
-    int failed = 0;
-    if (std::fwrite(bytes.data(), 1, bytes.size(), out) != bytes.size()) failed = errno ? errno : EIO;
-    if (std::fclose(out) != 0 && !failed) failed = errno;
-    return failed;
 }
 
 }  // namespace
@@ -65,21 +34,10 @@ std::string output_target(const std::string& file) {
     return target.string();
 }
 
-void replace_file(const std::string& named, std::span<const unsigned char> bytes) {
-    const std::string file = output_target(named);
-    const NewFile temporary = make_temporary(file);
-    if (!temporary.stream) throw OutputError(file, "cannot be written: " + reason(temporary.failed));
-    const int write_error = write_all(temporary.stream, bytes);
-    std::error_code rename_error;
-    if (!write_error) {
-        std::filesystem::rename(temporary.name, file, rename_error);
-        if (!rename_error) return;
-    }
-
-    std::error_code nothing_more_to_do;
-    std::filesystem::remove(temporary.name, nothing_more_to_do);
-    throw OutputError(file,
-                      "cannot be written: " + (write_error ? reason(write_error) : rename_error.message()));
+void replace_file(const std::string& file, std::span<const unsigned char> bytes) {
+    NewFile made(file);
+    made.write(0, bytes);
+    made.commit();
 }
 
 std::size_t readable_size(const std::string& file) {

@@ -30,22 +30,26 @@ Answer run_vector(const RenderOptions& options, const std::string& format, const
 
 Answer draw(const RenderOptions& options, const std::string& format, const PictureRequest& request,
             const Renderer& renderer, Console& console, const std::string& command) {
-    // An OpenEXR file is encoded while it is drawn, unless the whole picture is asked something; other
-    // formats have the beauty alone.
-    const bool is_encoded = format != "png" && !console.wants_json();
-    EncodedPicture encoded;
-    if (!is_encoded)
-        encoded.picture = renderer.draw(request, console.progress(command), console.warner());
-    else
-        encoded = renderer.draw_exr(request, console.progress(command), console.warner());
-    const Picture& picture = encoded.picture;
+    // OpenEXR is encoded, and a file of it written, while it is drawn, unless the whole picture is asked
+    // something; other formats have the beauty alone.
+    const bool is_exr = format != "png" && !console.wants_json();
+    const Progress progress = console.progress(command);
+    Picture picture;
+    Answer answer;
+    if (is_exr && is_standard_stream(options.output)) {
+        EncodedPicture encoded = renderer.draw_exr(request, progress, console.warner());
+        picture = std::move(encoded.picture);
+        answer = write_output(options.output, encoded.exr, console);
+    } else if (is_exr) {
+        picture = renderer.write_exr(options.output, request, progress, console.warner());
+        answer = name_output(options.output);
+    } else {
+        picture = renderer.draw(request, progress, console.warner());
+        answer = write_output(
+            options.output, picture.image,
+            {format == "png" ? ImageFormat::kPng : ImageFormat::kExr, options.tone_mapping()}, console);
+    }
     console.note(picture_note(picture));
-    Answer answer =
-        is_encoded
-            ? write_output(options.output, encoded.exr, console)
-            : write_output(options.output, picture.image,
-                           {format == "png" ? ImageFormat::kPng : ImageFormat::kExr, options.tone_mapping()},
-                           console);
     answer.fields["engine"] = engine_name(request.engine.engine);
     if (request.engine.engine == Engine::kClassic)
         answer.fields["classic"] = classic_name(request.engine.classic);

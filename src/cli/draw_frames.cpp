@@ -62,19 +62,14 @@ class FrameSequence {
             renderer_.emplace(scene_of(scene, frame), once());
         const double scene_seconds = watch.seconds();
         const std::string job = fmt::format("frame {}", frame);
-        const bool is_picture = format_ != "exr";
-        EncodedPicture drawn;
-        if (is_picture)
-            drawn.picture = renderer_->draw(request_, console_.progress(job), once());
-        else
-            drawn = renderer_->draw_exr(request_, console_.progress(job), once());
-        if (is_picture)
-            drawn.exr = encode_image_as(drawn.picture.image, ImageFormat::kPng, options_.tone_mapping());
+        const bool is_exr = format_ == "exr";
+        const Picture picture = is_exr
+                                    ? renderer_->write_exr(output, request_, console_.progress(job), once())
+                                    : renderer_->draw(request_, console_.progress(job), once());
         if (is_apng())
-            pngs_.push_back(std::move(drawn.exr));
-        else
-            write_output(output, drawn.exr, console_);
-        const Picture& picture = drawn.picture;
+            pngs_.push_back(encode_image_as(picture.image, ImageFormat::kPng, options_.tone_mapping()));
+        else if (!is_exr)
+            write_output(output, picture.image, {ImageFormat::kPng, options_.tone_mapping()}, console_);
         console_.note(
             fmt::format("{}: scene {:.3f} s ({} and {} optics kept), prepared in {:.3f} s, drawn in {:.3f} s",
                         job, scene_seconds, kept.objects ? "objects" : "no objects", kept.optics,

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <exception>
 #include <numeric>
 #include <set>
 
@@ -55,8 +56,31 @@ void check_layout(const Image& image) {
 
 /// Where the library writes, and why it failed last.
 struct Sink {
-    std::vector<unsigned char> file;
+    std::vector<unsigned char> file;  // where there is no writer
+    ExrStrips::Writer writer;
+    std::vector<unsigned char> pending;  // for the writer, from byte `from` of the file on
+    std::uint64_t from = 0;
+    std::exception_ptr failed;  // what the writer threw
     std::string reason;
+
+    void put(std::uint64_t at, std::span<const unsigned char> bytes) {
+        if (!writer) {
+            if (file.size() < at + bytes.size()) file.resize(at + bytes.size());
+            std::memcpy(file.data() + at, bytes.data(), bytes.size());
+            return;
+        }
+        if (at != from + pending.size()) {
+            flush();
+            from = at;
+        }
+        pending.insert(pending.end(), bytes.begin(), bytes.end());
+    }
+    void flush() {
+        if (pending.empty()) return;
+        writer(from, pending);
+        from += pending.size();
+        pending.clear();
+    }
 };
 
 const unsigned char* bytes_of(const Channel& channel, std::size_t pixel) {
@@ -91,11 +115,15 @@ struct ExrStrips::State {
 
 namespace {
 
-int64_t write_to_memory(exr_const_context_t, void* user, const void* bytes, std::uint64_t size,
-                        std::uint64_t offset, exr_stream_error_func_ptr_t) {
-    std::vector<unsigned char>& file = static_cast<Sink*>(user)->file;
-    if (file.size() < offset + size) file.resize(offset + size);
-    std::memcpy(file.data() + offset, bytes, size);
+int64_t write_to_sink(exr_const_context_t, void* user, const void* bytes, std::uint64_t size,
+                      std::uint64_t offset, exr_stream_error_func_ptr_t) {
+    Sink& sink = *static_cast<Sink*>(user);
+    try {
+        sink.put(offset, {static_cast<const unsigned char*>(bytes), size});
+    } catch (...) {  // not through the library, which is C
+        sink.failed = std::current_exception();
+        return -1;
+    }
     return static_cast<int64_t>(size);
 }
 
@@ -112,6 +140,7 @@ ExrStrips::State::~State() {
 }
 
 void ExrStrips::State::require(exr_result_t result) {
+    if (sink.failed) std::rethrow_exception(sink.failed);
     if (result == EXR_ERR_SUCCESS) return;
     const std::string why = sink.reason.empty() ? exr_get_default_error_message(result) : sink.reason;
     throw OutputError(name, "cannot be encoded: " + library_reason(why));
@@ -121,7 +150,7 @@ void ExrStrips::State::open(const Image& layout) {
     exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
     how.error_handler_fn = keep_reason;
     how.user_data = &sink;
-    how.write_fn = write_to_memory;
+    how.write_fn = write_to_sink;
     require(exr_start_write(&exr, name.c_str(), EXR_WRITE_FILE_DIRECTLY, &how));
     describe(layout);
     require(exr_write_header(exr));
@@ -173,6 +202,7 @@ void ExrStrips::State::write_blocks(const std::vector<Channel>& channels, int fi
             require(exr_write_scanline_chunk(exr, 0, y + next_row, packed[b].data(), packed[b].size()));
             next_row += rows_of(from + b);
         }
+        sink.flush();
     }
 }
 
@@ -196,9 +226,13 @@ void ExrStrips::State::write_waiting() {
     for (Channel& channel : waiting) std::visit([](auto& values) { values.clear(); }, channel.values);
 }
 
-ExrStrips::ExrStrips(const std::string& name, const Image& layout) : state_(std::make_unique<State>()) {
+ExrStrips::ExrStrips(const std::string& name, const Image& layout) : ExrStrips(name, layout, nullptr) {}
+
+ExrStrips::ExrStrips(const std::string& name, const Image& layout, Writer writer)
+    : state_(std::make_unique<State>()) {
     check_layout(layout);
     state_->name = name;
+    state_->sink.writer = std::move(writer);
     state_->y = layout.y0;
     state_->width = layout.data_width;
     state_->height = layout.data_height;
@@ -212,7 +246,8 @@ ExrStrips::ExrStrips(const std::string& name, const Image& layout) : state_(std:
         return layout.channels[a].name < layout.channels[b].name;
     });
     // Room that is not used costs nothing; a file that moves as it grows is copied, and its pages cleared.
-    state_->sink.file.reserve(std::min(kMostRoom, 4 * layout.pixels() * layout.channels.size()));
+    if (!state_->sink.writer)
+        state_->sink.file.reserve(std::min(kMostRoom, 4 * layout.pixels() * layout.channels.size()));
     state_->open(layout);
 }
 
@@ -245,6 +280,7 @@ void ExrStrips::add(const std::vector<Channel>& channels, int first, int rows) {
 std::vector<unsigned char> ExrStrips::finish() {
     TRILENS_CHECK(state_->next_row == state_->height, "every row of the data window has come");
     state_->require(exr_finish(&state_->exr));
+    state_->sink.flush();
     return std::move(state_->sink.file);
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/format.h"
+#include "base/new_file.h"
 #include "image/exr_strips.h"
 #include "render/check_frame.h"
 #include "render/frame.h"
@@ -83,6 +84,26 @@ EncodedPicture Renderer::draw_exr(const PictureRequest& request, const Progress&
     encoded.picture = draw_picture(*world_, request, progress, warn, &sink);
     encoded.exr = strips->finish();
     return encoded;
+}
+
+Picture Renderer::write_exr(const std::string& file, const PictureRequest& request, const Progress& progress,
+                            const Warn& warn) const {
+    check_frame(*world_, request.frame);
+    check_engine(request.engine);
+    std::optional<NewFile> made;
+    std::optional<ExrStrips> strips;
+    const StripSink sink{
+        [&](const Image& layout) {
+            made.emplace(file);
+            strips.emplace(file, layout, [&](std::uint64_t at, std::span<const unsigned char> bytes) {
+                made->write(at, bytes);
+            });
+        },
+        [&](const std::vector<Channel>& channels, int rows) { strips->add(channels, 0, rows); }};
+    Picture picture = draw_picture(*world_, request, progress, warn, &sink);
+    strips->finish();
+    made->commit();
+    return picture;
 }
 
 PixelExplanation Renderer::explain(const PictureRequest& request, int x, int y) const {

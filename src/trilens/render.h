@@ -100,6 +100,13 @@ class Renderer {
     EncodedPicture draw_exr(const PictureRequest& request, const Progress& progress = {},
                             const Warn& warn = {}) const;
 
+    /// The same into a file, which is written while the picture is drawn and takes its name once it is whole:
+    /// neither the picture nor its bytes are held. The picture that is returned has windows and header, but
+    /// no channels. Throws as draw does, and OutputError where the file cannot be written; then nothing is
+    /// left of it.
+    Picture write_exr(const std::string& file, const PictureRequest& request, const Progress& progress = {},
+                      const Warn& warn = {}) const;
+
     /// How one pixel comes about. Throws UsageError for a pixel off the film, or a camera, resolution,
     /// largest error or engine that there is not, InputError where the camera cannot show what the scene has
     /// or the optics have too many facets to hold.

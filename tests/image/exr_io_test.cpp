@@ -168,6 +168,34 @@ TEST_CASE("a file does not depend on how its rows came", "[image]") {
     for (int row = 0; row < image.data_height; row += step)
         strips.add(image.channels, row, std::min(step, image.data_height - row));
     CHECK(strips.finish() == whole);
+
+    std::vector<unsigned char> written;
+    std::size_t pieces = 0;
+    ExrStrips handed("handed on", image, [&](std::uint64_t at, std::span<const unsigned char> bytes) {
+        ++pieces;
+        written.resize(std::max(written.size(), at + bytes.size()));
+        std::copy(bytes.begin(), bytes.end(), written.begin() + static_cast<std::ptrdiff_t>(at));
+    });
+    for (int row = 0; row < image.data_height; row += step)
+        handed.add(image.channels, row, std::min(step, image.data_height - row));
+    CHECK(handed.finish().empty());
+    CHECK(written == whole);
+    CHECK(pieces > (step < 48 ? 3 : 1));
+}
+
+TEST_CASE("what the taker of a file's bytes throws comes out", "[image]") {
+    const Image image = random_image(11, 37, 83);
+    const std::size_t taken = GENERATE(0, 1, 2);
+    std::size_t pieces = 0;
+    const auto make = [&] {
+        ExrStrips strips("strips", image, [&](std::uint64_t, std::span<const unsigned char>) {
+            if (pieces++ == taken) throw OutputError("strips", "no room");
+        });
+        for (int row = 0; row < image.data_height; row += 16)
+            strips.add(image.channels, row, std::min(16, image.data_height - row));
+        strips.finish();
+    };
+    CHECK_THROWS_WITH(make(), Catch::Contains("no room"));
 }
 
 TEST_CASE("a data window may reach beyond the film", "[image]") {

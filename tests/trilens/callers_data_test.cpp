@@ -172,12 +172,14 @@ TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens
 TEST_CASE("a renderer refuses requests that are none", "[trilens]") {
     const Warn quiet = [](const std::string&) {};
     Renderer renderer(small_scene(), quiet);
+    const std::string written = scratch_dir("renderer_requests") + "/a.exr";
     for (const int n : kOddInts) {
         PictureRequest request;
         request.frame.resolution = 2;
         request.layers = {n, 0, 1 + n % 7, n, {}};
         only_errors("window", [&] { renderer.draw(request, {}, quiet); });
         only_errors("draw_exr", [&] { renderer.draw_exr(request, {}, quiet); });
+        only_errors("write_exr", [&] { renderer.write_exr(written, request, {}, quiet); });
         request.layers = {};
         only_errors("explain", [&] { renderer.explain(request, n, n); });
         if (n > 1024 || n < 0) {

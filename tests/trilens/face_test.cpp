@@ -2,8 +2,12 @@
 #include "trilens/trilens.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <random>
 
@@ -52,6 +56,41 @@ std::string shipped(const std::string& name) {
 }
 
 }  // namespace
+
+TEST_CASE("a picture that is written while it is drawn has the bytes of one that was held", "[trilens]") {
+    namespace fs = std::filesystem;
+    const std::string folder = trilens_test::scratch_dir("written_while_drawn"), file = folder + "/a.exr";
+    const auto bytes_of = [](const std::string& name) {
+        std::ifstream in(name, std::ios::binary);
+        return std::vector<unsigned char>(std::istreambuf_iterator<char>(in), {});
+    };
+    const Renderer renderer(small_scene());
+    const EncodedPicture held = renderer.draw_exr({});
+    const Picture picture = renderer.write_exr(file, {});
+    CHECK(bytes_of(file) == held.exr);
+    CHECK(picture.image.channels.empty());
+    CHECK(picture.image.metadata == held.picture.image.metadata);
+    CHECK(picture.statistics.optic_pixels == held.picture.statistics.optic_pixels);
+
+    // What does not end well leaves the old file, and nothing beside it.
+    const Renderer large = renderer_of([](Scene& scene) { scene.film = {800, 1200, 1}; });
+    std::atomic<bool> cancel = false;
+    std::size_t names_while_drawn = 0;
+    const Progress stop{[&](double) {
+                            cancel = true;
+                            names_while_drawn =
+                                static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
+                        },
+                        &cancel};
+    CHECK_THROWS_AS(large.write_exr(file, {}, stop), Interrupted);
+    CHECK(names_while_drawn == 2);
+    PictureRequest wrong;
+    wrong.layers.layers = {"nothing"};
+    CHECK_THROWS_AS(renderer.write_exr(file, wrong), UsageError);
+    CHECK_THROWS_AS(renderer.write_exr(folder + "/none/a.exr", {}), OutputError);
+    CHECK(bytes_of(file) == held.exr);
+    CHECK(std::distance(fs::directory_iterator(folder), {}) == 1);
+}
 
 TEST_CASE("a scene built in memory is drawn, and one that is none is refused with its place", "[trilens]") {
     const Picture picture = Renderer(small_scene()).draw({});
