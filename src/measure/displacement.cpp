@@ -28,6 +28,17 @@ Displacement nothing_shown(std::size_t pixels) {
     return result;
 }
 
+/// Column by column within bands of so many rows: pixels next to each other follow each other.
+constexpr std::size_t kBand = 8;
+
+template <typename Visit>
+void for_each_in_bands(std::size_t columns, std::size_t first, std::size_t last, Visit&& visit) {
+    for (std::size_t band = first; band < last; band += kBand)
+        for (std::size_t column = 0; column < columns; ++column)
+            for (std::size_t row = band; row < std::min(band + kBand, last); ++row)
+                visit(row * columns + column);
+}
+
 /// The shifts of all pixels of the finder's test; of the statistics only the losses. Places are looked for up
 /// to `reach` pixels away, at least the radius.
 Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8_t>& mask, double radius,
@@ -35,27 +46,29 @@ Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8
     const SeenField& field = finder.test().field;
     Displacement result = nothing_shown(mask.size());
     std::vector<std::uint8_t> is_beyond(mask.size(), 0);
-    parallel_for(mask.size(), 8192, [&](std::size_t first, std::size_t last) {
-        std::vector<SeenPoint> wanted;
-        std::vector<std::size_t> pixels;
-        for (std::size_t i = first; i < last; ++i) {
-            if (!mask[i] || !field.shows_layer(i)) continue;
-            result.state[i] = Shift::kLost;
-            if (!field.sees(i)) continue;
-            wanted.push_back(field.seen_point(i));
-            pixels.push_back(i);
-        }
-        const std::vector<std::optional<Vec2>> found = finder.find(wanted, reach);
-        for (std::size_t k = 0; k < found.size(); ++k) {
-            if (!found[k]) continue;
-            const std::size_t i = pixels[k];
-            is_beyond[i] = glm::length(*found[k]) > radius;
-            if (is_beyond[i]) continue;
-            result.state[i] = Shift::kFound;
-            result.shift_x[i] = static_cast<float>(found[k]->x);
-            result.shift_y[i] = static_cast<float>(found[k]->y);
-        }
-    });
+    const std::size_t columns = static_cast<std::size_t>(field.width), rows = mask.size() / columns;
+    parallel_for(
+        (rows + kBand - 1) / kBand, 1 + 8192 / (kBand * columns), [&](std::size_t first, std::size_t last) {
+            std::vector<SeenPoint> wanted;
+            std::vector<std::size_t> pixels;
+            for_each_in_bands(columns, kBand * first, std::min(kBand * last, rows), [&](std::size_t i) {
+                if (!mask[i] || !field.shows_layer(i)) return;
+                result.state[i] = Shift::kLost;
+                if (!field.sees(i)) return;
+                wanted.push_back(field.seen_point(i));
+                pixels.push_back(i);
+            });
+            const std::vector<std::optional<Vec2>> found = finder.find(wanted, reach);
+            for (std::size_t k = 0; k < found.size(); ++k) {
+                if (!found[k]) continue;
+                const std::size_t i = pixels[k];
+                is_beyond[i] = glm::length(*found[k]) > radius;
+                if (is_beyond[i]) continue;
+                result.state[i] = Shift::kFound;
+                result.shift_x[i] = static_cast<float>(found[k]->x);
+                result.shift_y[i] = static_cast<float>(found[k]->y);
+            }
+        });
     drop_other_images(result, field.width);
     result.lost = count(result.state, Shift::kLost);
     result.beyond_radius = static_cast<std::size_t>(std::count(is_beyond.begin(), is_beyond.end(), 1));
