@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "base/error.h"
 
@@ -38,14 +39,6 @@ NewFile make_temporary(const std::string& file) {
     return made;
 }
 
-/// Zero, or the errno of the first step that failed. fclose is a step: a full disk may speak only there.
-int write_all(std::FILE* out, std::span<const unsigned char> bytes) {
-    int failed = 0;
-    if (std::fwrite(bytes.data(), 1, bytes.size(), out) != bytes.size()) failed = errno ? errno : EIO;
-    if (std::fclose(out) != 0 && !failed) failed = errno;
-    return failed;
-}
-
 }  // namespace
 
 std::string output_target(const std::string& file) {
@@ -65,21 +58,45 @@ std::string output_target(const std::string& file) {
     return target.string();
 }
 
-void replace_file(const std::string& named, std::span<const unsigned char> bytes) {
-    const std::string file = output_target(named);
-    const NewFile temporary = make_temporary(file);
-    if (!temporary.stream) throw OutputError(file, "cannot be written: " + reason(temporary.failed));
-    const int write_error = write_all(temporary.stream, bytes);
-    std::error_code rename_error;
-    if (!write_error) {
-        std::filesystem::rename(temporary.name, file, rename_error);
-        if (!rename_error) return;
-    }
+FileReplacement::FileReplacement(const std::string& file) : file_(output_target(file)) {
+    NewFile made = make_temporary(file_);
+    if (!made.stream) fail(reason(made.failed));
+    temporary_ = std::move(made.name);
+    stream_ = made.stream;
+}
 
+FileReplacement::~FileReplacement() {
+    if (stream_) std::fclose(stream_);
     std::error_code nothing_more_to_do;
-    std::filesystem::remove(temporary.name, nothing_more_to_do);
-    throw OutputError(file,
-                      "cannot be written: " + (write_error ? reason(write_error) : rename_error.message()));
+    if (!is_committed_) std::filesystem::remove(temporary_, nothing_more_to_do);
+}
+
+void FileReplacement::fail(const std::string& reason) const {
+    throw OutputError(file_, "cannot be written: " + reason);
+}
+
+void FileReplacement::write(std::span<const unsigned char> bytes, std::size_t offset) {
+    errno = 0;
+    if (offset != at_ && fseeko(stream_, static_cast<off_t>(offset), SEEK_SET) != 0) fail(reason(errno));
+    if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size())
+        fail(reason(errno ? errno : EIO));
+    at_ = offset + bytes.size();
+}
+
+void FileReplacement::commit() {
+    // fclose is a step: a full disk may speak only there.
+    const int closed = std::fclose(std::exchange(stream_, nullptr)) != 0 ? errno : 0;
+    if (closed) fail(reason(closed));
+    std::error_code error;
+    std::filesystem::rename(temporary_, file_, error);
+    if (error) fail(error.message());
+    is_committed_ = true;
+}
+
+void replace_file(const std::string& file, std::span<const unsigned char> bytes) {
+    FileReplacement replacement(file);
+    replacement.write(bytes, 0);
+    replacement.commit();
 }
 
 std::size_t readable_size(const std::string& file) {

@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
+#include <exception>
 #include <numeric>
 #include <set>
+#include <span>
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/file_bytes.h"
 #include "base/parallel.h"
 #include "image/exr_chunk.h"
 #include "image/library_reason.h"
@@ -21,8 +23,8 @@ namespace {
 
 constexpr const char* kPrefix = "trilens:";
 
-/// Blocks that are deflated before they are written: enough for many threads, small beside a picture.
-constexpr std::size_t kBlocksTogether = 32;
+/// Blocks on their way: enough for many threads, small beside a picture.
+constexpr std::size_t kMostBlocksTogether = 64;
 
 /// Of a file's bytes before they are known, as many as its values have.
 constexpr std::size_t kMostRoom = std::size_t{1} << 30;
@@ -55,8 +57,19 @@ void check_layout(const Image& image) {
 
 /// Where the library writes, and why it failed last.
 struct Sink {
-    std::vector<unsigned char> file;
+    FileReplacement* file = nullptr;  // null: into memory
+    std::vector<unsigned char> bytes;
     std::string reason;
+    std::exception_ptr failure;  // the file's
+
+    void write(std::span<const unsigned char> from, std::size_t offset) {
+        if (file) return file->write(from, offset);
+        // What comes behind the others is not cleared before.
+        const std::size_t known = std::min(from.size(), bytes.size() - std::min(bytes.size(), offset));
+        if (bytes.size() < offset) bytes.resize(offset);
+        std::copy_n(from.begin(), known, bytes.begin() + static_cast<std::ptrdiff_t>(offset));
+        bytes.insert(bytes.end(), from.begin() + static_cast<std::ptrdiff_t>(known), from.end());
+    }
 };
 
 const unsigned char* bytes_of(const Channel& channel, std::size_t pixel) {
@@ -91,11 +104,16 @@ struct ExrStrips::State {
 
 namespace {
 
-int64_t write_to_memory(exr_const_context_t, void* user, const void* bytes, std::uint64_t size,
-                        std::uint64_t offset, exr_stream_error_func_ptr_t) {
-    std::vector<unsigned char>& file = static_cast<Sink*>(user)->file;
-    if (file.size() < offset + size) file.resize(offset + size);
-    std::memcpy(file.data() + offset, bytes, size);
+int64_t write_to_sink(exr_const_context_t, void* user, const void* bytes, std::uint64_t size,
+                      std::uint64_t offset, exr_stream_error_func_ptr_t) {
+    Sink& sink = *static_cast<Sink*>(user);
+    try {
+        sink.write({static_cast<const unsigned char*>(bytes), size}, offset);
+    } catch (...) {
+        // No exception passes through the library.
+        sink.failure = std::current_exception();
+        return -1;
+    }
     return static_cast<int64_t>(size);
 }
 
@@ -112,6 +130,7 @@ ExrStrips::State::~State() {
 }
 
 void ExrStrips::State::require(exr_result_t result) {
+    if (sink.failure) std::rethrow_exception(sink.failure);
     if (result == EXR_ERR_SUCCESS) return;
     const std::string why = sink.reason.empty() ? exr_get_default_error_message(result) : sink.reason;
     throw OutputError(name, "cannot be encoded: " + library_reason(why));
@@ -121,7 +140,7 @@ void ExrStrips::State::open(const Image& layout) {
     exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
     how.error_handler_fn = keep_reason;
     how.user_data = &sink;
-    how.write_fn = write_to_memory;
+    how.write_fn = write_to_sink;
     require(exr_start_write(&exr, name.c_str(), EXR_WRITE_FILE_DIRECTLY, &how));
     describe(layout);
     require(exr_write_header(exr));
@@ -151,29 +170,30 @@ void ExrStrips::State::describe(const Image& layout) {
         if (!text.empty()) require(exr_attr_set_string(exr, part, key.c_str(), text.c_str()));
 }
 
-/// Rows of whole blocks, the last of the data window perhaps a smaller one.
+/// Rows of whole blocks, the last of the data window perhaps a smaller one. While one is written others are
+/// deflated.
 void ExrStrips::State::write_blocks(const std::vector<Channel>& channels, int first, int rows) {
     const std::size_t count = static_cast<std::size_t>((rows + kZipRows - 1) / kZipRows);
-    std::vector<std::vector<unsigned char>> packed(kBlocksTogether);
-    for (std::size_t from = 0; from < count; from += kBlocksTogether) {
-        const std::size_t together = std::min(kBlocksTogether, count - from);
-        const auto rows_of = [&](std::size_t block) {
-            return std::min(kZipRows, rows - static_cast<int>(block) * kZipRows);
-        };
-        parallel_for(together, 1, [&](std::size_t begin, std::size_t end) {
-            std::vector<BlockValues> values(order.size());
-            for (std::size_t b = begin; b < end; ++b) {
-                const std::size_t row = static_cast<std::size_t>(first) + (from + b) * kZipRows;
-                for (std::size_t c = 0; c < order.size(); ++c)
-                    values[c] = bytes_of(channels[order[c]], row * static_cast<std::size_t>(width));
-                packed[b] = zip_block(values, rows_of(from + b), width);
-            }
-        });
-        for (std::size_t b = 0; b < together; ++b) {
-            require(exr_write_scanline_chunk(exr, 0, y + next_row, packed[b].data(), packed[b].size()));
-            next_row += rows_of(from + b);
-        }
-    }
+    const std::size_t together =
+        std::min({count, kMostBlocksTogether, 2 * static_cast<std::size_t>(thread_count())});
+    std::vector<std::vector<unsigned char>> packed(together);
+    const auto rows_of = [&](std::size_t block) {
+        return std::min(kZipRows, rows - static_cast<int>(block) * kZipRows);
+    };
+    PipelineStages stages;
+    stages.begin = [](std::size_t, std::size_t) {};
+    stages.work = [&](std::size_t block, std::size_t slot) {
+        std::vector<BlockValues> values(order.size());
+        const std::size_t row = static_cast<std::size_t>(first) + block * kZipRows;
+        for (std::size_t c = 0; c < order.size(); ++c)
+            values[c] = bytes_of(channels[order[c]], row * static_cast<std::size_t>(width));
+        packed[slot] = zip_block(values, rows_of(block), width);
+    };
+    stages.end = [&](std::size_t block, std::size_t slot) {
+        require(exr_write_scanline_chunk(exr, 0, y + next_row, packed[slot].data(), packed[slot].size()));
+        next_row += rows_of(block);
+    };
+    run_pipeline(count, together, stages);
 }
 
 void ExrStrips::State::keep(const std::vector<Channel>& channels, int first, int rows) {
@@ -196,9 +216,11 @@ void ExrStrips::State::write_waiting() {
     for (Channel& channel : waiting) std::visit([](auto& values) { values.clear(); }, channel.values);
 }
 
-ExrStrips::ExrStrips(const std::string& name, const Image& layout) : state_(std::make_unique<State>()) {
+ExrStrips::ExrStrips(const std::string& name, const Image& layout, FileReplacement* file)
+    : state_(std::make_unique<State>()) {
     check_layout(layout);
     state_->name = name;
+    state_->sink.file = file;
     state_->y = layout.y0;
     state_->width = layout.data_width;
     state_->height = layout.data_height;
@@ -212,7 +234,7 @@ ExrStrips::ExrStrips(const std::string& name, const Image& layout) : state_(std:
         return layout.channels[a].name < layout.channels[b].name;
     });
     // Room that is not used costs nothing; a file that moves as it grows is copied, and its pages cleared.
-    state_->sink.file.reserve(std::min(kMostRoom, 4 * layout.pixels() * layout.channels.size()));
+    if (!file) state_->sink.bytes.reserve(std::min(kMostRoom, 4 * layout.pixels() * layout.channels.size()));
     state_->open(layout);
 }
 
@@ -245,7 +267,7 @@ void ExrStrips::add(const std::vector<Channel>& channels, int first, int rows) {
 std::vector<unsigned char> ExrStrips::finish() {
     TRILENS_CHECK(state_->next_row == state_->height, "every row of the data window has come");
     state_->require(exr_finish(&state_->exr));
-    return std::move(state_->sink.file);
+    return std::move(state_->sink.bytes);
 }
 
 }  // namespace trilens

@@ -6,18 +6,28 @@
 
 namespace trilens {
 
-std::vector<unsigned char> encode_exr(const std::string& name, const Image& image) {
+namespace {
+
+std::vector<unsigned char> encode(const std::string& name, const Image& image, FileReplacement* file) {
     for (const Channel& channel : image.channels) {
         const std::size_t size = channel.is_id() ? channel.ids().size() : channel.floats().size();
         TRILENS_CHECK(size == image.pixels(), "a channel has one value per pixel of the data window");
     }
-    ExrStrips strips(name, image);
+    ExrStrips strips(name, image, file);
     strips.add(image.channels, 0, image.data_height);
     return strips.finish();
 }
 
+}  // namespace
+
+std::vector<unsigned char> encode_exr(const std::string& name, const Image& image) {
+    return encode(name, image, nullptr);
+}
+
 void write_exr(const std::string& file, const Image& image) {
-    replace_file(file, encode_exr(file, image));
+    FileReplacement replacement(file);
+    encode(file, image, &replacement);
+    replacement.commit();
 }
 
 }  // namespace trilens
