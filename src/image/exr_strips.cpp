@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <exception>
 #include <numeric>
 #include <set>
+#include <span>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -22,8 +22,11 @@ namespace {
 
 constexpr const char* kPrefix = "trilens:";
 
-/// Blocks that are deflated before they are written: enough for many threads, small beside a picture.
-constexpr std::size_t kBlocksTogether = 32;
+/// Blocks on their way: enough for many threads, small beside a picture.
+constexpr std::size_t kMostBlocksTogether = 64;
+
+/// Of a file's bytes that its taker is handed at once, or a little more.
+constexpr std::size_t kHandedOn = std::size_t{1} << 20;
 
 /// Of a file's bytes before they are known, as many as its values have.
 constexpr std::size_t kMostRoom = std::size_t{1} << 30;
@@ -64,16 +67,20 @@ struct Sink {
     std::string reason;
 
     void put(std::uint64_t at, std::span<const unsigned char> bytes) {
-        if (!writer) {
-            if (file.size() < at + bytes.size()) file.resize(at + bytes.size());
-            std::memcpy(file.data() + at, bytes.data(), bytes.size());
-            return;
-        }
+        if (!writer) return keep(at, bytes);
         if (at != from + pending.size()) {
             flush();
             from = at;
         }
         pending.insert(pending.end(), bytes.begin(), bytes.end());
+        if (pending.size() >= kHandedOn) flush();
+    }
+    void keep(std::uint64_t at, std::span<const unsigned char> bytes) {
+        // What comes behind the others is not cleared before.
+        const std::size_t known = std::min(bytes.size(), file.size() - std::min(file.size(), at));
+        if (file.size() < at) file.resize(at);
+        std::copy_n(bytes.begin(), known, file.begin() + static_cast<std::ptrdiff_t>(at));
+        file.insert(file.end(), bytes.begin() + static_cast<std::ptrdiff_t>(known), bytes.end());
     }
     void flush() {
         if (pending.empty()) return;
@@ -180,30 +187,31 @@ void ExrStrips::State::describe(const Image& layout) {
         if (!text.empty()) require(exr_attr_set_string(exr, part, key.c_str(), text.c_str()));
 }
 
-/// Rows of whole blocks, the last of the data window perhaps a smaller one.
+/// Rows of whole blocks, the last of the data window perhaps a smaller one. While one is written others are
+/// deflated.
 void ExrStrips::State::write_blocks(const std::vector<Channel>& channels, int first, int rows) {
     const std::size_t count = static_cast<std::size_t>((rows + kZipRows - 1) / kZipRows);
-    std::vector<std::vector<unsigned char>> packed(kBlocksTogether);
-    for (std::size_t from = 0; from < count; from += kBlocksTogether) {
-        const std::size_t together = std::min(kBlocksTogether, count - from);
-        const auto rows_of = [&](std::size_t block) {
-            return std::min(kZipRows, rows - static_cast<int>(block) * kZipRows);
-        };
-        parallel_for(together, 1, [&](std::size_t begin, std::size_t end) {
-            std::vector<BlockValues> values(order.size());
-            for (std::size_t b = begin; b < end; ++b) {
-                const std::size_t row = static_cast<std::size_t>(first) + (from + b) * kZipRows;
-                for (std::size_t c = 0; c < order.size(); ++c)
-                    values[c] = bytes_of(channels[order[c]], row * static_cast<std::size_t>(width));
-                packed[b] = zip_block(values, rows_of(from + b), width);
-            }
-        });
-        for (std::size_t b = 0; b < together; ++b) {
-            require(exr_write_scanline_chunk(exr, 0, y + next_row, packed[b].data(), packed[b].size()));
-            next_row += rows_of(from + b);
-        }
-        sink.flush();
-    }
+    const std::size_t together =
+        std::min({count, kMostBlocksTogether, 2 * static_cast<std::size_t>(thread_count())});
+    std::vector<std::vector<unsigned char>> packed(together);
+    const auto rows_of = [&](std::size_t block) {
+        return std::min(kZipRows, rows - static_cast<int>(block) * kZipRows);
+    };
+    PipelineStages stages;
+    stages.begin = [](std::size_t, std::size_t) {};
+    stages.work = [&](std::size_t block, std::size_t slot) {
+        std::vector<BlockValues> values(order.size());
+        const std::size_t row = static_cast<std::size_t>(first) + block * kZipRows;
+        for (std::size_t c = 0; c < order.size(); ++c)
+            values[c] = bytes_of(channels[order[c]], row * static_cast<std::size_t>(width));
+        packed[slot] = zip_block(values, rows_of(block), width);
+    };
+    stages.end = [&](std::size_t block, std::size_t slot) {
+        require(exr_write_scanline_chunk(exr, 0, y + next_row, packed[slot].data(), packed[slot].size()));
+        next_row += rows_of(block);
+    };
+    run_pipeline(count, together, stages);
+    sink.flush();
 }
 
 void ExrStrips::State::keep(const std::vector<Channel>& channels, int first, int rows) {

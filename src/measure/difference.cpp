@@ -1,5 +1,6 @@
 #include "measure/difference.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -21,9 +22,10 @@ void add_shift(const std::string& layer, const Displacement& displacement, Image
          {displacement.state.size(), displacement.shift_x.size(), displacement.shift_y.size()})
         if (size != difference.pixels())
             throw InputError("", layer, "its displacement is of an image of another size");
-    std::vector<float> state;
-    for (const Shift shift : displacement.state)
-        state.push_back(shift == Shift::kFound ? 1.0f : shift == Shift::kLost ? -1.0f : 0.0f);
+    std::vector<float> state(displacement.state.size());
+    std::ranges::transform(displacement.state, state.begin(), [](Shift shift) {
+        return shift == Shift::kFound ? 1.0f : shift == Shift::kLost ? -1.0f : 0.0f;
+    });
     add_channel(difference, layer + ".shift.X", displacement.shift_x);
     add_channel(difference, layer + ".shift.Y", displacement.shift_y);
     add_channel(difference, layer + ".shift.M", std::move(state));

@@ -1,6 +1,7 @@
 #include "measure/displacement.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -28,6 +29,16 @@ Displacement nothing_shown(std::size_t pixels) {
     return result;
 }
 
+/// Column by column within bands of so many rows: pixels next to each other follow each other.
+constexpr int kBand = 8;
+
+template <typename Visit>
+void for_each_in_band(const SeenField& field, const FieldWindow& window, int band, Visit&& visit) {
+    const int top = window.y0 + band * kBand, bottom = std::min(top + kBand, window.y1);
+    for (int column = window.x0; column < window.x1; ++column)
+        for (int row = top; row < bottom; ++row) visit(field.index(column, row));
+}
+
 /// The shifts of all pixels of the finder's test; of the statistics only the losses. Places are looked for up
 /// to `reach` pixels away, at least the radius.
 Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8_t>& mask, double radius,
@@ -35,16 +46,21 @@ Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8
     const SeenField& field = finder.test().field;
     Displacement result = nothing_shown(mask.size());
     std::vector<std::uint8_t> is_beyond(mask.size(), 0);
-    parallel_for(mask.size(), 8192, [&](std::size_t first, std::size_t last) {
+    const FieldWindow& shown = finder.test().shown;
+    const std::size_t bands = static_cast<std::size_t>(shown.y1 - shown.y0 + kBand - 1) / kBand;
+    const std::size_t grain = 1 + 8192 / static_cast<std::size_t>(kBand * std::max(1, shown.x1 - shown.x0));
+    parallel_for(bands, grain, [&](std::size_t first, std::size_t last) {
         std::vector<SeenPoint> wanted;
         std::vector<std::size_t> pixels;
-        for (std::size_t i = first; i < last; ++i) {
-            if (!mask[i] || !field.shows_layer(i)) continue;
+        const auto look_for = [&](std::size_t i) {
+            if (!mask[i] || !field.shows_layer(i)) return;
             result.state[i] = Shift::kLost;
-            if (!field.sees(i)) continue;
+            if (!field.sees(i)) return;
             wanted.push_back(field.seen_point(i));
             pixels.push_back(i);
-        }
+        };
+        for (std::size_t band = first; band < last; ++band)
+            for_each_in_band(field, shown, static_cast<int>(band), look_for);
         const std::vector<std::optional<Vec2>> found = finder.find(wanted, reach);
         for (std::size_t k = 0; k < found.size(); ++k) {
             if (!found[k]) continue;
@@ -77,9 +93,13 @@ void collect_statistics(const std::vector<std::uint8_t>& near_fold, Displacement
 
 /// Pixels that show the layer in one of the images or in both.
 std::size_t count_shown(const SeenField& one, const SeenField& other, const std::vector<std::uint8_t>& mask) {
-    std::size_t shown = 0;
-    for (std::size_t i = 0; i < mask.size(); ++i)
-        shown += mask[i] && (one.shows_layer(i) || other.shows_layer(i));
+    std::atomic<std::size_t> shown = 0;
+    parallel_for(mask.size(), 16384, [&](std::size_t first, std::size_t last) {
+        std::size_t here = 0;
+        for (std::size_t i = first; i < last; ++i)
+            here += mask[i] && (one.shows_layer(i) || other.shows_layer(i));
+        shown += here;
+    });
     return shown;
 }
 

@@ -27,10 +27,10 @@ BoxQuad empty_quad() {
 }
 
 /// Per pixel of a row the longest linked step; zero where it stands alone.
-void longest_steps(const SeenField& field, int row, std::vector<double>& longest) {
+void longest_steps(const SeenField& field, const FieldWindow& shown, int row, std::vector<double>& longest) {
     const std::size_t below = static_cast<std::size_t>(field.width);
     longest.assign(below, 0);
-    for (int column = 0; column < field.width; ++column) {
+    for (int column = shown.x0; column < shown.x1; ++column) {
         const std::size_t i = field.index(column, row), x = static_cast<std::size_t>(column);
         const auto look = [&](bool linked, std::size_t j) {
             if (!linked) return 0.0;
@@ -65,11 +65,8 @@ struct CellRow {
     }
 
     void fill(int row, FieldIndex::Level& level) const {
-        for (int column = -1; column < index.field.width; ++column) {
-            BoxQuad& quad =
-                level
-                    .quads[static_cast<std::size_t>((row + 1) / 2) * static_cast<std::size_t>(level.columns) +
-                           static_cast<std::size_t>((column + 1) / 2)];
+        for (int column = index.shown.x0 - 1; column < index.shown.x1; ++column) {
+            BoxQuad& quad = level.at((column + 1) / 2, (row + 1) / 2);
             const int child = (column + 1) % 2 + 2 * ((row + 1) % 2);
             const double steps = index.is_linked_cell(column, row) ? kWholeMargin : kPartMargin;
             for (int corner = 0; corner < 4; ++corner) {
@@ -82,19 +79,22 @@ struct CellRow {
     }
 };
 
+/// Only cells at pixels that show the layer have a box.
 FieldIndex::Level cell_level(const FieldIndex& index) {
-    const int width = index.field.width, height = index.field.height;
-    FieldIndex::Level level{(width + 2) / 2, (height + 2) / 2, {}};
-    level.quads.assign(static_cast<std::size_t>(level.columns) * static_cast<std::size_t>(level.rows),
-                       empty_quad());
+    FieldIndex::Level level((index.field.width + 2) / 2, (index.field.height + 2) / 2);
     parallel_for(static_cast<std::size_t>(level.rows), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
+        const auto row_at = [&](std::size_t row) {
+            return &level.at(0, 0) + row * static_cast<std::size_t>(level.columns);
+        };
+        std::fill(row_at(first), row_at(last), empty_quad());
         CellRow cells{index};
-        const int begin = 2 * static_cast<int>(first) - 1,
-                  end = std::min(2 * static_cast<int>(last) - 1, height);
-        if (begin >= 0) longest_steps(index.field, begin, cells.below);
+        const int begin = std::max(2 * static_cast<int>(first) - 1, index.shown.y0 - 1),
+                  end = std::min(2 * static_cast<int>(last) - 1, index.shown.y1);
+        if (begin >= end) return;
+        if (begin >= 0) longest_steps(index.field, index.shown, begin, cells.below);
         for (int row = begin; row < end; ++row) {
             std::swap(cells.above, cells.below);
-            if (row + 1 < height) longest_steps(index.field, row + 1, cells.below);
+            if (row + 1 < index.field.height) longest_steps(index.field, index.shown, row + 1, cells.below);
             cells.fill(row, level);
         }
     });
@@ -102,23 +102,25 @@ FieldIndex::Level cell_level(const FieldIndex& index) {
 }
 
 FieldIndex::Level coarser(const FieldIndex::Level& fine) {
-    FieldIndex::Level level{(fine.columns + 1) / 2, (fine.rows + 1) / 2, {}};
-    level.quads.assign(static_cast<std::size_t>(level.columns) * static_cast<std::size_t>(level.rows),
-                       empty_quad());
-    for (int row = 0; row < fine.rows; ++row) {
-        for (int column = 0; column < fine.columns; ++column) {
-            const BoxQuad& from = fine.at(column, row);
-            BoxQuad& to =
-                level.quads[static_cast<std::size_t>(row / 2) * static_cast<std::size_t>(level.columns) +
-                            static_cast<std::size_t>(column / 2)];
-            const int child = column % 2 + 2 * (row % 2);
+    FieldIndex::Level level((fine.columns + 1) / 2, (fine.rows + 1) / 2);
+    const auto fill = [&](int column, int row) {
+        BoxQuad quad = empty_quad();
+        for (int child = 0; child < 4; ++child) {
+            const int x = 2 * column + child % 2, y = 2 * row + child / 2;
+            if (x >= fine.columns || y >= fine.rows) continue;
+            const BoxQuad& from = fine.at(x, y);
             for (int k = 0; k < 3; ++k) {
                 const BoxQuad::Floats &low = from.low[k], &high = from.high[k];
-                to.low[k][child] = std::min({low[0], low[1], low[2], low[3]});
-                to.high[k][child] = std::max({high[0], high[1], high[2], high[3]});
+                quad.low[k][child] = std::min({low[0], low[1], low[2], low[3]});
+                quad.high[k][child] = std::max({high[0], high[1], high[2], high[3]});
             }
         }
-    }
+        level.at(column, row) = quad;
+    };
+    parallel_for(static_cast<std::size_t>(level.rows), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
+        for (int row = static_cast<int>(first); row < static_cast<int>(last); ++row)
+            for (int column = 0; column < level.columns; ++column) fill(column, row);
+    });
     return level;
 }
 
@@ -126,30 +128,37 @@ FieldIndex::Level coarser(const FieldIndex::Level& fine) {
 constexpr std::uint8_t kRightSame = 4, kDownSame = 8;
 
 /// The links of every pixel, with kRightSame and kDownSame.
-std::vector<std::uint8_t> links_on_triangles(const SeenField& field) {
+std::vector<std::uint8_t> links_on_triangles(const SeenField& field, const FieldWindow& shown) {
     std::vector<std::uint8_t> links = field.links;
     const std::size_t below = static_cast<std::size_t>(field.width);
-    for (std::size_t i = 0; i < links.size(); ++i) {
+    const auto look = [&](std::size_t i) {
         if (links[i] & SeenField::kRight && field.primitive_of(i) == field.primitive_of(i + 1))
             links[i] |= kRightSame;
         if (links[i] & SeenField::kDown && field.primitive_of(i) == field.primitive_of(i + below))
             links[i] |= kDownSame;
-    }
+    };
+    parallel_for(static_cast<std::size_t>(shown.y1 - shown.y0), kRowsAtOnce,
+                 [&](std::size_t first, std::size_t last) {
+                     for (int row = static_cast<int>(first); row < static_cast<int>(last); ++row)
+                         for (int x = shown.x0; x < shown.x1; ++x) look(field.index(x, shown.y0 + row));
+                 });
     return links;
 }
 
 /// Per pixel the wholeness of its cell. All 24 links within the 4 x 4 pixels connect every pixel with every
 /// corner, and linked pixels show one object through one optic.
-std::vector<std::uint8_t> whole_patches(const SeenField& field) {
-    const std::vector<std::uint8_t> links = links_on_triangles(field);
+std::vector<std::uint8_t> whole_patches(const SeenField& field, const FieldWindow& shown) {
+    const std::vector<std::uint8_t> links = links_on_triangles(field, shown);
     const std::size_t below = static_cast<std::size_t>(field.width);
     std::vector<std::uint8_t> whole(links.size(), 0);
     const auto has = [](unsigned all, unsigned some) { return (all & some) == some; };
     parallel_for(
-        static_cast<std::size_t>(std::max(0, field.height - 3)), kRowsAtOnce,
+        static_cast<std::size_t>(std::max(0, shown.y1 - shown.y0 - 3)), kRowsAtOnce,
         [&](std::size_t first, std::size_t last) {
-            for (std::size_t row = first; row < last; ++row) {
-                for (std::size_t x = 0; x + 3 < below; ++x) {
+            const std::size_t left = static_cast<std::size_t>(shown.x0),
+                              top = static_cast<std::size_t>(shown.y0);
+            for (std::size_t row = top + first; row < top + last; ++row) {
+                for (std::size_t x = left; x + 3 < static_cast<std::size_t>(shown.x1); ++x) {
                     const std::uint8_t* at = &links[row * below + x];
                     unsigned right = 0xff, down = 0xff;
                     for (std::size_t b = 0; b < 4; ++b, at += below) {
@@ -170,10 +179,11 @@ std::vector<std::uint8_t> whole_patches(const SeenField& field) {
 }  // namespace
 
 FieldIndex::FieldIndex(SeenField without_links) : field(std::move(without_links)) {
-    link_neighbours(field);
-    patches = whole_patches(field);
+    shown = shown_window(field);
+    link_neighbours(field, shown);
+    patches = whole_patches(field, shown);
     levels.push_back(cell_level(*this));
-    while (levels.back().quads.size() > 1) levels.push_back(coarser(levels.back()));
+    while (levels.back().size() > 1) levels.push_back(coarser(levels.back()));
 }
 
 Patch FieldIndex::whole_patch(int column, int row) const {

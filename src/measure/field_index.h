@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/ids.h"
@@ -61,16 +62,25 @@ struct FieldIndex {
     bool may_show(const Vec3& point, int column, int row) const;
 
     struct Level {
-        int columns = 0, rows = 0;  // of quads
-        std::vector<BoxQuad> quads;
+        int columns = 0, rows = 0;         // of quads
+        std::unique_ptr<BoxQuad[]> quads;  // not cleared before they are filled
 
-        const BoxQuad& at(int column, int row) const {
-            return quads[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
-                         static_cast<std::size_t>(column)];
+        Level(int columns_, int rows_)
+            : columns(columns_), rows(rows_), quads(std::make_unique_for_overwrite<BoxQuad[]>(size())) {}
+        std::size_t size() const {
+            return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+        }
+
+        const BoxQuad& at(int column, int row) const { return quads[index(column, row)]; }
+        BoxQuad& at(int column, int row) { return quads[index(column, row)]; }
+        std::size_t index(int column, int row) const {
+            return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                   static_cast<std::size_t>(column);
         }
     };
 
     SeenField field;
+    FieldWindow shown;                  // every pixel that shows the layer
     std::vector<std::uint8_t> patches;  // per pixel, of the cell to its right and down
     // Level 0 holds the cells: the box of (column, row) is a child of quad ((column + 1) / 2, (row + 1) / 2).
     // The last level is one quad.

@@ -1,7 +1,6 @@
 #include "measure/image_query.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "measure/likely_place.h"
@@ -16,6 +15,9 @@ double squared_distance_to(const SeenPoint& from, double x0, double y0, double x
     const double dy = std::max({y0 - from.row, from.row - y1, 0.0});
     return dx * dx + dy * dy;
 }
+
+/// A little more than the rounding of distances.
+constexpr double kMore = 1 + 1e-9;
 
 /// Whether the reference's own pixel belongs to a piece of the wanted object that is wide enough for a slope.
 bool has_patch(const ImageFinder& finder, const SeenPoint& wanted) {
@@ -41,7 +43,7 @@ void ImageQuery::begin(const ImageFinder& finder, const SeenPoint& wanted, doubl
     near_ = 0;
     corner_ = 4;
     any_ = true;
-    nodes_ = 0;
+    cells_ = {};
 
     const SeenField& field = finder.reference().field;
     const std::size_t here = field.index(wanted.column, wanted.row);
@@ -58,7 +60,9 @@ void ImageQuery::begin(const ImageFinder& finder, const SeenPoint& wanted, doubl
 bool ImageQuery::next(PatchBatch& batch, std::size_t lane, PatchCache& patches) {
     while (stage_ != Stage::kEnd) {
         if (next_patch(batch, lane, patches)) return true;
-        if (!next_cell()) stage_ = Stage::kEnd;
+        if (next_cell()) continue;
+        if (stage_ == Stage::kWaiting) return false;
+        stage_ = Stage::kEnd;
     }
     return false;
 }
@@ -80,8 +84,8 @@ bool ImageQuery::next_cell() {
         stage_ = Stage::kGuess;
         if (begin_guess()) return true;
     }
-    stage_ = Stage::kSearch;
-    return begin_found_cell();
+    if (stage_ == Stage::kGuess) stage_ = Stage::kWaiting;
+    return stage_ == Stage::kSearch && begin_found_cell();
 }
 
 bool ImageQuery::begin_near_cell() {
@@ -103,8 +107,6 @@ bool ImageQuery::begin_search() {
     if (best_shift_ && best_score_ <= 1) return false;
     best_score_ =
         std::min(best_score_, farthest_place(finder_->reference().field, finder_->test().field, wanted_));
-    const int top = static_cast<int>(finder_->reference().levels.size());
-    push({top, 0, 0, 0});
     return true;
 }
 
@@ -114,10 +116,9 @@ bool ImageQuery::is_near_cell(int column, int row) const {
 }
 
 /// Whether a hit at such a squared distance may be the best or as good. All that may be are tried, so that
-/// the order of trials does not matter: by a little more than the rounding of distances.
+/// the order of trials does not matter.
 bool ImageQuery::may_improve(double distance) const {
-    constexpr double kMore = 1 + 1e-9;
-    return distance <= kMore * best_score_ * best_score_;
+    return distance <= squared_reach();
 }
 
 /// The cell of the guess first: a good hit there leaves little to search.
@@ -133,43 +134,30 @@ bool ImageQuery::begin_guess() {
     return begin_cell(column, row);
 }
 
-void ImageQuery::push(const Node& node) {
-    stack_[nodes_++] = node;
+double ImageQuery::squared_reach() const {
+    return kMore * best_score_ * best_score_;
 }
 
-/// Those that may hold the point, the nearest on top.
-void ImageQuery::push_children(const Node& node) {
-    const FieldIndex::Level& level = finder_->reference().levels[static_cast<std::size_t>(node.level - 1)];
-    const double size = static_cast<double>(1 << (node.level - 1));
-    const std::size_t first = nodes_;
-    for (unsigned left = level.at(node.column, node.row).holding(wanted_.point); left; left &= left - 1) {
-        const int child = std::countr_zero(left);
-        const int column = 2 * node.column + child % 2, row = 2 * node.row + child / 2;
-        const Node at{node.level - 1, column, row,
-                      squared_distance_to(wanted_, column * size - 1, row * size - 1, (column + 1) * size - 1,
-                                          (row + 1) * size - 1)};
-        if (!may_improve(at.distance)) continue;
-        std::size_t place = nodes_++;
-        for (; place > first && stack_[place - 1].distance < at.distance; --place)
-            stack_[place] = stack_[place - 1];
-        stack_[place] = at;
-    }
+std::optional<CandidateCell> ImageQuery::candidate(int column, int row) const {
+    if (is_near_cell(column, row)) return std::nullopt;
+    const double distance = squared_distance_to(wanted_, column, row, column + 1, row + 1);
+    if (!may_improve(distance) || !finder_->reach_of(column, row).may_hold(wanted_.point))
+        return std::nullopt;
+    return CandidateCell{column, row, distance};
 }
 
-/// Depth first, nearest child first; a box is entered if it may hold the point nearer than the best hit so
-/// far.
+void ImageQuery::give(std::span<const CandidateCell> cells) {
+    cells_ = cells;
+    stage_ = Stage::kSearch;
+}
+
+/// The nearest first, as long as one may hold the point nearer than the best hit so far.
 bool ImageQuery::begin_found_cell() {
-    while (nodes_ > 0) {
-        const Node node = stack_[--nodes_];
-        if (!may_improve(node.distance)) continue;
-        if (node.level > 0) {
-            push_children(node);
-            continue;
-        }
-        const int column = node.column - 1, row = node.row - 1;
-        if (is_near_cell(column, row)) continue;  // has been tried
-        if (!finder_->reach_of(column, row).may_hold(wanted_.point)) continue;
-        if (begin_cell(column, row)) return true;
+    while (!cells_.empty()) {
+        const CandidateCell cell = cells_.front();
+        if (!may_improve(cell.distance)) return false;
+        cells_ = cells_.subspan(1);
+        if (begin_cell(cell.column, cell.row)) return true;
     }
     return false;
 }

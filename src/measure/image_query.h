@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "base/vec.h"
 #include "measure/image_finder.h"
@@ -13,27 +14,41 @@
 
 namespace trilens {
 
-/// Begun once per point, then asked for its next patch and told the answer, until it has no next one.
+/// A cell that may show a point, and the square of its distance from the point's pixel.
+struct CandidateCell {
+    int column = 0, row = 0;
+    double distance = 0;
+};
+
+/// Begun once per point, then asked for its next patch and told the answer, until it has no next one. Where
+/// it then waits for cells, the search goes on with those.
 class ImageQuery {
   public:
     /// `guess`: a shift that is likely; it makes the search shorter, and changes nothing else.
     void begin(const ImageFinder& finder, const SeenPoint& wanted, double reach,
                const std::optional<Vec2>& guess);
 
-    /// Puts the next patch into a lane of the batch; false at the end. `patches`: of the finder's reference.
+    /// Puts the next patch into a lane of the batch; false at the end, and where it waits for cells.
+    /// `patches`: of the finder's reference.
     bool next(PatchBatch& batch, std::size_t lane, PatchCache& patches);
     /// What the batch says of that patch.
     void take(const PatchBatch& batch, std::size_t lane);
+
+    /// All but those next to the pixel have to be looked through.
+    bool waits_for_cells() const { return stage_ == Stage::kWaiting; }
+    const SeenPoint& wanted() const { return wanted_; }
+    /// Cells whose squared distance is more show nothing better.
+    double squared_reach() const;
+    /// The cell, if the point may be seen there and it has not been tried; nothing else.
+    std::optional<CandidateCell> candidate(int column, int row) const;
+    /// The search goes on with them. They are the nearest first, and stay where they are.
+    void give(std::span<const CandidateCell> cells);
 
     /// At the end: the place that was found, as ImageFinder::find returns it.
     const std::optional<Vec2>& shift() const { return best_shift_; }
 
   private:
-    enum class Stage { kNear, kGuess, kSearch, kEnd };
-    struct Node {
-        int level, column, row;
-        double distance;  // squared, pixels
-    };
+    enum class Stage { kNear, kGuess, kWaiting, kSearch, kEnd };
 
     bool next_cell();
     bool begin_near_cell();
@@ -43,8 +58,6 @@ class ImageQuery {
     bool begin_cell(int column, int row);
     bool is_near_cell(int column, int row) const;
     bool may_improve(double distance) const;
-    void push(const Node& node);
-    void push_children(const Node& node);
     bool next_patch(PatchBatch& batch, std::size_t lane, PatchCache& patches);
     bool put_patch(int corner, PatchBatch& batch, std::size_t lane, PatchCache& patches);
 
@@ -65,8 +78,7 @@ class ImageQuery {
     bool same_primitive_ = true, any_ = false;
     std::uint16_t tried_ = 0;  // nodes of the patches that have been tried
 
-    std::array<Node, 4 * 32> stack_;  // four children per level, and fewer than 32 levels
-    std::size_t nodes_ = 0;
+    std::span<const CandidateCell> cells_;  // that are left
 };
 
 }  // namespace trilens

@@ -35,9 +35,11 @@ bool is_jump(const Displacement& displacement, std::span<const double> size, int
 
 void drop_other_images(Displacement& displacement, int width) {
     std::vector<double> size(displacement.state.size());
-    for (std::size_t i = 0; i < size.size(); ++i)
-        if (displacement.state[i] == Shift::kFound)
-            size[i] = std::hypot(displacement.shift_x[i], displacement.shift_y[i]);
+    parallel_for(size.size(), 4096, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            if (displacement.state[i] == Shift::kFound)
+                size[i] = std::hypot(displacement.shift_x[i], displacement.shift_y[i]);
+    });
 
     // All are judged by the field as it was found, so the outcome does not depend on an order.
     std::vector<std::uint8_t> jump(size.size(), 0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 #include "measure/comparable.h"
@@ -67,17 +68,47 @@ std::optional<SeenField> make_seen_field(const Image& image, const std::string& 
     return field;
 }
 
+FieldWindow shown_window(const SeenField& field) {
+    const std::size_t rows = static_cast<std::size_t>(field.height);
+    // Of each row the first that shows the layer, and the one behind the last.
+    std::vector<std::pair<int, int>> shown(rows);
+    parallel_for(rows, 16, [&](std::size_t from, std::size_t to) {
+        for (std::size_t row = from; row < to; ++row) {
+            const std::size_t start = row * static_cast<std::size_t>(field.width);
+            const auto shows = [&](int x) { return field.shows_layer(start + static_cast<std::size_t>(x)); };
+            int first = 0, last = field.width;
+            while (first < last && !shows(first)) ++first;
+            while (last > first && !shows(last - 1)) --last;
+            shown[row] = {first, last};
+        }
+    });
+    FieldWindow window{field.width, 0, 0, 0};
+    for (int row = 0; row < field.height; ++row) {
+        const auto [first, last] = shown[static_cast<std::size_t>(row)];
+        if (first == last) continue;
+        if (window.x1 == 0) window.y0 = row;
+        window = {std::min(window.x0, first), window.y0, std::max(window.x1, last), row + 1};
+    }
+    return window.x1 > 0 ? window : FieldWindow{};
+}
+
 void link_neighbours(SeenField& field) {
+    link_neighbours(field, {0, 0, field.width, field.height});
+}
+
+void link_neighbours(SeenField& field, const FieldWindow& window) {
     const std::size_t columns = static_cast<std::size_t>(field.width),
                       rows = static_cast<std::size_t>(field.height);
     std::vector<std::uint8_t> links(columns * rows, 0);
-    parallel_for(rows, 16, [&](std::size_t first, std::size_t last) {
-        for (std::size_t row = first; row < last; ++row)
-            link_line({field, row * columns, 1, field.width}, SeenField::kRight, links);
+    const int width = window.x1 - window.x0, height = window.y1 - window.y0;
+    parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t first, std::size_t last) {
+        for (int row = static_cast<int>(first); row < static_cast<int>(last); ++row)
+            link_line({field, field.index(window.x0, window.y0 + row), 1, width}, SeenField::kRight, links);
     });
-    parallel_for(columns, 64, [&](std::size_t first, std::size_t last) {
-        for (std::size_t column = first; column < last; ++column)
-            link_line({field, column, columns, field.height}, SeenField::kDown, links);
+    parallel_for(static_cast<std::size_t>(width), 64, [&](std::size_t first, std::size_t last) {
+        for (int column = static_cast<int>(first); column < static_cast<int>(last); ++column)
+            link_line({field, field.index(window.x0 + column, window.y0), columns, height}, SeenField::kDown,
+                      links);
     });
     field.links = std::move(links);
 }

@@ -74,10 +74,20 @@ struct SeenField {
 /// objects or places (see seen_channel).
 std::optional<SeenField> make_seen_field(const Image& image, const std::string& layer);
 
+/// Columns x0 .. x1 - 1 and rows y0 .. y1 - 1.
+struct FieldWindow {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// Holds every pixel that shows the layer; empty where none does.
+FieldWindow shown_window(const SeenField& field);
+
 /// Fills `links`: two neighbours are linked where they see the same object in the same optic, and the step
 /// between their points is no jump: not more than kJump times the longer of the steps before and after it on
 /// its line (where there is one, and it is not zero).
 void link_neighbours(SeenField& field);
+/// The same, where `window` holds every pixel that shows the layer.
+void link_neighbours(SeenField& field, const FieldWindow& window);
 
 /// Along a smooth field steps change slowly; even next to a horizon, where points recede like 1 / distance,
 /// the first two differ by less than 8 for three pixels in four. A longer step means that two pieces of the

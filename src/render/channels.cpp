@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace trilens {
 namespace {
@@ -52,12 +53,12 @@ const std::vector<std::string>& layer_names() {
 }
 
 std::size_t Canvas::add_floats(const std::string& name) {
-    image_.channels.push_back({name, std::vector<float>(image_.pixels())});
+    image_.channels.push_back({name, std::vector<float>()});
     return image_.channels.size() - 1;
 }
 
 std::size_t Canvas::add_ids(const std::string& name) {
-    image_.channels.push_back({name, std::vector<Id>(image_.pixels())});
+    image_.channels.push_back({name, std::vector<Id>()});
     return image_.channels.size() - 1;
 }
 
@@ -99,6 +100,10 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
         method_ = add_ids("stat.method");
         level_ = add_ids("stat.level");
     }
+    parallel_for(image_.channels.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t c = first; c < last; ++c)
+            std::visit([&](auto& values) { values.resize(image_.pixels()); }, image_.channels[c].values);
+    });
 }
 
 Image Canvas::layout() const {

@@ -218,7 +218,8 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
     // image's.
     Image image = empty_image(world, request);
     if (sink) image.data_height = std::min(height, rows);
-    std::vector<Canvas> canvases(sink ? slots : 1, Canvas(image, request.layers));
+    std::vector<Canvas> canvases;
+    for (std::size_t i = 0; i < (sink ? slots : 1); ++i) canvases.emplace_back(image, request.layers);
     if (sink) {
         Image layout = canvases[0].layout();
         layout.data_height = height;

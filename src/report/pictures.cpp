@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "image/image_io.h"
 
 namespace trilens {
@@ -16,6 +17,8 @@ namespace {
 constexpr LinearRgb kNotFinite = {1.0f, 0.0f, 1.0f};
 constexpr LinearRgb kNothing = {0.216f, 0.216f, 0.216f};  // sRGB 0.5
 constexpr LinearRgb kLost = {1.0f, 0.2f, 0.0f};
+
+constexpr std::size_t kRowsAtOnce = 16;
 
 /// Linear RGB triples of a film, rows from the top.
 struct Film {
@@ -35,21 +38,27 @@ Film make_film(int width, int height) {
 
 Film film_of(const Image& image) {
     constexpr std::array<const char*, 3> kNames = {"R", "G", "B"};
-    Film film = make_film(image.width, image.height);
+    std::array<const float*, 3> values{};
     for (std::size_t channel = 0; channel < 3; ++channel) {
-        const Channel* values = image.find(kNames[channel]);
-        if (!values || values->is_id())
+        const Channel* const found = image.find(kNames[channel]);
+        if (!found || found->is_id())
             throw InputError("", kNames[channel], "the image has no such float channel");
-        for (int y = 0; y < image.data_height; ++y)
-            for (int x = 0; x < image.data_width; ++x) {
-                const int film_x = image.x0 + x, film_y = image.y0 + y;
-                if (film_x < 0 || film_y < 0 || film_x >= film.width || film_y >= film.height) continue;
-                const std::size_t pixel =
-                    static_cast<std::size_t>(y) * static_cast<std::size_t>(image.data_width) +
-                    static_cast<std::size_t>(x);
-                film.rgb[film.index(film_x, film_y) + channel] = values->floats()[pixel];
-            }
+        values[channel] = found->floats().data();
     }
+    Film film = make_film(image.width, image.height);
+    const int left = std::max(0, -image.x0), right = std::min(image.data_width, film.width - image.x0);
+    parallel_for(static_cast<std::size_t>(image.data_height), kRowsAtOnce,
+                 [&](std::size_t first, std::size_t last) {
+                     for (std::size_t y = first; y < last; ++y) {
+                         const int film_y = image.y0 + static_cast<int>(y);
+                         if (film_y < 0 || film_y >= film.height) continue;
+                         for (int x = left; x < right; ++x)
+                             for (std::size_t channel = 0; channel < 3; ++channel)
+                                 film.rgb[film.index(image.x0 + x, film_y) + channel] =
+                                     values[channel][y * static_cast<std::size_t>(image.data_width) +
+                                                     static_cast<std::size_t>(x)];
+                     }
+                 });
     return film;
 }
 

@@ -76,12 +76,22 @@ void measure_optics(const Image& test, const ReferenceLayers& truth, const std::
     }
 }
 
-void add_mismatches(const Image& test, const Image& truth, const std::string& layer, MetricValues& metrics) {
-    const std::optional<SeenMismatch> seen = compare_seen(truth, test, layer);
+void add_mismatches(const std::optional<SeenMismatch>& seen, MetricValues& metrics) {
     if (!seen) return;
     metrics["coverage_mismatch"] += static_cast<double>(seen->coverage_mismatch);
     metrics["object_mismatch"] += static_cast<double>(seen->object_mismatch);
     metrics["primitive_mismatch"] += static_cast<double>(seen->primitive_mismatch);
+}
+
+/// What `work` throws.
+template <typename Work>
+std::exception_ptr caught(Work&& work) {
+    try {
+        work();
+    } catch (...) {
+        return std::current_exception();
+    }
+    return nullptr;
 }
 
 /// The larger displacement, the smaller coverage, the losses of both layers together.
@@ -102,25 +112,29 @@ MeasuredRun measure_run(const Image& test, const ReferenceLayers& truth,
                         const std::vector<SweptOptic>& optics) {
     MeasuredRun run;
     std::array<std::optional<Displacement>, kLayers.size()> displacement;
-    std::exception_ptr failure;  // counts where the colours could be compared
+    std::array<std::optional<SeenMismatch>, kLayers.size()> seen;
+    std::exception_ptr failure, seen_failure;  // count where the colours could be compared
     run_side_by_side({[&] {
                           std::vector<float> flip = layer_flip(truth.image(), test, "", &truth.flip());
                           run.metrics = colour_values(compare(truth.image(), test, {}, &flip));
                           run.diff = make_difference(truth.image(), test, {}, std::move(flip));
+                          seen_failure = caught([&] {
+                              for (std::size_t i = 0; i < kLayers.size(); ++i)
+                                  seen[i] = compare_seen(truth.image(), test, kLayers[i]);
+                          });
                       },
                       [&] {
-                          try {
+                          failure = caught([&] {
                               for (std::size_t i = 0; i < kLayers.size(); ++i)
                                   displacement[i] = measure_displacement(truth, test, kLayers[i]);
-                          } catch (...) {
-                              failure = std::current_exception();
-                          }
+                          });
                       }});
-    if (failure) std::rethrow_exception(failure);
+    for (const std::exception_ptr& first : {failure, seen_failure})
+        if (first) std::rethrow_exception(first);
 
     for (std::size_t i = 0; i < kLayers.size(); ++i) {
         const char* const layer = kLayers[i];
-        add_mismatches(test, truth.image(), layer, run.metrics);
+        add_mismatches(seen[i], run.metrics);
         if (!displacement[i] || !sees_something(*displacement[i])) continue;
         const MetricValues values = displacement_values(*displacement[i]);
         take_worse(values, run.metrics);
