@@ -93,8 +93,20 @@ LayerRequest layer_request(const std::optional<Names>& layers, const std::option
     return request;
 }
 
-HeldImage draw(const Renderer& renderer, const PictureRequest& request, const std::string& job, Talk& talk) {
-    Picture picture = talk.run([&] { return renderer.draw(request, talk.progress(job), talk.warner()); });
+using File = std::optional<std::filesystem::path>;
+
+/// What is asked for: "render" or "trace", and the file that takes it, if any.
+struct Job {
+    std::string name;
+    const File& file;
+};
+
+HeldImage draw(const Renderer& renderer, const PictureRequest& request, const Job& job, Talk& talk) {
+    Picture picture = talk.run([&] {
+        const Progress progress = talk.progress(job.name);
+        return job.file ? renderer.write_exr(job.file->string(), request, progress, talk.warner())
+                        : renderer.draw(request, progress, talk.warner());
+    });
     py::dict statistics;
     statistics["optic_pixels"] = picture.statistics.optic_pixels;
     statistics["pixels_without_ray"] = picture.statistics.pixels_without_ray;
@@ -116,7 +128,7 @@ void bind_pictures(RendererClass& renderer) {
            const std::optional<std::string>& curves, const std::optional<std::string>& clip,
            std::optional<int> pieces, std::optional<double> tolerance, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
-           const std::optional<std::string>& seen_optics, const py::object& progress,
+           const std::optional<std::string>& seen_optics, const File& file, const py::object& progress,
            const py::object& warn) {
             Talk talk(progress, warn);
             return draw(
@@ -124,14 +136,14 @@ void bind_pictures(RendererClass& renderer) {
                 {FacetArguments{rays, max_error, grid, seen_optics}.of(
                      frame_params(self, resolution, camera)),
                  projecting_engine(engine, {curves, clip, pieces, tolerance}), layer_request(layers, window)},
-                "render", talk);
+                {"render", file}, talk);
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::arg("engine") = "exact",
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("curves") = py::none(), py::arg("clip") = py::none(), py::arg("pieces") = py::none(),
         py::arg("tolerance") = py::none(), py::arg("rays") = py::none(), py::arg("max_error") = py::none(),
-        py::arg("grid") = py::none(), py::arg("seen_optics") = py::none(), py::arg("progress") = py::none(),
-        py::arg("warn") = py::none(),
+        py::arg("grid") = py::none(), py::arg("seen_optics") = py::none(), py::arg("file") = py::none(),
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the scene by projection. The same pixels for any number of threads.\n\n"
         "resolution: 1..1024, of every optic's grid; 0: as the scene says.\n"
         "camera: by name; None: the scene's own.\n"
@@ -154,6 +166,9 @@ void bind_pictures(RendererClass& renderer) {
         "None: as the scene says.\n"
         "grid: \"surface\" (n x n facets on each face) or \"screen\" (n x n over each optic's bounds on the "
         "film);\nNone: as the scene says.\n"
+        "file: an OpenEXR file that is written while the picture is drawn, which is then never held whole: "
+        "the\nimage that is returned has header and statistics, but no channels. Raises OutputError; an old "
+        "file stays\nuntil the new one is whole.\n"
         "progress: called as progress(done, job), done in 0..1; returning False raises Interrupted.\n"
         "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
         "Raises UsageError for a camera, layer, window or other value that there is not, InputError where "
@@ -167,7 +182,7 @@ void bind_pictures(RendererClass& renderer) {
            const std::optional<std::string>& camera, const std::optional<Names>& layers,
            const std::optional<Window>& window, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
-           const std::optional<std::string>& seen_optics, const py::object& progress,
+           const std::optional<std::string>& seen_optics, const File& file, const py::object& progress,
            const py::object& warn) {
             require_known("surface", surface, Names{"limit", "facets"});
             if (surface == "limit" && (rays || max_error || grid || seen_optics))
@@ -178,12 +193,13 @@ void bind_pictures(RendererClass& renderer) {
                         {FacetArguments{rays, max_error, grid, seen_optics}.of(
                              frame_params(self, resolution, camera)),
                          engine_choice(surface), layer_request(layers, window)},
-                        "trace", talk);
+                        {"trace", file}, talk);
         },
         py::arg("surface") = "limit", py::arg("resolution") = 0, py::arg("camera") = py::none(),
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("rays") = py::none(), py::arg("max_error") = py::none(), py::arg("grid") = py::none(),
-        py::arg("seen_optics") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        py::arg("seen_optics") = py::none(), py::arg("file") = py::none(), py::arg("progress") = py::none(),
+        py::arg("warn") = py::none(),
         "Draws the same scene by ray tracing: the truth.\n\n"
         "surface: \"limit\" (the exact surfaces) or \"facets\" (the rays that render's facets interpolate).\n"
         "rays, max_error, grid and seen_optics are about facets: UsageError without surface=\"facets\". The "

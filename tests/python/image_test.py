@@ -151,6 +151,20 @@ def test_copies_and_pickles_are_images_of_their_own(image):
         assert not np.shares_memory(twin["R"], image["R"])
 
 
+@pytest.mark.parametrize("job", ["render", "trace"])
+def test_a_picture_that_is_drawn_into_a_file_has_the_bytes_of_one_that_is_saved(renderer, job, tmp_path):
+    held, drawn = tmp_path / "held.exr", tmp_path / "drawn.exr"
+    draw = getattr(renderer, job)
+    image = draw(resolution=2, layers=["Z", "optic"])
+    image.save(held)
+    rest = draw(resolution=2, layers=["Z", "optic"], file=drawn)
+    assert drawn.read_bytes() == held.read_bytes()
+    assert list(rest) == [] and rest.statistics["optic_pixels"] == image.statistics["optic_pixels"]
+    with pytest.raises(trilens.OutputError):
+        draw(resolution=2, file=tmp_path / "nowhere" / "a.exr")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["drawn.exr", "held.exr"]
+
+
 def test_a_png_holds_the_beauty(image, tmp_path):
     image.save(tmp_path / "image.png")
     assert (tmp_path / "image.png").read_bytes()[:4] == b"\x89PNG"
