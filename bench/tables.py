@@ -45,7 +45,7 @@ def table(rows):
 
 AXES = {"triangles": "triangles of the scene", "n": "n: facets along an edge of the sphere's six faces",
         "film": "pixels of the film", "samples": "samples of a facet", "layers": "layers of triangles that a ray meets"}
-OTHERS = {"workload": "{}", "triangles": "{} triangles", "n": "n = {}", "film": "{}", "threads": "{} threads",
+OTHERS = {"workload": "{}", "triangles": "{} triangles", "n": "n = {}", "film": "{}", "threads": "threads: {}",
           "isa": "{}"}
 MOVED_BY = {"samples": "n", "layers": "triangles"}  # what an axis that is measured, not chosen, follows
 
