@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/box.h"
+#include "base/parallel.h"
 #include "camera/specular_point.h"
 #include "render/geometry.h"
 
@@ -13,6 +14,9 @@ namespace {
 constexpr std::size_t kLoneStarts = 6;
 /// A point is free if what its ray meets lies within this share of the way.
 constexpr double kFreeShare = 1e-6;
+constexpr std::size_t kFacetsPerTask = 256, kLonePerTask = 4;
+/// Traced parts whose paths are held at once, until their rays are added to their histories.
+constexpr std::size_t kLoneBatch = 1024;
 
 /// Whether a facet may be seen on the film: some corner behind the eye, or its box on the film.
 bool may_be_on_film(const RayMesh& outline, std::size_t facet, const Film& film) {
@@ -24,6 +28,10 @@ bool may_be_on_film(const RayMesh& outline, std::size_t facet, const Film& film)
         high = glm::max(high, Vec2(s) / s.z);
     }
     return high.x >= 0 && high.y >= 0 && low.x <= film.width && low.y <= film.height;
+}
+
+Vec2 lone_pixel(const PathLeaf& leaf) {
+    return Vec2(leaf.centre) / leaf.centre.z;
 }
 
 bool same_image(const SeveralOpticsImage& a, const SeveralOpticsImage& b) {
@@ -38,17 +46,51 @@ bool is_hidden(const Looking& looking, const Vec3& screen, const Vec3& point, do
     return hit && hit->t < 1 - kFreeShare;
 }
 
-/// Whether the camera may see a facet of a grid: it sees a corner or the middle.
-bool may_be_seen(const OpticPaths& paths, const SurfaceGrid& grid, std::size_t facet, double size) {
-    if (paths.is_on_film()) return true;
+/// Which corners of some facets the optic itself hides from the camera.
+std::vector<char> hidden_corners(const OpticPaths& paths, const SurfaceGrid& grid, std::span<const Id> facets,
+                                 double size) {
+    std::vector<char> wanted(grid.corner_point.size(), 0), hidden(grid.corner_point.size(), 0);
+    for (const Id f : facets)
+        for (const Id corner : grid.facets[f]) wanted[corner] = 1;
+    parallel_for(hidden.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t c = from; c < to; ++c)
+            hidden[c] = wanted[c] && is_hidden(paths.looking(), paths.outline().screen[c],
+                                               grid.points[grid.corner_point[c]], size);
+    });
+    return hidden;
+}
+
+bool is_middle_hidden(const OpticPaths& paths, const SurfaceGrid& grid, Id facet, double size) {
     Vec3 screen(0), middle(0);
     for (const Id corner : grid.facets[facet]) {
-        const Vec3& point = grid.points[grid.corner_point[corner]];
-        if (!is_hidden(paths.looking(), paths.outline().screen[corner], point, size)) return true;
         screen += paths.outline().screen[corner] / 3.0;
-        middle += point / 3.0;
+        middle += grid.points[grid.corner_point[corner]] / 3.0;
     }
-    return !is_hidden(paths.looking(), screen, middle, size);
+    return is_hidden(paths.looking(), screen, middle, size);
+}
+
+/// The facets that may lie on the film and that the camera may see: it sees a corner or the middle.
+std::vector<Id> facets_in_view(const OpticPaths& paths, const SurfaceGrid& grid, const Film& film) {
+    std::vector<Id> facets;
+    for (Id f = 0; f < paths.outline().facets.size(); ++f)
+        if (may_be_on_film(paths.outline(), f, film)) facets.push_back(f);
+    if (paths.is_on_film()) return facets;
+    Box box;
+    for (const Vec3& point : grid.points) box.include(point);
+    const double size = 2 * length(box.size());
+    const std::vector<char> hidden = hidden_corners(paths, grid, facets, size);
+    std::vector<char> is_seen(facets.size());
+    parallel_for(facets.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const IdTriple& corner = grid.facets[facets[i]];
+            is_seen[i] = !hidden[corner[0]] || !hidden[corner[1]] || !hidden[corner[2]] ||
+                         !is_middle_hidden(paths, grid, facets[i], size);
+        }
+    });
+    std::vector<Id> seen;
+    for (std::size_t i = 0; i < facets.size(); ++i)
+        if (is_seen[i]) seen.push_back(facets[i]);
+    return seen;
 }
 
 }  // namespace
@@ -75,15 +117,13 @@ HistoryQuery history_query(const World& world, const Frame& frame, const std::ve
 
 SeveralOpticsImages::SeveralOpticsImages(const World& world, const Frame& frame, std::size_t optic)
     : world_(world), frame_(frame), paths_(make_optic_paths(world, frame, optic)) {
-    const SurfaceGrid& grid = frame.optics[optic].facets->grid();
-    Box box;
-    for (const Vec3& point : grid.points) box.include(point);
-    const double size = 2 * length(box.size());
-    std::vector<Id> facets;
-    for (std::size_t f = 0; f < paths_->outline().facets.size(); ++f)
-        if (may_be_on_film(paths_->outline(), f, world.scene.film) && may_be_seen(*paths_, grid, f, size))
-            facets.push_back(static_cast<Id>(f));
-    paths_->prepare(facets);
+    paths_->prepare(facets_in_view(*paths_, frame.optics[optic].facets->grid(), world.scene.film));
+    add_nodes();
+    add_lone_rays();
+    may_miss_ = !histories_.empty();
+}
+
+void SeveralOpticsImages::add_nodes() {
     std::vector<Id> facet_of_leaf;
     for (const PathLeaf& leaf : paths_->leaves()) facet_of_leaf.push_back(leaf.facet);
     const std::vector<PathNode>& nodes = paths_->nodes();
@@ -104,9 +144,6 @@ SeveralOpticsImages::SeveralOpticsImages(const World& world, const Frame& frame,
         history.seeds = std::make_unique<MeshPointImages>(nodes[n].mesh);
         history.facet_of_leaf = facet_of_leaf;
     }
-    for (const PathLeaf& leaf : paths_->leaves())
-        if (leaf.method == LeafMethod::kTraced) add_lone_rays(leaf);
-    may_miss_ = !histories_.empty();
 }
 
 SeveralOpticsImages::History& SeveralOpticsImages::history_of(const std::vector<PathSegment>& segments,
@@ -136,24 +173,40 @@ SeveralOpticsImages::History& SeveralOpticsImages::history_of(const std::vector<
     return made;
 }
 
-void SeveralOpticsImages::add_lone_rays(const PathLeaf& leaf) {
-    if (!(leaf.centre.z > 0)) return;
+void SeveralOpticsImages::add_lone_rays() {
+    std::vector<const PathLeaf*> traced;
+    for (const PathLeaf& leaf : paths_->leaves())
+        if (leaf.method == LeafMethod::kTraced && leaf.centre.z > 0) traced.push_back(&leaf);
+    std::vector<std::vector<PathSegment>> followed;
+    for (std::size_t first = 0; first < traced.size(); first += kLoneBatch) {
+        const auto batch = std::span(traced).subspan(first, std::min(kLoneBatch, traced.size() - first));
+        followed.assign(batch.size(), {});
+        parallel_for(batch.size(), kLonePerTask, [&](std::size_t from, std::size_t to) {
+            for (std::size_t i = from; i < to; ++i) followed[i] = followed_from(lone_pixel(*batch[i]));
+        });
+        for (std::size_t i = 0; i < batch.size(); ++i) add_lone_rays(*batch[i], followed[i]);
+    }
+}
+
+std::vector<PathSegment> SeveralOpticsImages::followed_from(const Vec2& pixel) const {
     const PathWorld& world = path_world(world_);
     const Id optic = paths_->looking().optic;
-    const Vec2 pixel = Vec2(leaf.centre) / leaf.centre.z;
     const Ray ray = history_query(world_, frame_, {}, {}).camera_ray(pixel);
     const std::optional<SurfaceHit> hit = world.optics[optic].tracer->first_hit(ray);
-    if (!hit) return;
+    if (!hit) return {};
     const Vec3 incoming = normalize_or_zero(ray.direction);
-    const FollowedPaths followed = follow_paths(
-        world,
-        {{optic, incoming, hit->point.position, hit->point.normal, dot(incoming, hit->point.normal) <= 0},
-         hit->t * length(ray.direction),
-         frame_.surroundings.of(ray)});
-    for (std::size_t i = 0; i < followed.segments.size(); ++i) {
-        const PathSegment& segment = followed.segments[i];
+    return follow_paths(world, {{optic, incoming, hit->point.position, hit->point.normal,
+                                 dot(incoming, hit->point.normal) <= 0},
+                                hit->t * length(ray.direction),
+                                frame_.surroundings.of(ray)})
+        .segments;
+}
+
+void SeveralOpticsImages::add_lone_rays(const PathLeaf& leaf, const std::vector<PathSegment>& followed) {
+    for (std::size_t i = 0; i < followed.size(); ++i) {
+        const PathSegment& segment = followed[i];
         if (segment.parent == kNone || (segment.colours != kAllColours && segment.colours != 1)) continue;
-        history_of(followed.segments, static_cast<Id>(i)).lone.push_back({pixel, leaf.facet, segment.ray});
+        history_of(followed, static_cast<Id>(i)).lone.push_back({lone_pixel(leaf), leaf.facet, segment.ray});
     }
 }
 
@@ -179,19 +232,30 @@ std::vector<std::pair<Vec2, Id>> SeveralOpticsImages::starts(const History& hist
 }
 
 std::vector<SeveralOpticsImage> SeveralOpticsImages::images(const Vec3& point) const {
-    std::vector<SeveralOpticsImage> images;
-    for (const History& history : histories_) {
+    std::vector<Search> searches;
+    for (const History& history : histories_)
+        for (const auto& [pixel, facet] : starts(history, point))
+            searches.push_back({&history, pixel, facet, {}});
+    parallel_for(searches.size(), 1, [&](std::size_t from, std::size_t to) {
         HistoryQuery query = history_query(world_, frame_, {}, point);
-        query.history = history.chain;
-        for (const auto& [pixel, facet] : starts(history, point)) {
-            const std::optional<HistoryImage> exact = refine_history_image(query, pixel);
-            if (!exact) continue;
-            SeveralOpticsImage image{history.path, history.steps[0].optic, facet, history.steps, *exact};
-            const bool known = std::any_of(images.begin(), images.end(), [&](const SeveralOpticsImage& one) {
-                return same_image(one, image);
-            });
-            if (!known) images.push_back(std::move(image));
+        const History* asked = nullptr;
+        for (std::size_t i = from; i < to; ++i) {
+            Search& search = searches[i];
+            if (search.history != asked) query.history = search.history->chain;
+            asked = search.history;
+            search.exact = refine_history_image(query, search.start);
         }
+    });
+
+    std::vector<SeveralOpticsImage> images;
+    for (const Search& search : searches) {
+        if (!search.exact) continue;
+        const History& history = *search.history;
+        SeveralOpticsImage image{history.path, history.steps[0].optic, search.facet, history.steps,
+                                 *search.exact};
+        const bool known = std::any_of(images.begin(), images.end(),
+                                       [&](const SeveralOpticsImage& one) { return same_image(one, image); });
+        if (!known) images.push_back(std::move(image));
     }
     return images;
 }

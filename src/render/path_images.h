@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -57,7 +58,18 @@ class SeveralOpticsImages {
     using StepFrom = std::tuple<Id, Id, Event>;
     using HistoryEnd = std::pair<Id, Colours>;  // its last place
 
-    void add_lone_rays(const PathLeaf& leaf);
+    /// A place where Newton's method begins, and where it ends.
+    struct Search {
+        const History* history = nullptr;
+        Vec2 start{0};
+        Id facet = kNone;
+        std::optional<HistoryImage> exact;
+    };
+
+    void add_nodes();
+    void add_lone_rays();
+    void add_lone_rays(const PathLeaf& leaf, const std::vector<PathSegment>& followed);
+    std::vector<PathSegment> followed_from(const Vec2& pixel) const;
     History& history_of(const std::vector<PathSegment>& segments, Id last);
     std::vector<std::pair<Vec2, Id>> starts(const History& history, const Vec3& point) const;
 
