@@ -12,6 +12,7 @@
 #include "intersect/box_tree.h"
 #include "intersect/local_segments.h"
 #include "intersect/surface_newton.h"
+#include "intersect/triangle_near_origin.h"
 
 namespace trilens {
 namespace {
@@ -115,53 +116,6 @@ Vec3 chord_normal(const Patch& patch) {
     return normalize_or_zero(cross(patch.corner[1] - patch.corner[0], patch.corner[2] - patch.corner[0]));
 }
 
-/// The point of a triangle in the plane that is nearest to the origin.
-struct Nearest {
-    Vec3 weights{0};
-    double distance = kInfinity;
-};
-
-double area(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-/// Whether the origin is farther than this from the triangle for sure, by one edge's line; no division, no
-/// root. What rounding does to areas is far below the room that is left for it; where it may have turned the
-/// triangle's own, the triangle is as good as its edge.
-bool is_surely_beyond(const std::array<Vec2, 3>& p, double distance) {
-    constexpr double kRelative = 1 + 1e-6, kRounding = 1e-13;
-    const std::array<double, 3> areas{area(p[0], p[1]), area(p[1], p[2]), area(p[2], p[0])};
-    const double sum = areas[0] + areas[1] + areas[2];
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec2 &a = p[k], &b = p[(k + 1) % 3];
-        const double outside = sum > 0 ? -areas[k] : areas[k];
-        const double edge = std::fabs(b.x - a.x) + std::fabs(b.y - a.y);  // or more
-        if (outside > kRelative * distance * edge + kRounding * (dot(a, a) + dot(b, b))) return true;
-    }
-    return false;
-}
-
-Nearest nearest_to_origin(const std::array<Vec2, 3>& p) {
-    const Vec3 areas(area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1]));
-    const double sum = areas.x + areas.y + areas.z;
-    const Vec3 weights = areas / sum;
-    if (sum != 0 && weights.x >= 0 && weights.y >= 0 && weights.z >= 0) return {weights, 0};
-
-    Nearest best;
-    for (int k = 0; k < 3; ++k) {
-        const Vec2 a = p[k], edge = p[(k + 1) % 3] - a;
-        const double size_2 = dot(edge, edge);
-        const double share = size_2 > 0 ? std::clamp(-dot(a, edge) / size_2, 0.0, 1.0) : 0.0;
-        const double distance = length(a + share * edge);
-        if (distance < best.distance) {
-            best = {Vec3(0), distance};
-            best.weights[k] = 1 - share;
-            best.weights[(k + 1) % 3] = share;
-        }
-    }
-    return best;
-}
-
 }  // namespace
 
 struct LimitTracer::Data {
@@ -231,19 +185,19 @@ struct LimitTracer::Data {
 // Keeps the patch if the ray passes within its stray, and some of it lies after t_min.
 std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, Id index, double t_min) const {
     const Patch& patch = patches[index];
-    std::array<Vec2, 3> seen;
-    Vec3 z;
-    for (int k = 0; k < 3; ++k) {
-        const Vec3 local = frame.from_world(patch.corner[k]);
-        seen[k] = {local.x, local.y};
-        z[k] = local.z;
+    PlaneTriangle seen;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 local = patch.corner[k] - frame.origin;
+        seen[k] = {dot(frame.x, local), dot(frame.y, local)};
     }
     if (is_surely_beyond(seen, patch.stray)) return std::nullopt;
+    Vec3 z;
+    for (int k = 0; k < 3; ++k) z[k] = dot(frame.z, patch.corner[k] - frame.origin);
     const int low = z.x <= z.y && z.x <= z.z ? 0 : z.y <= z.z ? 1 : 2;
     const int high = z.x >= z.y && z.x >= z.z ? 0 : z.y >= z.z ? 1 : 2;
     const double t_far = (z[high] + patch.stray) / frame.speed;
     if (!(t_far > t_min)) return std::nullopt;
-    const Nearest nearest = nearest_to_origin(seen);
+    const NearestToOrigin nearest = nearest_to_origin(seen);
     if (!(nearest.distance <= patch.stray)) return std::nullopt;
     return Candidate{(z[low] - patch.stray) / frame.speed,
                      t_far,
