@@ -163,3 +163,48 @@ TEST_CASE("parts are projected where all paths agree, and traced only where they
     CHECK(projected > 100);
     CHECK(traced > 100);
 }
+
+TEST_CASE("a facet is divided alike whether or not its neighbour looked at their edge before") {
+    Stage stage;
+    put_up(stage);
+    const Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};
+    const SurfaceGrid grid = make_grid(stage.surface(0), 6);
+    std::vector<Look> looks;
+    for (const Id corner : grid.corner_point) {
+        const Vec3& point = grid.points[corner];
+        const Place place{0, Vec2(0), point, normalize(point)};
+        looks.push_back(look_at(looking, place, {.least_weight = kFainter * kLeastWeight}));
+    }
+    std::size_t shared = 0, parts = 0;
+    DividedFacet before;
+    for (const IdTriple& corners : grid.facets) {
+        FacetToDivide facet;
+        for (std::size_t k = 0; k < 3; ++k)
+            facet.corners[k] = {corners[k], &looks[corners[k]], grid.points[grid.corner_point[corners[k]]]};
+        const DividedFacet alone = divide_facet(looking, facet, {.least_area = 8, .most_levels = 4});
+        facet.neighbour = &before;
+        DividedFacet beside = divide_facet(looking, facet, {.least_area = 8, .most_levels = 4});
+        for (const MiddleLook& a : before.middles)
+            for (const MiddleLook& b : beside.middles)
+                shared +=
+                    a.look && before.reach == beside.reach && a.first == b.second && a.second == b.first;
+        REQUIRE(alone.parts.size() == beside.parts.size());
+        REQUIRE(alone.cells.size() == beside.cells.size());
+        REQUIRE(alone.looks.size() == beside.looks.size());
+        for (std::size_t p = 0; p < alone.parts.size(); ++p) {
+            const FacetPart &a = alone.parts[p], &b = beside.parts[p];
+            ++parts;
+            CHECK(a.method == b.method);
+            check_same(a.histories, b.histories);
+            REQUIRE(a.inside.size() == b.inside.size());
+            for (std::size_t i = 0; i < a.inside.size(); ++i) {
+                CHECK(a.inside[i].at.chord == b.inside[i].at.chord);
+                CHECK(a.inside[i].at.look->place.point == b.inside[i].at.look->place.point);
+                check_same(a.inside[i].at.look->segments, b.inside[i].at.look->segments);
+            }
+        }
+        before = std::move(beside);
+    }
+    CHECK(shared > 30);
+    CHECK(parts > 500);
+}
