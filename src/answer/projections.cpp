@@ -1,8 +1,12 @@
 #include "answer/projections.h"
 
 #include <trilens/text.h>
+#include <trilens/version.h>
 
+#include <algorithm>
 #include <charconv>
+#include <future>
+#include <utility>
 
 #include "answer/values.h"
 
@@ -63,6 +67,20 @@ void add_line(std::string& text, const Renderer& renderer, std::size_t point, co
     text.back() = '\n';
 }
 
+/// The lines of points `from` .. `to` - 1, whose images are given back.
+std::string lines_of(const Renderer& renderer, std::span<PointProjection> images, std::size_t from,
+                     std::size_t to) {
+    std::size_t lines = 0;
+    for (std::size_t p = from; p < to; ++p) lines += images[p].images.size();
+    constexpr std::size_t kUsualLine = 80;
+    std::string text;
+    text.reserve(kUsualLine * lines);
+    for (std::size_t p = from; p < to; ++p)
+        for (const WorldImage& image : std::exchange(images[p].images, {}))
+            add_line(text, renderer, p, image);
+    return text;
+}
+
 }  // namespace
 
 Json points_json(const Renderer& renderer, std::span<const Vec3> points,
@@ -79,14 +97,16 @@ Json points_json(const Renderer& renderer, std::span<const Vec3> points,
     return list;
 }
 
-std::string points_text(const Renderer& renderer, std::span<const PointProjection> images) {
+std::string points_text(const Renderer& renderer, std::vector<PointProjection> images) {
+    const std::size_t count = static_cast<std::size_t>(std::max(1, threads()));
+    std::vector<std::future<std::string>> pieces;
+    for (std::size_t i = 0; i < count; ++i)
+        pieces.push_back(
+            std::async([&, from = images.size() * i / count, to = images.size() * (i + 1) / count] {
+                return lines_of(renderer, images, from, to);
+            }));
     std::string text = "point,x,y,t,path,optic,facet,inside,visible,refined\n";
-    std::size_t lines = 0;
-    for (const PointProjection& point : images) lines += point.images.size();
-    constexpr std::size_t kUsualLine = 80;
-    text.reserve(text.size() + kUsualLine * lines);
-    for (std::size_t p = 0; p < images.size(); ++p)
-        for (const WorldImage& image : images[p].images) add_line(text, renderer, p, image);
+    for (std::future<std::string>& piece : pieces) text += piece.get();
     return text;
 }
 
