@@ -96,8 +96,11 @@ class CandidateSearch {
 }  // namespace
 
 const CellReach& ImageFinder::reach_of(int column, int row) const {
-    return reaches_.get(reference_.cell_number(column, row),
-                        [&] { return reach_of_cell(reference_, test_.field, column, row); });
+    constexpr std::uint8_t kNeedsNoOther = FieldIndex::kWhole | FieldIndex::kWholeTriangle;
+    const bool is_kept = kept_ && reference_.wholeness(column, row) == kNeedsNoOther;
+    return (is_kept ? *kept_ : reaches_).get(reference_.cell_number(column, row), [&] {
+        return reach_of_cell(reference_, test_.field, column, row);
+    });
 }
 
 std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wanted, double reach) const {
