@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/file_bytes.h"
+#include "base/files.h"
 #include "base/parallel.h"
 #include "image/exr_strips.h"
 #include "image/image_io.h"
@@ -168,6 +169,15 @@ TEST_CASE("a file does not depend on how its rows came", "[image]") {
     for (int row = 0; row < image.data_height; row += step)
         strips.add(image.channels, row, std::min(step, image.data_height - row));
     CHECK(strips.finish() == whole);
+}
+
+TEST_CASE("an image that is written while it is encoded has the encoded bytes", "[image]") {
+    const std::string file = trilens_test::scratch_dir("exr_written") + "/a.exr";
+    for (const Image& image : {random_image(11, 37, 83), repetitive_image(3, 64, 1500)}) {
+        write_exr(file, image);
+        const std::vector<unsigned char> encoded = encode_exr("encoded", image);
+        CHECK(read_whole_file(file) == std::string(encoded.begin(), encoded.end()));
+    }
 }
 
 TEST_CASE("a data window may reach beyond the film", "[image]") {
