@@ -128,7 +128,7 @@ std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wa
     const auto next_waiting = [&]() -> ImageQuery* {
         if (asked == waiting.size()) return nullptr;
         const std::size_t first = candidates.first[asked];
-        waiting[asked]->give({&candidates.cells[first], candidates.first[asked + 1] - first});
+        waiting[asked]->give(std::span(candidates.cells).subspan(first, candidates.first[asked + 1] - first));
         return waiting[asked++];
     };
     answer(patches, next_waiting, [](ImageQuery&) {});
