@@ -1,8 +1,12 @@
 #include "answer/projections.h"
 
 #include <trilens/text.h>
+#include <trilens/version.h>
 
+#include <algorithm>
 #include <charconv>
+#include <future>
+#include <utility>
 
 #include "answer/values.h"
 
@@ -30,27 +34,20 @@ Json image_json(const Renderer& renderer, const WorldImage& image) {
     return fields;
 }
 
-/// Room for a number, however long: a double before its point has 309 digits at most.
-constexpr std::size_t kNumberRoom = 330;
-
-void add_number(std::string& text, double value, std::chars_format format, int digits) {
-    char room[kNumberRoom];
-    const auto end = std::to_chars(room, room + kNumberRoom, value, format, digits);
-    text.append(room, end.ptr);
-    text += ',';
-}
-
 void add_count(std::string& text, std::size_t value) {
-    char room[kNumberRoom];
-    text.append(room, std::to_chars(room, room + kNumberRoom, value).ptr);
+    char room[20];
+    text.append(room, std::to_chars(room, room + sizeof room, value).ptr);
     text += ',';
 }
 
 void add_line(std::string& text, const Renderer& renderer, std::size_t point, const WorldImage& image) {
     add_count(text, point);
-    add_number(text, image.pixel.x, std::chars_format::fixed, 9);
-    add_number(text, image.pixel.y, std::chars_format::fixed, 9);
-    add_number(text, image.t, std::chars_format::general, 12);
+    for (int axis = 0; axis < 2; ++axis) {
+        append_fixed(text, image.pixel[axis], 9);
+        text += ',';
+    }
+    append_significant(text, image.t, 12);
+    text += ',';
     text += path_name(image.path);
     text += ',';
     if (image.optic != kNone) text += csv_text(renderer.scene().meshes[image.object].name);
@@ -61,6 +58,20 @@ void add_line(std::string& text, const Renderer& renderer, std::size_t point, co
         add_count(text, image.facet);
     for (const bool flag : {image.inside, image.visible, image.refined}) text += flag ? "1," : "0,";
     text.back() = '\n';
+}
+
+/// The lines of points `from` .. `to` - 1, whose images are given back.
+std::string lines_of(const Renderer& renderer, std::span<PointProjection> images, std::size_t from,
+                     std::size_t to) {
+    std::size_t lines = 0;
+    for (std::size_t p = from; p < to; ++p) lines += images[p].images.size();
+    constexpr std::size_t kUsualLine = 80;
+    std::string text;
+    text.reserve(kUsualLine * lines);
+    for (std::size_t p = from; p < to; ++p)
+        for (const WorldImage& image : std::exchange(images[p].images, {}))
+            add_line(text, renderer, p, image);
+    return text;
 }
 
 }  // namespace
@@ -79,14 +90,16 @@ Json points_json(const Renderer& renderer, std::span<const Vec3> points,
     return list;
 }
 
-std::string points_text(const Renderer& renderer, std::span<const PointProjection> images) {
+std::string points_text(const Renderer& renderer, std::vector<PointProjection> images) {
+    const std::size_t count = static_cast<std::size_t>(std::max(1, threads()));
+    std::vector<std::future<std::string>> pieces;
+    for (std::size_t i = 0; i < count; ++i)
+        pieces.push_back(
+            std::async([&, from = images.size() * i / count, to = images.size() * (i + 1) / count] {
+                return lines_of(renderer, images, from, to);
+            }));
     std::string text = "point,x,y,t,path,optic,facet,inside,visible,refined\n";
-    std::size_t lines = 0;
-    for (const PointProjection& point : images) lines += point.images.size();
-    constexpr std::size_t kUsualLine = 80;
-    text.reserve(text.size() + kUsualLine * lines);
-    for (std::size_t p = 0; p < images.size(); ++p)
-        for (const WorldImage& image : images[p].images) add_line(text, renderer, p, image);
+    for (std::future<std::string>& piece : pieces) text += piece.get();
     return text;
 }
 

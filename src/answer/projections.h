@@ -4,6 +4,7 @@
 #include <trilens/project.h>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "terminal/json.h"
 
@@ -15,6 +16,6 @@ Json points_json(const Renderer& renderer, std::span<const Vec3> points,
                  std::span<const PointProjection> images);
 
 /// A header and a line per image.
-std::string points_text(const Renderer& renderer, std::span<const PointProjection> images);
+std::string points_text(const Renderer& renderer, std::vector<PointProjection> images);
 
 }  // namespace trilens

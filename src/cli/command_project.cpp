@@ -3,6 +3,7 @@
 #include <trilens/stopwatch.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "answer/projections.h"
 #include "cli/commands.h"
@@ -51,7 +52,7 @@ Answer run(const ProjectOptions& options, Console& console) {
     request.visibility = !options.no_visibility;
     request.derivatives = options.derivatives;
     const Stopwatch watch;
-    const auto images = renderer.project(points, request);
+    auto images = renderer.project(points, request);
     const double seconds = watch.seconds();
 
     const auto open = std::count_if(images.begin(), images.end(),
@@ -66,7 +67,7 @@ Answer run(const ProjectOptions& options, Console& console) {
     answer.fields["seconds"] = seconds;
     answer.fields["incomplete"] = open;
     if (console.wants_json()) answer.fields["points"] = points_json(renderer, points, images);
-    answer.text = points_text(renderer, images);
+    answer.text = points_text(renderer, std::move(images));
     console.note_stage(fmt::format("projected {} points", points.size()), watch);
     return answer;
 }

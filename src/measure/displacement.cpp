@@ -128,7 +128,7 @@ std::optional<Displacement> measure_displacement(const ReferenceLayers& referenc
     Displacement result;
     std::size_t missing = 0;
     run_side_by_side({[&] {
-                          const ImageFinder finder(there->index, *here);
+                          const ImageFinder finder(there->index, *here, there->reaches.get());
                           result = find_shifts(finder, mask, options.radius, kAnywhere);
                           collect_statistics(there->near_folds, result);
                       },

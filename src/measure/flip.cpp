@@ -182,6 +182,10 @@ double redistributed(double distance, double largest) {
 }
 
 double error_at(const FlipWindow& reference, const FlipWindow& test, std::size_t i) {
+    // Where nothing differs all powers below are of zero.
+    if (reference.lab[i] == test.lab[i] && reference.edges[i] == test.edges[i] &&
+        reference.points[i] == test.points[i])
+        return 0;
     static const double kLargest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), kColourExponent);
     const double colour =
         redistributed(std::pow(hyab(reference.lab[i], test.lab[i]), kColourExponent), kLargest);

@@ -96,8 +96,11 @@ class CandidateSearch {
 }  // namespace
 
 const CellReach& ImageFinder::reach_of(int column, int row) const {
-    return reaches_.get(reference_.cell_number(column, row),
-                        [&] { return reach_of_cell(reference_, test_.field, column, row); });
+    constexpr std::uint8_t kNeedsNoOther = FieldIndex::kWhole | FieldIndex::kWholeTriangle;
+    const bool is_kept = kept_ && reference_.wholeness(column, row) == kNeedsNoOther;
+    return (is_kept ? *kept_ : reaches_).get(reference_.cell_number(column, row), [&] {
+        return reach_of_cell(reference_, test_.field, column, row);
+    });
 }
 
 std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wanted, double reach) const {
@@ -125,7 +128,7 @@ std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wa
     const auto next_waiting = [&]() -> ImageQuery* {
         if (asked == waiting.size()) return nullptr;
         const std::size_t first = candidates.first[asked];
-        waiting[asked]->give({&candidates.cells[first], candidates.first[asked + 1] - first});
+        waiting[asked]->give(std::span(candidates.cells).subspan(first, candidates.first[asked + 1] - first));
         return waiting[asked++];
     };
     answer(patches, next_waiting, [](ImageQuery&) {});

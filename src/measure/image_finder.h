@@ -17,9 +17,10 @@ namespace trilens {
 /// threads.
 class ImageFinder {
   public:
-    /// `test`: the field that points are looked for from; it guides the reference beyond its borders.
-    ImageFinder(const FieldIndex& reference, const FieldIndex& test)
-        : reference_(reference), test_(test), reaches_(reference.cell_count()) {}
+    /// `test`: the field that points are looked for from; it guides the reference beyond its borders. `kept`:
+    /// where given, bounds that depend on the reference alone, one for each of its cells, for many finders.
+    ImageFinder(const FieldIndex& reference, const FieldIndex& test, LazyValues<CellReach>* kept = nullptr)
+        : reference_(reference), test_(test), kept_(kept), reaches_(reference.cell_count()) {}
 
     /// For each point that `test` sees, the screen vector from its pixel to the nearest place where the
     /// reference shows it; nothing where there is none. A place more than `reach` pixels away need not be
@@ -37,6 +38,7 @@ class ImageFinder {
 
   private:
     const FieldIndex &reference_, &test_;
+    LazyValues<CellReach>* kept_;
     mutable LazyValues<CellReach> reaches_;
 };
 

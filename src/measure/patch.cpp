@@ -35,7 +35,7 @@ Neighbourhood look_around(const SeenField& field, const PatchPlace& place, const
         const std::size_t row = static_cast<std::size_t>(top + b) * static_cast<std::size_t>(field.width);
         for (int a = first; a < last; ++a) {
             const std::size_t i = row + static_cast<std::size_t>(left + a);
-            if (!field.shows(i, piece)) continue;
+            if (!field.shows_linked(i, piece)) continue;
             const std::uint16_t here = bit(a + 4 * b);
             around.allowed |= here;
             if (field.links[i] & SeenField::kRight) around.right |= here;

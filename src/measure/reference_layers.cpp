@@ -18,7 +18,8 @@ std::shared_ptr<const ReferenceLayers::Layer> ReferenceLayers::get(const std::st
         if (!field) return;
         FieldIndex index(std::move(*field));
         std::vector<std::uint8_t> folds = near_folds(index.field);
-        made = std::make_shared<const Layer>(Layer{std::move(index), std::move(folds)});
+        auto reaches = std::make_unique<LazyValues<CellReach>>(index.cell_count());
+        made = std::make_shared<const Layer>(Layer{std::move(index), std::move(folds), std::move(reaches)});
     });
     layers_.emplace(layer, made);
     return made;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "measure/cell_reach.h"
 #include "measure/field_index.h"
 #include "measure/flip.h"
 
@@ -20,7 +21,8 @@ class ReferenceLayers {
   public:
     struct Layer {
         FieldIndex index;
-        std::vector<std::uint8_t> near_folds;  // of folds.h
+        std::vector<std::uint8_t> near_folds;            // of folds.h
+        std::unique_ptr<LazyValues<CellReach>> reaches;  // as ImageFinder keeps them
     };
 
     explicit ReferenceLayers(const Image& image) : image_(image) {}

@@ -68,6 +68,11 @@ struct SeenField {
         return (*object)[i] == piece.object && optic_of(i) == piece.optic &&
                (!piece.primitive || primitive_of(i) == *piece.primitive) && sees(i);
     }
+    /// The same, with links: what is linked is seen at a finite place.
+    bool shows_linked(std::size_t i, const Piece& piece) const {
+        return (*object)[i] == piece.object && optic_of(i) == piece.optic &&
+               (!piece.primitive || primitive_of(i) == *piece.primitive) && (links[i] != 0 || sees(i));
+    }
 };
 
 /// The field of `layer` ("reflect", "refract") without links; nothing where the image lacks the layer's

@@ -252,6 +252,9 @@ void PointProjector::project(std::span<const Vec3> points, std::span<const std::
         const Vec3& point = of_some[k];
         PointProjection& found = result[some[k]];
         found.complete = true;
+        std::size_t most = 1;
+        for (const std::vector<SpecularSearch>& on_path : searched) most += on_path[k].images.size();
+        found.images.reserve(most);
         if (camera_mesh_) add_camera_mesh(point, found);
         if (!camera_mesh_ && world_.scene.render.direct) add_direct(point, found);
         for (std::size_t i = 0; i < paths_.size(); ++i)

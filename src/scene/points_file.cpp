@@ -1,21 +1,23 @@
 #include "scene/points_file.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <sstream>
+#include <string_view>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "scene/scene.h"
 
 namespace trilens {
 namespace {
 
 /// Whether a line that is no point holds only words.
-bool is_header(const std::string& line) {
+bool is_header(std::string_view line) {
     std::string field;
-    for (const char letter : line + ",") {
+    for (const char letter : std::string(line) + ",") {
         if (letter != ',') {
             if (!std::isspace(static_cast<unsigned char>(letter)) && letter != '"' && letter != '\'')
                 field += letter;
@@ -29,9 +31,7 @@ bool is_header(const std::string& line) {
     return true;
 }
 
-}  // namespace
-
-std::optional<Vec3> parse_point(const std::string& text) {
+std::optional<Vec3> point_of(std::string_view text) {
     Vec3 point(0);
     const char *at = text.data(), *end = at + text.size();
     const auto skip_blanks = [&] {
@@ -49,37 +49,84 @@ std::optional<Vec3> parse_point(const std::string& text) {
     return at == end ? std::optional(point) : std::nullopt;
 }
 
-namespace {
-
-std::vector<Vec3> read_points(std::istream& in, const std::string& file) {
+/// Some lines of a text: their points, as far as the first line that is none.
+struct Piece {
     std::vector<Vec3> points;
-    std::string line;
-    for (std::size_t number = 1; std::getline(in, line); ++number) {
-        if (number == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);  // a byte order mark
-        if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
-        const std::optional<Vec3> point = parse_point(line);
+    std::size_t lines = 0;
+    std::optional<std::string_view> bad;  // the last line that was looked at
+
+    void take(std::string_view line, bool is_first) {
+        ++lines;
+        if (is_first && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);  // a byte order mark
+        if (line.find_first_not_of(" \t\r") == std::string_view::npos || line[0] == '#') return;
+        const std::optional<Vec3> point = point_of(line);
         if (point)
             points.push_back(*point);
-        else if (number > 1 || !is_header(line))
-            throw InputError(file, "line " + std::to_string(number),
-                             "needs x,y,z within 1e30, not \"" + line + "\"");
+        else if (!is_first || !is_header(line))
+            bad = line;
+    }
+    void take_lines(std::string_view text, bool is_first) {
+        while (!text.empty() && !bad) {
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            take(text.substr(0, end), is_first && lines == 0);
+            text.remove_prefix(std::min(end + 1, text.size()));
+        }
+    }
+};
+
+/// Bytes, so many that a piece is worth a thread of its own.
+constexpr std::size_t kPiece = std::size_t{1} << 16;
+
+/// Where the first line begins that begins at `place` or behind it.
+std::size_t line_at(std::string_view text, std::size_t place) {
+    if (place == 0 || place >= text.size()) return std::min(place, text.size());
+    return std::min(text.find('\n', place - 1), text.size() - 1) + 1;
+}
+
+std::string all_of(std::istream& in, const std::string& file) {
+    std::string text;
+    std::size_t filled = 0;
+    while (in) {
+        text.resize(std::max(2 * filled, kPiece));
+        in.read(text.data() + filled, static_cast<std::streamsize>(text.size() - filled));
+        filled += static_cast<std::size_t>(in.gcount());
     }
     if (in.bad()) throw InputError(file, "", "cannot be read");
-    if (points.empty()) throw InputError(file, "", "holds no points");
-    return points;
+    text.resize(filled);
+    return text;
 }
 
 }  // namespace
 
+std::optional<Vec3> parse_point(const std::string& text) {
+    return point_of(text);
+}
+
 std::vector<Vec3> parse_points(const std::string& text, const std::string& name) {
-    std::istringstream in(text);
-    return read_points(in, name);
+    std::vector<Piece> pieces(text.size() / kPiece + 1);
+    parallel_for(pieces.size(), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const std::size_t begin = line_at(text, i * kPiece), end = line_at(text, (i + 1) * kPiece);
+            pieces[i].take_lines(std::string_view(text).substr(begin, end - begin), i == 0);
+        }
+    });
+    std::vector<Vec3> points;
+    std::size_t lines = 0;
+    for (const Piece& piece : pieces) {
+        lines += piece.lines;
+        points.insert(points.end(), piece.points.begin(), piece.points.end());
+        if (piece.bad)
+            throw InputError(name, "line " + std::to_string(lines),
+                             "needs x,y,z within 1e30, not \"" + std::string(*piece.bad) + "\"");
+    }
+    if (points.empty()) throw InputError(name, "", "holds no points");
+    return points;
 }
 
 std::vector<Vec3> read_points(const std::string& file) {
     std::ifstream in(file);
     if (!in) throw InputError(file, "", "cannot be read");
-    return read_points(in, file);
+    return parse_points(all_of(in, file), file);
 }
 
 }  // namespace trilens

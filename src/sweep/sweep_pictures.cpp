@@ -36,10 +36,11 @@ std::optional<ColourRange> displacement_range(const std::vector<float>& pixels) 
     for (const float value : pixels)
         if (std::isfinite(value) && value > 0) positive.push_back(value);
     if (positive.empty()) return std::nullopt;
-    std::sort(positive.begin(), positive.end());
     const auto at = [&](double share) {
         const auto last = static_cast<double>(positive.size() - 1);
-        return std::log10(static_cast<double>(positive[static_cast<std::size_t>(std::lround(share * last))]));
+        const auto place = positive.begin() + std::lround(share * last);
+        std::nth_element(positive.begin(), place, positive.end());
+        return std::log10(static_cast<double>(*place));
     };
     const double top = std::ceil(at(0.99)), bottom = std::floor(at(0.1));
     return ColourRange{std::pow(10.0, std::max(std::min(bottom, top - 1), top - 4)), std::pow(10.0, top)};

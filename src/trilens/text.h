@@ -6,4 +6,5 @@
 #pragma once
 
 #include "base/nearest.h"
+#include "report/decimals.h"
 #include "report/text.h"

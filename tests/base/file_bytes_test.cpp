@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <iterator>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -36,4 +38,43 @@ TEST_CASE("files: names that a killed process left are passed over and stay", "[
     std::size_t files = 0;
     for (const auto& entry : fs::directory_iterator(folder)) files += !entry.path().empty();
     CHECK(files == parts.size() + (are_too_many ? 0 : 1));
+}
+
+TEST_CASE("files: a replacement takes its name when it is whole, else leaves the old file alone", "[base]") {
+    const std::string folder = trilens_test::scratch_dir("base_replacement"), file = folder + "/whole.bin";
+    const auto bytes = [](const std::string& text) {
+        return std::vector<unsigned char>(text.begin(), text.end());
+    };
+    const auto count = [&] {
+        return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+    };
+    replace_text_file(file, "old");
+    {
+        FileReplacement left(file);
+        left.write(bytes("new"), 0);
+        CHECK(read_whole_file(file) == "old");
+    }
+    CHECK(count() == 1);
+    FileReplacement replacement(file);
+    replacement.write(bytes("....ef"), 0);
+    replacement.write(bytes("gh"), 6);
+    replacement.write(bytes("ab"), 0);
+    replacement.write(bytes("cd"), 2);
+    CHECK(read_whole_file(file) == "old");
+    replacement.commit();
+    CHECK(read_whole_file(file) == "abcdefgh");
+    CHECK(count() == 1);
+    CHECK_THROWS_AS(FileReplacement(folder + "/none/whole.bin"), OutputError);
+}
+
+TEST_CASE("files: a replacement that cannot have its name says so and leaves nothing", "[base]") {
+    const std::string folder = trilens_test::scratch_dir("base_full");
+    // A folder that takes the name meanwhile.
+    {
+        FileReplacement replacement(folder + "/name");
+        fs::create_directories(folder + "/name/inside");
+        replacement.write(std::vector<unsigned char>(5), 0);
+        CHECK_THROWS_AS(replacement.commit(), OutputError);
+    }
+    CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
 }

@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/file_bytes.h"
+#include "base/files.h"
 #include "base/parallel.h"
 #include "image/exr_strips.h"
 #include "image/image_io.h"
@@ -196,6 +197,15 @@ TEST_CASE("what the taker of a file's bytes throws comes out", "[image]") {
         strips.finish();
     };
     CHECK_THROWS_WITH(make(), Catch::Contains("no room"));
+}
+
+TEST_CASE("an image that is written while it is encoded has the encoded bytes", "[image]") {
+    const std::string file = trilens_test::scratch_dir("exr_written") + "/a.exr";
+    for (const Image& image : {random_image(11, 37, 83), repetitive_image(3, 64, 1500)}) {
+        write_exr(file, image);
+        const std::vector<unsigned char> encoded = encode_exr("encoded", image);
+        CHECK(read_whole_file(file) == std::string(encoded.begin(), encoded.end()));
+    }
 }
 
 TEST_CASE("a data window may reach beyond the film", "[image]") {

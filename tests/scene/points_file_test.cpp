@@ -1,7 +1,9 @@
 // Points written as text.
 #include "scene/points_file.h"
 
+#include <random>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -44,4 +46,35 @@ TEST_CASE("a file of points may begin with a header and names the line that is n
     CHECK(refuses("no points"));
     CHECK_THROWS_AS(read_points(folder), InputError);
     CHECK_THROWS_AS(read_points(folder + "/none.csv"), InputError);
+}
+
+TEST_CASE("a long text of points reads as its lines do, and its first bad line is named", "[scene]") {
+    std::mt19937_64 random(5);
+    std::string text = "x,y,z\n";
+    std::vector<Vec3> expected;
+    std::vector<std::size_t> starts;
+    for (std::size_t line = 2; line < 20000; ++line) {
+        starts.push_back(text.size());
+        if (random() % 50 == 0) {
+            text += random() % 2 ? "\n" : "# 1,2\r\n";
+            continue;
+        }
+        const Vec3 point(static_cast<double>(random() % 1000) / 8, static_cast<double>(line), -0.25);
+        text += std::to_string(point.x) + std::string(random() % 9, ' ') + "," + std::to_string(point.y) +
+                ",-0.25" + (random() % 3 ? "\n" : "\r\n");
+        expected.push_back(point);
+    }
+    CHECK(parse_points(text, "points") == expected);
+    CHECK(parse_points(text.substr(0, text.size() - 1), "points") == expected);
+    for (const std::size_t first : {std::size_t{7}, std::size_t{4321}, starts.size() - 1}) {
+        std::string bad = text;
+        bad.insert(starts.back(), "again\n");
+        bad.insert(starts[first], "x,y\n");
+        try {
+            parse_points(bad, "points");
+            FAIL("no error");
+        } catch (const InputError& error) {
+            CHECK(std::string(error.what()).find("line " + std::to_string(first + 2)) != std::string::npos);
+        }
+    }
 }
