@@ -34,20 +34,27 @@ Json image_json(const Renderer& renderer, const WorldImage& image) {
     return fields;
 }
 
+/// Room for a number, however long: a double before its point has 309 digits at most.
+constexpr std::size_t kNumberRoom = 330;
+
+void add_number(std::string& text, double value, std::chars_format format, int digits) {
+    char room[kNumberRoom];
+    const auto end = std::to_chars(room, room + kNumberRoom, value, format, digits);
+    text.append(room, end.ptr);
+    text += ',';
+}
+
 void add_count(std::string& text, std::size_t value) {
-    char room[20];
-    text.append(room, std::to_chars(room, room + sizeof room, value).ptr);
+    char room[kNumberRoom];
+    text.append(room, std::to_chars(room, room + kNumberRoom, value).ptr);
     text += ',';
 }
 
 void add_line(std::string& text, const Renderer& renderer, std::size_t point, const WorldImage& image) {
     add_count(text, point);
-    for (int axis = 0; axis < 2; ++axis) {
-        append_fixed(text, image.pixel[axis], 9);
-        text += ',';
-    }
-    append_significant(text, image.t, 12);
-    text += ',';
+    add_number(text, image.pixel.x, std::chars_format::fixed, 9);
+    add_number(text, image.pixel.y, std::chars_format::fixed, 9);
+    add_number(text, image.t, std::chars_format::general, 12);
     text += path_name(image.path);
     text += ',';
     if (image.optic != kNone) text += csv_text(renderer.scene().meshes[image.object].name);

@@ -6,5 +6,4 @@
 #pragma once
 
 #include "base/nearest.h"
-#include "report/decimals.h"
 #include "report/text.h"

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/new_file.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -40,8 +41,8 @@ TEST_CASE("files: names that a killed process left are passed over and stay", "[
     CHECK(files == parts.size() + (are_too_many ? 0 : 1));
 }
 
-TEST_CASE("files: a replacement takes its name when it is whole, else leaves the old file alone", "[base]") {
-    const std::string folder = trilens_test::scratch_dir("base_replacement"), file = folder + "/whole.bin";
+TEST_CASE("files: a new file takes its name when it is whole, else leaves the old file alone", "[base]") {
+    const std::string folder = trilens_test::scratch_dir("base_new_file"), file = folder + "/whole.bin";
     const auto bytes = [](const std::string& text) {
         return std::vector<unsigned char>(text.begin(), text.end());
     };
@@ -50,31 +51,31 @@ TEST_CASE("files: a replacement takes its name when it is whole, else leaves the
     };
     replace_text_file(file, "old");
     {
-        FileReplacement left(file);
-        left.write(bytes("new"), 0);
+        NewFile left(file);
+        left.write(0, bytes("new"));
         CHECK(read_whole_file(file) == "old");
     }
     CHECK(count() == 1);
-    FileReplacement replacement(file);
-    replacement.write(bytes("....ef"), 0);
-    replacement.write(bytes("gh"), 6);
-    replacement.write(bytes("ab"), 0);
-    replacement.write(bytes("cd"), 2);
+    NewFile made(file);
+    made.write(0, bytes("....ef"));
+    made.write(6, bytes("gh"));
+    made.write(0, bytes("ab"));
+    made.write(2, bytes("cd"));
     CHECK(read_whole_file(file) == "old");
-    replacement.commit();
+    made.commit();
     CHECK(read_whole_file(file) == "abcdefgh");
     CHECK(count() == 1);
-    CHECK_THROWS_AS(FileReplacement(folder + "/none/whole.bin"), OutputError);
+    CHECK_THROWS_AS(NewFile(folder + "/none/whole.bin"), OutputError);
 }
 
-TEST_CASE("files: a replacement that cannot have its name says so and leaves nothing", "[base]") {
+TEST_CASE("files: a new file that cannot have its name says so and leaves nothing", "[base]") {
     const std::string folder = trilens_test::scratch_dir("base_full");
     // A folder that takes the name meanwhile.
     {
-        FileReplacement replacement(folder + "/name");
+        NewFile made(folder + "/name");
         fs::create_directories(folder + "/name/inside");
-        replacement.write(std::vector<unsigned char>(5), 0);
-        CHECK_THROWS_AS(replacement.commit(), OutputError);
+        made.write(0, std::vector<unsigned char>(5));
+        CHECK_THROWS_AS(made.commit(), OutputError);
     }
     CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
 }

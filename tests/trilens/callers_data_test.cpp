@@ -35,9 +35,6 @@ TEST_CASE("numbers and texts that are none are refused or written", "[trilens]")
         for (const int n : kOddInts) {
             only_errors("fixed_text", [&] { fixed_text(x, n); });
             only_errors("rounded_text", [&] { rounded_text(x, n); });
-            std::string text;
-            only_errors("append_fixed", [&] { append_fixed(text, x, n); });
-            only_errors("append_significant", [&] { append_significant(text, x, n); });
         }
         only_errors("shortest_text", [&] { shortest_text(x); });
         const ToneMapping tone{x, ToneCurve::kReinhard, x};
