@@ -1,7 +1,10 @@
 // The projector against Embree's packets over workloads, numbers of triangles and facets, films, threads and
 // instruction sets: one line each, and all of them as CSV.
 // Use: bench_race [KEY=VALUE,VALUE...]... with the keys of kKeys below (isa=all: every instruction set of
-// this machine); bench/tables.py draws the CSV.
+// this machine; plain=yes: every cell is drawn once more by the plain engine, and its hits compared to the
+// last bit); bench/tables.py draws the CSV.
+#include <bit>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -13,7 +16,7 @@
 #include "base/rasterize.h"
 #include "bench/measure.h"
 #include "intersect/tracer.h"
-#include "projector/kernel.h"
+#include "projector/draw_options.h"
 #include "workloads.h"
 
 namespace {
@@ -25,7 +28,8 @@ const std::map<std::string, Values> kKeys{
     {"workload", {"room"}}, {"triangles", {"12", "972", "10092", "99372", "1002252"}},
     {"n", {"16", "64"}},    {"film", {"1920x1080"}},
     {"threads", {"1"}},     {"isa", {""}},
-    {"repeats", {"9"}},     {"csv", {""}}};
+    {"repeats", {"9"}},     {"csv", {""}},
+    {"plain", {"no"}}};
 
 Values split(const std::string& text, char at) {
     Values parts;
@@ -77,6 +81,27 @@ void print(const Cell& c, std::FILE* csv) {
     std::fflush(csv);
 }
 
+/// Samples whose hits differ, in any bit, from those of the plain engine; `isa`: of the vector engine.
+std::size_t unlike_plain(const TriangleScene& scene, const trilens_bench::MirrorSphere& mirror,
+                         const FacetSamples& owned, const std::string& isa) {
+    const PreparedScene prepared(scene);
+    std::vector<Hit> hits(mirror.grid.size()), plain(mirror.grid.size());
+    if (!use_instruction_set(isa)) throw std::invalid_argument("no instruction set '" + isa + "'");
+    draw(prepared, mirror.mesh, owned, mirror.grid, hits, DrawOptions{});
+    use_instruction_set("");
+    draw(prepared, mirror.mesh, owned, mirror.grid, plain, {.vectors = false});
+    std::size_t unlike = 0;
+    const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const Hit &a = hits[i], &b = plain[i];
+        unlike += a.triangle != b.triangle || bits(a.t) != bits(b.t) ||
+                  bits(a.barycentric.x) != bits(b.barycentric.x) ||
+                  bits(a.barycentric.y) != bits(b.barycentric.y);
+    }
+    std::printf("%zu of %zu hits unlike the plain engine's\n", unlike, owned.sample.size());
+    return unlike;
+}
+
 int run(const std::map<std::string, Values>& chosen) {
     const Values sets = chosen.at("isa").front() == "all" ? kernel_instruction_sets() : chosen.at("isa");
     const std::string file = chosen.at("csv").front();
@@ -96,7 +121,8 @@ int run(const std::map<std::string, Values>& chosen) {
         "Embree / projector: visible, draw, written, with build, whole | mismatches = at an edge + at one "
         "depth + "
         "others\n");
-    std::size_t unexplained = 0;
+    std::size_t unexplained = 0, unlike = 0;
+    const bool asks_plain = chosen.at("plain").front() == "yes";
     for (const std::string& threads : chosen.at("threads")) {
         set_thread_count(std::atoi(threads.c_str()));
         set_tracer_threads(std::atoi(threads.c_str()));
@@ -115,6 +141,7 @@ int run(const std::map<std::string, Values>& chosen) {
                                             race({scene, {{&mirror.mesh, &owned}}, mirror.grid}, params)};
                             print(cell, csv);
                             unexplained += cell.result.mismatches.unexplained;
+                            if (asks_plain) unlike += unlike_plain(scene, mirror, owned, isa);
                         }
                     }
                 }
@@ -123,7 +150,8 @@ int run(const std::map<std::string, Values>& chosen) {
     }
     if (csv) std::fclose(csv);
     if (unexplained > 0) std::printf("%zu mismatches that no edge or depth explains\n", unexplained);
-    return unexplained == 0 ? 0 : 1;
+    if (unlike > 0) std::printf("%zu hits unlike the plain engine's\n", unlike);
+    return unexplained == 0 && unlike == 0 ? 0 : 1;
 }
 
 }  // namespace
