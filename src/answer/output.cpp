@@ -13,14 +13,7 @@ void write_bytes(const void* bytes, std::size_t size) {
         throw OutputError("standard output", "cannot be written");
 }
 
-Answer answer_of(const std::string& output, const Stopwatch& watch, Console& console) {
-    console.note_stage("wrote " + (is_standard_stream(output) ? "standard output" : output), watch);
-    return name_output(output);
-}
-
-}  // namespace
-
-Answer name_output(const std::string& output) {
+Answer named(const std::string& output) {
     Answer answer;
     answer.is_report = true;
     answer.fields["output"] = output;
@@ -28,11 +21,23 @@ Answer name_output(const std::string& output) {
     return answer;
 }
 
+Answer answer_of(const std::string& output, const Stopwatch& watch, Console& console) {
+    console.note_stage("wrote " + (is_standard_stream(output) ? "standard output" : output), watch);
+    return named(output);
+}
+
+}  // namespace
+
 void check_output(const std::string& output, Console& console) {
     if (is_standard_stream(output) && console.is_stdout_answered())
         throw UsageError(
             "-o - and --json both write to standard output; give one of them a file: --json=FILE");
     console.files().writes(output);
+}
+
+Answer name_output(const std::string& output, Console& console) {
+    console.note("wrote " + output + " meanwhile");
+    return named(output);
 }
 
 Answer write_output(const std::string& output, const Image& image, const OutputFormat& format,

@@ -18,8 +18,8 @@ struct OutputFormat {
 /// OutputError where it could not be written. Before long work.
 void check_output(const std::string& output, Console& console);
 
-/// The answer for an output that is written already.
-Answer name_output(const std::string& output);
+/// The answer for a file that was written while it was drawn.
+Answer name_output(const std::string& output, Console& console);
 
 /// Writes the picture and answers with its name; on standard output with the bytes alone. Throws OutputError.
 Answer write_output(const std::string& output, const Image& image, const OutputFormat& format,

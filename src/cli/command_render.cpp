@@ -36,20 +36,23 @@ Answer draw(const RenderOptions& options, const std::string& format, const Pictu
     const Progress progress = console.progress(command);
     Picture picture;
     Answer answer;
+    const auto take = [&](Picture drawn) {
+        picture = std::move(drawn);
+        console.note(picture_note(picture));
+    };
     if (is_exr && is_standard_stream(options.output)) {
         EncodedPicture encoded = renderer.draw_exr(request, progress, console.warner());
-        picture = std::move(encoded.picture);
+        take(std::move(encoded.picture));
         answer = write_output(options.output, encoded.exr, console);
     } else if (is_exr) {
-        picture = renderer.write_exr(options.output, request, progress, console.warner());
-        answer = name_output(options.output);
+        take(renderer.write_exr(options.output, request, progress, console.warner()));
+        answer = name_output(options.output, console);
     } else {
-        picture = renderer.draw(request, progress, console.warner());
+        take(renderer.draw(request, progress, console.warner()));
         answer = write_output(
             options.output, picture.image,
             {format == "png" ? ImageFormat::kPng : ImageFormat::kExr, options.tone_mapping()}, console);
     }
-    console.note(picture_note(picture));
     answer.fields["engine"] = engine_name(request.engine.engine);
     if (request.engine.engine == Engine::kClassic)
         answer.fields["classic"] = classic_name(request.engine.classic);

@@ -66,6 +66,7 @@ class FrameSequence {
         const Picture picture = is_exr
                                     ? renderer_->write_exr(output, request_, console_.progress(job), once())
                                     : renderer_->draw(request_, console_.progress(job), once());
+        if (is_exr) name_output(output, console_);
         if (is_apng())
             pngs_.push_back(encode_image_as(picture.image, ImageFormat::kPng, options_.tone_mapping()));
         else if (!is_exr)
