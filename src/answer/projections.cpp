@@ -98,7 +98,9 @@ Json points_json(const Renderer& renderer, std::span<const Vec3> points,
 }
 
 std::string points_text(const Renderer& renderer, std::vector<PointProjection> images) {
-    const std::size_t count = static_cast<std::size_t>(std::max(1, threads()));
+    constexpr std::size_t kPointsWorthAThread = 1000;
+    const std::size_t count = std::clamp<std::size_t>(images.size() / kPointsWorthAThread, 1,
+                                                      static_cast<std::size_t>(std::max(1, threads())));
     std::vector<std::future<std::string>> pieces;
     for (std::size_t i = 0; i < count; ++i)
         pieces.push_back(

@@ -9,14 +9,6 @@
 #include "base/new_file.h"
 
 namespace trilens {
-namespace {
-
-std::string reason(int error_number) {
-    return std::generic_category().message(error_number);
-}
-
-}  // namespace
-
 std::string output_target(const std::string& file) {
     namespace fs = std::filesystem;
     constexpr int kMostLinks = 40;  // as the system has it; a longer chain is a circle
@@ -44,7 +36,7 @@ std::size_t readable_size(const std::string& file) {
     std::error_code error;
     if (std::filesystem::is_directory(file, error)) throw InputError(file, "", "is a folder, not a file");
     std::FILE* in = std::fopen(file.c_str(), "rb");
-    if (!in) throw InputError(file, "", "cannot be read: " + reason(errno));
+    if (!in) throw InputError(file, "", "cannot be read: " + std::generic_category().message(errno));
     std::fclose(in);
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (error) throw InputError(file, "", "cannot be read: " + error.message());

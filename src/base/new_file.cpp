@@ -35,8 +35,8 @@ NewFile::NewFile(const std::string& file) : target_(output_target(file)) {
 }
 
 NewFile::~NewFile() {
-    if (descriptor_ < 0) return;
-    close(descriptor_);
+    if (descriptor_ >= 0) close(descriptor_);
+    if (name_.empty()) return;
     std::error_code nothing_more_to_do;
     std::filesystem::remove(name_, nothing_more_to_do);
 }
@@ -59,12 +59,11 @@ void NewFile::commit() {
     // A full disk may speak only here.
     const int failed = close(descriptor_) != 0 ? errno : 0;
     descriptor_ = -1;
+    if (failed) fail(reason(failed));
     std::error_code error;
-    if (!failed) std::filesystem::rename(name_, target_, error);
-    if (!failed && !error) return;
-    std::error_code nothing_more_to_do;
-    std::filesystem::remove(name_, nothing_more_to_do);
-    fail(failed ? reason(failed) : error.message());
+    std::filesystem::rename(name_, target_, error);
+    if (error) fail(error.message());
+    name_.clear();
 }
 
 }  // namespace trilens

@@ -25,8 +25,8 @@ class NewFile {
   private:
     [[noreturn]] void fail(const std::string& why) const;
 
-    std::string target_, name_;
-    int descriptor_ = -1;  // -1: closed
+    std::string target_, name_;  // name_: empty once it has taken its place
+    int descriptor_ = -1;        // -1: closed
 };
 
 }  // namespace trilens

@@ -18,31 +18,25 @@ HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
 
-/// Those of the samples' rays that follow from their facets alone.
+/// Samples' rays, and the centres of their facets in the world frame.
 struct OwnRays {
     RayLanes ray;
-    Vector3 centre;  // of the facets, world frame
-    Vector3 shift;   // of the facets' centres from the group's
+    Vector3 centre;
 };
 
 HWY_INLINE Vector3 choose(const hn::Mask<DoubleTag>& m, const Vector3& yes, const Vector3& no) {
     return {hn::IfThenElse(m, yes.x, no.x), hn::IfThenElse(m, yes.y, no.y), hn::IfThenElse(m, yes.z, no.z)};
 }
 
-/// `x`, `y`: on the film.
-template <bool kPlaced>
-HWY_INLINE OwnRays rays_through(const FacetRays& facet, const Vec3& group, const Double& x, const Double& y) {
-    OwnRays own;
-    own.ray = ray_lanes(facet.rays, hn::Sub(x, hn::Set(kDouble, facet.screen.x)),
-                        hn::Sub(y, hn::Set(kDouble, facet.screen.y)));
-    own.shift = set3(facet.centre - group);
-    if constexpr (kPlaced) own.centre = set3(facet.centre);
-    return own;
+/// Through places `x`, `y` of the film.
+HWY_INLINE OwnRays rays_through(const FacetRays& facet, const Double& x, const Double& y) {
+    return {ray_lanes(facet.rays, hn::Sub(x, hn::Set(kDouble, facet.screen.x)),
+                      hn::Sub(y, hn::Set(kDouble, facet.screen.y))),
+            set3(facet.centre)};
 }
 
-/// The rays of a vector's samples: with the bits of FacetRays::at in `exact`, unless only what is visible is
-/// wanted; and in `to` with the weight divided out and origins from the group's centre.
-template <bool kPlaced>
+/// The rays of a vector's samples: with the bits of FacetRays::at in `exact`, where that is wanted; and in
+/// `to` with the weight divided out and origins from the group's centre.
 HWY_NOINLINE void make_mixed_rays(const KernelScene& scene, const MixedGroup& group, std::uint32_t in_group,
                                   MixedRays* exact, VectorRays& to) {
     const SampleVector& samples = scene.tiles->vectors[group.first_vector + in_group];
@@ -57,27 +51,27 @@ HWY_NOINLINE void make_mixed_rays(const KernelScene& scene, const MixedGroup& gr
             return bits(same(ids, set_word(id))) >> at & first_lanes(kDoubles);
         };
         const Id first = facets.rays[at];
-        OwnRays own = rays_through<kPlaced>(scene.tiles->rays[first], group.centre, x, y);
+        OwnRays own = rays_through(scene.tiles->rays[first], x, y);
         for (std::uint32_t left = first_lanes(kDoubles) & ~lanes_of(first); left != 0;) {
             const Id id = facets.rays[at + static_cast<std::size_t>(std::countr_zero(left))];
             const std::uint32_t lanes = lanes_of(id);
             left &= ~lanes;
             const auto mask = mask_of_doubles(lanes);
-            const OwnRays other = rays_through<kPlaced>(scene.tiles->rays[id], group.centre, x, y);
+            const OwnRays other = rays_through(scene.tiles->rays[id], x, y);
             own.ray.origin = choose(mask, other.ray.origin, own.ray.origin);
             own.ray.direction = choose(mask, other.ray.direction, own.ray.direction);
             own.ray.weight = hn::IfThenElse(mask, other.ray.weight, own.ray.weight);
-            own.shift = choose(mask, other.shift, own.shift);
-            if constexpr (kPlaced) own.centre = choose(mask, other.centre, own.centre);
+            own.centre = choose(mask, other.centre, own.centre);
         }
-        if constexpr (kPlaced) {
+        if (exact) {
             store3(own.ray.origin, exact->origin, at);
             store3(own.ray.direction, exact->direction, at);
             store3(own.centre, exact->centre, at);
             hn::Store(own.ray.weight, kDouble, exact->weight + at);
         }
         const Double inverse = hn::Div(hn::Set(kDouble, 1.0), own.ray.weight);
-        store3(plus(times(inverse, own.ray.origin), own.shift), to.origin, at);
+        const Vector3 from_group = minus(own.centre, set3(group.centre));
+        store3(plus(times(inverse, own.ray.origin), from_group), to.origin, at);
         store3(times(inverse, own.ray.direction), to.direction, at);
     }
 }
@@ -115,10 +109,7 @@ HWY_NOINLINE bool set_up_mixed(const KernelScene& scene, const MixedGroup& group
     NarrowRays rays[kLanes];
     for (std::uint32_t v = 0; v < state.vectors; ++v) {
         prefetch_mixed(*scene.tiles, last ? nullptr : &group + 1, v);
-        if (placed)
-            make_mixed_rays<true>(scene, group, first + v, &state.mixed[v], state.rays[v]);
-        else
-            make_mixed_rays<false>(scene, group, first + v, nullptr, state.rays[v]);
+        make_mixed_rays(scene, group, first + v, placed ? &state.mixed[v] : nullptr, state.rays[v]);
         rays[v] = invert_directions(state.rays[v]);
     }
     MixedFrame frame;
