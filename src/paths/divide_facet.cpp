@@ -23,7 +23,7 @@ class Divider {
           looks_(looking, {side, reach, !params.estimates}) {
         mirror_ = looking.world->optics[looking.optic].mirror;
     }
-    DividedFacet divide(const FacetToDivide& facet);
+    DividedFacet divide(const std::array<PartCorner, 3>& from);
     DividedFacet divide_on(const FacetPart& part);
 
   private:
@@ -208,9 +208,6 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
     if (is_least(corners, level) && !may_project(corners)) return trace(cell, corners, level);
     Inside inside{looks_.middle_of(corners[1], corners[2]), looks_.middle_of(corners[2], corners[0]),
                   looks_.middle_of(corners[0], corners[1])};
-    if (level == 0)
-        for (std::size_t k = 0; k < 3; ++k)
-            divided_.middles[k] = {corners[(k + 1) % 3].look, corners[(k + 2) % 3].look, inside[k].look};
     if (look_inside(corners, inside, level)) return end(cell, std::move(projected_));
     split(cell, corners, inside, level);
 }
@@ -247,15 +244,10 @@ void Divider::split(Id cell, const Triangle& corners, const Inside& inside, int 
 DividedFacet Divider::take() {
     divided_.looks = std::move(looks_.looks());
     divided_.cut = looks_.cut();
-    divided_.side = side_;
-    divided_.reach = reach_;
     return std::move(divided_);
 }
 
-DividedFacet Divider::divide(const FacetToDivide& facet) {
-    const std::array<PartCorner, 3>& from = facet.corners;
-    const DividedFacet* beside = facet.neighbour;
-    if (beside && beside->side == side_ && beside->reach == reach_) looks_.know(beside->middles);
+DividedFacet Divider::divide(const std::array<PartCorner, 3>& from) {
     Triangle corners;
     bool has_normals = true;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -288,7 +280,7 @@ DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, co
     double reach = facet.reach;
     for (std::size_t k = 0; k < 3 && facet.reach == 0; ++k)
         reach = std::max(reach, length(facet.corners[k].chord - facet.corners[(k + 1) % 3].chord));
-    return Divider(looking, facet.side, reach, params).divide(facet);
+    return Divider(looking, facet.side, reach, params).divide(facet.corners);
 }
 
 DividedFacet traced_facet(const std::array<Vec3, 3>& screen) {

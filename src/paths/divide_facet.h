@@ -5,7 +5,6 @@
 #include <deque>
 #include <vector>
 
-#include "paths/facet_looks.h"
 #include "paths/facet_paths.h"
 
 namespace trilens {
@@ -54,10 +53,6 @@ struct DividedFacet {
     std::vector<FacetPart> parts;
     std::deque<Look> looks;  // at points that are no corners of the grid
     CutPaths cut;            // the most at any point
-
-    std::array<MiddleLook, 3> middles;  // of its edges, where they were looked at
-    LookSide side = LookSide::kFront;   // from where all looks were
-    double reach = 0;
 };
 
 /// A facet to divide.
@@ -65,8 +60,6 @@ struct FacetToDivide {
     std::array<PartCorner, 3> corners;
     LookSide side = LookSide::kFront;  // that it shows
     double reach = 0;  // how far the surface may lie from the facet; 0: as far as the longest edge is long
-    // With some of the same looks at corners; what was looked at on the edge between is not looked at again.
-    const DividedFacet* neighbour = nullptr;
 };
 
 /// Child k < 3 of a part keeps corner k of it, child 3 has the middles of its edges for corners, opposite to

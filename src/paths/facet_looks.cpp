@@ -7,23 +7,13 @@
 
 namespace trilens {
 
-namespace {
-
-/// Without a look.
-FacetPoint place_between(std::initializer_list<const FacetPoint*> points) {
+FacetPoint FacetLooks::between(std::initializer_list<const FacetPoint*> points) {
     FacetPoint middle;
     const double share = 1.0 / static_cast<double>(points.size());
     for (const FacetPoint* one : points) {
         middle.screen += share * one->screen;
         middle.chord += share * one->chord;
     }
-    return middle;
-}
-
-}  // namespace
-
-FacetPoint FacetLooks::between(std::initializer_list<const FacetPoint*> points) {
-    FacetPoint middle = place_between(points);
     looks_.push_back(look_through(looking_, {middle.screen, middle.chord, params_.reach},
                                   {.side = params_.side, .least_weight = kPrincipalOnly}));
     middle.look = &looks_.back();
@@ -35,24 +25,8 @@ FacetPoint FacetLooks::middle_of(const FacetPoint& a, const FacetPoint& b) {
     Ends ends{a.look, b.look};
     if (std::less<>()(ends.second, ends.first)) std::swap(ends.first, ends.second);
     const auto [known, is_new] = middles_.try_emplace(ends);
-    if (!is_new) return known->second;
-    if (const Look* look = known_between(ends)) {
-        known->second = place_between({&a, &b});
-        looks_.push_back(*look);
-        known->second.look = &looks_.back();
-        note(look->cut);
-    } else {
-        known->second = between({&a, &b});
-    }
+    if (is_new) known->second = between({&a, &b});
     return known->second;
-}
-
-const Look* FacetLooks::known_between(const Ends& ends) const {
-    for (const MiddleLook& one : known_)
-        if (one.look && ((one.first == ends.first && one.second == ends.second) ||
-                         (one.first == ends.second && one.second == ends.first)))
-            return one.look;
-    return nullptr;
 }
 
 void FacetLooks::follow_all_at(const FacetPoint& point, double least_weight) {

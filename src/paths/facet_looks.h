@@ -27,20 +27,10 @@ struct FacetLooksParams {
     bool beside = false;  // set_beside() where all paths are followed
 };
 
-/// A look between the looks at two points.
-struct MiddleLook {
-    const Look *first = nullptr, *second = nullptr;  // in whatever order
-    const Look* look = nullptr;
-};
-
 /// Makes looks and keeps them. `looking` must live longer.
 class FacetLooks {
   public:
     FacetLooks(const Looking& looking, const FacetLooksParams& params) : looking_(looking), params_(params) {}
-
-    /// Has these, that were made with the same params, stand for middles that are asked for: the same to the
-    /// last bit. They must live longer.
-    void know(std::span<const MiddleLook> known) { known_ = known; }
 
     /// The point with equal weights of these. Of the paths there the principal ones alone are followed.
     FacetPoint between(std::initializer_list<const FacetPoint*> points);
@@ -61,11 +51,8 @@ class FacetLooks {
   private:
     using Ends = std::pair<const Look*, const Look*>;
 
-    const Look* known_between(const Ends& ends) const;
-
     const Looking& looking_;
     FacetLooksParams params_;
-    std::span<const MiddleLook> known_;
     std::deque<Look> looks_;
     CutPaths cut_;
     std::map<Ends, FacetPoint> middles_;  // of edges; nothing depends on the order

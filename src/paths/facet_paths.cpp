@@ -152,7 +152,6 @@ void OpticPaths::prepare(std::span<const Id> facets) {
             const bool front = shows_front(fresh[i]);
             facet.side = !grid_ ? LookSide::kNearest : front ? LookSide::kFront : LookSide::kBack;
             facet.reach = grid_ ? 0 : 2 * window_.reach;
-            if (i > from) facet.neighbour = &divided[i - 1];
             for (std::size_t k = 0; k < 3; ++k) {
                 const Id key = 2 * corners[k] + (front ? 1 : 0);
                 facet.corners[k] = {key, corner_looks_[key].get(), places_[corners[k]].point};
