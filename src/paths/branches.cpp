@@ -41,6 +41,7 @@ struct Interface {
 /// How one colour parts at an interface.
 struct Parted {
     double reflectance = 0;
+    double sine2 = 0;               // squared, of the angle of refraction
     std::optional<Vec3> refracted;  // unit direction; none on total internal reflection
 };
 
@@ -49,6 +50,7 @@ Parted part(const Interface& interface, Colours colours) {
     Parted parted;
     parted.refracted = refracted(interface.at.incoming, interface.normal, eta);
     const double cosine = -dot(interface.at.incoming, interface.normal);
+    parted.sine2 = eta * eta * std::max(0.0, 1 - cosine * cosine);
     if (!parted.refracted)
         parted.reflectance = 1;
     else if (interface.world.fresnel)
@@ -60,7 +62,7 @@ std::vector<Branch> glass_branches(const Interface& interface, Colours colours) 
     const Meeting& at = interface.at;
     const Vec3 tint = interface.world.optics[at.optic].material->base_color_factor;
     std::vector<Branch> ways;
-    Vec3 reflectance(0);
+    Vec3 reflectance(0), sine2(0);
     const auto transmit = [&](const Parted& parted, Colours of) {
         if (!parted.refracted) return;
         ways.push_back({{at.optic, Event::kTransmit},
@@ -68,17 +70,20 @@ std::vector<Branch> glass_branches(const Interface& interface, Colours colours) 
                         masked((1 - parted.reflectance) * tint, of),
                         interface.after,
                         of,
-                        ways.empty()});
+                        ways.empty(),
+                        Vec3(parted.sine2)});
     };
     if (colours == kAllColours && interface.disperses()) {
         for (const Colours of : {Colours{1}, Colours{0}, Colours{2}}) {  // green leads
             const Parted parted = part(interface, of);
             reflectance[of] = parted.reflectance;
+            sine2[of] = parted.sine2;
             transmit(parted, of);
         }
     } else {
         const Parted parted = part(interface, colours);
         reflectance = masked(Vec3(parted.reflectance), colours);
+        sine2 = Vec3(parted.sine2);
         transmit(parted, colours);
     }
     if (reflectance != Vec3(0))
@@ -87,7 +92,8 @@ std::vector<Branch> glass_branches(const Interface& interface, Colours colours) 
                         reflectance,
                         interface.before,
                         colours,
-                        ways.empty()});
+                        ways.empty(),
+                        sine2});
     return ways;
 }
 

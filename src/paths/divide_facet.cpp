@@ -8,10 +8,13 @@
 
 #include "paths/facet_looks.h"
 #include "paths/film_reach.h"
+#include "paths/one_history.h"
 #include "paths/same_histories.h"
 
 namespace trilens {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Divider {
   public:
@@ -39,6 +42,7 @@ class Divider {
     bool is_least(const Triangle& corners, int level) const;
     bool has_break(const Triangle& corners) const;
     bool project(const Triangle& corners, std::span<const FacetPoint> inside, int level);
+    bool is_proven(const Triangle& corners) const;
     bool mirror_alone(const Triangle& corners, std::span<const FacetPoint> inside) const;
     bool layered(const Triangle& corners, std::span<const FacetPoint> inside, int level);
     bool divide_plain(Id cell, const Triangle& corners);
@@ -121,7 +125,26 @@ bool Divider::layered(const Triangle& corners, std::span<const FacetPoint> insid
     for (const FacetPoint& point : inside)
         projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
     project_mirror(corners);
-    return true;
+    return is_proven(corners);
+}
+
+/// Whether projected_ has one history all over, as far as layers do not draw the others.
+bool Divider::is_proven(const Triangle& corners) const {
+    HistoryProof proof{looking_, projected_, {}, side_ == LookSide::kNearest};
+    if (projected_.layered && params_.layer_covers) {
+        // Half its size farther than the part reaches, and a pixel.
+        Vec2 low(kInfinity), high(-kInfinity);
+        for (const FacetPoint& corner : corners) {
+            if (!(corner.screen.z > 0)) return false;
+            low = glm::min(low, Vec2(corner.screen) / corner.screen.z);
+            high = glm::max(high, Vec2(corner.screen) / corner.screen.z);
+        }
+        const Vec2 room = 0.5 * (high - low) + 1.0;
+        proof.drawn_over = [this, low = low - room, high = high + room](Id optic) {
+            return params_.layer_covers(optic, low, high);
+        };
+    }
+    return has_one_history(proof);
 }
 
 /// Whether the camera's rays jump within the part.
@@ -146,7 +169,7 @@ bool Divider::project(const Triangle& corners, std::span<const FacetPoint> insid
     if (!looking_.world->reflect && mirror_) return true;
     if (mirror_alone(corners, inside)) {
         project_mirror(corners);
-        return true;
+        return is_proven(corners);
     }
     const Look& centre = inside.empty() ? *corners[0].look : *inside.back().look;
     if (centre.state != LookState::kSeen) return false;
@@ -160,7 +183,7 @@ bool Divider::project(const Triangle& corners, std::span<const FacetPoint> insid
     for (std::size_t k = 0; k < 3; ++k)
         if (!agrees(*corners[k].look, projected_.segment[k])) return false;
     projected_.histories = centre.segments;
-    return true;
+    return is_proven(corners);
 }
 
 void Divider::end(Id cell, FacetPart part) {
@@ -175,7 +198,7 @@ double screen_area(const std::array<FacetPoint, 3>& corners) {
     std::array<Vec2, 3> at;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3& s = corners[k].screen;
-        if (!(s.z > 0)) return std::numeric_limits<double>::infinity();
+        if (!(s.z > 0)) return kInfinity;
         at[k] = {s.x / s.z, s.y / s.z};
     }
     const Vec2 b = at[1] - at[0], c = at[2] - at[0];

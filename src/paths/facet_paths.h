@@ -64,6 +64,9 @@ struct DivideParams {
     // Of a mirror: whether a pixel from which the exact path goes on to optic `next` (kNone: to none) shows
     // that optic's layer. Facets on which it does are not divided. Unset: there are no layers.
     std::function<bool(const Vec2& pixel, Id next)> layers_agree = {};
+    // Of a mirror with layers: whether that optic is drawn as a layer somewhere within these bounds on the
+    // film, in pixels.
+    std::function<bool(Id optic, const Vec2& low, const Vec2& high)> layer_covers = {};
 };
 
 struct DividedFacet;

@@ -37,6 +37,7 @@ struct Pending {
     Vec3 point{0};
     double way = 0;
     double turned = 1;
+    bool front = true;
     Vec3 first_weight{1}, weight{1};
 };
 
@@ -70,6 +71,7 @@ void Follower::start(const PathStart& from) {
         pending.point = first.point;
         pending.way = from.way;
         pending.turned = std::fabs(dot(first.incoming, first.normal));
+        pending.front = first.front;
         pending.first_weight = way_on->weight;
         if (way_on->colours != kAllColours) {
             pending.weight = Vec3(0);
@@ -96,6 +98,7 @@ void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
         pending.point = next.meeting.point;
         pending.way = from.way + next.distance;
         pending.turned = std::fabs(dot(next.meeting.incoming, next.meeting.normal));
+        pending.front = next.meeting.front;
         pending.weight = arrived * way_on->weight;
         waiting_.push_back(pending);
     }
@@ -119,6 +122,8 @@ void Follower::run(const Pending& from) {
     segment.way = from.way;
     segment.weight = from.weight;
     segment.turned = from.turned;
+    segment.front = from.front;
+    segment.refraction = from.branch.refraction;
 
     std::optional<NextOptic> next;
     if (world_.max_depth > 0)
@@ -243,6 +248,7 @@ std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, con
         segment.ray = {from.meeting.point, branch->direction};
         segment.way = from.way;
         segment.turned = std::fabs(dot(from.meeting.incoming, from.meeting.normal));
+        segment.refraction = branch->refraction;
         if (!segment.ends) {
             const std::optional<NextOptic> next =
                 next_optic(world, {segment.ray, segment.step.optic, branch->media});

@@ -24,6 +24,8 @@ struct PathSegment {
     double way = 0;           // length of the path from the eye to where it starts
     Vec3 weight{1};           // of the light for all that happened behind the first optic up to its start
     double next = std::numeric_limits<double>::infinity();  // distance to the next optic, or infinity
+    bool front = true;                                      // its start was met from the front
+    Vec3 refraction{0};                                     // see Branch, at its start
     double turned = 1;  // cosine of the angle between the ray that arrived at its start and the surface
     Hit hit;            // where objects are asked for: the first before the next optic, t a distance
     bool ends = true;   // it meets an object, or no other optic: nothing goes on from it
@@ -67,8 +69,8 @@ struct PathStart {
 /// third.
 FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params = {});
 
-/// The segments of `like` once more from another start nearby: ray, way, next and turned of each are set
-/// again; none where the path from there has another history. Nothing is cut and nothing blocks.
+/// The segments of `like` once more from another start nearby: ray, way, next, turned and refraction of each
+/// are set again; none where the path from there has another history. Nothing is cut and nothing blocks.
 std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const PathStart& start,
                                                      const std::vector<PathSegment>& like);
 

@@ -74,6 +74,19 @@ LayerCover::LayerCover(const RayMesh& outline, std::vector<char> covers) : outli
     each_square([&](std::size_t square, Id f) { facet_[next[square]++] = f; });
 }
 
+bool LayerCover::may_cover(const Vec2& low, const Vec2& high) const {
+    if (facet_.empty() || !(low.x <= high_.x && low.y <= high_.y && high.x >= low_.x && high.y >= low_.y))
+        return false;
+    const auto square = [&](double at, std::size_t count) {
+        return std::min(static_cast<std::size_t>(std::max(at, 0.0) / square_), count - 1);
+    };
+    const std::size_t left = square(low.x - low_.x, across_), right = square(high.x - low_.x, across_);
+    const std::size_t top = square(low.y - low_.y, down_), bottom = square(high.y - low_.y, down_);
+    for (std::size_t j = top; j <= bottom; ++j)
+        if (first_[j * across_ + left] < first_[j * across_ + right + 1]) return true;
+    return false;
+}
+
 double LayerCover::area() const {
     return (high_.x - low_.x) * (high_.y - low_.y);
 }

@@ -27,6 +27,10 @@ class LayerCover {
     /// the one of the lower number counts.
     std::optional<CoveringFacet> at(const Vec2& pixel) const;
 
+    /// Whether facets that cover anything have bounds near this part of the film's plane: false only where none
+    /// covers a place of it.
+    bool may_cover(const Vec2& low, const Vec2& high) const;
+
     /// Pixels of the film's plane that its bounds take; 0: it covers nothing.
     double area() const;
     /// The root of the mean area of the facets that cover anything, in pixels.

@@ -1,11 +1,13 @@
 // What paths run through: the optics' exact surfaces and what they are made of.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "base/appearance.h"
 #include "base/surface.h"
 #include "intersect/limit_tracer.h"
+#include "intersect/patch_tree.h"
 #include "intersect/tracer.h"
 #include "paths/media.h"
 #include "paths/path.h"
@@ -16,8 +18,11 @@ namespace trilens {
 struct PathOptic {
     const LimitTracer* tracer = nullptr;
     const Material* material = nullptr;
-    bool mirror = true;  // else glass
-    int priority = 0;    // of its glass, where bodies overlap
+    bool mirror = true;   // else glass
+    int priority = 0;     // of its glass, where bodies overlap
+    bool convex = false;  // no ray that leaves its front meets it again
+    /// The patches of its surface, made when first asked for. Unset: nothing is proven about it.
+    std::function<const PatchTree&()> patches = {};
 };
 
 /// All optics, and how far paths are followed.
@@ -56,6 +61,8 @@ struct Branch {
     Media media;        // where it goes
     Colours colours = kAllColours;
     bool principal = true;
+    Vec3 refraction{
+        0};  // of glass, per colour: squared sine of the angle of refraction; from 1 on there is none
 };
 
 /// The ways that light goes on from a meeting, at most five, the principal one first: mirrored by a mirror;

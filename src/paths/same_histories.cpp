@@ -5,9 +5,6 @@
 namespace trilens {
 namespace {
 
-/// A path with so many times the least weight that is not matched is another history.
-constexpr double kMuchLight = 8;
-
 double largest(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
 }

@@ -7,6 +7,9 @@
 
 namespace trilens {
 
+/// A path with so many times the least weight that is not matched is another history.
+inline constexpr double kMuchLight = 8;
+
 /// For each of `histories` its place in `segments`: the same steps, colours, media and end; empty where one
 /// is missing.
 std::vector<std::size_t> matched(const std::vector<PathSegment>& histories,

@@ -83,6 +83,12 @@ bool SeenLayers::agree(const Vec2& pixel, Id next) const {
     return false;
 }
 
+bool SeenLayers::may_cover(Id optic, const Vec2& low, const Vec2& high) const {
+    return std::any_of(layers_.begin(), layers_.end(), [&](const std::unique_ptr<SeenLayer>& layer) {
+        return layer->optic() == optic && layer->cover().may_cover(low, high);
+    });
+}
+
 SeenLayer::SeenLayer(const LayerStage& stage, std::vector<Id> chain, Id optic,
                      std::vector<std::optional<ChainRay>> images)
     : stage_(stage),
@@ -109,6 +115,9 @@ SeenLayer::SeenLayer(const LayerStage& stage, std::vector<Id> chain, Id optic,
         deeper_ = std::make_unique<SeenLayers>(stage, std::move(longer), std::move(towards));
         divide.layers_agree = [layers = deeper_.get()](const Vec2& pixel, Id next) {
             return layers->agree(pixel, next);
+        };
+        divide.layer_covers = [layers = deeper_.get()](Id seen, const Vec2& low, const Vec2& high) {
+            return layers->may_cover(seen, low, high);
         };
     }
     paths_ = std::make_unique<OpticPaths>(Looking{&world_, optic, stage.optics[optic].surface, make_camera()},

@@ -61,6 +61,9 @@ class SeenLayers {
     /// but for how far the outlines of facets lie from the exact ones.
     bool agree(const Vec2& pixel, Id next) const;
 
+    /// Whether an optic is a layer that covers something near this part of the film, in pixels.
+    bool may_cover(Id optic, const Vec2& low, const Vec2& high) const;
+
     const std::vector<std::unique_ptr<SeenLayer>>& all() const { return layers_; }
 
   private:

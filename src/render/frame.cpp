@@ -224,8 +224,12 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
     params.max_error =
         frame.max_error > 0 ? frame.max_error : believable_error(framed.resolution, world.scene.film.height);
     if (for_error) params.most_levels = kMostLevelsForError;
-    if (layers)
+    if (layers) {
         params.layers_agree = [layers](const Vec2& pixel, Id next) { return layers->agree(pixel, next); };
+        params.layer_covers = [layers](Id other, const Vec2& low, const Vec2& high) {
+            return layers->may_cover(other, low, high);
+        };
+    }
     // A camera that is not linear has whole paths by facets on the film: there its rays are exact.
     if (framed.grid == GridKind::kScreen || (framed.model && whole)) {
         const FilmWindow window = film_window(world, framed, seen.views);

@@ -17,6 +17,17 @@ constexpr int kMinFine = 4, kMaxFine = 256;
 /// Cages of so many faces that kMinFine goes beyond this have small faces, which need less: about 1 GB here.
 constexpr std::size_t kMostFineFacets = 2'000'000;
 
+/// Facets of the grid whose patches beams are held against.
+constexpr std::size_t kPatches = 20'000;
+constexpr int kMostPatches = 24;  // along a face
+
+int patch_resolution(const Surface& surface) {
+    const double per_face = static_cast<double>(kPatches) /
+                            (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
+    const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), 1, kMostPatches);
+    return resolution_within(surface, n, kMostFineFacets);
+}
+
 int fine_resolution(const Surface& surface) {
     const double per_face = static_cast<double>(kFineFacets) /
                             (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
@@ -29,6 +40,7 @@ int fine_resolution(const Surface& surface) {
 /// What is kept of one optic.
 struct OpticGeometry {
     Lazy<LimitTracer> limit;
+    Lazy<PatchTree> patches;
     std::mutex mutex;  // of the two below
     int resolution = 0;
     std::shared_ptr<const OpticFacets> facets;
@@ -109,8 +121,16 @@ const PathWorld& path_world(const World& world) {
         paths->objects = &object_tracer(world);
         for (std::size_t i = 0; i < world.optics.size(); ++i) {
             const Optic& optic = world.optics[i];
+            const Surface* surface = optic.surface.get();
+            const std::shared_ptr<OpticGeometry> kept = world.geometry->optic[i];
             paths->optics.push_back({&limit_tracer(world, i), &world.scene.materials[optic.material],
-                                     optic.mirror, world.scene.meshes[optic.mesh].priority});
+                                     optic.mirror, world.scene.meshes[optic.mesh].priority,
+                                     surface->sphere_curvature() > 0, [surface, kept]() -> const PatchTree& {
+                                         return kept->patches.get([&] {
+                                             return std::make_unique<PatchTree>(
+                                                 *surface, make_grid(*surface, patch_resolution(*surface)));
+                                         });
+                                     }});
         }
         return paths;
     });

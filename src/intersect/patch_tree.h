@@ -1,0 +1,91 @@
+// A bounding volume hierarchy over the patches of a surface, with cones of normals (Shirman and Abi-Ezzi, The
+// cone of normals technique, Eurographics 1993), for beams of rays.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "base/box.h"
+#include "base/surface.h"
+
+namespace trilens {
+
+/// A facet of a grid with the piece of surface that it stands for; world frame.
+struct SurfacePatch {
+    std::array<Vec3, 3> corner;
+    double stray = 0;          // the surface lies within this distance of the facet
+    double size = 0;           // longest edge
+    Vec3 normal{0};            // unit, along du x dv turned to the front; zero where there is none
+    double normal_radius = 2;  // no normal of the piece differs by more from it
+    bool bends_back = false;   // nowhere concave seen from its front
+    bool bends_front = false;  // nowhere concave seen from its back
+};
+
+/// A piece of a border, or of a crease across which normals jump.
+struct SurfaceRim {
+    std::array<Vec3, 2> end;
+    double stray = 0;
+};
+
+/// The patches of one surface in a tree of boxes. Bounds come from samples of the surface, with room for what
+/// lies between them, as those of LimitTracer do. Deterministic; thread-safe to read.
+class PatchTree {
+  public:
+    /// `grid`: of that surface. Neither is kept.
+    PatchTree(const Surface& surface, const SurfaceGrid& grid);
+
+    /// Either a patch or a rim.
+    struct Item {
+        Box box;
+        Id patch = kNone;
+        Id rim = kNone;
+    };
+    struct Node {
+        Box box;
+        std::size_t first = 0;  // of items
+        std::size_t count = 0;  // 0: an inner node
+        std::size_t right = 0;  // of nodes; the left child is the next one
+    };
+
+    const std::vector<SurfacePatch>& patches() const { return patches_; }
+    const std::vector<SurfaceRim>& rims() const { return rims_; }
+    /// Half the diagonal of the box around all.
+    double size() const { return size_; }
+
+    /// Calls visit(item) for the items in boxes for which may_touch(box) is true, until it returns false;
+    /// whether all of them returned true.
+    template <typename MayTouch, typename Visit>
+    bool all_of(MayTouch&& may_touch, Visit&& visit) const {
+        if (nodes_.empty()) return true;
+        std::array<std::size_t, 64> stack;
+        std::size_t waiting = 0;
+        stack[waiting++] = 0;
+        while (waiting > 0) {
+            const std::size_t at = stack[--waiting];
+            const Node& node = nodes_[at];
+            if (!may_touch(node.box)) continue;
+            if (node.count == 0) {
+                stack[waiting++] = node.right;
+                stack[waiting++] = at + 1;
+                continue;
+            }
+            for (std::size_t i = node.first; i < node.first + node.count; ++i)
+                if (may_touch(items_[i].box) && !visit(items_[i])) return false;
+        }
+        return true;
+    }
+
+  private:
+    void add_rims(const SurfaceGrid& grid);
+    void build();
+    std::size_t add_node(std::size_t first, std::size_t last, int depth);
+
+    std::vector<SurfacePatch> patches_;
+    std::vector<SurfaceRim> rims_;
+    std::vector<Item> items_;
+    std::vector<Node> nodes_;
+    double size_ = 0;
+};
+
+}  // namespace trilens
