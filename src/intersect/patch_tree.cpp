@@ -95,6 +95,7 @@ PatchTree::PatchTree(const Surface& surface, const SurfaceGrid& grid) : patches_
         for (std::size_t f = from; f < to; ++f) patches_[f] = make_patch(surface, grid, f);
     });
     add_rims(grid);
+    set_shape(grid);
     build();
 }
 
@@ -116,6 +117,25 @@ void PatchTree::add_rims(const SurfaceGrid& grid) {
         const Vec3 &a = patch.corner[side.edge], &b = patch.corner[(side.edge + 1) % 3];
         if (side.count == 1 && a != b) rims_.push_back({{a, b}, patch.stray});
     }
+}
+
+void PatchTree::set_shape(const SurfaceGrid& grid) {
+    std::map<Edge, int> facets_at;
+    Vec3 sum(0);
+    for (std::size_t f = 0; f < patches_.size(); ++f) {
+        const IdTriple& corners = grid.facets[f];
+        const IdTriple points{grid.corner_point[corners[0]], grid.corner_point[corners[1]],
+                              grid.corner_point[corners[2]]};
+        for (std::size_t k = 0; k < 3; ++k)
+            if (points[k] != points[(k + 1) % 3]) ++facets_at[edge_of(points, k)];
+        sum += patches_[f].normal;
+    }
+    is_closed_ = !facets_at.empty() && std::all_of(facets_at.begin(), facets_at.end(),
+                                                   [](const auto& edge) { return edge.second == 2; });
+    const Vec3 up = normalize_or_zero(sum);
+    is_height_field_ = std::all_of(patches_.begin(), patches_.end(), [&](const SurfacePatch& patch) {
+        return dot(patch.normal, up) > patch.normal_radius;
+    });
 }
 
 void PatchTree::build() {

@@ -50,6 +50,11 @@ class PatchTree {
 
     const std::vector<SurfacePatch>& patches() const { return patches_; }
     const std::vector<SurfaceRim>& rims() const { return rims_; }
+    /// Whether the surface has no border: a ray that does not cross it stays on one side of it.
+    bool is_closed() const { return is_closed_; }
+    /// Whether all its normals lie on one side: a ray that leaves it meets it on that side first, unless it
+    /// goes around a border.
+    bool is_height_field() const { return is_height_field_; }
     /// Half the diagonal of the box around all.
     double size() const { return size_; }
 
@@ -78,6 +83,7 @@ class PatchTree {
 
   private:
     void add_rims(const SurfaceGrid& grid);
+    void set_shape(const SurfaceGrid& grid);
     void build();
     std::size_t add_node(std::size_t first, std::size_t last, int depth);
 
@@ -85,6 +91,7 @@ class PatchTree {
     std::vector<SurfaceRim> rims_;
     std::vector<Item> items_;
     std::vector<Node> nodes_;
+    bool is_closed_ = false, is_height_field_ = false;
     double size_ = 0;
 };
 

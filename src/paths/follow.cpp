@@ -138,6 +138,7 @@ void Follower::run(const Pending& from) {
     // Where rays are looked at for others beside them, what would follow tells them apart: so it is
     // followed, but not for ever.
     const bool rests = next && !params_.objects && lies_on_object(world_, segment.ray, *next);
+    if (rests) segment.rest = next->distance;
     if (rests && from.rested >= kMostRests) next.reset();
     if (next && (from.depth >= world_.max_depth || from.steps >= kMostSteps)) {
         followed_.cut.too_deep += largest(light);

@@ -24,11 +24,14 @@ struct PathSegment {
     double way = 0;           // length of the path from the eye to where it starts
     Vec3 weight{1};           // of the light for all that happened behind the first optic up to its start
     double next = std::numeric_limits<double>::infinity();  // distance to the next optic, or infinity
-    bool front = true;                                      // its start was met from the front
-    Vec3 refraction{0};                                     // see Branch, at its start
-    double turned = 1;  // cosine of the angle between the ray that arrived at its start and the surface
-    Hit hit;            // where objects are asked for: the first before the next optic, t a distance
-    bool ends = true;   // it meets an object, or no other optic: nothing goes on from it
+    // Distance to an optic that lies on an object where it is met, or infinity; the object is what is seen
+    // there.
+    double rest = std::numeric_limits<double>::infinity();
+    bool front = true;   // its start was met from the front
+    Vec3 refraction{0};  // see Branch, at its start
+    double turned = 1;   // cosine of the angle between the ray that arrived at its start and the surface
+    Hit hit;             // where objects are asked for: the first before the next optic, t a distance
+    bool ends = true;    // it meets an object, or no other optic: nothing goes on from it
 };
 
 /// What follow_paths leaves out, as shares of the light (the largest of the three colours), summed.

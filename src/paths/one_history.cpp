@@ -38,7 +38,7 @@ struct Stretch {
         PartSamples<T> samples;
         for (std::size_t k = 0; k < 3; ++k) samples.corner[k] = corner[k] ? value(*corner[k]) : turned(k);
         if (middle[0] && middle[1] && middle[2])
-            samples.middle = {value(*middle[0]), value(*middle[1]), value(*middle[2])};
+            samples.middle = std::array<T, 3>{value(*middle[0]), value(*middle[1]), value(*middle[2])};
         if (centre) samples.centre = value(*centre);
         return samples;
     }
@@ -60,16 +60,24 @@ Stretch stretch_of(const FacetPart& part, std::size_t h) {
     return stretch;
 }
 
+/// Whether all rays come to where an optic lies on an object: that is what they see, whatever follows.
+bool rests(const Stretch& stretch) {
+    bool all = true;
+    stretch.for_all([&](const PathSegment& one) { all = all && std::isfinite(one.rest); });
+    return all;
+}
+
 /// What a beam comes from and goes to.
 struct Flight {
     const Beam& beam;
-    Id from = kNone;         // the optic where it starts; kNone: the camera
-    double leaves = 1;       // sign of direction . normal there
-    Id medium = kNone;       // where it runs
-    bool arrives = false;    // its history goes on at an optic
-    Id to = kNone;           // which one; kNone: not known
+    Id from = kNone;             // the optic where it starts; kNone: the camera
+    double leaves = 1;           // sign of direction . normal there
+    Id medium = kNone;           // where it runs
+    bool arrives = false;        // its history goes on at an optic
+    bool rests = false;          // or ends there, on an object
+    Id to = kNone;               // which one; kNone: not known
     Beam::Plane start{}, end{};  // `end` where it arrives
-    double far = kInfinity;  // along the axis: the farthest place where it arrives
+    double far = kInfinity;      // along the axis: the farthest place where it arrives
 };
 
 /// Whether direction . normal has one sign for all rays of the beam on the patch: 1, -1, or 0 where it has
@@ -100,6 +108,7 @@ class Prover {
   private:
     bool has_one_refraction(const Stretch& stretch) const;
     bool has_one_weight(const Stretch& stretch) const;
+    Id next_optic_of(std::size_t h) const;
     bool is_clear(std::size_t h, const Stretch& stretch) const;
     bool camera_arrives() const;
     bool misses_all(const Flight& flight, bool first) const;
@@ -141,20 +150,27 @@ bool Prover::passes(const Flight& flight, Id optic, const SurfacePatch& patch, i
         if (end.low > flight.end.room + touch) return true;  // hidden by where the beam arrives
         const bool is_own = optic == flight.from && side != 0 && side == flight.leaves;
         if ((flight.to == kNone || optic == flight.to) && end.high >= -flight.end.room - touch && !is_own) {
+            if (flight.rests) return true;
             if (side == 0 || (arriving != 0 && side != arriving)) return false;
             arriving = side;
             return true;
         }
     }
     if (flight.from == kNone) return optic != flight.to;
-    // What lies where the beam starts, and cannot be met on the side that the beam is on.
     const Interval start = heights(flight.start, piece);
-    if (optic == flight.from)
-        return start.low <= flight.start.room + patch.size &&
-               (side == flight.leaves || (flight.leaves > 0 ? patch.bends_back : patch.bends_front));
-    if (start.low > flight.start.room + touch || start.high < -flight.start.room - touch) return false;
-    const int unmet = !world_.optics[optic].mirror && optic == flight.medium ? -1 : 1;
-    return side == unmet;
+    if (start.high < -flight.start.room - touch) return true;  // behind where the beam starts
+
+    // On the side that the beam is on it cannot be met: the side that it left by, or that of the medium. That
+    // holds for surfaces that part space, else where the beam starts.
+    const PatchTree& tree = world_.optics[optic].patches();
+    const bool is_own = optic == flight.from;
+    const double unmet = is_own                                                   ? flight.leaves
+                         : !world_.optics[optic].mirror && optic == flight.medium ? -1
+                                                                                  : 1;
+    if (side == unmet && (tree.is_closed() || (is_own && tree.is_height_field()))) return true;
+    if (!is_own) return side == unmet && start.low <= flight.start.room + touch;
+    return start.low <= flight.start.room + patch.size &&
+           (side == unmet || (unmet > 0 ? patch.bends_back : patch.bends_front));
 }
 
 /// Whether one optic leaves the flight's history as it is.
@@ -172,7 +188,7 @@ bool Prover::misses(const Flight& flight, Id optic, int& arriving) const {
                            }
                            // A border or a crease counts where the beam arrives; elsewhere the patches beside
                            // it do.
-                           if (!flight.arrives || optic != flight.to) return true;
+                           if (!flight.arrives || flight.rests || optic != flight.to) return true;
                            const SurfaceRim& rim = tree.rims()[item.rim];
                            const Beam::Piece piece{{rim.end[0], rim.end[1], rim.end[1]}, rim.stray};
                            return !flight.beam.may_touch(piece, flight.far) ||
@@ -190,6 +206,13 @@ bool Prover::misses_all(const Flight& flight, bool first) const {
     return !flight.arrives || flight.to == kNone || !world_.optics[flight.to].patches || arriving != 0;
 }
 
+/// The optic that a history goes on to; kNone where nothing of it is followed.
+Id Prover::next_optic_of(std::size_t h) const {
+    for (const PathSegment& one : proof_.part.histories)
+        if (one.parent == h) return one.step.optic;
+    return kNone;
+}
+
 /// Whether what the history meets after its last event is the same for all rays.
 bool Prover::is_clear(std::size_t h, const Stretch& stretch) const {
     const PathSegment& history = proof_.part.histories[h];
@@ -205,11 +228,14 @@ bool Prover::is_clear(std::size_t h, const Stretch& stretch) const {
     const auto origin = [](const PathSegment& one) { return one.ray.origin; };
     flight.start =
         beam->plane_through(stretch.each<Vec3>(origin, [&](std::size_t k) { return turned(k).origin; }));
-    if (!history.ends) {
+    flight.rests = rests(stretch);
+    if (!history.ends || flight.rests) {
         flight.arrives = true;
-        for (const PathSegment& one : proof_.part.histories)
-            if (one.parent == h) flight.to = one.step.optic;
-        const auto hit = [](const PathSegment& one) { return one.ray.origin + one.next * one.ray.direction; };
+        if (!flight.rests) flight.to = next_optic_of(h);
+        const auto far = [&](const PathSegment& one) { return flight.rests ? one.rest : one.next; };
+        const auto hit = [&](const PathSegment& one) {
+            return one.ray.origin + far(one) * one.ray.direction;
+        };
         const auto none = [&](std::size_t k) { return turned(k).origin; };
         const auto hits = stretch.each<Vec3>(hit, none);
         flight.end = beam->plane_through(hits);
@@ -254,9 +280,13 @@ bool Prover::camera_arrives() const {
 bool Prover::prove() {
     const FacetPart& part = proof_.part;
     if (proof_.from_camera && !camera_arrives()) return false;
+    std::vector<char> hidden(part.histories.size(), 0);  // all that follows is
     for (std::size_t h = 0; h < part.histories.size(); ++h) {
         const PathSegment& history = part.histories[h];
+        const bool is_hidden = history.parent != kNone && hidden[history.parent];
         const Stretch stretch = stretch_of(part, h);
+        hidden[h] = is_hidden || rests(stretch);
+        if (is_hidden) continue;
         double light = 0;
         stretch.for_all([&](const PathSegment& one) { light = std::max(light, largest(one.weight)); });
         if (!history.principal && light <= kMuchLight * kLeastWeight) continue;
