@@ -4,6 +4,7 @@
 
 #include "base/box.h"
 #include "paths/fit_first.h"
+#include "render/first_paths.h"
 #include "render/ray_mesh_model.h"
 
 namespace trilens {
@@ -213,7 +214,8 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
                                              const SeenLayers* layers) {
     const FramedOptic& framed = frame.optics[optic];
     const bool for_error = frame.max_error > 0 && frame.max_error != kAnyError;
-    const bool whole = world.scene.render.max_depth > 0 || for_error;
+    const bool whole =
+        world.scene.render.max_depth > 0 || for_error || !ends_at_first(world, frame, optic);
     const SeenGrid seen = seen_grid(frame, framed);
     Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
     const Vec2 film(world.scene.film.width, world.scene.film.height);
