@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "base/box.h"
-#include "paths/fit_first.h"
-#include "render/first_paths.h"
 #include "render/ray_mesh_model.h"
 
 namespace trilens {
@@ -43,9 +41,6 @@ FramedOptic frame_optic(const World& world, std::size_t index, const Frame& fram
         framed.paths.push_back(
             camera.linear ? make_path_mesh(path, framed.facets->grid(), *camera.linear, ior)
                           : make_path_mesh(path, framed.film_grid->grid, framed.film_grid->views, ior));
-        // Where paths go on, whole paths are fitted instead; other cameras have exact corners.
-        if (camera.linear && framed.rays == CornerRays::kFitted && settings.max_depth == 0)
-            fit_first_rays({*optic.surface, framed.facets->grid(), *camera.linear, ior}, framed.paths.back());
     };
     if (settings.reflect) add(Path::kReflect);
     if (settings.refract && !optic.mirror) add(Path::kRefract);
@@ -214,8 +209,6 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
                                              const SeenLayers* layers) {
     const FramedOptic& framed = frame.optics[optic];
     const bool for_error = frame.max_error > 0 && frame.max_error != kAnyError;
-    const bool whole =
-        world.scene.render.max_depth > 0 || for_error || !ends_at_first(world, frame, optic);
     const SeenGrid seen = seen_grid(frame, framed);
     Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
     const Vec2 film(world.scene.film.width, world.scene.film.height);
@@ -232,24 +225,18 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
             return layers->may_cover(other, low, high);
         };
     }
-    // A camera that is not linear has whole paths by facets on the film: there its rays are exact.
-    if (framed.grid == GridKind::kScreen || (framed.model && whole)) {
+    // A camera that is not linear has paths by facets on the film: there its rays are exact.
+    if (framed.grid == GridKind::kScreen || framed.model) {
         const FilmWindow window = film_window(world, framed, seen.views);
         looking.camera = path_camera(frame.camera, window.depth);
         looking.camera.film = film;
         looking.camera.around = media_at(frame);
         return std::make_unique<OpticPaths>(looking, window, params);
     }
-    if (whole) {
-        looking.camera = path_camera(*frame.camera.linear);
-        looking.camera.film = film;
-        looking.camera.around = media_at(frame);
-        return std::make_unique<OpticPaths>(looking, *seen.grid, params);
-    }
+    looking.camera = path_camera(*frame.camera.linear);
+    looking.camera.film = film;
     looking.camera.around = media_at(frame);
-    return std::make_unique<OpticPaths>(looking,
-                                        FirstPaths{seen.grid, seen.views, find_path(framed, Path::kReflect),
-                                                   find_path(framed, Path::kRefract)});
+    return std::make_unique<OpticPaths>(looking, *seen.grid, params);
 }
 
 std::optional<LayerStage> make_layer_stage(const World& world, const Frame& frame) {
