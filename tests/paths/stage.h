@@ -36,9 +36,11 @@ class Stage {
            int priority = 0) {
         materials_.push_back(material);
         tracers_.emplace_back(*surface, grid_of(*surface, 16));
+        patches_.push_back(std::make_shared<trilens::PatchTree>(*surface, grid_of(*surface, 16)));
         surfaces_.push_back(std::move(surface));
-        world.optics.push_back(
-            {&tracers_.back(), &materials_.back(), trilens::is_mirror(material), priority});
+        world.optics.push_back({&tracers_.back(), &materials_.back(), trilens::is_mirror(material), priority,
+                                surfaces_.back()->sphere_curvature() > 0,
+                                [tree = patches_.back()]() -> const trilens::PatchTree& { return *tree; }});
         return static_cast<Id>(world.optics.size() - 1);
     }
     Id add_ball(const Vec3& center, double radius, const trilens::Material& material, int priority = 0) {
@@ -65,6 +67,7 @@ class Stage {
   private:
     std::deque<trilens::Material> materials_;
     std::deque<trilens::LimitTracer> tracers_;
+    std::vector<std::shared_ptr<const trilens::PatchTree>> patches_;
     std::vector<std::shared_ptr<const trilens::Surface>> surfaces_;
 };
 
