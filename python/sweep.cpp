@@ -144,6 +144,15 @@ void bind_summary(py::module_& module) {
         .def_readonly("runs", &SweepSummary::runs,
                       "In the order of the plan: the first axis changes slowest.")
         .def_readonly("fits", &SweepSummary::fits)
+        .def_property_readonly(
+            "left_out",
+            [](const SweepSummary& summary) {
+                std::vector<std::pair<std::string, std::string>> scenes;
+                for (const LeftOutScene& one : summary.manifest.subject.left_out)
+                    scenes.emplace_back(one.scene, one.reason);
+                return scenes;
+            },
+            "Of an axis of scenes those that lack what another axis varies, each with the reason.")
         .def("fit", find_fit, py::arg("metric") = "disp_mean_px", py::arg("layer") = "reflect",
              py::arg("optic") = "", py::return_value_policy::reference_internal,
              "The fit of this metric, layer and optic (\"\": the first); None where there is none.")
@@ -223,7 +232,9 @@ void bind_sweep(py::module_& module) {
         "sweep's and raises UsageError in the folder of the first.\n"
         "A run that fails is recorded (SweepRun.error), and the others go on. Raises UsageError for what is "
         "no "
-        "axis,\ntruth or shard, InputError where a scene has no optic or cannot be read, OutputError.");
+        "axis,\ntruth or shard, InputError where a scene has no optic or cannot be read, OutputError.\n"
+        "A scene file without an optic is swept over its camera's facets where the axis is resolution and "
+        "the\ncamera chooses them, with a warning.");
     def_sweep(
         module, "plan_sweep",
         [](const SweepRequest& request, const SweepTalk& talk) { return plan_sweep(request, talk); },

@@ -24,6 +24,16 @@ Json fit_json(const SweepFit& fit) {
             {"coverage", optional_json(fit.coverage)}};
 }
 
+}  // namespace
+
+Json left_out_json(const std::vector<LeftOutScene>& left_out) {
+    Json json = Json::array();
+    for (const LeftOutScene& one : left_out) json.push_back({{"scene", one.scene}, {"reason", one.reason}});
+    return json;
+}
+
+namespace {
+
 Json summary_json(const SweepSummary& summary) {
     Json json{{"folder", summary.folder},
               {"runs", summary.runs.size()},
@@ -75,8 +85,13 @@ std::string missing_text(const SweepSummary& summary) {
 
 }  // namespace
 
-Answer answer_of(const std::vector<SweepSummary>& summaries, const std::string& report) {
+Answer answer_of(const std::vector<SweepSummary>& summaries, const std::string& report,
+                 const std::vector<LeftOutScene>& left_out) {
     Answer answer;
+    std::vector<LeftOutScene> all_left_out = left_out;
+    for (const SweepSummary& summary : summaries)
+        for (const LeftOutScene& one : summary.manifest.subject.left_out) all_left_out.push_back(one);
+    answer.fields["left_out"] = left_out_json(all_left_out);
     answer.fields["report"] = report.empty() ? Json(nullptr) : Json(report);
     answer.fields["sweeps"] = Json::array();
     for (const SweepSummary& summary : summaries) {
@@ -95,8 +110,9 @@ Answer answer_of(const std::vector<SweepSummary>& summaries, const std::string& 
     return answer;
 }
 
-Answer status_answer(const std::vector<SweepSummary>& summaries, const std::string& folder) {
-    Answer answer = answer_of(summaries, folder);
+Answer status_answer(const std::vector<SweepSummary>& summaries, const std::string& folder,
+                     const std::vector<LeftOutScene>& left_out) {
+    Answer answer = answer_of(summaries, folder, left_out);
     for (std::size_t i = 0; i < summaries.size(); ++i) {
         const std::string missing = missing_text(summaries[i]);
         answer.fields["sweeps"][i]["missing_parts"] = missing;

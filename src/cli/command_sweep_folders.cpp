@@ -31,7 +31,7 @@ std::vector<std::string> sweeps_in(const std::string& folder) {
 Answer status(const std::string& folder) {
     std::vector<SweepSummary> summaries;
     for (const std::string& one : sweeps_in(folder)) summaries.push_back(load_sweep(one));
-    return status_answer(summaries, folder);
+    return status_answer(summaries, folder, left_out_of_gallery(folder));
 }
 
 Answer merge(const MergeOptions& options, Console& console) {
@@ -45,8 +45,9 @@ Answer merge(const MergeOptions& options, Console& console) {
 Answer report(const std::string& folder) {
     std::vector<SweepSummary> summaries;
     for (const std::string& one : sweeps_in(folder)) summaries.push_back(report_sweep(one));
-    if (summaries.size() > 1) write_sweep_gallery(folder, summaries);
-    return answer_of(summaries, folder + "/report.html");
+    const std::vector<LeftOutScene> left_out = left_out_of_gallery(folder);
+    if (summaries.front().folder != folder) write_sweep_gallery(folder, summaries);
+    return answer_of(summaries, folder + "/report.html", left_out);
 }
 
 Command folder_command(const std::string& name, const std::string& summary,

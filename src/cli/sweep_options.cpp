@@ -39,7 +39,7 @@ std::vector<std::string> command_words(const SweepOptions& options, const std::s
     if (!options.scene.filter.empty()) add("--filter", options.scene.filter);
     if (options.scene.max_depth >= 0) add("--max-depth", std::to_string(options.scene.max_depth));
     for (const std::string& set : options.scene.set) add("--set", set);
-    add("-o", options.output);
+    add("-o", folder_of(options, scene));
     return words;
 }
 

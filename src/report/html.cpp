@@ -95,8 +95,9 @@ void write_report(const std::string& file, const Report& report) {
 }
 
 std::string gallery_html(const Gallery& gallery) {
-    std::string body =
-        html_text("h1", gallery.title) + "\n" + paragraph("soft", gallery.text) + "<div class=\"gallery\">\n";
+    std::string body = html_text("h1", gallery.title) + "\n" + paragraph("soft", gallery.text);
+    for (const std::string& warning : gallery.warnings) body += paragraph("warning", warning);
+    body += "<div class=\"gallery\">\n";
     for (const GalleryEntry& entry : gallery.entries) body += gallery_card(entry);
     return html_page(gallery.title, body + "</div>\n" + how_to_repeat(gallery.commands, gallery.versions));
 }

@@ -60,6 +60,7 @@ struct Gallery {
     std::vector<GalleryEntry> entries;
     std::vector<std::string> commands;
     Facts versions;
+    std::vector<std::string> warnings = {};  // before the scenes
 };
 
 std::string gallery_html(const Gallery& gallery);

@@ -1,10 +1,15 @@
 #include "sweep/gallery.h"
 
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
+#include "base/files.h"
 #include "report/html.h"
 #include "report/text.h"
 #include "sweep/fit_runs.h"
+#include "sweep/report_words.h"
+#include "sweep/results_json.h"
 #include "sweep/sweep_folder.h"
 #include "sweep/sweep_pictures.h"
 #include "sweep/sweep_plots.h"
@@ -12,11 +17,22 @@
 namespace trilens {
 namespace {
 
+/// How fine a run is: its number along the first axis whose values errors follow, such as the resolution.
+double fineness(const SweepAxes& axes, const RunRecord& run) {
+    for (const Axis& axis : axes.axes)
+        if (const AxisValue* const value = find_coordinate(run.plan.at, axis.kind.name);
+            axis.kind.is_scale && value)
+            return value->number.value_or(0);
+    return 0;
+}
+
 /// The finest run that was finished.
 const RunRecord* finest_run(const SweepSummary& summary) {
     const RunRecord* finest = nullptr;
+    const SweepAxes& axes = summary.manifest.axes;
     for (const RunRecord& run : summary.runs)
-        if (run.state == RunState::kDone && (!finest || run.plan.n() > finest->plan.n())) finest = &run;
+        if (run.state == RunState::kDone && (!finest || fineness(axes, run) > fineness(axes, *finest)))
+            finest = &run;
     return finest;
 }
 
@@ -50,14 +66,30 @@ GalleryEntry entry_of(const SweepSummary& summary) {
         entry.text = "No run was finished.";
         return entry;
     }
-    entry.text = point_text(run->plan.at) + ", optics: " + summary.manifest.subject.mesh;
+    const SweepSubject& subject = summary.manifest.subject;
+    entry.text = point_text(run->plan.at) +
+                 (subject.mesh.empty() ? ", camera: " + subject.camera : ", optics: " + subject.mesh);
     entry.metrics = facts_of(summary, *run);
     TruthPictures truths(summary.folder);
     entry.pictures = run_pictures(summary.folder, *run, truths);
     return entry;
 }
 
+std::string left_out_file(const std::string& folder) {
+    return folder + "/left-out.json";
+}
+
 }  // namespace
+
+void keep_left_out(const std::string& folder, const std::vector<LeftOutScene>& left_out) {
+    std::error_code none;
+    if (!left_out.empty()) {
+        std::filesystem::create_directories(folder, none);
+        replace_text_file(left_out_file(folder), left_out_text(left_out));
+    } else if (!left_out_of_gallery(folder).empty()) {
+        std::filesystem::remove(left_out_file(folder), none);
+    }
+}
 
 void write_sweep_gallery(const std::string& folder, std::span<const SweepSummary> summaries) {
     require_no_sweep(folder);
@@ -73,8 +105,16 @@ void write_sweep_gallery(const std::string& folder, std::span<const SweepSummary
         for (const std::string& command : summary.manifest.subject.commands)
             gallery.commands.push_back(command);
     }
+    for (const LeftOutScene& one : left_out_of_gallery(folder))
+        gallery.warnings.push_back(left_out_words(one));
     if (!summaries.empty()) gallery.versions = summaries.front().manifest.subject.versions;
     write_gallery(folder + "/report.html", gallery);
+}
+
+std::vector<LeftOutScene> left_out_of_gallery(const std::string& folder) {
+    std::error_code none;
+    const std::string file = left_out_file(folder);
+    return std::filesystem::exists(file, none) ? read_left_out(file) : std::vector<LeftOutScene>();
 }
 
 }  // namespace trilens

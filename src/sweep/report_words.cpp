@@ -149,6 +149,10 @@ std::vector<std::string> exact_sentences(const SweepSummary& summary) {
     return sentences;
 }
 
+std::string left_out_words(const LeftOutScene& scene) {
+    return "left out of the sweep: " + scene.reason;
+}
+
 std::string timing_warning(const SweepSummary& summary) {
     std::size_t parallel = 0, shared = 0, done = summary.count(RunState::kDone);
     for (const RunRecord& run : summary.runs) {

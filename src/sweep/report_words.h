@@ -30,6 +30,9 @@ std::string summary_words(const SweepSummary& summary);
 /// What plots would say with nothing in them: that all is exact.
 std::vector<std::string> exact_sentences(const SweepSummary& summary);
 
+/// That a scene was left out, and why.
+std::string left_out_words(const LeftOutScene& scene);
+
 /// Whether times are measurements; empty where all are.
 std::string timing_warning(const SweepSummary& summary);
 

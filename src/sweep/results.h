@@ -31,6 +31,13 @@ struct SweptOptic {
     bool operator==(const SweptOptic&) const = default;
 };
 
+/// A scene of several that is not swept, because it lacks what an axis varies.
+struct LeftOutScene {
+    std::string scene;   // file
+    std::string reason;  // one line, with the scene's name
+    bool operator==(const LeftOutScene&) const = default;
+};
+
 /// What is swept, in words and names: goes into every result and changes no number.
 struct SweepSubject {
     std::string title;         // of the report
@@ -41,6 +48,7 @@ struct SweepSubject {
     int spp = 1;
     std::vector<std::string> commands;  // lines that make the results again
     Facts versions;
+    std::vector<LeftOutScene> left_out = {};  // of an axis of scenes
 };
 
 /// Whose folder it is, and what is varied.

@@ -154,6 +154,18 @@ Json json_of_fit(const SweepFit& fit) {
     return json;
 }
 
+Json json_of_left_out(const std::vector<LeftOutScene>& scenes) {
+    Json json = Json::array();
+    for (const LeftOutScene& one : scenes) json.push_back({{"scene", one.scene}, {"reason", one.reason}});
+    return json;
+}
+
+std::vector<LeftOutScene> left_out_of_json(const Json& json) {
+    std::vector<LeftOutScene> scenes;
+    for (const Json& one : json) scenes.push_back({one.at("scene"), one.at("reason")});
+    return scenes;
+}
+
 Json json_of_subject(const SweepSubject& subject) {
     Json json = {{"title", subject.title},
                  {"scene", subject.scene},
@@ -167,6 +179,7 @@ Json json_of_subject(const SweepSubject& subject) {
     json["commands"] = subject.commands;
     json["versions"] = Json::object();
     for (const auto& [name, version] : subject.versions) json["versions"][name] = version;
+    if (!subject.left_out.empty()) json["left_out"] = json_of_left_out(subject.left_out);
     return json;
 }
 
@@ -184,6 +197,7 @@ SweepSubject subject_of_json(const Json& json) {
                          {}};
     for (const auto& [name, version] : json.at("versions").items())
         subject.versions.emplace_back(name, version);
+    if (json.contains("left_out")) subject.left_out = left_out_of_json(json.at("left_out"));
     return subject;
 }
 
@@ -242,11 +256,21 @@ std::string summary_text(const SweepSummary& summary) {
     json["counts"] = {{"done", summary.count(RunState::kDone)},
                       {"failed", summary.count(RunState::kFailed)},
                       {"missing", summary.count(RunState::kMissing)}};
+    if (!summary.manifest.subject.left_out.empty())
+        json["left_out"] = json_of_left_out(summary.manifest.subject.left_out);
     json["fits"] = Json::array();
     for (const SweepFit& fit : summary.fits) json["fits"].push_back(json_of_fit(fit));
     json["runs"] = Json::array();
     for (const RunRecord& run : summary.runs) json["runs"].push_back(json_of_run(run));
     return json_document(json);
+}
+
+std::string left_out_text(const std::vector<LeftOutScene>& scenes) {
+    return json_document(json_of_left_out(scenes));
+}
+
+std::vector<LeftOutScene> read_left_out(const std::string& file) {
+    return read_json_file(file, [](const std::string& text) { return left_out_of_json(Json::parse(text)); });
 }
 
 SweepManifest read_manifest(const std::string& file) {

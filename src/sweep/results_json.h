@@ -17,7 +17,11 @@ std::string run_text(const RunRecord& run);
 
 std::string summary_text(const SweepSummary& summary);
 
+/// left-out.json of a gallery.
+std::string left_out_text(const std::vector<LeftOutScene>& scenes);
+
 /// Throw InputError(file, ...) where the text is damaged or of another kind.
+std::vector<LeftOutScene> read_left_out(const std::string& file);
 SweepManifest read_manifest(const std::string& file);
 std::vector<PlannedRun> read_plan(const std::string& file, const SweepAxes& axes);
 

@@ -19,6 +19,13 @@ const char* summary_schema() {
       "type": "object", "required": ["done", "failed", "missing"], "additionalProperties": false,
       "properties": {"done": {"type": "integer"}, "failed": {"type": "integer"}, "missing": {"type": "integer"}}
     },
+    "left_out": {
+      "type": "array", "description": "scenes of an axis that lack what another axis varies: they have no runs",
+      "items": {
+        "type": "object", "required": ["scene", "reason"], "additionalProperties": false,
+        "properties": {"scene": {"type": "string"}, "reason": {"type": "string"}}
+      }
+    },
     "fits": {"type": "array", "items": {"$ref": "#/definitions/fit"}},
     "runs": {"type": "array", "description": "in the order of the plan", "items": {"$ref": "#/definitions/run"}}
   },

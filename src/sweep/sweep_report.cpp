@@ -94,6 +94,7 @@ void write_sweep_report(const SweepSummary& summary, KeptPictures* kept) {
     report.commands = subject.commands;
     report.versions = subject.versions;
     report.sentences = exact_sentences(summary);
+    for (const LeftOutScene& one : subject.left_out) report.warnings.push_back(left_out_words(one));
     write_plots(summary, report);
     if (const std::size_t pages = plot_groups(group_runs(summary.manifest.axes, summary.runs)).size();
         pages > kMostPlotsOfAKind)

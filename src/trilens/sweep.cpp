@@ -13,6 +13,7 @@
 #include "sweep/code_digest.h"
 #include "sweep/sweep.h"
 #include "sweep/sweep_file.h"
+#include "trilens/sweep_scenes.h"
 #include "trilens/sweep_subjects.h"
 #include "trilens/version.h"
 
@@ -151,7 +152,7 @@ std::string engine_key(const PictureRequest& picture) {
 /// The truth of run n's own facets is that run's alone; the limit surface is that of all resolutions.
 RunKeys keys_of(SweepJob& job, const Coordinates& point) {
     const PointRequest request = request_at(job.base, point);
-    const SubjectFacts& facts = job.subjects->facts(request);
+    const SubjectFacts& facts = sweepable_facts(*job.subjects, request);
     const std::string seen = code_digest() + "\n" + facts.camera + "\n" + facts.digest;
     const bool is_facets = job.truth == Engine::kFacetsTruth;
     return {
@@ -219,9 +220,14 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk&
     }
     job->subjects = std::make_unique<Subjects>([at](const std::string& text) { at->warn(text); },
                                                static_cast<std::size_t>(request.jobs) + 1);
+    const Warn warn = [at](const std::string& text) { at->warn(text); };
+    const std::vector<LeftOutScene> left_out =
+        leave_out_scenes(job->params.axes, job->base, *job->subjects, warn);
+    job->params.axes = axes_for_scene(job->params.axes, job->base, *job->subjects, warn);
     const std::vector<Coordinates> points = make_points(job->params.axes);
-    job->params.subject =
-        subject_of(request, job->params.axes, job->subjects->facts(request_at(job->base, points.at(0))));
+    job->params.subject = subject_of(request, job->params.axes,
+                                     sweepable_facts(*job->subjects, request_at(job->base, points.at(0))));
+    job->params.subject.left_out = left_out;
     if (talk.progress) job->params.progress = talk.progress("sweep of " + job->params.subject.title);
     job->callbacks.keys = [at](const Coordinates& point) { return keys_of(*at, point); };
     job->callbacks.render = [at](const PlannedRun& run) { return render(*at, run); };
@@ -240,6 +246,26 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk&
 SweepSummary run_sweep(const SweepRequest& request, const SweepTalk& talk) {
     const std::unique_ptr<SweepJob> job = make_job(request, talk);
     return run_sweep(job->params, job->callbacks);
+}
+
+std::optional<LeftOutScene> why_left_out(const SweepRequest& request) {
+    // What is wrong with the request is wrong for every scene.
+    axes_of(request);
+    truth_engine(request.truth);
+    shard_of(request.shard);
+    std::string reason;
+    try {
+        const std::unique_ptr<SweepJob> job = make_job(request, {});
+        for (const Coordinates& point : make_points(job->params.axes)) job->callbacks.keys(point);
+        return std::nullopt;
+    } catch (const InputError& error) {
+        reason = error.what();
+    } catch (const UsageError& error) {
+        reason = error.what();
+    }
+    // What cannot be read at all is no matter of the axes.
+    if (!request.loaded && !request.scene.file.empty()) load_scene(request.scene);
+    return LeftOutScene{request.loaded ? scene_title(*request.loaded) : request.scene.file, reason};
 }
 
 SweepRequest read_sweep_file(const std::string& file, SweepRequest request) {

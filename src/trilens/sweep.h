@@ -68,8 +68,15 @@ struct SweepTalk {
 /// cannot have, and for a folder that belongs to another sweep (of another scene or other overrides, camera,
 /// truth or axes; the lists of values may differ) or where files would be written over that no sweep made or
 /// that this one reads, InputError where a scene has no optic or cannot be read,
-/// OutputError, Interrupted.
+/// OutputError, Interrupted. A scene file without an optic is swept over its camera's facets where the axis
+/// is resolution and the camera chooses them; of an axis of scenes those that lack what another axis varies
+/// are left out while others are left. Both are said, and SweepSubject::left_out has the latter.
 SweepSummary run_sweep(const SweepRequest& request, const SweepTalk& talk = {});
+
+/// Why run_sweep would refuse the request for what its scene lacks (an optic, a camera, a place in the file
+/// that an axis names); none where it would not. For sweeps of many scenes, none of which should end for
+/// one. Throws as run_sweep does for what no scene could mend, and where the scene cannot be read.
+std::optional<LeftOutScene> why_left_out(const SweepRequest& request);
 
 /// The request that a sweep file makes of `base`: what the file leaves out stays. Paths in the file start at
 /// its folder. Throws InputError with the place of the first problem.

@@ -132,7 +132,7 @@ std::vector<SceneOverride> with_camera_facets(const PointRequest& request, const
     const std::size_t index = find_camera(scene, request.camera);
     const CameraDescription& camera = scene.cameras[index];
     const std::string place = "/cameras/" + std::to_string(index);
-    if (is_linear(camera.type) || camera.type == CameraType::kRayMesh)
+    if (!chooses_facets(camera))
         throw InputError(scene.file, place,
                          "\"" + camera.name + "\" is " + camera_type_name(camera.type) +
                              ": the axis camera-facets is for cameras that choose their own");
@@ -189,6 +189,10 @@ PointRequest request_at(PointRequest request, const Coordinates& point) {
     }
     if (engine) find_entry("engine")->apply(*engine, request);
     return request;
+}
+
+bool chooses_facets(const CameraDescription& camera) {
+    return !is_linear(camera.type) && camera.type != CameraType::kRayMesh;
 }
 
 Scene load_scene(const PointRequest& request) {

@@ -23,9 +23,11 @@ std::string key_of(const PointRequest& request) {
 }
 
 SubjectFacts facts_of(const Scene& scene, const PointRequest& request) {
-    const std::string& camera = request.camera;
+    const CameraDescription& camera = scene.cameras[find_camera(scene, request.camera)];
     SubjectFacts facts;
-    facts.camera = scene.cameras[find_camera(scene, camera)].name;
+    facts.title = scene_title(scene);
+    facts.camera = camera.name;
+    facts.has_camera_facets = chooses_facets(camera);
     facts.digest = hash_text(scene.resolved + "\n" + scene_digest(scene));
     facts.film = scene.film;
     for (const FileRead& file : scene.files) facts.files.push_back(file.path);
@@ -34,9 +36,6 @@ SubjectFacts facts_of(const Scene& scene, const PointRequest& request) {
         facts.optics.push_back({static_cast<Id>(m), scene.meshes[m].name});
         facts.faces += std::max<std::size_t>(6, scene.meshes[m].face_count);
     }
-    if (facts.optics.empty() && request.camera_facets == 0)
-        throw InputError(scene_title(scene), "/meshes",
-                         "a sweep needs an optic whose resolution it can vary");
     return facts;
 }
 

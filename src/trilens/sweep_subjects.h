@@ -17,9 +17,11 @@ namespace trilens {
 
 /// What a plan needs to know of one scene.
 struct SubjectFacts {
+    std::string title;   // as messages name the scene
     std::string digest;  // of everything that decides its pictures
     std::vector<SweptOptic> optics;
-    std::string camera;  // the one that is used
+    std::string camera;              // the one that is used
+    bool has_camera_facets = false;  // its facets can be an axis
     Film film;
     std::size_t faces = 0;           // of the optics' cages
     std::vector<std::string> files;  // that the scene was read from
@@ -37,7 +39,7 @@ class Subjects {
   public:
     Subjects(Warn warn, std::size_t kept) : warn_(std::move(warn)), kept_(kept) {}
 
-    /// Throws as load_scene does, InputError where the scene has no optic, UsageError for its camera.
+    /// Throws as load_scene does, UsageError for its camera.
     const SubjectFacts& facts(const PointRequest& request);
     std::shared_ptr<const LoadedSubject> load(const PointRequest& request);
 

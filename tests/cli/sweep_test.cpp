@@ -155,3 +155,100 @@ TEST_CASE("a camera's own facets are an axis: what it sees itself comes nearer w
     CHECK(linear.err.find("plain.json") != std::string::npos);
     CHECK(linear.err.find("/cameras/0: \"plain\" is perspective") != std::string::npos);
 }
+
+TEST_CASE("a sweep of many scenes does not end for one that has nothing to sweep", "[cli][sweep]") {
+    const std::string folder = scratch_dir("cli_sweep_left_out"), out = folder + "/out";
+    const auto scene_without_optic = [&](const std::string& name, const std::string& camera) {
+        return write_file(folder, name,
+                          R"({ "version": 1, "film": { "width": 64, "height": 48 },
+            "cameras": [ { "name": "eye", )" +
+                              camera +
+                              R"(, "lookAt": { "eye": [0, 0, 3], "at": [0, 0, 0] } } ],
+            "materials": [ { "name": "red", "unlit": true } ],
+            "meshes": [ { "name": "wall", "role": "object", "material": "red",
+                "points": [[-9,-9,-1],[9,-9,-1],[9,9,-1],[-9,9,-1]],
+                "faceVertexCounts": [4], "faceVertexIndices": [0,1,2,3] } ] })");
+    };
+    const std::string ball = write_file(folder, "ball.json", small_scene());
+    const std::string plain = scene_without_optic("plain.json", R"("yfov": 40)");
+    const std::string fish = scene_without_optic("fish.json", R"("type": "fisheye", "fov": 120)");
+    const std::string reason = "plain.json: /meshes: a sweep needs an optic";
+    const std::string left_out_line = "left out of the sweep: " + plain + ": /meshes: a sweep needs an optic";
+
+    SECTION("scenes of a gallery: one over its camera's facets, one left out with a word in page and JSON") {
+        const std::string sweep =
+            "sweep run " + plain + " " + ball + " " + fish + " --over resolution=2,4 -o " + out;
+        const CommandRun run = run_trilens(sweep + " --json");
+        INFO(run.err);
+        CHECK(run.exit_code == 0);
+        CHECK(run.err.find("warning: " + left_out_line) != std::string::npos);
+        CHECK(run.err.find("fish.json: has no optic: the facets of its camera \"eye\"") != std::string::npos);
+        CHECK(run.out.find("\"left_out\": [") != std::string::npos);
+        CHECK(run.out.find("\"reason\": \"" + plain + ": /meshes") != std::string::npos);
+        CHECK(!fs::exists(out + "/plain"));
+        CHECK(column(out + "/ball", "n") == std::vector<double>{2, 4});
+        CHECK(column(out + "/fish", "camera-facets") == std::vector<double>{2, 4});
+        CHECK(column(out + "/fish", "disp_mean_px")[1] > 0);
+        CHECK(bytes_of(out + "/fish/report.html").find("camera-facets = 4") != std::string::npos);
+        const std::string page = bytes_of(out + "/report.html");
+        CHECK(page.find(left_out_line) != std::string::npos);
+        CHECK(page.find("camera-facets = 4, camera: eye") != std::string::npos);
+        // The commands of the page make what it shows.
+        CHECK(page.find("-o " + out + "/fish") != std::string::npos);
+
+        // Written again, and with nothing left out.
+        REQUIRE(run_trilens("sweep report " + out).exit_code == 0);
+        CHECK(bytes_of(out + "/report.html").find(left_out_line) != std::string::npos);
+        CHECK(run_trilens("sweep status " + out + " --json").out.find(reason) != std::string::npos);
+        REQUIRE(
+            run_trilens("sweep run " + ball + " " + fish + " --over resolution=2,4 -o " + out).exit_code ==
+            0);
+        CHECK(bytes_of(out + "/report.html").find("left out") == std::string::npos);
+        CHECK(!fs::exists(out + "/left-out.json"));
+    }
+    SECTION("an axis that is a place of the file") {
+        const CommandRun run = run_trilens("sweep plan " + ball + " " + plain + " " + fish +
+                                           " --over /meshes/0/primitive/radius=0.5,1 -o " + out);
+        INFO(run.err);
+        CHECK(run.exit_code == 0);
+        CHECK(run.out == out + "/ball/plan.jsonl\n");
+        CHECK(run.err.find("left out of the sweep: " + fish) != std::string::npos);
+    }
+    SECTION("scenes as an axis") {
+        const std::string over = " --over resolution=2,4 -o " + out;
+        const CommandRun run = run_trilens("sweep run --over scene=" + plain + "," + ball + over + " --json");
+        INFO(run.err);
+        CHECK(run.exit_code == 0);
+        CHECK(run.err.find("warning: " + left_out_line) != std::string::npos);
+        CHECK(run.out.find("\"reason\": \"" + plain + ": /meshes") != std::string::npos);
+        CHECK(column(out, "n") == std::vector<double>{2, 4});
+        CHECK(bytes_of(out + "/report.html").find(left_out_line) != std::string::npos);
+        CHECK(bytes_of(out + "/summary.json").find(reason) != std::string::npos);
+        REQUIRE(run_trilens("sweep report " + out).exit_code == 0);
+        CHECK(bytes_of(out + "/report.html").find(left_out_line) != std::string::npos);
+        // Side by side: its partner goes with it.
+        const std::string pairs = folder + "/pairs";
+        REQUIRE(run_trilens("sweep run --zip --over scene=" + plain + "," + ball +
+                            " --over resolution=2,4 -o " + pairs)
+                    .exit_code == 0);
+        CHECK(column(pairs, "n") == std::vector<double>{4});
+    }
+    SECTION("nothing can be swept, or a scene cannot be read: the reason, and nothing is drawn") {
+        for (const std::string& scenes :
+             {plain + " ", plain + " " + scene_without_optic("dull.json", R"("yfov": 9)"),
+              std::string("--over scene=") + plain}) {
+            const CommandRun run = run_trilens("sweep run " + scenes + " --over resolution=2,4 -o " + out);
+            INFO(run.err);
+            CHECK(run.exit_code == 3);
+            CHECK(run.err.find(reason) != std::string::npos);
+        }
+        const std::string broken = write_file(folder, "broken.json", "{ \"version\": 1, \"film\": 7 }");
+        for (const std::string& scenes : {ball + " " + broken + " ", "--over scene=" + ball + "," + broken}) {
+            const CommandRun run = run_trilens("sweep run " + scenes + " --over resolution=2,4 -o " + out);
+            INFO(run.err);
+            CHECK(run.exit_code == 3);
+            CHECK(run.err.find("broken.json: a scene needs") != std::string::npos);
+        }
+        CHECK(!fs::exists(out));
+    }
+}
