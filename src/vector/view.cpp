@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "base/facet_samples.h"
@@ -22,6 +23,10 @@ constexpr double kBefore = 1e-3;   // a surface nearer than the edge by this sha
 constexpr double kOutside = 1e-9;  // how far weights may leave [0, 1] on the facet's border
 constexpr double kShortest =
     1.0;  // pixels: visible pieces and hidden gaps below this are rounding of the test
+
+/// What a point of an edge is to the picture. kBeside: not seen, but no farther than a sample from what is
+/// seen of its own triangles, as where an edge stands a hair below a floor.
+enum class Sight : char { kHidden, kBeside, kSeen };
 
 /// One facet at work.
 class FacetPen {
@@ -52,8 +57,8 @@ class FacetPen {
     }
     std::vector<Section> sections(const SceneTriangle& scene_triangle) const;
     void cut(const Edge& edge, const ConicArc& arc, std::vector<EdgeCurve>& curves) const;
-    bool shows(const Edge& edge, const Vec3& weights) const;
-    bool unhidden(const Edge& edge, const Vec3& weights, const Vec2& at) const;
+    Sight sight(const Edge& edge, const Vec3& weights) const;
+    Sight among_samples(const Edge& edge, const Vec3& weights, const Vec2& at) const;
 
     const VectorView& view_;
     Id facet_;
@@ -131,11 +136,15 @@ void FacetPen::cut(const Edge& edge, const ConicArc& arc, std::vector<EdgeCurve>
     const double around =
         length(pixel(screen[1]) - pixel(screen[0])) + length(pixel(screen[2]) - pixel(screen[1]));
     const int steps = static_cast<int>(std::clamp(around / kStep, 4.0, static_cast<double>(kMostSteps)));
-    std::vector<char> shown(static_cast<std::size_t>(steps));
-    for (int i = 0; i < steps; ++i)
-        shown[static_cast<std::size_t>(i)] = shows(edge, arc.weights((i + 0.5) / steps));
+    std::vector<char> shown(static_cast<std::size_t>(steps)), beside(shown);
+    for (int i = 0; i < steps; ++i) {
+        const Sight seen = sight(edge, arc.weights((i + 0.5) / steps));
+        shown[static_cast<std::size_t>(i)] = seen == Sight::kSeen;
+        beside[static_cast<std::size_t>(i)] = seen == Sight::kBeside;
+    }
 
-    // Gaps shorter than the test can tell are closed; then runs become pieces.
+    // Gaps shorter than the test can tell are closed, and those that never leave what is seen of the edge's
+    // triangles, which would make it dashed; then runs become pieces.
     const int least = static_cast<int>(std::ceil(kShortest * steps / std::max(around, kShortest)));
     const auto run_end = [&](int from) {
         int end = from;
@@ -145,7 +154,8 @@ void FacetPen::cut(const Edge& edge, const ConicArc& arc, std::vector<EdgeCurve>
     };
     for (int i = 0, end = 0; i < steps; i = end) {
         end = run_end(i);
-        if (!shown[static_cast<std::size_t>(i)] && i > 0 && end < steps && end - i < least)
+        if (!shown[static_cast<std::size_t>(i)] && i > 0 && end < steps &&
+            (end - i < least || std::all_of(beside.begin() + i, beside.begin() + end, std::identity{})))
             std::fill(shown.begin() + i, shown.begin() + end, 1);
     }
     for (int i = 0, end = 0; i < steps; i = end) {
@@ -161,17 +171,18 @@ void FacetPen::cut(const Edge& edge, const ConicArc& arc, std::vector<EdgeCurve>
     }
 }
 
-bool FacetPen::shows(const Edge& edge, const Vec3& weights) const {
-    if (std::min({weights.x, weights.y, weights.z}) < -kOutside) return false;
+Sight FacetPen::sight(const Edge& edge, const Vec3& weights) const {
+    if (std::min({weights.x, weights.y, weights.z}) < -kOutside) return Sight::kHidden;
     const Vec3 homogeneous = screen_ * weights;
     const Vec2 at(homogeneous.x / homogeneous.z, homogeneous.y / homogeneous.z);
     const SampleGrid& grid = view_.grid;
-    if (!(at.x >= grid.x0 && at.x <= grid.x1 && at.y >= grid.y0 && at.y <= grid.y1)) return false;
-    if (!edge.drawn.always && !is_silhouette(view_.edges, edge.drawn, rays_.direction(weights))) return false;
-    return view_.wire || unhidden(edge, weights, at);
+    if (!(at.x >= grid.x0 && at.x <= grid.x1 && at.y >= grid.y0 && at.y <= grid.y1)) return Sight::kHidden;
+    if (!edge.drawn.always && !is_silhouette(view_.edges, edge.drawn, rays_.direction(weights)))
+        return Sight::kHidden;
+    return view_.wire ? Sight::kSeen : among_samples(edge, weights, at);
 }
 
-bool FacetPen::unhidden(const Edge& edge, const Vec3& weights, const Vec2& at) const {
+Sight FacetPen::among_samples(const Edge& edge, const Vec3& weights, const Vec2& at) const {
     // Where the ray passes the edge: closest approach, with the edge's own direction taken out.
     const Vec3 along = edge.b - edge.a, origin = rays_.origin(weights) - edge.a,
                direction = rays_.direction(weights);
@@ -182,16 +193,28 @@ bool FacetPen::unhidden(const Edge& edge, const Vec3& weights, const Vec2& at) c
     const int column = static_cast<int>(std::floor((at.x - grid.x0) * grid.side - 0.5));
     const int row = static_cast<int>(std::floor((at.y - grid.y0) * grid.side - 0.5));
     const SampleLattice lattice{grid};
+    // What the sample there shows, where it lies in this facet or beside it.
+    const auto seen_at = [&](int x, int y) -> std::optional<Id> {
+        if (!lattice.holds(x, y)) return std::nullopt;
+        const std::size_t s = lattice.sample(x, y);
+        if (!std::binary_search(ring_.begin(), ring_.end(), view_.facet[s])) return std::nullopt;
+        return view_.triangle[s];
+    };
+    const auto is_own = [&](Id seen) {
+        return seen != kNone && (seen == edge.drawn.triangle || seen == edge.drawn.other);
+    };
     for (int k = 0; k < 4; ++k) {
-        if (!lattice.holds(column + k % 2, row + k / 2)) continue;
-        const std::size_t s = lattice.sample(column + k % 2, row + k / 2);
-        if (!std::binary_search(ring_.begin(), ring_.end(), view_.facet[s])) continue;
-        const Id seen = view_.triangle[s];
-        if (seen == kNone || seen == edge.drawn.triangle || seen == edge.drawn.other) return true;
-        const std::optional<ImageVertex> plane = plane_hit(rays_, triangle(seen), weights);
-        if (plane && (plane->t < 0 || plane->t >= t * (1 - kBefore))) return true;
+        const std::optional<Id> seen = seen_at(column + k % 2, row + k / 2);
+        if (!seen) continue;
+        if (*seen == kNone || is_own(*seen)) return Sight::kSeen;
+        const std::optional<ImageVertex> plane = plane_hit(rays_, triangle(*seen), weights);
+        if (plane && (plane->t < 0 || plane->t >= t * (1 - kBefore))) return Sight::kSeen;
     }
-    return false;
+    for (int dy = -1; dy <= 2; ++dy)
+        for (int dx = -1; dx <= 2; ++dx)
+            if (const std::optional<Id> seen = seen_at(column + dx, row + dy); seen && is_own(*seen))
+                return Sight::kBeside;
+    return Sight::kHidden;
 }
 
 }  // namespace

@@ -36,8 +36,9 @@ struct VectorView {
 /// Curves in facets that own samples, by ascending facet; cut where they leave their facet or the film.
 /// Without `wire` an arc's piece is kept where one of the four samples around it shows a triangle of the
 /// edge, or nothing that would lie before the edge if it reached there; so ends of visible pieces are right
-/// to about a sample, and an edge all of whose neighbourhood is thinner than a sample may be lost. The same
-/// for any number of threads.
+/// to about a sample, and an edge all of whose neighbourhood is thinner than a sample may be lost. Between
+/// such pieces it is also kept where it stays beside what is seen of its own triangles, a sample away: an
+/// edge that stands a hair inside a floor is no dashed line. The same for any number of threads.
 std::vector<EdgeCurve> edge_curves(const VectorView& view);
 
 /// The piece u0 <= u <= u1 of an arc.

@@ -235,3 +235,35 @@ TEST_CASE("a drawing's names are escaped, and options that make no sense are ref
     CHECK(run_trilens("trace " + scene + " -o " + folder + "/out.svg").exit_code == 2);
     CHECK(run_trilens("render " + scene + " --crop 0,0,9,9 -o " + folder + "/out.svg").exit_code == 2);
 }
+
+TEST_CASE("edges that stand a hair inside a floor are no dashed lines", "[cli][vector]") {
+    // The pyramid of the example stands on the floor, two thousandths below the tiles on it.
+    const std::string folder = scratch_dir("vector_base");
+    write_file(folder, "ball.json", run_trilens("scene example mirror-sphere").out);
+    REQUIRE(run_trilens("render " + folder + "/ball.json -o " + folder + "/ball.svg").exit_code == 0);
+    const std::vector<Arc> arcs = arcs_in(parse_tags(bytes_of(folder + "/ball.svg")), "direct");
+
+    PerspectiveParams params;
+    params.look_at = {Vec3(0.6, 1.8, 4.7), Vec3(-0.1, 1, 0), Vec3(0, 1, 0)};
+    params.yfov_degrees = 42;
+    params.width = 640, params.height = 480;
+    const LinearCamera camera = make_perspective(params);
+    const auto pixel = [&](double x, double z) {
+        const Vec3 p = screen_from_world(camera, Vec3(x, 0, z));
+        return Vec2(p.x / p.z, p.y / p.z);
+    };
+    const Vec2 left = pixel(-1.95, 1.6), front = pixel(-1.15, 1.6), back = pixel(-1.15, 0.8);
+    for (const Vec2& end : {left, back}) {
+        // Whatever of the edge is on the film.
+        const double on_film = end.x < 0 ? front.x / (front.x - end.x) : 1;
+        const double whole = length(end - front) * on_film;
+        REQUIRE(whole > 50);
+        double covered = 0;
+        for (const Arc& arc : arcs)
+            if (distance_to_segment(arc.p0, front, end) < 0.01 &&
+                distance_to_segment(arc.p2, front, end) < 0.01)
+                covered += length(arc.p2 - arc.p0);
+        CHECK(covered > whole - 4);
+        CHECK(covered < whole + 1);
+    }
+}
