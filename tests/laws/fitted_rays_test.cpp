@@ -199,7 +199,7 @@ TEST_CASE("facets divided for an error keep it, whatever they began with") {
             const auto before = measure_displacement(truth, plain.image, one.layer);
             const auto after = measure_displacement(truth, divided.image, one.layer);
             REQUIRE((before && before->summary && after && after->summary));
-            CHECK(before->summary->p99 > 0.55);
+            CHECK(before->summary->p99 > 0.52);
             CHECK(after->summary->p99 <= 0.5);
             CHECK(divided.statistics.predicted_error <= 0.5);
             CHECK(divided.statistics.predicted_error > 0.1);

@@ -155,11 +155,12 @@ TEST_CASE("nor where paths end at their first optic, whatever the corner rays", 
                       {"animation", 32, 1, rays}});
 }
 
-TEST_CASE("near total reflection facets would lie, and nobody would know", "[laws]") {
+TEST_CASE("near total reflection no facet lies, whatever error is allowed", "[laws]") {
     const auto world = shipped_world("paths/prism", 32, kWidth, kHeight);
     REQUIRE(world);
     Truths truths{"paths/prism", draw(*world, Engine::kLimitTruth), nullptr};
-    CHECK(count_silent(draw(*world, Engine::kExact, {}, {.max_error = kAnyError}), truths, "refract").off >
-          20);
+    // It is not the prediction that divides them there, but that one history is not proven.
+    CHECK(count_silent(draw(*world, Engine::kExact, {}, {.max_error = kAnyError}), truths, "refract").off ==
+          0);
     CHECK(count_silent(draw(*world, Engine::kExact), truths, "refract").off == 0);
 }

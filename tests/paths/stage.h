@@ -36,7 +36,7 @@ class Stage {
            int priority = 0) {
         materials_.push_back(material);
         tracers_.emplace_back(*surface, grid_of(*surface, 16));
-        patches_.push_back(std::make_shared<trilens::PatchTree>(*surface, grid_of(*surface, 16)));
+        patches_.push_back(std::make_shared<trilens::PatchTree>(*surface, trilens::make_grid(*surface, 16)));
         surfaces_.push_back(std::move(surface));
         world.optics.push_back({&tracers_.back(), &materials_.back(), trilens::is_mirror(material), priority,
                                 surfaces_.back()->sphere_curvature() > 0,

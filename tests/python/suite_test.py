@@ -130,7 +130,7 @@ def test_a_slower_order_is_caught(tmp_path):
     assert only(good).state == "passed"
     slow = write_test(tmp_path / "slow", against="truth", resolution=[4, 8, 16], max=limits,
                       set={"/film/width": 64, "/film/height": 48,
-                           "/meshes/0/normals": {"type": "noise", "seed": 1, "amplitude": 0.5, "scale": 12}})
+                           "/meshes/0/normals": {"type": "noise", "seed": 1, "amplitude": 0.1, "scale": 12}})
     test = only(slow)
     assert test.state == "failed"
     assert any("displacement_order is" in reason and "at least 1.7" in reason for reason in test.reasons), test.reasons
