@@ -17,6 +17,7 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
         {"layered_pixels", picture.statistics.layered_pixels},
         {"projected_facets", picture.statistics.projected_facets},
         {"predicted_error", picture.statistics.predicted_error},
+        {"outline_pixels", picture.statistics.outline_pixels},
         {"left_out", {{"faint", picture.statistics.faint_light}, {"deep", picture.statistics.deep_light}}},
         {"prepare_seconds", picture.prepare_seconds},
         {"draw_seconds", picture.draw_seconds}};

@@ -9,6 +9,7 @@
 #include "projector/classic.h"
 #include "render/optic_ends.h"
 #include "render/optic_window.h"
+#include "render/rim_samples.h"
 
 namespace trilens {
 namespace {
@@ -49,6 +50,7 @@ struct FacetViewer {
     std::optional<LayerStage> stage;
     std::vector<std::unique_ptr<SeenLayers>> layers;  // per optic; null: it has none
     std::vector<std::unique_ptr<OpticPaths>> paths;   // per optic
+    OpticRims rims;
 
     void operator()(const SampleGrid& grid, SampleViews& views) const;
 
@@ -62,6 +64,7 @@ struct FacetViewer {
     void view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                     SampleViews& views) const;
     void meet_optic(std::size_t index, const Hit& hit, std::size_t sample, SampleViews& views) const;
+    void view_rims(const SampleGrid& grid, SampleViews& views) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void describe_optic(std::size_t index, const Hit& hit, SampleView& view, OpticView& on_optic) const;
 };
@@ -176,6 +179,16 @@ void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const
     });
 }
 
+/// Where facets end elsewhere than the surface, what that shows; and what of the outlines is left as it is.
+void FacetViewer::view_rims(const SampleGrid& grid, SampleViews& views) const {
+    if (rims.limit != kAnyError) {
+        decide_rims({*world, frame, rims, reach()}, grid, views);
+        views.outline_error = rims.error;
+    }
+    for (const std::vector<OutlineEdge>& edges : rims.edges)
+        views.outline_pixels += outline_area(edges, rims.limit, grid);
+}
+
 /// Where no optic is first, what the engine itself shows of the objects.
 void FacetViewer::redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const {
     std::vector<Hit> hits(grid.size());
@@ -193,6 +206,7 @@ void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     view_objects(owned, grid, views);
     set_surroundings(frame.surroundings, views);
     for (std::size_t i = 0; i < frame.optics.size(); ++i) view_optic(i, owned, grid, views);
+    view_rims(grid, views);
     if (redraws_direct) redraw_direct(owned, grid, views);
     count_from_eye(frame.camera, views.samples);
     std::vector<OpticEnds> ends;
@@ -223,12 +237,16 @@ FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice&
                                     ? make_optic_paths(world, viewer->frame, i, viewer->layers[i].get())
                                     : make_approximate_paths(world, viewer->frame, i, engine.engine));
     }
+    const bool has_limit = viewer->frame.max_error > 0 && follows_paths(engine.engine);
+    viewer->rims = make_rims(world, viewer->frame, has_limit ? viewer->frame.max_error : kAnyError);
     const bool traces = engine.engine == Engine::kFacetsTruth;
     viewer->draw_first =
         traces ? trace_through(object_tracer(world)) : project_through(prepared_objects(world));
     viewer->draw_objects = viewer->draw_first;
     for (const FramedOptic& optic : viewer->frame.optics) {
-        viewer->windows.push_back(optic_window(optic, viewer->frame.camera));
+        viewer->windows.push_back(window_with_rim(viewer->rims, viewer->windows.size(),
+                                                  optic_window(optic, viewer->frame.camera),
+                                                  viewer->frame.camera.film));
         viewer->draw_optics.push_back(traces ? trace_through(optic.facets->tracer())
                                              : project_through(optic.facets->prepared()));
     }

@@ -174,6 +174,7 @@ void merge(const LayerStatistics& from, LayerStatistics& to) {
     to.subdivided_pixels += from.subdivided_pixels;
     to.faint_light = std::max(to.faint_light, from.faint_light);
     to.predicted_error = std::max(to.predicted_error, from.predicted_error);
+    to.outline_pixels += from.outline_pixels;
     to.deep_light = std::max(to.deep_light, from.deep_light);
     to.projected_facets = std::max(to.projected_facets, from.projected_facets);
     to.crowded_out = std::max(to.crowded_out, from.crowded_out);
@@ -185,6 +186,8 @@ LayerStatistics put_band(const World& world, const Band& band, std::size_t first
     LayerStatistics counts;
     counts.projected_facets = middle.projected_facets;
     counts.crowded_out = middle.crowded_out;
+    counts.outline_pixels = middle.outline_pixels;
+    counts.predicted_error = middle.outline_error;
     std::mutex mutex;
     parallel_for(band.grid.pixels(), kPixelsPerTask, [&](std::size_t from, std::size_t to) {
         LayerStatistics own;

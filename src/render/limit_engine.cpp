@@ -1,11 +1,10 @@
 #include "render/limit_engine.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include "base/parallel.h"
 #include "base/rasterize.h"
+#include "render/first_surface.h"
 #include "render/follow_sample.h"
 #include "render/geometry.h"
 #include "render/surroundings.h"
@@ -37,40 +36,17 @@ struct LimitViewer {
 void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media& around,
                               Found& found) const {
     const double reach = camera.far_depth - camera.near_depth;
-    view.hit = objects->first_hit(view.ray);
-    if (view.hit.seen() && view.hit.t > reach) view.hit = {};
+    const FirstSurface first = first_surface(*paths, *objects, view.ray, reach);
+    view.hit = first.object;
     if (view.hit.seen()) view.depth = view.hit.t;
-    std::optional<SurfaceHit> nearest;
-    // Of optics that touch there the one whose turn it is.
-    const auto turn = [&](std::size_t optic, const SurfaceHit& hit) {
-        return turn_at_place(paths->optics[optic].mirror, dot(hit.point.normal, view.ray.direction) <= 0);
-    };
-    const auto comes_first = [&](std::size_t optic, const SurfaceHit& hit) {
-        if (!nearest) return true;
-        const double touch = paths->optics[optic].tracer->self_hit_t_min(view.ray);
-        if (std::fabs(hit.t - nearest->t) > touch) return hit.t < nearest->t;
-        const int own = turn(optic, hit), other = turn(view.optic, *nearest);
-        return own < other || (own == other && hit.t < nearest->t);
-    };
-    for (std::size_t i = 0; i < paths->optics.size(); ++i) {
-        const PathOptic& optic = paths->optics[i];
-        const std::optional<SurfaceHit> hit = optic.tracer->first_hit(view.ray);
-        if (!hit || hit->t > reach || hit->t >= view.depth) continue;
-        // From inside of a body an object is seen on which that lies.
-        const bool leaves = !optic.mirror && dot(hit->point.normal, view.ray.direction) > 0;
-        const bool rests = view.hit.seen() && view.hit.t <= hit->t + optic.tracer->self_hit_t_min(view.ray);
-        if ((leaves && rests) || !comes_first(i, *hit)) continue;
-        nearest = hit;
-        view.optic = static_cast<Id>(i);
-    }
-    if (!nearest) return;
-    view.hit = {};
-    view.depth = nearest->t;
-    view.facet = nearest->face;
+    if (first.optic == kNone) return;
+    view.optic = first.optic;
+    view.depth = first.at.t;
+    view.facet = first.at.face;
     on_optic = {};
-    on_optic.uv = nearest->uv;
+    on_optic.uv = first.at.uv;
     on_optic.first_end = found.ends.size();
-    follow_sample(*world, {*nearest, around}, view, {on_optic, found.ends, found.steps});
+    follow_sample(*world, {first.at, around}, view, {on_optic, found.ends, found.steps});
     on_optic.end_count = found.ends.size() - on_optic.first_end;
 }
 

@@ -22,13 +22,13 @@ void for_each_sample(const SampleGrid& part, const SampleGrid& whole, const Body
     }
 }
 
-/// The part's samples that see the optic, by facet of its paths.
+/// The part's samples that see the optic by one of its facets, by facet of its paths.
 FacetSamples samples_by_facet(const OpticEndsParams& params, const OpticPaths& paths, const SampleGrid& grid,
                               const SampleViews& views) {
     std::vector<Id> owner(params.part.size(), kNone);
     for_each_sample(params.part, grid, [&](std::size_t s, std::size_t of_grid) {
         const SampleView& view = views.samples[of_grid];
-        if (view.optic != params.optic) return;
+        if (view.optic != params.optic || view.traced) return;
         const Vec2 at = params.part.position(s);
         owner[s] = paths.is_on_film() ? paths.film_facet(at) : params.framed.mesh_facet(view.facet, at);
     });
@@ -245,7 +245,13 @@ OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, con
     ShownDrawer drawer(params, grid, views);
     drawer.draw({paths, params.layers, samples_by_facet(params, paths, grid, views)}, out);
     for (Id& s : out.sample) s = static_cast<Id>(params.part.sample_in(grid, s));
-    trace_samples({params.world, params.optic, paths.looking().camera, grid}, drawer.traced(), views, out);
+    std::vector<Id> traced = drawer.traced();
+    // Those at the outline were given to the optic without one of its facets.
+    for_each_sample(params.part, grid, [&](std::size_t, std::size_t s) {
+        if (views.samples[s].optic == params.optic && views.samples[s].traced)
+            traced.push_back(static_cast<Id>(s));
+    });
+    trace_samples({params.world, params.optic, paths.looking().camera, grid}, traced, views, out);
     return out;
 }
 

@@ -89,6 +89,7 @@ struct LayerStatistics {
     std::size_t crowded_out = 0;         // facets whose paths need more memory than is kept for them: traced
     std::size_t projected_facets = 0;    // facets and parts of facets that were drawn through
     double predicted_error = 0;  // pixels: the most that was left of those seen; 0 where none was asked for
+    double outline_pixels = 0;   // predicted: that lie between the outlines of optics and of their facets
     // The most that was left out of any pixel, as a share of its light: paths that carry too little, and
     // paths that would go on to another optic after the last that is followed.
     double faint_light = 0, deep_light = 0;

@@ -23,6 +23,7 @@ void SampleViews::restart(std::size_t count) {
     around.clear();
     projected_facets = 0;
     crowded_out = 0;
+    outline_pixels = outline_error = 0;
 }
 
 }  // namespace trilens

@@ -53,6 +53,9 @@ struct SampleViews {
     std::vector<Media> around;         // that rays of the camera start in
     std::size_t projected_facets = 0;  // facets and parts of facets that the optics have by now
     std::size_t crowded_out = 0;       // facets that are traced for want of room
+    double outline_pixels =
+        0;  // pixels that lie between optics' outlines and those of their facets, predicted
+    double outline_error = 0;  // pixels: how far these may be off, where an error was asked for
 
     // `sample`: an element of samples.
     /// What it shows on its optic; not to be read where it shows none.
