@@ -166,6 +166,7 @@ const char* const kRoom =
 
 /// One film by one engine.
 struct Film {
+    int width = 0, height = 0;
     SampleViews views;
     std::vector<std::set<std::vector<std::pair<Id, int>>>>
         histories;  // per sample: of its ends that carry light
@@ -176,7 +177,8 @@ using History = std::vector<std::pair<Id, int>>;  // optics and events
 Film film_of(const World& world, const FrameParams& frame, Engine engine) {
     Film film;
     const Viewer viewer = make_viewer(world, frame, engine, [](const std::string&) {});
-    viewer({0, 0, kWidth, kHeight, 1}, film.views);
+    film.width = world.scene.film.width, film.height = world.scene.film.height;
+    viewer({0, 0, film.width, film.height, 1}, film.views);
     film.histories.resize(film.views.samples.size());
     for (std::size_t s = 0; s < film.histories.size(); ++s) {
         const SampleView& view = film.views.samples[s];
@@ -220,10 +222,10 @@ History principal(const Film& film, std::size_t sample, Path path) {
 std::set<std::size_t> strangers(const Film& a, const Film& b) {
     std::set<std::size_t> found;
     for (const Path path : {Path::kReflect, Path::kRefract})
-        for (int y = 1; y + 1 < kHeight; ++y)
-            for (int x = 1; x + 1 < kWidth; ++x) {
-                const auto at = [](int column, int row) {
-                    return static_cast<std::size_t>(row * kWidth + column);
+        for (int y = 1; y + 1 < a.height; ++y)
+            for (int x = 1; x + 1 < a.width; ++x) {
+                const auto at = [&](int column, int row) {
+                    return static_cast<std::size_t>(row * a.width + column);
                 };
                 const History own = principal(a, at(x, y), path);
                 bool known = false;
@@ -269,29 +271,26 @@ Quarry make_quarry(std::uint64_t seed) {
     return quarry;
 }
 
-Bag hunt(const Quarry& quarry) {
-    const auto ignore = [](const std::string&) {};
-    const auto world = make_world(
-        load_scene_text(quarry.json, SceneSource("seed " + std::to_string(quarry.seed), ""), {}, {}), ignore);
+Bag beside_truth(const World& world, const FrameParams& frame) {
     Bag bag;
-    bag.pixels = static_cast<std::size_t>(kWidth) * kHeight;
     const double start = now();
-    const Film truth = film_of(*world, quarry.frame, Engine::kLimitTruth);
+    const Film truth = film_of(world, frame, Engine::kLimitTruth);
     const double middle = now();
-    const Film projected = film_of(*world, quarry.frame, Engine::kExact);
+    const Film projected = film_of(world, frame, Engine::kExact);
+    bag.pixels = truth.histories.size();
     bag.seconds = now() - middle;
     bag.truth_seconds = middle - start;
     for (const SampleView& view : projected.views.samples) {
         bag.traced += view.optic != kNone && view.traced;
         bag.divided += view.optic != kNone && !view.traced && view.level > 0;
     }
-    const auto wanted = count_optics(truth, world->optics.size()),
-               found = count_optics(projected, world->optics.size());
+    const auto wanted = count_optics(truth, world.optics.size()),
+               found = count_optics(projected, world.optics.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (found[i] > 0 || wanted[i] == 0) continue;
         if (wanted[i] >= kFew)
             bag.missing.push_back(
-                fmt::format("{} ({} pixels)", world->names[world->optics[i].mesh], wanted[i]));
+                fmt::format("{} ({} pixels)", world.names[world.optics[i].mesh], wanted[i]));
         else
             ++bag.tiny;
     }
@@ -299,6 +298,13 @@ Bag hunt(const Quarry& quarry) {
     other.merge(strangers(truth, projected));
     bag.other = other.size();
     return bag;
+}
+
+Bag hunt(const Quarry& quarry) {
+    const auto ignore = [](const std::string&) {};
+    const auto world = make_world(
+        load_scene_text(quarry.json, SceneSource("seed " + std::to_string(quarry.seed), ""), {}, {}), ignore);
+    return beside_truth(*world, quarry.frame);
 }
 
 }  // namespace trilens_test

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/request.h"
+#include "render/world.h"
 
 namespace trilens_test {
 
@@ -31,5 +32,7 @@ struct Bag {
 };
 inline constexpr std::size_t kFew = 4;
 Bag hunt(const Quarry& quarry);
+/// The same of any world.
+Bag beside_truth(const trilens::World& world, const trilens::FrameParams& frame);
 
 }  // namespace trilens_test
