@@ -10,8 +10,14 @@
 
 namespace trilens::python {
 
-/// Arrays of any numeric type and layout; what is not float64 in C order is converted.
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+/// Arrays of any real type and layout; what is not float64 in C order is converted. Complex ones are refused
+/// with UsageError, where numpy would leave their imaginary part out.
+class Doubles : public py::array_t<double, py::array::c_style | py::array::forcecast> {
+  public:
+    using Plain = py::array_t<double, py::array::c_style | py::array::forcecast>;
+    using Plain::Plain;
+    Doubles(Plain plain) : Plain(std::move(plain)) {}
+};
 /// Arrays of whole numbers that are 0 or more.
 using Indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
@@ -74,3 +80,20 @@ py::array_t<Value> array_of(std::vector<Value> values) {
 }
 
 }  // namespace trilens::python
+
+/// Arguments of type Doubles.
+template <>
+struct pybind11::detail::type_caster<trilens::python::Doubles> {
+    PYBIND11_TYPE_CASTER(trilens::python::Doubles, type_caster<trilens::python::Doubles::Plain>::name);
+
+    bool load(handle given, bool convert) {
+        type_caster<trilens::python::Doubles::Plain> plain;
+        const array any = array::ensure(given);
+        if (!any) return false;
+        if (any.dtype().kind() == 'c')
+            throw trilens::UsageError("an array of complex numbers is given for real ones");
+        if (!plain.load(given, convert)) return false;
+        value = trilens::python::Doubles(static_cast<trilens::python::Doubles::Plain&>(plain));
+        return true;
+    }
+};

@@ -240,7 +240,7 @@ void bind_compare(py::module_& module) {
                                            allowfailures, warn, warnpercent}),
                                   radius);
         },
-        py::arg("reference"), py::arg("test"), py::kw_only(), py::arg("layer") = "",
+        py::arg("reference").none(false), py::arg("test").none(false), py::kw_only(), py::arg("layer") = "",
         py::arg("mask_object") = py::none(), py::arg("fail") = defaults.fail,
         py::arg("failrelative") = defaults.failrelative, py::arg("failpercent") = defaults.failpercent,
         py::arg("hardfail") = defaults.hardfail, py::arg("allowfailures") = defaults.allowfailures,

@@ -22,6 +22,23 @@ void bind_program(py::module_& module) {
     module.def("threads", threads, "How many threads are used now, at least 1.");
 }
 
+/// An object of one of our classes before its constructor; its own function, so that Python sees that it is
+/// not the base's, and refuses Class.__new__(Class): a method of what it makes would read what is not there.
+PyObject* make_object(PyTypeObject* type, PyObject*, PyObject*) {
+    return py::detail::make_new_instance(type);
+}
+
+void refuse_new_without_init(py::module_& module) {
+    for (const auto& [name, object] : module.attr("__dict__").cast<py::dict>()) {
+        if (!PyType_Check(object.ptr()) ||
+            !py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(object.ptr())))
+            continue;
+        auto* const type = reinterpret_cast<PyTypeObject*>(object.ptr());
+        type->tp_new = make_object;
+        PyType_Modified(type);
+    }
+}
+
 }  // namespace trilens::python
 
 PYBIND11_MODULE(_trilens, module) {
@@ -40,5 +57,6 @@ PYBIND11_MODULE(_trilens, module) {
     bindings::bind_sweep(module);
     bindings::bind_suite(module);
     bindings::bind_bench(module);
+    bindings::refuse_new_without_init(module);
     pybind11::delattr(module, "__module__");
 }

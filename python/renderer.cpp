@@ -101,12 +101,20 @@ struct Job {
     const File& file;
 };
 
+/// Draws the picture, into the job's file where it has one.
+Picture draw_or_write(const Renderer& renderer, const PictureRequest& request, const Job& job, Talk& talk) {
+    const Progress progress = talk.progress(job.name);
+    if (!job.file) return renderer.draw(request, progress, talk.warner());
+    const std::string file = job.file->string();
+    if (image_format(file) == ImageFormat::kExr)
+        return renderer.write_exr(file, request, progress, talk.warner());
+    Picture picture = renderer.draw(request, progress, talk.warner());
+    write_image(file, picture.image);
+    return picture;
+}
+
 HeldImage draw(const Renderer& renderer, const PictureRequest& request, const Job& job, Talk& talk) {
-    Picture picture = talk.run([&] {
-        const Progress progress = talk.progress(job.name);
-        return job.file ? renderer.write_exr(job.file->string(), request, progress, talk.warner())
-                        : renderer.draw(request, progress, talk.warner());
-    });
+    Picture picture = talk.run([&] { return draw_or_write(renderer, request, job, talk); });
     py::dict statistics;
     statistics["optic_pixels"] = picture.statistics.optic_pixels;
     statistics["pixels_without_ray"] = picture.statistics.pixels_without_ray;
@@ -167,9 +175,10 @@ void bind_pictures(RendererClass& renderer) {
         "None: as the scene says.\n"
         "grid: \"surface\" (n x n facets on each face) or \"screen\" (n x n over each optic's bounds on the "
         "film);\nNone: as the scene says.\n"
-        "file: an OpenEXR file that is written while the picture is drawn, which is then never held whole: "
-        "the\nimage that is returned has header and statistics, but no channels. Raises OutputError; an old "
-        "file stays\nuntil the new one is whole.\n"
+        "file: an OpenEXR file (.exr) that is written while the picture is drawn, which is then never held "
+        "whole: the\nimage that is returned has header and statistics, but no channels; or the beauty as "
+        "8-bit sRGB (.png), and\nthe image is whole. Raises UsageError for other endings, OutputError; an "
+        "old file stays until the new one is\nwhole.\n"
         "progress: called as progress(done, job), done in 0..1; returning False raises Interrupted.\n"
         "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
         "Raises UsageError for a camera, layer, window or other value that there is not, InputError where "
@@ -313,8 +322,9 @@ void bind_renderer(py::module_& module) {
         },
         py::arg("scene"), py::kw_only(), py::arg("warn") = py::none(),
         "Goes on with another scene, as of an animation's next frame; what is built of meshes that are the "
-        "same\nin both stays. Returns what stayed: objects (all of them, or not) and how many optics. Not "
-        "while another\nthread draws. Raises as the constructor does, and then nothing has changed.");
+        "same\nin both stays. Returns what stayed: objects (all of them, or not) and how many optics. "
+        "Raises\nas the constructor does, and UsageError while another thread draws; then nothing has "
+        "changed.");
     bind_pictures(renderer);
     bind_line_drawing(module, renderer);
     bind_project(renderer);

@@ -94,8 +94,9 @@ struct FirstPaths {
 /// The paths over one optic's facets for one camera. Facets are worked out when they are first asked for.
 ///
 /// A facet stands for the rays between its corners where the exact paths from its corners, the middles of its
-/// edges and its centre have the same histories; else it is divided on the screen, in four, and what is left
-/// at the smallest size is traced. Parts of a facet lie on the facet's own plane, so no gaps open; a corner
+/// edges and its centre have the same histories, and it is proven that all between them have those, too
+/// (one_history.h); else it is divided on the screen, in four, and what is left at the smallest size is
+/// traced. Parts of a facet lie on the facet's own plane, so no gaps open; a corner
 /// ray of a part is the camera's exact ray through that point.
 ///
 /// Fitted rays depend on the facets all around, so with DivideParams::fit the first facet of a side that is

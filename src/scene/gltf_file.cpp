@@ -24,11 +24,17 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
     return true;
 }
 
+/// Without the name that the JSON library gives its complaint.
+std::string without_tag(const std::string& reason) {
+    const std::size_t end = reason.find("] ");
+    return reason.rfind("[json.", 0) == 0 && end != std::string::npos ? reason.substr(end + 2) : reason;
+}
+
 [[noreturn]] void fail(const std::string& file, std::string_view bytes, const std::string& reason) {
     // Compressed accessors have no buffer view, which is all that the library says of them.
     const bool draco = bytes.find("\"KHR_draco_mesh_compression\"") != std::string::npos;
     throw InputError(file, "",
-                     "not a readable glTF file: " + one_line(reason) +
+                     "not a readable glTF file: " + one_line(without_tag(reason)) +
                          (draco ? " (it uses KHR_draco_mesh_compression, which is not supported)" : ""));
 }
 

@@ -18,8 +18,9 @@ std::map<std::string, MtlMaterial> read_libraries(const ObjFile& obj, const std:
     std::map<std::string, MtlMaterial> by_name;
     for (const std::string& library : obj.material_libraries) {
         const std::string path = (folder / library).string();
-        if (!std::filesystem::exists(path)) {
-            reading.warn(place, "the material library '" + path + "' does not exist");
+        if (!std::filesystem::exists(path) || std::filesystem::is_directory(path)) {
+            reading.warn(place, "the material library '" + path + "' " +
+                                    (std::filesystem::exists(path) ? "is a folder" : "does not exist"));
             continue;
         }
         const MtlFile mtl = parse_mtl(reading.read_file(path), path);

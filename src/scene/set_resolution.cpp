@@ -14,7 +14,7 @@ void set_resolution(Scene& scene, int resolution) {
     if (!scene.resolved.empty()) resolved = resolved_json(scene);
     for (Mesh& mesh : scene.meshes)
         if (mesh.role == Role::kOptic) mesh.resolution = resolution;
-    if (scene.resolved.empty()) return;
+    if (scene.resolved.empty() || scene.meshes.empty()) return;
     for (std::size_t m = 0; m < scene.meshes.size(); ++m)
         if (scene.meshes[m].role == Role::kOptic) resolved["meshes"][m]["resolution"] = resolution;
     scene.resolved = resolved.dump();

@@ -58,6 +58,19 @@ void check_flags(const Located& located) {
     }
 }
 
+/// Throws where an option's value is left out and the next option would be taken for it.
+void check_values(const Located& located) {
+    for (std::size_t i = 0; i + 1 < located.rest.size(); ++i) {
+        const Option* option = find_option(located.command(), located.rest[i]);
+        if (!option || is_flag(*option) || option->value_follows) continue;
+        const std::string& next = located.rest[++i];
+        const std::string name = next.substr(0, next.find('='));
+        if (name.rfind("--", 0) == 0 && find_option(located.command(), name))
+            throw UsageError(spoken_name(*option) + " takes " + takes(*option) + ", but " + name +
+                             " follows it");
+    }
+}
+
 /// The last word must be an option that lacks its value: CLI11 lets an option eat whatever follows.
 UsageError missing_value(const Located& located, const CLI::ParseError& complaint) {
     const std::string last = located.rest.empty() ? "" : located.rest.back();
@@ -144,6 +157,7 @@ UsageError unknown_command(const Located& located) {
 void parse_options(const Located& located) {
     const Command& command = located.command();
     check_flags(located);
+    check_values(located);
     CLI::App app;
     set_up(app);
     Given given;

@@ -97,10 +97,14 @@ ToneCurve tone_curve(const std::string& name) {
     throw UsageError("there is no tone curve \"" + name + "\": none, reinhard, aces, neutral");
 }
 
-void write_image(const std::string& file, const Image& image, const ToneMapping& tone) {
-    if (ends_with(file, ".exr")) return write_image_as(file, image, ImageFormat::kExr, tone);
-    if (ends_with(file, ".png")) return write_image_as(file, image, ImageFormat::kPng, tone);
+ImageFormat image_format(const std::string& file) {
+    if (ends_with(file, ".exr")) return ImageFormat::kExr;
+    if (ends_with(file, ".png")) return ImageFormat::kPng;
     throw UsageError("the image \"" + file + "\" must end in .exr (all channels) or .png (the beauty, sRGB)");
+}
+
+void write_image(const std::string& file, const Image& image, const ToneMapping& tone) {
+    write_image_as(file, image, image_format(file), tone);
 }
 
 void write_image_as(const std::string& file, const Image& image, ImageFormat format,

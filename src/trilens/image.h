@@ -37,6 +37,9 @@ void write_image(const std::string& file, const Image& image, const ToneMapping&
 
 enum class ImageFormat { kExr, kPng };
 
+/// What a file's name asks for. Throws UsageError for other endings than ".exr" and ".png".
+ImageFormat image_format(const std::string& file);
+
 /// The same, whatever the name ends in.
 void write_image_as(const std::string& file, const Image& image, ImageFormat format,
                     const ToneMapping& tone = {});

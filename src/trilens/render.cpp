@@ -1,6 +1,7 @@
 #include "trilens/render.h"
 
 #include <cmath>
+#include <mutex>
 #include <optional>
 
 #include "base/error.h"
@@ -29,13 +30,49 @@ void check_engine(const EngineChoice& engine) {
 
 }  // namespace
 
-Renderer::Renderer(Scene scene, const Warn& warn) : world_(make_checked_world(std::move(scene), warn)) {}
+/// Who uses the world: many that draw, or one that changes it.
+class Renderer::Users {
+  public:
+    class Use {
+      public:
+        Use(Users& users, bool changes) : users_(users), changes_(changes) {
+            const std::scoped_lock lock(users_.mutex_);
+            if (users_.changing_)
+                throw UsageError(
+                    "another thread changes this renderer's scene: one renderer per thread, or wait");
+            if (changes_ && users_.drawing_ > 0)
+                throw UsageError(
+                    "another thread draws with this renderer: its scene cannot change until it is done");
+            (changes_ ? users_.changing_ : users_.drawing_) += 1;
+        }
+        ~Use() {
+            const std::scoped_lock lock(users_.mutex_);
+            (changes_ ? users_.changing_ : users_.drawing_) -= 1;
+        }
+        Use(const Use&) = delete;
+        Use& operator=(const Use&) = delete;
+
+      private:
+        Users& users_;
+        bool changes_;
+    };
+    Use draw() { return {*this, false}; }
+    Use change() { return {*this, true}; }
+
+  private:
+    std::mutex mutex_;
+    int drawing_ = 0, changing_ = 0;
+};
+
+Renderer::Renderer(Scene scene, const Warn& warn)
+    : world_(make_checked_world(std::move(scene), warn)), users_(std::make_unique<Users>()) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 KeptParts Renderer::change(Scene scene, const Warn& warn) {
     check_scene(scene);
+    const auto use = users_->change();
     return change_scene(*world_, std::move(scene), warn);
 }
 
@@ -67,6 +104,7 @@ void Renderer::check(const FrameParams& frame) const {
 }
 
 Picture Renderer::draw(const PictureRequest& request, const Progress& progress, const Warn& warn) const {
+    const auto use = users_->draw();
     check_frame(*world_, request.frame);
     check_engine(request.engine);
     return draw_picture(*world_, request, progress, warn);
@@ -74,6 +112,7 @@ Picture Renderer::draw(const PictureRequest& request, const Progress& progress, 
 
 EncodedPicture Renderer::draw_exr(const PictureRequest& request, const Progress& progress,
                                   const Warn& warn) const {
+    const auto use = users_->draw();
     check_frame(*world_, request.frame);
     check_engine(request.engine);
     std::optional<ExrStrips> strips;
@@ -88,6 +127,7 @@ EncodedPicture Renderer::draw_exr(const PictureRequest& request, const Progress&
 
 Picture Renderer::write_exr(const std::string& file, const PictureRequest& request, const Progress& progress,
                             const Warn& warn) const {
+    const auto use = users_->draw();
     check_frame(*world_, request.frame);
     check_engine(request.engine);
     std::optional<NewFile> made;
@@ -107,6 +147,7 @@ Picture Renderer::write_exr(const std::string& file, const PictureRequest& reque
 }
 
 PixelExplanation Renderer::explain(const PictureRequest& request, int x, int y) const {
+    const auto use = users_->draw();
     check_frame(*world_, request.frame);
     check_engine(request.engine);
     return explain_pixel(*world_, request, x, y);
@@ -120,6 +161,7 @@ SeenTriangle Renderer::seen_triangle(const Hit& hit) const {
 
 std::vector<PointProjection> Renderer::project(std::span<const Vec3> points,
                                                const ProjectRequest& request) const {
+    const auto use = users_->draw();
     check_frame(*world_, request.frame);
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y) || !std::isfinite(points[i].z))
@@ -128,6 +170,7 @@ std::vector<PointProjection> Renderer::project(std::span<const Vec3> points,
 }
 
 LineDrawing Renderer::draw_lines(const FrameParams& frame, const LineChoice& choice, const Warn& warn) const {
+    const auto use = users_->draw();
     check_frame(*world_, frame);
     const std::unique_ptr<Drawing> drawing = make_drawing(*world_, frame, choice, warn);
     LineDrawing lines;
@@ -145,6 +188,7 @@ LineDrawing Renderer::draw_lines(const FrameParams& frame, const LineChoice& cho
 }
 
 std::string Renderer::digest() const {
+    const auto use = users_->draw();
     return scene_digest(world_->scene);
 }
 

@@ -78,7 +78,8 @@ class Renderer {
     Renderer& operator=(Renderer&&) noexcept;
 
     /// Goes on with another scene, as of an animation's next frame; what is built of meshes that are the same
-    /// in both stays. Throws as the constructor does, and then nothing has changed. Not while others draw.
+    /// in both stays. Throws as the constructor does, and then nothing has changed; UsageError while another
+    /// thread draws with this renderer, or is told to change it. Drawing throws UsageError meanwhile.
     KeptParts change(Scene scene, const Warn& warn = {});
 
     const Scene& scene() const;
@@ -134,7 +135,10 @@ class Renderer {
     const World& world() const { return *world_; }
 
   private:
+    class Users;
+
     std::unique_ptr<World> world_;
+    std::unique_ptr<Users> users_;
 };
 
 }  // namespace trilens

@@ -217,3 +217,34 @@ TEST_CASE("with --json a failure is one object with the same words", "[cli]") {
     CHECK(usage.exit_code == 2);
     CHECK(usage.out.find("\"exit_code\": 2") != std::string::npos);
 }
+
+TEST_CASE("A resolution for a scene without meshes is no error of the program's") {
+    const std::string folder = scratch_dir("no_meshes"), scene = folder + "/a.json";
+    std::ofstream(scene) << R"({"version": 1, "film": {"width": 32, "height": 24},
+        "cameras": [{"name": "c", "lookAt": {"eye": [0, 1, 4], "at": [0, 0, 0]}}]})";
+    const CommandRun run = run_trilens("render " + scene + " -n 4 -o " + folder + "/a.exr");
+    INFO(run.err);
+    CHECK(run.exit_code == 0);
+    CHECK(fs::exists(folder + "/a.exr"));
+}
+
+TEST_CASE("Messages of libraries are told as ours, with the file") {
+    const std::string folder = scratch_dir("library_messages");
+    const auto scene_with = [&](const std::string& file) {
+        const std::string scene = folder + "/s.json";
+        std::ofstream(scene) << R"({"version": 1, "film": {"width": 32, "height": 24},
+            "cameras": [{"name": "c", "lookAt": {"eye": [0, 1, 4], "at": [0, 0, 0]}}],
+            "meshes": [{"name": "m", "role": "object", "file": ")" +
+                                    file + R"("}]})";
+        return "render " + scene + " -o " + folder + "/a.exr";
+    };
+    std::ofstream(folder + "/a.gltf") << "no glTF";
+    const CommandRun gltf = run_trilens(scene_with("a.gltf"));
+    check_one_message(gltf, 3, {"/meshes/0/file", "a.gltf", "not a readable glTF file", "line 1"});
+    CHECK(gltf.err.find("json.exception") == std::string::npos);
+
+    std::ofstream(folder + "/a.obj") << "mtllib .\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const CommandRun obj = run_trilens(scene_with("a.obj"));
+    CHECK(obj.exit_code == 0);
+    CHECK(obj.err.find("the material library '" + folder + "/.' is a folder") != std::string::npos);
+}

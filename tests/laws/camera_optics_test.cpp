@@ -218,8 +218,8 @@ TEST_CASE("an error that is asked for is kept before every camera, and most is p
         ++asked;
         CHECK(kept.p99 <= 0.25);
         CHECK(kept.p99 < 0.9 * loose.p99);
-        // In "several" the film folds where views fade into each other, and folds are traced.
-        CHECK(adaptive.traced_pixels < adaptive.optic_pixels / (name == "several" ? 3 : 4));
+        // Outlines are decided by the surface; in "several" the film folds where views fade into each other too.
+        CHECK(adaptive.traced_pixels < adaptive.optic_pixels / 3);
     }
     CHECK(asked >= 8);
 }
