@@ -15,6 +15,24 @@ target_compile_options(trilens_options INTERFACE
 target_link_options(trilens_options INTERFACE
   $<$<BOOL:${TRILENS_SANITIZE}>:-fsanitize=address,undefined>)
 
+# A room's units are compiled several together, which reads their headers once. What each calls its own (in an unnamed
+# namespace, or by #define) is therefore named once in a room; the compiler says where it is not. Apart: Highway's
+# kernels, which include themselves.
+option(TRILENS_UNITY "Compile a room's units together: faster as a whole, slower after a small change" ON)
+set(TRILENS_UNITY_BATCH 8 CACHE STRING "How many units of a room are compiled together; 0: all")
+function(trilens_unite target)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    file(STRINGS ${source} kernel REGEX "hwy/foreach_target\\.h" LIMIT_COUNT 1)
+    if(kernel)
+      set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${TRILENS_UNITY} UNITY_BUILD_BATCH_SIZE ${TRILENS_UNITY_BATCH})
+  # A type of one's own in a private class is warned of where it is included, as every unit now is.
+  target_compile_options(${target} PRIVATE $<$<AND:$<BOOL:${TRILENS_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
+endfunction()
+
 # The rooms' own headers, for the rooms and their tests.
 add_library(trilens_sources INTERFACE)
 target_include_directories(trilens_sources INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
@@ -36,6 +54,7 @@ function(trilens_room name folder)
     endif()
   endforeach()
   set_property(TARGET trilens_${name} PROPERTY TRILENS_DOORS "${ROOM_DOORS}")
+  trilens_unite(trilens_${name})
 endfunction()
 
 # trilens_library(TARGET ROOMS rooms... [ON target]): a shared library made of whole rooms. Only GLM is passed on, which
@@ -70,4 +89,5 @@ function(trilens_client name folder)
   foreach(room IN LISTS CLIENT_SEES)
     target_link_libraries(trilens_${name} PUBLIC trilens_${room})
   endforeach()
+  trilens_unite(trilens_${name})
 endfunction()

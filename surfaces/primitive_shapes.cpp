@@ -10,7 +10,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kHalfTurn = 3.14159265358979323846;
 
 /// Faces whose corners are numbered, so that equal corner pairs are one edge.
 std::vector<FaceBorder> borders_of(const std::vector<std::array<Id, 4>>& face_corners) {
@@ -31,11 +31,11 @@ struct Tangent {
     double value, first, second;
 };
 Tangent tangent(double u) {
-    const double x = std::tan(kPi / 4 * (2 * u - 1));
-    return {x, kPi / 2 * (1 + x * x), kPi * kPi / 2 * x * (1 + x * x)};
+    const double x = std::tan(kHalfTurn / 4 * (2 * u - 1));
+    return {x, kHalfTurn / 2 * (1 + x * x), kHalfTurn * kHalfTurn / 2 * x * (1 + x * x)};
 }
 double inverse_tangent(double value) {
-    return std::clamp(0.5 + 2 / kPi * std::atan(value), 0.0, 1.0);
+    return std::clamp(0.5 + 2 / kHalfTurn * std::atan(value), 0.0, 1.0);
 }
 
 /// A cube mapped onto the sphere; a face's parameters are angles seen from the centre.
@@ -178,7 +178,7 @@ class Paraboloid final : public PrimitiveShape {
     }
     Flat side(Id face, const Vec2& uv) const {
         const Tangent b = tangent(uv.y);
-        const double angle = kPi / 4 * (2 * uv.y - 1), speed = kPi / 2;
+        const double angle = kHalfTurn / 4 * (2 * uv.y - 1), speed = kHalfTurn / 2;
         const Vec2 in(inner_, inner_ * b.value), in_v(0, inner_ * b.first), in_vv(0, inner_ * b.second);
         const Vec2 out = rim_ * Vec2(std::cos(angle), std::sin(angle));
         const Vec2 out_v = speed * quarter_turns(out, 1), out_vv = -speed * speed * out;
@@ -202,7 +202,7 @@ class Cylinder final : public PrimitiveShape {
     FaceBorder border(Id face) const override { return borders_[face]; }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override {
-        const double angle = kPi / 2 * uv.x, speed = kPi / 2;
+        const double angle = kHalfTurn / 2 * uv.x, speed = kHalfTurn / 2;
         const Vec2 out = quarter_turns({std::cos(angle), std::sin(angle)}, face);
         SurfacePoint point;
         point.position = Vec3(radius_ * out, height_ * (uv.y - 0.5));
@@ -225,7 +225,7 @@ class Cylinder final : public PrimitiveShape {
         const Vec2 p(point);
         const Id face = p.y >= 0 ? (p.x > 0 ? 0 : 1) : (p.x <= 0 ? 2 : 3);
         const Vec2 q = quarter_turns(p, 4 - face);
-        return {face, {std::clamp(std::atan2(q.y, q.x) / (kPi / 2), 0.0, 1.0), v}};
+        return {face, {std::clamp(std::atan2(q.y, q.x) / (kHalfTurn / 2), 0.0, 1.0), v}};
     }
 
   private:

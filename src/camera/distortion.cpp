@@ -9,7 +9,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 class DistortionDisplay final : public CameraModel {
   public:
@@ -26,12 +26,12 @@ class DistortionDisplay final : public CameraModel {
         low_ = Vec2(x0 * film_.width, y0 * film_.height);
         high_ = Vec2(x1 * film_.width, y1 * film_.height);
         middle_ = 0.5 * (low_ + high_);
-        focal_ = 0.5 * (high_.y - low_.y) / std::tan(0.5 * from.yfov * kRadians);
-        context_ = 0.5 * from.context_fov * kRadians;
+        focal_ = 0.5 * (high_.y - low_.y) / std::tan(0.5 * from.yfov * kRadiansPerDegree);
+        context_ = 0.5 * from.context_fov * kRadiansPerDegree;
         const double corner = std::atan(0.5 * length(high_ - low_) / focal_);
         if (!(corner < context_))
             source.site.reject("contextFov", "must be more than the angle that the detail's corners see: " +
-                                                 std::to_string(2 * corner / kRadians) + " degrees");
+                                                 std::to_string(2 * corner / kRadiansPerDegree) + " degrees");
     }
 
     std::optional<Ray> ray(const Vec2& at) const override {

@@ -9,7 +9,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
+constexpr double kFisheyeRadians = std::numbers::pi / 180;
 
 /// Distance from the film's middle of what lies at `angle` from the axis, in focal lengths.
 double reach(FisheyeMapping mapping, double angle) {
@@ -57,7 +57,7 @@ class Fisheye final : public CameraModel {
                                           ? "an orthographic fisheye sees at most 180 degrees"
                                           : "a fisheye sees more than 0 and at most 360 degrees "
                                             "(stereographic: less)");
-        focal_ = circle_ / reach(mapping_, 0.5 * fov * kRadians);
+        focal_ = circle_ / reach(mapping_, 0.5 * fov * kFisheyeRadians);
     }
 
     std::optional<Ray> ray(const Vec2& at) const override {

@@ -8,7 +8,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kRounding = 1e-13;  // of the origins' size: they are one place
+constexpr double kOnePlace = 1e-13;  // of the origins' size: they are one place
 
 /// The rays between two planes: from = on the first, to_second - its way to the second; lengths along the
 /// planes are shares of the triangle's own size.
@@ -53,7 +53,7 @@ std::optional<TwoPlanes> between_planes(const std::array<Ray, 3>& rays, const Ve
     for (const Ray& ray : rays) largest = std::max(largest, length(ray.origin));
     const double apart = longest(planes.on_first), spread = longest(planes.way);
     const double reach = std::max(apart, length(from[0] - origin));
-    const double scale = reach > kRounding * largest ? reach : 0;
+    const double scale = reach > kOnePlace * largest ? reach : 0;
     if (scale == 0) planes.on_first = {};
     const double between = spread > tolerance && scale > 0 ? scale / spread : scale > 0 ? scale : 1;
     const double size = std::max(apart, spread * between);

@@ -8,7 +8,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
+constexpr double kLatitudeRadians = std::numbers::pi / 180;
 
 /// Branch 0 shows what lies between the sphere and its centre, branch 1 what lies beyond the centre.
 class InwardSphere final : public CameraModel {
@@ -18,8 +18,8 @@ class InwardSphere final : public CameraModel {
           radius_(source.from.radius),
           axes_(source.axes()),
           film_(source.film),
-          hfov_(source.from.hfov * kRadians),
-          vfov_(source.from.vfov * kRadians) {
+          hfov_(source.from.hfov * kLatitudeRadians),
+          vfov_(source.from.vfov * kLatitudeRadians) {
         if (!(radius_ > 0 && std::isfinite(radius_)))
             source.site.reject("radius", "must be a positive number");
         if (!is_finite_vector(center_)) source.site.reject("center", "is not finite");

@@ -8,7 +8,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
+constexpr double kShearRadians = std::numbers::pi / 180;
 constexpr double kLeastSine = 1e-9;  // angles below this are none
 
 class Pushbroom final : public CameraModel {
@@ -24,7 +24,7 @@ class Pushbroom final : public CameraModel {
         if (!is_finite_vector(travel_) ||
             !(std::fabs(dot(normalize_or_zero(travel_), axes_.right)) > kLeastSine))
             source.site.reject("travel", "has no part across the view: all columns see the same plane");
-        half_height_ = std::tan(0.5 * source.from.yfov * kRadians);
+        half_height_ = std::tan(0.5 * source.from.yfov * kShearRadians);
     }
     std::optional<Ray> ray(const Vec2& at) const override {
         const double height = (1 - 2 * at.y / film_.height) * half_height_;

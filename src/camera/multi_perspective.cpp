@@ -7,13 +7,13 @@
 namespace trilens {
 namespace {
 
-constexpr int kNewtonSteps = 15;
-constexpr double kAtRest = 1e-10;        // share of the film
+constexpr int kBlendSteps = 15;
+constexpr double kBlendAtRest = 1e-10;   // share of the film
 constexpr int kStartsAcross = 24;        // places across the film from which images are looked for
-constexpr int kStrips = 8;               // patches across a blend: there a point may be seen several times
+constexpr int kBlendStrips = 8;          // patches across a blend: there a point may be seen several times
 constexpr double kSame = 1e-7;           // share of the film: images nearer to each other are one
 constexpr double kCurvatureStep = 2e-4;  // share of the film, for second differences
-constexpr double kBeyond = 3;            // a patch of a blend goes on by so many of its sizes
+constexpr double kBeyondPatch = 3;       // a patch of a blend goes on by so many of its sizes
 
 struct View {
     ModelPointer model;
@@ -121,16 +121,16 @@ double MultiPerspective::ramp(Ramp kind, int axis, const View& view, double at) 
 }
 
 void MultiPerspective::make_cuts(int axis) {
-    const double size = axis == 0 ? film_.width : film_.height, step = blend_[axis] / kStrips;
+    const double size = axis == 0 ? film_.width : film_.height, step = blend_[axis] / kBlendStrips;
     std::vector<double> breaks, cuts;
     for (const View& view : views_)
         for (const double border : {view.low[axis], view.high[axis]}) {
             if (!(border > 1e-9 * size && border < (1 - 1e-9) * size)) continue;
-            for (int k = 0; k <= kStrips; ++k) {
-                const double at = border + (k - 0.5 * kStrips) * step;
+            for (int k = 0; k <= kBlendStrips; ++k) {
+                const double at = border + (k - 0.5 * kBlendStrips) * step;
                 if (!(at > 0 && at < size)) continue;
                 cuts.push_back(at);
-                if (k == 0 || k == kStrips) breaks.push_back(at);
+                if (k == 0 || k == kBlendStrips) breaks.push_back(at);
             }
         }
     for (std::vector<double>* list : {&breaks, &cuts}) {
@@ -305,7 +305,7 @@ std::optional<Vec2> MultiPerspective::beyond_fold(const Vec3& point, std::size_t
 std::optional<FilmImage> MultiPerspective::solve(const Vec3& point, std::size_t patch, Vec2 at) const {
     const Vec2 half = patches_[patch].half;
     const double step = 1e-5 * film_.width, reach = 2 * std::max(half.x, half.y);
-    for (int i = 0; i < kNewtonSteps; ++i) {
+    for (int i = 0; i < kBlendSteps; ++i) {
         const auto here = miss(point, patch, at), x1 = miss(point, patch, at + Vec2(step, 0)),
                    x0 = miss(point, patch, at - Vec2(step, 0)), y1 = miss(point, patch, at + Vec2(0, step)),
                    y0 = miss(point, patch, at - Vec2(0, step));
@@ -318,9 +318,9 @@ std::optional<FilmImage> MultiPerspective::solve(const Vec3& point, std::size_t 
         if (length(move) > reach) move *= reach / length(move);
         at += move;
         const Vec2 off = glm::abs(at - patches_[patch].middle);
-        if (!(off.x <= (1 + 2 * kBeyond) * half.x && off.y <= (1 + 2 * kBeyond) * half.y))
+        if (!(off.x <= (1 + 2 * kBeyondPatch) * half.x && off.y <= (1 + 2 * kBeyondPatch) * half.y))
             return std::nullopt;
-        if (length(move) > kAtRest * film_.width) continue;
+        if (length(move) > kBlendAtRest * film_.width) continue;
         const auto ray = ray_of_patch(patch, at);
         if (!ray) return std::nullopt;
         const Vec3 from = point - ray->origin;

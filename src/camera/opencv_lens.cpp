@@ -9,8 +9,8 @@ namespace trilens {
 namespace {
 
 constexpr int kWaypoints = 8;     // from the principal point to the place that is looked for
-constexpr int kNewtonSteps = 25;  // for each
-constexpr double kAtRest = 1e-14;
+constexpr int kLensSteps = 25;    // for each
+constexpr double kLensAtRest = 1e-14;
 
 std::array<double, 14> coefficients(const OpencvLens& lens) {
     std::array<double, 14> all{};
@@ -56,13 +56,13 @@ struct Distortion {
 
 /// The p with distorted(p) = q, reached from `start` by steps that keep the map's orientation.
 std::optional<Vec2> undistort(const Distortion& distorted, const Vec2& q, Vec2 start) {
-    for (int step = 0; step < kNewtonSteps; ++step) {
+    for (int step = 0; step < kLensSteps; ++step) {
         const Mat2 jacobian = distorted.jacobian(start);
         if (!(glm::determinant(jacobian) > 0)) return std::nullopt;
         const Vec2 by = glm::inverse(jacobian) * (q - distorted(start));
         start += by;
         if (!std::isfinite(start.x + start.y)) return std::nullopt;
-        if (length(by) <= kAtRest * (1 + length(start))) return start;
+        if (length(by) <= kLensAtRest * (1 + length(start))) return start;
     }
     // Rounding of the differences may keep the steps from vanishing.
     if (length(q - distorted(start)) > 1e-11 * (1 + length(q))) return std::nullopt;
@@ -104,7 +104,7 @@ std::optional<Vec3> unproject_fisheye(const OpencvLens& lens, const Vec2& q) {
         (off > 0 ? high : low) = angle;
         const double newton = angle - off / fisheye_slope(k, angle);
         const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
-        if (std::fabs(next - angle) <= kAtRest) break;
+        if (std::fabs(next - angle) <= kLensAtRest) break;
         angle = next;
     }
     return Vec3(std::sin(angle) / distance * q, std::cos(angle));

@@ -8,7 +8,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
+constexpr double kPanoramaRadians = std::numbers::pi / 180;
 
 /// What both share: longitude across the film.
 class Panorama : public CameraModel {
@@ -17,7 +17,7 @@ class Panorama : public CameraModel {
         : eye_(source.from.eye),
           axes_(source.axes()),
           film_(source.film),
-          hfov_(source.from.hfov * kRadians),
+          hfov_(source.from.hfov * kPanoramaRadians),
           focus_(source.focus()) {
         if (!(source.from.hfov > 0 && source.from.hfov <= 360))
             source.site.reject("hfov", "the angle must be more than 0 and at most 360 degrees");
@@ -43,7 +43,7 @@ class Cylindrical final : public Panorama {
     explicit Cylindrical(const ModelSource& source) : Panorama(source) {
         if (!(source.from.yfov > 0 && source.from.yfov < 180))
             source.site.reject("yfov", "the angle must lie between 0 and 180 degrees");
-        half_height_ = std::tan(0.5 * source.from.yfov * kRadians);
+        half_height_ = std::tan(0.5 * source.from.yfov * kPanoramaRadians);
     }
     std::optional<Ray> ray(const Vec2& at) const override {
         const double angle = longitude(at.x), height = (1 - 2 * at.y / film_.height) * half_height_;
@@ -63,7 +63,8 @@ class Cylindrical final : public Panorama {
 
 class Spherical final : public Panorama {
   public:
-    explicit Spherical(const ModelSource& source) : Panorama(source), vfov_(source.from.vfov * kRadians) {
+    explicit Spherical(const ModelSource& source)
+        : Panorama(source), vfov_(source.from.vfov * kPanoramaRadians) {
         if (!(source.from.vfov > 0 && source.from.vfov <= 180))
             source.site.reject("vfov", "the angle must be more than 0 and at most 180 degrees");
     }

@@ -13,14 +13,15 @@
 namespace trilens {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
-constexpr int kStrips = 16;  // of the arc, each a branch: points above the ground may be seen several times
+constexpr double kArcRadians = std::numbers::pi / 180;
+constexpr int kArcStrips =
+    16;  // of the arc, each a branch: points above the ground may be seen several times
 constexpr std::size_t kScan =
     24;                        // intervals of a strip and its surroundings in which an image is looked for
 constexpr int kHalvings = 60;  // of one of them
-constexpr double kBeyond = 2;  // a strip's formula goes on by so many of its sizes at both ends
+constexpr double kBeyondStrip = 2;  // a strip's formula goes on by so many of its sizes at both ends
 
-double cross2(const Vec2& a, const Vec2& b) {
+double turn_between(const Vec2& a, const Vec2& b) {
     return a.x * b.y - a.y * b.x;
 }
 
@@ -32,7 +33,7 @@ Vec2 turned_back(const Vec2& v, double angle) {
 
 /// Where a ray meets the bent ground; the branches are the flat piece, the tail and the strips of the arc.
 enum class Zone { kFlat, kArc, kTail };
-enum Branch : std::size_t { kFlatBranch, kTailBranch, kFirstStrip, kBranches = kFirstStrip + kStrips };
+enum Branch : std::size_t { kFlatBranch, kTailBranch, kFirstStrip, kBranches = kFirstStrip + kArcStrips };
 
 class PlanarContext final : public CameraModel {
   public:
@@ -45,8 +46,8 @@ class PlanarContext final : public CameraModel {
         const Met where = met(across(direction_at(at)));
         if (where.zone == Zone::kFlat) return branch == kFlatBranch;
         if (where.zone == Zone::kTail) return branch == kTailBranch;
-        const auto strip = static_cast<std::size_t>(where.beta / angle_ * kStrips);
-        return branch == kFirstStrip + std::min<std::size_t>(strip, kStrips - 1);
+        const auto strip = static_cast<std::size_t>(where.beta / angle_ * kArcStrips);
+        return branch == kFirstStrip + std::min<std::size_t>(strip, kArcStrips - 1);
     }
     std::vector<double> breaks_y() const override;
     double focus() const override { return focus_; }
@@ -83,7 +84,7 @@ class PlanarContext final : public CameraModel {
     }
     /// Across which the point lies from the ray that meets the arc at beta.
     double miss(const Vec2& point, double beta) const {
-        return cross2(point - flat_ground(beta), turned_back(bent_ground(beta) - eye_, beta));
+        return turn_between(point - flat_ground(beta), turned_back(bent_ground(beta) - eye_, beta));
     }
     double root_between(const Vec2& point, double from, double to) const;
     double nearest_miss(const Vec2& point, double from, double to) const;
@@ -103,7 +104,7 @@ PlanarContext::PlanarContext(const ModelSource& source)
     const CameraDescription& from = source.from;
     if (!(from.yfov > 0 && from.yfov < 180))
         source.site.reject("yfov", "the angle must lie between 0 and 180 degrees");
-    focal_ = 0.5 * film_.height / std::tan(0.5 * from.yfov * kRadians);
+    focal_ = 0.5 * film_.height / std::tan(0.5 * from.yfov * kArcRadians);
     normal_ = normalize_or_zero(from.ground_normal);
     if (normal_ == Vec3(0)) source.site.reject("ground", "its normal must not be zero");
     const double height = dot(from.eye - from.ground_point, normal_);
@@ -119,7 +120,7 @@ PlanarContext::PlanarContext(const ModelSource& source)
     foot_ = from.eye - height * normal_;
     eye_ = {0, height};
     bend_ = from.bend;
-    angle_ = from.angle * kRadians;
+    angle_ = from.angle * kArcRadians;
     radius_ = bend_ / angle_;
 }
 
@@ -173,8 +174,8 @@ double PlanarContext::nearest_miss(const Vec2& point, double from, double to) co
 /// All turns around the strip at which the ray through the arc meets the point, ahead along the ray and not
 /// behind the eye; two that are about to merge at a fold among them.
 std::vector<double> PlanarContext::betas_of(const Vec2& point, std::size_t strip) const {
-    const double size = angle_ / kStrips, middle = (static_cast<double>(strip) + 0.5) * size;
-    const double low = middle - (0.5 + kBeyond) * size, high = middle + (0.5 + kBeyond) * size;
+    const double size = angle_ / kArcStrips, middle = (static_cast<double>(strip) + 0.5) * size;
+    const double low = middle - (0.5 + kBeyondStrip) * size, high = middle + (0.5 + kBeyondStrip) * size;
     std::array<double, kScan + 1> beta, missed;
     for (std::size_t k = 0; k <= kScan; ++k) {
         beta[k] = low + (high - low) * static_cast<double>(k) / kScan;
@@ -213,7 +214,7 @@ std::optional<FilmImage> PlanarContext::image_at(const Vec3& point, double beta)
 std::optional<FilmImage> PlanarContext::place(const Vec3& point, std::size_t branch) const {
     if (branch < kFirstStrip) return image_at(point, branch == kTailBranch ? angle_ : 0);
     const std::size_t strip = branch - kFirstStrip;
-    const double middle = (static_cast<double>(strip) + 0.5) * angle_ / kStrips;
+    const double middle = (static_cast<double>(strip) + 0.5) * angle_ / kArcStrips;
     const std::vector<double> betas = betas_of(across(point - foot_), strip);
     const auto nearest = std::min_element(betas.begin(), betas.end(), [&](double a, double b) {
         return std::fabs(a - middle) < std::fabs(b - middle);

@@ -18,7 +18,7 @@ constexpr double kClearOfSphere = 0.01, kClearOfWay = 0.004;
 /// Sine of the angle between eye and point, seen from the centre, where the way between them leads through
 /// the sphere; and at zeros the least second derivatives of the path, per length of the sphere's radius.
 constexpr double kClearOfLine = 0.05, kClearOfSingular = 0.05;
-constexpr int kNewtonSteps = 6;
+constexpr int kSphereSteps = 6;
 
 /// In units of the sphere, from its centre.
 struct Pair {
@@ -70,7 +70,7 @@ HWY_INLINE Vector nearer(const Pair& pair, const Vector& normal) {
 }
 
 HWY_INLINE Vector zero_near(const Pair& pair, Vector normal) {
-    for (int step = 0; step < kNewtonSteps; ++step) normal = nearer(pair, normal);
+    for (int step = 0; step < kSphereSteps; ++step) normal = nearer(pair, normal);
     return normal;
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double kBorder = kCellBorder;
 /// A refined image this far from the zero of the law that it began at is another one.
 constexpr double kSameZero = 1e-6;
-constexpr int kNewtonSteps = 30;
+constexpr int kWalkSteps = 30;
 /// Undecided cells from which images are refined, evenly among them all.
 constexpr std::size_t kUndecidedStarts = 64;
 
@@ -24,7 +24,7 @@ constexpr double kClearOfBorder = 1e-9;
 /// Newton steps from a neighbour's zero: enough to tell the cells that hold the zero.
 constexpr int kNearSteps = 2;
 
-double largest(const Vec2& v) {
+double larger_part(const Vec2& v) {
     return std::max(std::fabs(v.x), std::fabs(v.y));
 }
 
@@ -53,7 +53,7 @@ bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& p
             surface_.domain(zero.face) == FaceDomain::kSquare || zero.uv.x + zero.uv.y <= 1;
         const auto image = is_there && is_inside ? refine_specular_point(surface_, zero, point, query_)
                                                  : refine_specular_point(surface_, zero, query_);
-        if (!image || largest(image->at.uv - zero.uv) > kSameZero) return false;
+        if (!image || larger_part(image->at.uv - zero.uv) > kSameZero) return false;
         result_.images.push_back(*image);
     }
     zeros_.push_back({zero, point, dot(path.bend, point.normal)});
@@ -68,15 +68,15 @@ SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoin
     SurfacePoint point = middle;
     SpecularPath path;
     Vec2 law(0);
-    for (int step = 0; step < kNewtonSteps; ++step) {
+    for (int step = 0; step < kWalkSteps; ++step) {
         point = point_at(box.face, uv);
         path = specular_path(query_, point.position);
         law = {dot(path.bend, point.du), dot(path.bend, point.dv)};
         const Vec2 next = uv - glm::inverse(path_hessian(query_, path, point)) * law;
         if (!std::isfinite(next.x + next.y)) return Verdict::kSplit;
         const Vec2 inside = glm::clamp(next, box.low, box.high);
-        const bool at_rest = largest(inside - uv) <= 0.1 * kBorder;
-        const bool is_zero = largest(next - uv) <= kBorder;
+        const bool at_rest = larger_part(inside - uv) <= 0.1 * kBorder;
+        const bool is_zero = larger_part(next - uv) <= kBorder;
         if (is_zero) {
             if (!in_domain(box.face, uv)) return Verdict::kEmpty;
             return add_image({box.face, uv}, point, path, true) ? Verdict::kSettled : Verdict::kSplit;
@@ -88,7 +88,7 @@ SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoin
     // From a place on the cell's border all zeros lie around the step there, within the contraction's share
     // of their distance; outward of the border there are none.
     const Vec2 step = -(newton.inverse * law), share = newton.spread / half;
-    const double contraction = largest(share), far = largest(step / half) / (1 - contraction);
+    const double contraction = larger_part(share), far = larger_part(step / half) / (1 - contraction);
     for (int axis = 0; axis < 2; ++axis) {
         const double out = uv[axis] >= box.high[axis]  ? step[axis]
                            : uv[axis] <= box.low[axis] ? -step[axis]
@@ -110,7 +110,7 @@ SpecularWalk::Verdict SpecularWalk::ask_newton(TreeNode& cell) {
     NewtonBounds newton = newton_bounds(tree_.terms_of(cell), query_.point, half);
     if (!newton.known) return Verdict::kSplit;
     if (leaves_cell(newton, half)) return Verdict::kEmpty;
-    share_ = largest(newton.spread / half);
+    share_ = larger_part(newton.spread / half);
     if (!(newton.spread.x <= kContraction * half.x && newton.spread.y <= kContraction * half.y))
         return Verdict::kSplit;
     step_with_care(query_, cell.bounds->middle, newton);

@@ -61,7 +61,7 @@ void check_clipped(ViewVolume volume, bool parallel) {
     if (!std::isfinite(volume.back)) CameraSite().reject("back", "a normalising matrix needs this plane");
 }
 
-Vec4 row_through(const Vec3& direction, const Vec3& origin) {
+Vec4 plane_row(const Vec3& direction, const Vec3& origin) {
     return {direction, -dot(direction, origin)};
 }
 
@@ -108,9 +108,9 @@ LinearCamera make_view_volume(const ViewVolume& volume, const FilmSize& film, co
     if (!volume.parallel) {
         // u on the view plane is prp.u + distance * (p - eye) . u / depth.
         camera.view_direction = forward;
-        camera.screen_x = row_through(x_per_u * distance * axes.u + x_of_prp * forward, camera.eye);
-        camera.screen_y = row_through(y_per_v * distance * axes.v + y_of_prp * forward, camera.eye);
-        camera.screen_w = row_through(forward, camera.eye);
+        camera.screen_x = plane_row(x_per_u * distance * axes.u + x_of_prp * forward, camera.eye);
+        camera.screen_y = plane_row(y_per_v * distance * axes.v + y_of_prp * forward, camera.eye);
+        camera.screen_w = plane_row(forward, camera.eye);
         return camera;
     }
     const Vec3 dop = direction_of_projection(volume) / distance;  // of unit depth
@@ -118,8 +118,8 @@ LinearCamera make_view_volume(const ViewVolume& volume, const FilmSize& film, co
     camera.view_direction = dop.x * axes.u + dop.y * axes.v + dop.z * axes.n;
     if (dop.x != 0 || dop.y != 0) camera.view_axis = forward;
     // A point at depth z from the prp is moved along the rays to the view plane, at `distance`.
-    camera.screen_x = row_through(x_per_u * (axes.u - dop.x * forward), camera.eye);
-    camera.screen_y = row_through(y_per_v * (axes.v - dop.y * forward), camera.eye);
+    camera.screen_x = plane_row(x_per_u * (axes.u - dop.x * forward), camera.eye);
+    camera.screen_y = plane_row(y_per_v * (axes.v - dop.y * forward), camera.eye);
     camera.screen_x.w += x_of_prp + x_per_u * dop.x * distance;
     camera.screen_y.w += y_of_prp + y_per_v * dop.y * distance;
     camera.screen_w = Vec4(0, 0, 0, 1);

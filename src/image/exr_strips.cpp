@@ -20,7 +20,7 @@
 namespace trilens {
 namespace {
 
-constexpr const char* kPrefix = "trilens:";
+constexpr const char* kOwnPrefix = "trilens:";
 
 /// Blocks on their way: enough for many threads, small beside a picture.
 constexpr std::size_t kMostBlocksTogether = 64;
@@ -54,7 +54,7 @@ void check_layout(const Image& image) {
     for (const Channel& channel : image.channels)
         TRILENS_CHECK(!channel.name.empty() && names.insert(channel.name).second, "channel names are unique");
     for (const auto& [name, text] : image.metadata)
-        TRILENS_CHECK(name.rfind(kPrefix, 0) == 0, "metadata names start with trilens:");
+        TRILENS_CHECK(name.rfind(kOwnPrefix, 0) == 0, "metadata names start with trilens:");
 }
 
 /// Where the library writes, and why it failed last.

@@ -19,7 +19,7 @@ namespace trilens {
 namespace {
 
 /// Deflate shrinks nothing more than this (RFC 1951): a header that claims more is damaged or hostile.
-constexpr std::size_t kLargestCompression = 1032;
+constexpr std::size_t kMostInflated = 1032;
 
 /// The length of a chunk is below 2^31 (5.3).
 constexpr std::size_t kMostInChunk = 0x7fffffff;
@@ -35,8 +35,7 @@ bool is_ordinary(std::span<const unsigned char> png) {
     const std::uint64_t width = read32(png.subspan(16)), height = read32(png.subspan(20));
     const unsigned char depth = png[24], interlaced = png[28];
     if (depth > 8 || interlaced) return false;
-    if (width > 1u << 24 || height > 1u << 24 ||
-        width * height * depth / 8 > kLargestCompression * png.size())
+    if (width > 1u << 24 || height > 1u << 24 || width * height * depth / 8 > kMostInflated * png.size())
         return false;
     for (std::size_t at = kHeader; png.size() - at >= 12;) {
         const std::size_t size = read32(png.subspan(at));

@@ -14,7 +14,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// A ray as Embree gets it: local frame, unit direction, started where it reaches the scene.
 struct LocalRay {
@@ -67,7 +67,7 @@ std::vector<std::vector<Id>> group_by_distance(std::span<const Box> boxes) {
 }
 
 LocalFrame make_frame(std::span<const Box> boxes, const std::vector<Id>& group) {
-    Vec3 low(kInfinity), high(-kInfinity);
+    Vec3 low(kNever), high(-kNever);
     for (const Id i : group) low = glm::min(low, boxes[i].low), high = glm::max(high, boxes[i].high);
     // Halves first: the sum of two large corners may overflow.
     const Vec3 half = 0.5 * high - 0.5 * low;

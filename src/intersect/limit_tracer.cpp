@@ -17,13 +17,13 @@
 namespace trilens {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kSelfHit = 1e-9;
 constexpr std::size_t kFacetsPerTask = 256, kRaysPerTask = 64;
 
 // How many times farther than at the samples the surface may stray from a facet. A quadratic patch strays 4/3
 // as far inside a facet as at the middles of its edges; the rest is for terms of higher order.
-constexpr double kStraySafety = 2;
+constexpr double kRayStraySafety = 2;
 
 // A patch that strays s from a facet of size h turns by about 4 s / h from its middle to its ends; the stray
 // kept is twice what was seen, and rays within twice that angle of the surface may meet the patch twice.
@@ -55,14 +55,14 @@ struct Candidate {
 /// Candidates from near to far, and up to which t_near all of them are there.
 struct Candidates {
     std::vector<Candidate> found;
-    double complete_to = kInfinity;
+    double complete_to = kUnbounded;
 };
 
 /// Which candidates are looked for: all, or those that may come before the first facet that the ray goes
 /// straight through, behind which it seldom goes on without a hit.
 enum class Reach { kToFirst, kAll };
 
-double largest(const Vec3& v) {
+double largest_part(const Vec3& v) {
     return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
 
@@ -86,7 +86,7 @@ Patch make_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t fa
         patch.size = std::max(patch.size, length(patch.corner[k] - patch.corner[(k + 1) % 3]));
         patch.reach = std::max({patch.reach, edge.x, edge.y});
     }
-    patch.stray = kStraySafety * patch.stray + kSurfaceResidual * largest(patch.corner[0]);
+    patch.stray = kRayStraySafety * patch.stray + kSurfaceResidual * largest_part(patch.corner[0]);
     return patch;
 }
 
@@ -99,7 +99,7 @@ Box box_of(const Patch& patch) {
 Box box_of_closed_form(const Surface& surface) {
     constexpr int kParts = 8;
     const std::unique_ptr<const SurfaceBounder> bounder = surface.make_bounder();
-    if (!bounder) return {Vec3(-kInfinity), Vec3(kInfinity)};
+    if (!bounder) return {Vec3(-kUnbounded), Vec3(kUnbounded)};
     Box box;
     for (Id face = 0; face < surface.face_count(); ++face) {
         for (int i = 0; i < kParts * kParts; ++i) {
@@ -145,10 +145,10 @@ struct LimitTracer::Data {
     static double largest_of(const std::vector<Patch>& patches) {
         double largest = 0;
         for (const Patch& patch : patches) largest = std::max(largest, patch.size + patch.stray);
-        return kStraySafety * largest;
+        return kRayStraySafety * largest;
     }
     static double half_diagonal(const Surface& surface) {
-        Vec3 low(kInfinity), high(-kInfinity);
+        Vec3 low(kUnbounded), high(-kUnbounded);
         for (Id face = 0; face < surface.face_count(); ++face) {
             for (const Vec2& uv : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1), Vec2(0.5, 0.5)}) {
                 const Vec3 p = surface.eval_first_order(face, uv).position;
@@ -214,7 +214,7 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
     double& complete_to = candidates.complete_to;
     // A ray comes into the box of a candidate no later than so much after its t_near.
     const double beyond = largest_patch / query.frame.speed;
-    tree.visit(query.ray, query.t_min, kInfinity, [&](Id index) {
+    tree.visit(query.ray, query.t_min, kUnbounded, [&](Id index) {
         const auto one = candidate(query.frame, index, query.t_min);
         if (one && one->t_near <= complete_to) {
             found.push_back(*one);
@@ -272,7 +272,7 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
     if (!frame) return std::nullopt;
 
     std::optional<SurfaceHit> first;
-    double tried = -kInfinity;
+    double tried = -kUnbounded;
     for (const Reach reach : {Reach::kToFirst, Reach::kAll}) {
         const Candidates candidates = data_->candidates({ray, *frame, t_min}, reach);
         for (const Candidate& candidate : candidates.found) {
@@ -286,7 +286,7 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
             });
         }
         tried = candidates.complete_to;
-        if (tried == kInfinity || (first && first->t <= tried)) break;
+        if (tried == kUnbounded || (first && first->t <= tried)) break;
     }
     return first;
 }

@@ -46,7 +46,7 @@ Vec2 curvatures(const SurfacePoint& at, const Vec3& normal) {
     return {mean + root, mean - root};
 }
 
-SurfacePatch make_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t facet) {
+SurfacePatch make_surface_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t facet) {
     SurfacePatch patch;
     for (std::size_t k = 0; k < 3; ++k)
         patch.corner[k] = grid.points[grid.corner_point[grid.facets[facet][k]]];
@@ -92,7 +92,7 @@ Edge edge_of(const IdTriple& corners, std::size_t k) {
 
 PatchTree::PatchTree(const Surface& surface, const SurfaceGrid& grid) : patches_(grid.facets.size()) {
     parallel_for(patches_.size(), kPatchesPerTask, [&](std::size_t from, std::size_t to) {
-        for (std::size_t f = from; f < to; ++f) patches_[f] = make_patch(surface, grid, f);
+        for (std::size_t f = from; f < to; ++f) patches_[f] = make_surface_patch(surface, grid, f);
     });
     add_rims(grid);
     set_shape(grid);

@@ -11,14 +11,14 @@
 namespace trilens {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 float rounded_down(double x) {
-    return std::nextafter(static_cast<float>(x), -kInfinity);
+    return std::nextafter(static_cast<float>(x), -kUnbounded);
 }
 float rounded_up(double x) {
-    return std::nextafter(static_cast<float>(x), kInfinity);
+    return std::nextafter(static_cast<float>(x), kUnbounded);
 }
 
 double along(const float (&direction)[3], const Vec3& p) {
@@ -67,12 +67,12 @@ struct GrowingReach {
     }
     void round() const {
         for (int k = 0; k < 3; ++k) {
-            reach.low[k] = any ? rounded_down(box.low[k]) : kInfinity;
-            reach.high[k] = any ? rounded_up(box.high[k]) : -kInfinity;
+            reach.low[k] = any ? rounded_down(box.low[k]) : kUnbounded;
+            reach.high[k] = any ? rounded_up(box.high[k]) : -kUnbounded;
         }
         for (std::size_t k = 0; k < 2; ++k) {
-            reach.slabs[k].low = any ? rounded_down(low[k]) : kInfinity;
-            reach.slabs[k].high = any ? rounded_up(high[k]) : -kInfinity;
+            reach.slabs[k].low = any ? rounded_down(low[k]) : kUnbounded;
+            reach.slabs[k].high = any ? rounded_up(high[k]) : -kUnbounded;
         }
     }
 };

@@ -9,7 +9,7 @@
 namespace trilens {
 namespace {
 
-constexpr int kReach = 3;  // of the 7 x 7 window
+constexpr int kWindowReach = 3;  // of the 7 x 7 window
 
 /// Shifts below this are never another image: the bound of the test at a median of zero.
 constexpr double kLeast = kOtherImage * 0.5;
@@ -19,8 +19,9 @@ bool is_jump(const Displacement& displacement, std::span<const double> size, int
     const int height = static_cast<int>(size.size()) / width;
     const int column = static_cast<int>(pixel) % width, row = static_cast<int>(pixel) / width;
     std::size_t around = 0, small = 0;
-    for (int y = std::max(0, row - kReach); y <= std::min(height - 1, row + kReach); ++y) {
-        for (int x = std::max(0, column - kReach); x <= std::min(width - 1, column + kReach); ++x) {
+    for (int y = std::max(0, row - kWindowReach); y <= std::min(height - 1, row + kWindowReach); ++y) {
+        for (int x = std::max(0, column - kWindowReach); x <= std::min(width - 1, column + kWindowReach);
+             ++x) {
             const std::size_t i =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
             const bool is_found = i != pixel && displacement.state[i] == Shift::kFound;

@@ -11,7 +11,7 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 16;
+constexpr std::size_t kRowsPerTask = 16;
 
 Plane same_size(const Plane& plane) {
     return {plane.width, plane.height, std::vector<double>(plane.values.size(), 0.0)};
@@ -19,7 +19,7 @@ Plane same_size(const Plane& plane) {
 
 /// Calls body(y) for every row, on any thread.
 void for_rows(const Plane& plane, const std::function<void(int y)>& body) {
-    parallel_for(static_cast<std::size_t>(plane.height), kRowsAtOnce,
+    parallel_for(static_cast<std::size_t>(plane.height), kRowsPerTask,
                  [&](std::size_t first, std::size_t last) {
                      for (std::size_t y = first; y < last; ++y) body(static_cast<int>(y));
                  });

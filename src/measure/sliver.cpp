@@ -9,7 +9,7 @@ namespace trilens {
 namespace {
 
 /// A row or column of pixels; pixel 0 is the one that asks.
-struct Line {
+struct EdgeLine {
     const SeenField& field;
     int column, row;
     bool is_row;
@@ -28,7 +28,7 @@ struct Parabola {
     Vec3 start, slope, bend;
 };
 
-std::optional<Parabola> parabola_at(const Line& line, int k, const Vec3& point) {
+std::optional<Parabola> parabola_at(const EdgeLine& line, int k, const Vec3& point) {
     const bool before = line.is_linked(k - 1), after = line.is_linked(k);
     const Vec3 start = line.point(k) - point;
     if (before && after) {
@@ -62,7 +62,7 @@ bool lies_on(const Parabola& near, double s, const Vec3& point) {
 }
 
 /// Walks from pixel to pixel, one way only, to the one nearest to the point.
-std::optional<double> find_on_line(const Line& line, const Vec3& point) {
+std::optional<double> find_on_line(const EdgeLine& line, const Vec3& point) {
     int way = 0;
     for (int k = 0;;) {
         const std::optional<Parabola> near = parabola_at(line, k, point);

@@ -12,16 +12,16 @@
 namespace trilens {
 namespace {
 
-constexpr int kReach = 5;  // an 11 x 11 window
+constexpr int kGaussReach = 5;  // an 11 x 11 window
 constexpr double kSigma = 1.5, kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
 
 /// Sums of weight, a, b, a a, b b, a b under a window.
 using Moments = std::array<double, 6>;
 
-std::array<double, 2 * kReach + 1> window_weights() {
-    std::array<double, 2 * kReach + 1> weights{};
-    for (int i = -kReach; i <= kReach; ++i)
-        weights[static_cast<std::size_t>(i + kReach)] = std::exp(-0.5 * i * i / (kSigma * kSigma));
+std::array<double, 2 * kGaussReach + 1> window_weights() {
+    std::array<double, 2 * kGaussReach + 1> weights{};
+    for (int i = -kGaussReach; i <= kGaussReach; ++i)
+        weights[static_cast<std::size_t>(i + kGaussReach)] = std::exp(-0.5 * i * i / (kSigma * kSigma));
     return weights;
 }
 
@@ -42,10 +42,10 @@ struct Differing {
             while (first < last && is_same(first)) ++first;
             if (first == last) continue;
             while (is_same(last - 1)) --last;
-            x0 = std::min(x0, first - kReach);
-            x1 = std::max(x1, last + kReach);
-            y0 = std::min(y0, y - kReach);
-            y1 = y + 1 + kReach;
+            x0 = std::min(x0, first - kGaussReach);
+            x1 = std::max(x1, last + kGaussReach);
+            y0 = std::min(y0, y - kGaussReach);
+            y1 = y + 1 + kGaussReach;
         }
     }
     bool holds(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
@@ -54,7 +54,7 @@ struct Differing {
 struct Filter {
     const GreyPicture &a, &b;
     const Differing& differing;
-    std::array<double, 2 * kReach + 1> weights = window_weights();
+    std::array<double, 2 * kGaussReach + 1> weights = window_weights();
 
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) + static_cast<std::size_t>(x);
@@ -63,12 +63,13 @@ struct Filter {
     /// The window's horizontal half, for all pixels of a row.
     void filter_row(int y, std::vector<Moments>& row) const {
         row.assign(static_cast<std::size_t>(a.width), Moments{});
-        for (int x = std::max(0, differing.x0 - kReach); x < std::min(a.width, differing.x1 + kReach); ++x) {
+        for (int x = std::max(0, differing.x0 - kGaussReach);
+             x < std::min(a.width, differing.x1 + kGaussReach); ++x) {
             const double p = a.values[index(x, y)], q = b.values[index(x, y)];
             if (!std::isfinite(p) || !std::isfinite(q)) continue;
             const Moments here = {1, p, q, p * p, q * q, p * q};
-            for (int to = std::max(0, x - kReach); to <= std::min(a.width - 1, x + kReach); ++to) {
-                const double weight = weights[static_cast<std::size_t>(to - x + kReach)];
+            for (int to = std::max(0, x - kGaussReach); to <= std::min(a.width - 1, x + kGaussReach); ++to) {
+                const double weight = weights[static_cast<std::size_t>(to - x + kGaussReach)];
                 for (std::size_t m = 0; m < 6; ++m) row[static_cast<std::size_t>(to)][m] += weight * here[m];
             }
         }
@@ -90,11 +91,11 @@ struct RowSum {
 /// Rows [first, last): each horizontally filtered row is made once and kept while windows reach it.
 void measure_rows(const Filter& filter, std::span<const std::uint8_t> counted, int first, int last,
                   std::vector<RowSum>& sums) {
-    constexpr int kKept = 2 * kReach + 1;
+    constexpr int kKept = 2 * kGaussReach + 1;
     std::array<std::vector<Moments>, kKept> kept;
-    int made = std::max(0, first - kReach);
+    int made = std::max(0, first - kGaussReach);
     for (int y = first; y < last; ++y) {
-        const int top = std::max(0, y - kReach), bottom = std::min(filter.a.height - 1, y + kReach);
+        const int top = std::max(0, y - kGaussReach), bottom = std::min(filter.a.height - 1, y + kGaussReach);
         const bool is_asked = y >= filter.differing.y0 && y < filter.differing.y1;
         if (is_asked) made = std::max(made, top);
         for (; is_asked && made <= bottom; ++made)
@@ -110,7 +111,7 @@ void measure_rows(const Filter& filter, std::span<const std::uint8_t> counted, i
             }
             Moments total{};
             for (int row = top; row <= bottom; ++row) {
-                const double weight = filter.weights[static_cast<std::size_t>(row - y + kReach)];
+                const double weight = filter.weights[static_cast<std::size_t>(row - y + kGaussReach)];
                 const Moments& part =
                     kept[static_cast<std::size_t>(row % kKept)][static_cast<std::size_t>(x)];
                 for (std::size_t m = 0; m < 6; ++m) total[m] += weight * part[m];

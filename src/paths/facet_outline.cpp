@@ -10,8 +10,8 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kCornersPerTask = 64;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kOutlinesPerTask = 64;
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -75,7 +75,7 @@ OpticPaths::OpticPaths(Looking looking, const FilmWindow& window, DivideParams p
     outline_.rays.resize(corners);
     outline_.screen.resize(corners);
     corner_looks_.resize(2 * corners);
-    parallel_for(corners, kCornersPerTask, [&](std::size_t from, std::size_t to) {
+    parallel_for(corners, kOutlinesPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t c = from; c < to; ++c) {
             const Vec2 share(static_cast<double>(c % side) / n, static_cast<double>(c / side) / n);
             set_film_corner(static_cast<Id>(c), window.low + share * (window.high - window.low));
@@ -127,7 +127,7 @@ OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
         node.ends.assign(facets, 1);
         node.principal.assign(facets, 1);
         node.touches.assign(facets, 0);
-        node.next.assign(mesh.rays.size(), kInfinity);
+        node.next.assign(mesh.rays.size(), kUnbounded);
         node.weight.assign(mesh.rays.size(), Vec3(1));
         return node;
     };

@@ -15,7 +15,7 @@ constexpr std::size_t kMostSteps = 256;
 /// So often looks go on where an optic lies on an object.
 constexpr int kMostRests = 2;
 
-double largest(const Vec3& v) {
+double largest_weight(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
@@ -83,7 +83,7 @@ void Follower::start(const PathStart& from) {
 
 void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
     const std::vector<Branch> ways = branches(world_, next.meeting, from.branch.media, from.branch.colours);
-    if (ways.empty()) followed_.cut.lost += largest(from.first_weight * from.weight);
+    if (ways.empty()) followed_.cut.lost += largest_weight(from.first_weight * from.weight);
     const PathSegment& parent = followed_.segments[segment];
     Vec3 arrived = from.weight;
     if (parent.medium != kNone)
@@ -106,8 +106,8 @@ void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
 
 void Follower::run(const Pending& from) {
     const Vec3 light = from.first_weight * from.weight;
-    if (!from.principal && largest(light) < params_.least_weight) {
-        followed_.cut.faint += largest(light);
+    if (!from.principal && largest_weight(light) < params_.least_weight) {
+        followed_.cut.faint += largest_weight(light);
         return;
     }
     PathSegment segment;
@@ -141,7 +141,7 @@ void Follower::run(const Pending& from) {
     if (rests) segment.rest = next->distance;
     if (rests && from.rested >= kMostRests) next.reset();
     if (next && (from.depth >= world_.max_depth || from.steps >= kMostSteps)) {
-        followed_.cut.too_deep += largest(light);
+        followed_.cut.too_deep += largest_weight(light);
         if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
         next.reset();
     }

@@ -7,11 +7,11 @@
 namespace trilens {
 namespace {
 
-constexpr double kStep = 1e-3;          // pixels, for differences
+constexpr double kPixelStep = 1e-3;     // pixels, for differences
 constexpr double kFarthest = 64;        // pixels that one step may go
-constexpr double kDone = 1e-10;         // pixels: a step below this ends the search
+constexpr double kPixelsDone = 1e-10;   // pixels: a step below this ends the search
 constexpr double kMostResidual = 1e-7;  // of the distance to the point: more is no image
-constexpr int kMostSteps = 40, kMostHalvings = 12;
+constexpr int kMostWalks = 40, kMostShorter = 12;
 
 /// The path from one film position.
 struct Exit {
@@ -67,13 +67,13 @@ std::optional<Linear> linearised(const HistoryQuery& query, const Vec2& pixel, c
     linear.axis[1] = cross(u, linear.axis[0]);
     for (int k = 0; k < 2; ++k) {
         Vec2 step(0);
-        step[k] = kStep;
+        step[k] = kPixelStep;
         const std::optional<Exit> after = exit_at(query, pixel + step), before = exit_at(query, pixel - step);
         if (!after && !before) return std::nullopt;
         const Vec3 change = after && before
-                                ? (miss(*after, query.point) - miss(*before, query.point)) / (2 * kStep)
-                            : after ? (miss(*after, query.point) - miss(exit, query.point)) / kStep
-                                    : (miss(exit, query.point) - miss(*before, query.point)) / kStep;
+                                ? (miss(*after, query.point) - miss(*before, query.point)) / (2 * kPixelStep)
+                            : after ? (miss(*after, query.point) - miss(exit, query.point)) / kPixelStep
+                                    : (miss(exit, query.point) - miss(*before, query.point)) / kPixelStep;
         for (int axis = 0; axis < 2; ++axis) linear.jacobian[axis][k] = dot(linear.axis[axis], change);
     }
     if (!(std::fabs(linear.determinant()) > 0)) return std::nullopt;
@@ -87,7 +87,7 @@ std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, cons
     std::optional<Exit> exit = exit_at(query, pixel);
     if (!exit) return std::nullopt;
     double size = length(miss(*exit, query.point));
-    for (int i = 0; i < kMostSteps; ++i) {
+    for (int i = 0; i < kMostWalks; ++i) {
         const std::optional<Linear> linear = linearised(query, pixel, *exit);
         if (!linear) return std::nullopt;
         const Vec3 by = miss(*exit, query.point);
@@ -98,7 +98,7 @@ std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, cons
 
         // Halved until the ray comes nearer to the point.
         bool nearer = false;
-        for (int h = 0; h < kMostHalvings && !nearer; ++h, step *= 0.5) {
+        for (int h = 0; h < kMostShorter && !nearer; ++h, step *= 0.5) {
             const std::optional<Exit> next = exit_at(query, pixel + step);
             if (!next) continue;
             const double next_size = length(miss(*next, query.point));
@@ -108,7 +108,7 @@ std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, cons
             size = next_size;
             nearer = true;
         }
-        if (!nearer || length(step) < kDone) break;
+        if (!nearer || length(step) < kPixelsDone) break;
     }
 
     HistoryImage image;

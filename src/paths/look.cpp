@@ -66,11 +66,11 @@ Place beside(const Surface& surface, const Place& place, int axis) {
 }
 
 /// Where the camera's ray through the film there meets the surface first within reach, on the side asked for.
-struct Arrival {
+struct PlaceSeen {
     Place place;
     Ray ray;  // of the camera, as PathCamera has it
 };
-std::optional<Arrival> arrival(const Looking& looking, const Chord& chord, LookSide side) {
+std::optional<PlaceSeen> arrival(const Looking& looking, const Chord& chord, LookSide side) {
     const Ray to_chord = looking.camera.ray(chord.screen, chord.point);
     const Vec3 along = normalize_or_zero(to_chord.direction);
     const double back =
@@ -88,7 +88,7 @@ std::optional<Arrival> arrival(const Looking& looking, const Chord& chord, LookS
         from = hit->t + 1e-9 * chord.reach;
         const bool front = dot(along, hit->point.normal) < 0;
         if (side != LookSide::kNearest && front != (side == LookSide::kFront)) continue;
-        return Arrival{{hit->face, hit->uv, hit->point.position, hit->point.normal}, to_chord};
+        return PlaceSeen{{hit->face, hit->uv, hit->point.position, hit->point.normal}, to_chord};
     }
     return std::nullopt;
 }
@@ -115,7 +115,7 @@ std::optional<Beside> beside_on_film(const Looking& looking, const Look& look, i
         Vec2 step(0);
         step[axis] = size;
         const Chord chord{look.screen + Vec3(step, 0), look.place.point, kFilmReach * length(look.incident)};
-        const std::optional<Arrival> there = arrival(looking, chord, side);
+        const std::optional<PlaceSeen> there = arrival(looking, chord, side);
         if (!there) continue;
         const Vec3 incident = there->place.point - there->ray.origin;
         return Beside{there->place, there->place.point - (look.place.point - look.incident), step,
@@ -139,7 +139,7 @@ Look look_at(const Looking& looking, const Place& place, const LookParams& param
 }
 
 Look look_through(const Looking& looking, const Chord& chord, const LookParams& params) {
-    const std::optional<Arrival> there = arrival(looking, chord, params.side);
+    const std::optional<PlaceSeen> there = arrival(looking, chord, params.side);
     Look look;
     if (there) {
         // As long as the way to the surface itself.

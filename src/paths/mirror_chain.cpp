@@ -11,11 +11,11 @@
 namespace trilens {
 namespace {
 
-constexpr double kStep = 1e-5;     // of a face's parameters, for the normal's differences
-constexpr double kDone = 1e-11;    // of the way to the point: a miss below this is none
+constexpr double kFaceStep = 1e-5;  // of a face's parameters, for the normal's differences
+constexpr double kWayDone = 1e-11;  // of the way to the point: a miss below this is none
 constexpr double kMostTurn = 0.2;  // radians that one step may go
 constexpr double kBehind = -1e-9;  // of the way: a point on the last mirror itself counts as before it
-constexpr int kMostSteps = 16, kMostHalvings = 4;
+constexpr int kMostNewtonSteps = 16, kMostHalvings = 4;
 
 Vec3 perpendicular(const Vec3& unit) {
     return normalize(cross(unit, std::fabs(unit.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
@@ -43,7 +43,7 @@ std::array<Vec3, 2> normal_along(const ChainMirror& mirror, const SurfaceHit& hi
     std::array<Vec3, 2> along{};
     for (int axis = 0; axis < 2; ++axis) {
         const double most = surface.domain(hit.face) == FaceDomain::kTriangle ? 1 - hit.uv[1 - axis] : 1.0;
-        const double step = hit.uv[axis] + kStep > most ? -kStep : kStep;
+        const double step = hit.uv[axis] + kFaceStep > most ? -kFaceStep : kFaceStep;
         Vec2 uv = hit.uv;
         uv[axis] += step;
         along[static_cast<std::size_t>(axis)] =
@@ -137,7 +137,7 @@ std::optional<ChainRay> image_over(const MirrorChain& chain, const Vec3& point, 
     if (!at) return std::nullopt;
     double miss = length(miss_of(*at, point));
     const auto whole_way = [&] { return at->way + length(point - at->ray.origin); };
-    for (int i = 0; i < kMostSteps && miss > kDone * whole_way(); ++i) {
+    for (int i = 0; i < kMostNewtonSteps && miss > kWayDone * whole_way(); ++i) {
         std::optional<Vec2> step = step_against(*at, point);
         if (!step) return std::nullopt;
         bool nearer = false;
@@ -154,7 +154,7 @@ std::optional<ChainRay> image_over(const MirrorChain& chain, const Vec3& point, 
         if (!nearer) break;
     }
     // Rounding ends the search where a bundle is stretched.
-    if (!(miss <= 1e3 * kDone * whole_way())) return std::nullopt;
+    if (!(miss <= 1e3 * kWayDone * whole_way())) return std::nullopt;
     if (dot(point - at->ray.origin, at->ray.direction) < kBehind * whole_way()) return std::nullopt;
     return at;
 }

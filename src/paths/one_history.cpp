@@ -12,13 +12,13 @@
 namespace trilens {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 /// How far the weight of a path may lie from what its corners' are blended to.
 constexpr double kWeightError = 1.0 / 32;
 /// Of an optic's size: what touches.
 constexpr double kTouch = 1e-8;
 
-double largest(const Vec3& v) {
+double largest_of(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
@@ -77,7 +77,7 @@ struct Flight {
     bool rests = false;          // or ends there, on an object
     Id to = kNone;               // which one; kNone: not known
     Beam::Plane start{}, end{};  // `end` where it arrives
-    double far = kInfinity;      // along the axis: the farthest place where it arrives
+    double far = kEndless;       // along the axis: the farthest place where it arrives
 };
 
 /// Whether direction . normal has one sign for all rays of the beam on the patch: 1, -1, or 0 where it has
@@ -90,7 +90,7 @@ int side_of(const Beam& beam, const SurfacePatch& patch) {
 
 /// Lowest and highest of a piece over a plane.
 Interval heights(const Beam::Plane& plane, const Beam::Piece& piece) {
-    Interval found{kInfinity, -kInfinity};
+    Interval found{kEndless, -kEndless};
     const double room = piece.stray * length(plane.slope);
     for (const Vec3& corner : piece.corner) {
         const double height = plane.height(corner);
@@ -132,7 +132,7 @@ bool Prover::has_one_refraction(const Stretch& stretch) const {
 bool Prover::has_one_weight(const Stretch& stretch) const {
     if (!stretch.corner[0] || !stretch.corner[1] || !stretch.corner[2]) return true;
     const auto is_off = [&](const PathSegment* inside, const Vec3& blended) {
-        return inside && largest(glm::abs(inside->weight - blended)) > kWeightError;
+        return inside && largest_of(glm::abs(inside->weight - blended)) > kWeightError;
     };
     const Vec3 &a = stretch.corner[0]->weight, &b = stretch.corner[1]->weight, &c = stretch.corner[2]->weight;
     return !is_off(stretch.middle[0], 0.5 * (b + c)) && !is_off(stretch.middle[1], 0.5 * (c + a)) &&
@@ -288,7 +288,7 @@ bool Prover::prove() {
         hidden[h] = is_hidden || rests(stretch);
         if (is_hidden) continue;
         double light = 0;
-        stretch.for_all([&](const PathSegment& one) { light = std::max(light, largest(one.weight)); });
+        stretch.for_all([&](const PathSegment& one) { light = std::max(light, largest_of(one.weight)); });
         if (!history.principal && light <= kMuchLight * kLeastWeight) continue;
         if (!has_one_refraction(stretch) || !has_one_weight(stretch)) return false;
         if (history.depth < world_.max_depth && !is_clear(h, stretch)) return false;

@@ -7,7 +7,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoError = std::numeric_limits<double>::infinity();
 
 Vec3 across(const Vec3& v, const Vec3& unit) {
     return v - dot(v, unit) * unit;
@@ -23,7 +23,7 @@ std::optional<Vec2> in_parts(const Vec3& miss, const Vec3& a, const Vec3& b) {
 
 double length_of(const Vec2& shift) {
     const double pixels = length(shift);
-    return std::isfinite(pixels) ? pixels : kInfinity;
+    return std::isfinite(pixels) ? pixels : kNoError;
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ double predicted_displacement(const PredictedRay& predicted) {
     const Ray& truth = exact.ray;
     const std::vector<Beside>& side = predicted.look.beside;
     if (side.size() != 2 || !side[0].segments[predicted.segment] || !side[1].segments[predicted.segment])
-        return kInfinity;
+        return kNoError;
 
     // Where the exact rays are, at the distance of what is seen; in the environment, where they point.
     const bool meets = predicted.hit.seen();
@@ -49,7 +49,7 @@ double predicted_displacement(const PredictedRay& predicted) {
     const Vec3 b = across(reached(side[1].segments[predicted.segment]->ray) - here, truth.direction);
 
     const std::optional<Vec2> steps = in_parts(miss, a, b);
-    if (!steps) return miss == Vec3(0) ? 0 : kInfinity;
+    if (!steps) return miss == Vec3(0) ? 0 : kNoError;
     return length_of(steps->x * side[0].step + steps->y * side[1].step);
 }
 
@@ -73,7 +73,7 @@ double estimated_displacement(const EstimatedRay& estimated) {
     };
     const Vec3 miss = across(seen - here, exact.direction);
     const std::optional<Vec2> steps = in_parts(miss, moves(1), moves(2));
-    if (!steps) return miss == Vec3(0) ? 0 : kInfinity;
+    if (!steps) return miss == Vec3(0) ? 0 : kNoError;
 
     Vec3 screen(0);
     for (std::size_t k = 0; k < 3; ++k)

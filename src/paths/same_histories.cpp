@@ -5,7 +5,7 @@
 namespace trilens {
 namespace {
 
-double largest(const Vec3& v) {
+double largest_channel(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
@@ -40,7 +40,8 @@ std::vector<std::size_t> matched(const std::vector<PathSegment>& histories,
 bool covers(const std::vector<std::size_t>& match, const std::vector<PathSegment>& segments) {
     for (std::size_t i = 0; i < segments.size(); ++i) {
         if (std::find(match.begin(), match.end(), i) != match.end()) continue;
-        if (segments[i].principal || largest(segments[i].weight) > kMuchLight * kLeastWeight) return false;
+        if (segments[i].principal || largest_channel(segments[i].weight) > kMuchLight * kLeastWeight)
+            return false;
     }
     return true;
 }

@@ -15,7 +15,7 @@ constexpr double kPlainArea = 2;      // square pixels: see DivideParams
 constexpr double kOutlineShare = 1.0 / 8;
 constexpr double kLeastOutline = 0.02;  // pixels
 
-Vec2 pixel_of(const Vec3& screen) {
+Vec2 film_pixel(const Vec3& screen) {
     return Vec2(screen.x, screen.y) / screen.z;
 }
 
@@ -180,7 +180,7 @@ PathCamera SeenLayer::make_camera() const {
     };
     camera.ray = [this](const Vec3& screen, const Vec3& chord) {
         if (!(screen.z > 0)) return Ray{};
-        const Vec3 at = stage_.camera.point(Vec3(pixel_of(screen), 1));
+        const Vec3 at = stage_.camera.point(Vec3(film_pixel(screen), 1));
         const std::optional<ChainRay> over = chain_ray(mirrors_, at - stage_.eye);
         if (!over) return Ray{};
         const double far = dot(chord - over->ray.origin, over->ray.direction);

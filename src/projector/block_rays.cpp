@@ -23,11 +23,11 @@ Rectangle bounding_rectangle(std::span<const Vec2> positions, double least) {
     return {(lo + hi) * 0.5, glm::max((hi - lo) * 0.5, Vec2(least))};
 }
 
-double size_of(double v) {
+double size_of_part(double v) {
     return std::fabs(v);
 }
 
-double size_of(const Vec3& v) {
+double size_of_part(const Vec3& v) {
     return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
 }
 
@@ -36,8 +36,8 @@ double size_of(const Vec3& v) {
 template <typename T>
 double move_to(const std::array<T, 3>& c, const Vec2& from, const Vec2& half, std::array<T, 3>& moved) {
     moved = {c[0] + from.x * c[1] + from.y * c[2], half.x * c[1], half.y * c[2]};
-    return size_of(c[0]) + (std::fabs(from.x) + half.x) * size_of(c[1]) +
-           (std::fabs(from.y) + half.y) * size_of(c[2]);
+    return size_of_part(c[0]) + (std::fabs(from.x) + half.x) * size_of_part(c[1]) +
+           (std::fabs(from.y) + half.y) * size_of_part(c[2]);
 }
 
 }  // namespace

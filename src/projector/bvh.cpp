@@ -73,7 +73,7 @@ struct Item {
 };
 
 /// Items first .. first + count - 1 and the bounds of their centres.
-struct Range {
+struct NodeRange {
     std::size_t first = 0, count = 0;
     Bounds centres;
 };
@@ -83,7 +83,7 @@ struct Binning {
     Four low, scale;
     std::size_t bins = kMostBins;
 
-    explicit Binning(const Range& range)
+    explicit Binning(const NodeRange& range)
         : low(range.centres.low), bins(range.count <= kFewItems ? kFewBins : kMostBins) {
         for (std::size_t k = 0; k < 3; ++k) {
             const float extent = range.centres.high.v[k] - low.v[k];
@@ -110,7 +110,7 @@ struct Bin {
 
 using Bins = std::array<std::array<Bin, kMostBins>, 3>;
 
-Bins fill_bins(const std::vector<Item>& items, const Range& range, const Binning& binning) {
+Bins fill_bins(const std::vector<Item>& items, const NodeRange& range, const Binning& binning) {
     Bins bins;
     for (std::size_t i = range.first; i < range.first + range.count; ++i) {
         const Four centre = items[i].centre();
@@ -155,9 +155,9 @@ bool choose_cut(const Bins& bins, const Binning& binning, std::size_t count, Cut
 }
 
 /// Reorders the items of a range by the cut; both sides get at least one.
-std::pair<Range, Range> split(std::vector<Item>& items, const Range& range, const Binning& binning,
-                              const Cut& cut) {
-    Range left{range.first, 0, {}}, right;
+std::pair<NodeRange, NodeRange> split(std::vector<Item>& items, const NodeRange& range,
+                                      const Binning& binning, const Cut& cut) {
+    NodeRange left{range.first, 0, {}}, right;
     std::size_t end = range.first + range.count;
     if (cut.bin == 0) {
         left = {range.first, range.count / 2, range.centres};
@@ -180,21 +180,21 @@ std::pair<Range, Range> split(std::vector<Item>& items, const Range& range, cons
 }
 
 /// A node that waits to be built.
-struct Waiting {
+struct WaitingNode {
     std::size_t node = 0;
-    Range range;
+    NodeRange range;
 };
 
 /// Builds the tree over `root` in `nodes`, whose node 0 it is. Ranges of at most `stop` items are left to
 /// `rest` instead.
-void build(std::vector<Item>& items, const Range& root, std::vector<BvhNode>& nodes, std::size_t stop,
-           std::vector<Waiting>& rest) {
+void build(std::vector<Item>& items, const NodeRange& root, std::vector<BvhNode>& nodes, std::size_t stop,
+           std::vector<WaitingNode>& rest) {
     nodes.resize(1);
-    std::vector<Waiting> open{{0, root}};
+    std::vector<WaitingNode> open{{0, root}};
     while (!open.empty()) {
-        const Waiting now = open.back();
+        const WaitingNode now = open.back();
         open.pop_back();
-        const Range& range = now.range;
+        const NodeRange& range = now.range;
         nodes[now.node].first = static_cast<Id>(range.first);
         nodes[now.node].count = static_cast<Id>(range.count);
         if (range.count <= stop) {
@@ -262,15 +262,15 @@ std::vector<Item> small_items(std::size_t count, const BoxOf& box_of) {
 Bvh build_bvh(std::size_t count, const BoxOf& box_of) {
     if (count == 0) return {};
     std::vector<Item> items = small_items(count, box_of);
-    Range root{0, count, {}};
+    NodeRange root{0, count, {}};
     for (const Item& item : items) root.centres.include(item.centre(), item.centre());
 
     Bvh bvh;
-    std::vector<Waiting> trees;
+    std::vector<WaitingNode> trees;
     build(items, root, bvh.nodes, std::max(count / kTrees, kSmallestTree), trees);
     std::vector<std::vector<BvhNode>> built(trees.size());
     parallel_for(trees.size(), 1, [&](std::size_t from, std::size_t to) {
-        std::vector<Waiting> none;
+        std::vector<WaitingNode> none;
         for (std::size_t t = from; t < to; ++t) build(items, trees[t].range, built[t], 0, none);
     });
     std::size_t total = bvh.nodes.size();

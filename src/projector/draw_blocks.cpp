@@ -18,7 +18,7 @@ namespace trilens {
 namespace {
 
 /// A node of the tree that waits, and the smallest t at which a ray of the block can meet it.
-struct Waiting {
+struct WaitingBox {
     Id node = 0;
     double nearest = 0;
 };
@@ -36,7 +36,7 @@ class BlockDrawing {
         if (hits_.order_mattered()) hits_.begin_second_pass(), pass();
     }
 
-    void draw_culled(std::vector<Waiting>& stack) {
+    void draw_culled(std::vector<WaitingBox>& stack) {
         walk(stack);
         if (hits_.order_mattered()) hits_.begin_second_pass(), walk(stack);
     }
@@ -45,8 +45,8 @@ class BlockDrawing {
 
   private:
     void draw_one(Id index);
-    void push_if_reached(const Bvh& bvh, Id node, std::vector<Waiting>& stack) const;
-    void walk(std::vector<Waiting>& stack);
+    void push_if_reached(const Bvh& bvh, Id node, std::vector<WaitingBox>& stack) const;
+    void walk(std::vector<WaitingBox>& stack);
 
     const PreparedScene::Data& scene_;
     const BlockRays& block_;
@@ -63,18 +63,18 @@ void BlockDrawing::draw_one(Id index) {
     draw_triangle(block_, triangle, hits_);
 }
 
-void BlockDrawing::push_if_reached(const Bvh& bvh, Id node, std::vector<Waiting>& stack) const {
+void BlockDrawing::push_if_reached(const Bvh& bvh, Id node, std::vector<WaitingBox>& stack) const {
     const Box& world = bvh.nodes[node].box;
     const Box box{world.low - block_.centre, world.high - block_.centre};
     if (!beam_.misses(box)) stack.push_back({node, beam_.nearest(box)});
 }
 
-void BlockDrawing::walk(std::vector<Waiting>& stack) {
+void BlockDrawing::walk(std::vector<WaitingBox>& stack) {
     const Bvh& bvh = scene_.bvh();
     stack.clear();
     if (!bvh.nodes.empty()) push_if_reached(bvh, 0, stack);
     while (!stack.empty()) {
-        const Waiting next = stack.back();
+        const WaitingBox next = stack.back();
         stack.pop_back();
         if (next.nearest > hits_.farthest()) continue;
         const BvhNode& node = bvh.nodes[next.node];
@@ -101,7 +101,7 @@ Hit BlockDrawing::hit(std::size_t s) const {
 
 void draw_block(const PreparedScene::Data& scene, const FacetRays& facet, const SampleGrid& grid,
                 std::span<const Id> samples, std::span<Hit> hits) {
-    std::vector<Waiting> stack;
+    std::vector<WaitingBox> stack;
     const BlockRays rays = make_block_rays(facet, grid, samples);
     BlockDrawing drawing(scene, rays);
     drawing.draw_culled(stack);
@@ -112,7 +112,7 @@ void draw_in_blocks(const PreparedScene& scene, const RayMesh& mesh, const Facet
                     const SampleGrid& grid, std::span<Hit> hits, bool cull) {
     const std::vector<Strip> strips = make_strips(owned, grid);
     parallel_for(strips.size(), 1, [&](std::size_t first, std::size_t last) {
-        std::vector<Waiting> stack;
+        std::vector<WaitingBox> stack;
         for (std::size_t i = first; i < last; ++i) {
             const Strip& strip = strips[i];
             if (!mesh.has_rays(strip.facet)) continue;

@@ -44,7 +44,7 @@ float below(double v) {
     return -above(-v);
 }
 
-struct Range {
+struct LeafRange {
     std::size_t first = 0, last = 0;
 
     std::size_t size() const { return last - first; }
@@ -53,7 +53,7 @@ struct Range {
 /// A part of the tree: what its children name is counted from its own beginning.
 struct Part {
     std::vector<WideNode> nodes;
-    std::vector<Range> leaves;  // of the order
+    std::vector<LeafRange> leaves;  // of the order
     std::int32_t root = 0;
     FloatBox box;
 };
@@ -82,12 +82,12 @@ class Builder {
         Id triangle = 0;
     };
     void take_boxes(const BoxOf& box_of);
-    void gather_around(const Range& range, std::size_t place, std::size_t axis, Range& among);
-    std::size_t halve(const Range& range, std::size_t unit);
-    std::vector<Range> cut(const Range& range);
-    Part make_leaf(const Range& range) const;
-    Part make(const Range& range);
-    Part make_node(const std::vector<Range>& ranges);
+    void gather_around(const LeafRange& range, std::size_t place, std::size_t axis, LeafRange& among);
+    std::size_t halve(const LeafRange& range, std::size_t unit);
+    std::vector<LeafRange> cut(const LeafRange& range);
+    Part make_leaf(const LeafRange& range) const;
+    Part make(const LeafRange& range);
+    Part make_node(const std::vector<LeafRange>& ranges);
     std::size_t put_large_last();
     Part make_all();
 
@@ -118,7 +118,7 @@ void Builder::take_boxes(const BoxOf& box_of) {
 
 /// Orders a large range roughly along the axis, in three parts: what lies in the middle one, `among`, is
 /// little and has the item that belongs at `place`.
-void Builder::gather_around(const Range& range, std::size_t place, std::size_t axis, Range& among) {
+void Builder::gather_around(const LeafRange& range, std::size_t place, std::size_t axis, LeafRange& among) {
     float low = INFINITY, high = -INFINITY;
     for (std::size_t i = range.first; i < range.last; ++i) {
         low = std::min(low, items_[i].middle[axis]);
@@ -147,7 +147,7 @@ void Builder::gather_around(const Range& range, std::size_t place, std::size_t a
 
 /// Cuts the range across its longest side, near the middle, so that the first part is a multiple of `unit`
 /// where it can be. Returns where.
-std::size_t Builder::halve(const Range& range, std::size_t unit) {
+std::size_t Builder::halve(const LeafRange& range, std::size_t unit) {
     std::array<float, 3> low = items_[range.first].middle, high = low;
     for (std::size_t i = range.first; i < range.last; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -163,7 +163,7 @@ std::size_t Builder::halve(const Range& range, std::size_t unit) {
     if (half == 0 || half >= range.size()) half = range.size() / 2;
 
     const std::size_t place = range.first + half;
-    Range among = range;
+    LeafRange among = range;
     if (range.size() > kWorthBins) gather_around(range, place, axis, among);
     const auto at = [&](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(at(among.first), at(place), at(among.last), [axis](const Item& a, const Item& b) {
@@ -173,10 +173,10 @@ std::size_t Builder::halve(const Range& range, std::size_t unit) {
 }
 
 /// Up to 16 parts of a range of more than 16, all but the last full subtrees.
-std::vector<Range> Builder::cut(const Range& range) {
+std::vector<LeafRange> Builder::cut(const LeafRange& range) {
     std::size_t capacity = kLanes;
     while (capacity * kLanes < range.size()) capacity *= kLanes;
-    std::vector<Range> parts{range};
+    std::vector<LeafRange> parts{range};
     for (bool again = true; again;) {
         std::vector<std::size_t> middle(parts.size());
         parallel_for(parts.size(), std::max<std::size_t>(1, kTogether / capacity),
@@ -184,7 +184,7 @@ std::vector<Range> Builder::cut(const Range& range) {
                          for (std::size_t i = first; i < last; ++i)
                              if (parts[i].size() > capacity) middle[i] = halve(parts[i], capacity);
                      });
-        std::vector<Range> next;
+        std::vector<LeafRange> next;
         for (std::size_t i = 0; i < parts.size(); ++i) {
             if (parts[i].size() <= capacity) {
                 next.push_back(parts[i]);
@@ -199,19 +199,19 @@ std::vector<Range> Builder::cut(const Range& range) {
     return parts;
 }
 
-Part Builder::make_leaf(const Range& range) const {
+Part Builder::make_leaf(const LeafRange& range) const {
     Part part{{}, {range}, ~std::int32_t{0}, {}};
     for (std::size_t i = range.first; i < range.last; ++i) part.box.include(box_[items_[i].triangle]);
     return part;
 }
 
-Part Builder::make(const Range& range) {
+Part Builder::make(const LeafRange& range) {
     if (range.size() <= kLanes) return make_leaf(range);
     return make_node(cut(range));
 }
 
 /// Over consecutive ranges.
-Part Builder::make_node(const std::vector<Range>& ranges) {
+Part Builder::make_node(const std::vector<LeafRange>& ranges) {
     const std::size_t all = ranges.back().last - ranges.front().first;
     std::vector<Part> children(ranges.size());
     parallel_for(ranges.size(), std::max<std::size_t>(1, kTogether * ranges.size() / all),
@@ -255,11 +255,11 @@ std::size_t Builder::put_large_last() {
 /// Large triangles, as of a ground, have leaves of their own: among small ones they would spread the leaves'
 /// boxes and doubts over all.
 Part Builder::make_all() {
-    const Range all{0, items_.size()};
+    const LeafRange all{0, items_.size()};
     if (all.size() <= kLanes) return make(all);
-    const Range small{0, put_large_last()}, large{small.last, all.last};
+    const LeafRange small{0, put_large_last()}, large{small.last, all.last};
     if (small.size() == 0 || large.size() == 0) return make(all);
-    std::vector<Range> ranges;
+    std::vector<LeafRange> ranges;
     if (small.size() > kLanes) ranges = cut(small);
     if (ranges.empty() || ranges.size() == kLanes) ranges = {small};
     ranges.push_back(large);

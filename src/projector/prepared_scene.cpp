@@ -12,12 +12,12 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kTogether = 4096;  // triangles that are worth a thread
+constexpr std::size_t kPreparedTogether = 4096;  // triangles that are worth a thread
 
 void check_triangles(const TriangleScene& scene) {
     TRILENS_CHECK(scene.object.size() == scene.size() && scene.primitive.size() == scene.size(),
                   "every triangle needs an object and a primitive");
-    parallel_for(scene.size(), kTogether, [&](std::size_t first, std::size_t last) {
+    parallel_for(scene.size(), kPreparedTogether, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             for (const Id corner : scene.triangles[i]) {
                 TRILENS_CHECK(corner < scene.points.size(),
@@ -85,7 +85,7 @@ PreparedScene::PreparedScene(const TriangleScene& scene) : data_(std::make_uniqu
     data.triangles.resize(count);
     data.named.resize(count + 1, kNone);
     data.ranks.resize(rank.size());
-    parallel_for(count, kTogether, [&](std::size_t first, std::size_t last) {
+    parallel_for(count, kPreparedTogether, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             data.triangles[i] = prepared_triangle(scene, order[i]);
             data.named[i + 1] = order[i];

@@ -9,14 +9,14 @@
 namespace trilens {
 namespace {
 
-double size_of(const Vec3& v) {
+double sum_of_parts(const Vec3& v) {
     return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
 }
 
 /// Below this an edge conic's sign is in doubt.
 double doubt_of_edges(const BlockRays& block, const std::array<Vec3, 3>& corner) {
     if (!(block.weight_least > 0)) return std::numeric_limits<double>::infinity();
-    const double size = std::max({size_of(corner[0]), size_of(corner[1]), size_of(corner[2])});
+    const double size = std::max({sum_of_parts(corner[0]), sum_of_parts(corner[1]), sum_of_parts(corner[2])});
     const double p = block.weight_size * size + block.origin_size;
     return kDecisionDoubt * block.direction_size * p * p / block.weight_least;
 }

@@ -9,7 +9,7 @@ namespace {
 /// A position this far outside of a facet, as a share of its height, is still in it.
 constexpr double kOutside = 1e-9;
 /// Facets reach further than that into the bins around them.
-constexpr double kReach = 1e-7;
+constexpr double kLookupReach = 1e-7;
 
 bool holds(const std::array<Vec2, 3>& facet, const Vec2& uv) {
     const auto& [a, b, c] = facet;
@@ -32,7 +32,8 @@ template <typename Body>
 void FacetLookup::for_each_bin(std::size_t facet, const Body& body) const {
     const FaceBins& bins = faces_[grid_.facet_face[facet]];
     const auto& [a, b, c] = grid_.facet_uv[facet];
-    const Vec2 low = glm::min(a, glm::min(b, c)) - kReach, high = glm::max(a, glm::max(b, c)) + kReach;
+    const Vec2 low = glm::min(a, glm::min(b, c)) - kLookupReach,
+               high = glm::max(a, glm::max(b, c)) + kLookupReach;
     for (std::size_t y = cell_of(low.y, bins); y <= cell_of(high.y, bins); ++y)
         for (std::size_t x = cell_of(low.x, bins); x <= cell_of(high.x, bins); ++x)
             body(bins.first + y * bins.side + x);

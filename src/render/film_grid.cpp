@@ -11,7 +11,7 @@ namespace trilens {
 namespace {
 
 /// What a film shows of a facet may lie this far from its straight triangle there, in its sizes, and pixels.
-constexpr double kReach = 0.5, kReachPixels = 2;
+constexpr double kGridReach = 0.5, kGridReachPixels = 2;
 
 /// One branch's places of all corners.
 using Places = std::vector<std::optional<FilmImage>>;
@@ -86,7 +86,7 @@ void Builder::append(std::size_t facet, std::size_t branch, const Places& places
         const Vec3& screen = result.views[corner].screen;
         reach = std::max(reach, length(Vec2(screen.x, screen.y) - middle));
     }
-    result.reach.push_back((1 + kReach) * reach + kReachPixels);
+    result.reach.push_back((1 + kGridReach) * reach + kGridReachPixels);
 }
 
 /// False where the branch has no place for the facet as a whole.
@@ -111,7 +111,7 @@ bool Builder::add_facet(std::size_t facet, std::size_t branch, const Places& pla
         if (std::fabs(at[2].x - at[1].x) > 0.5 * period) return false;
     }
     const Vec2 low = glm::min(glm::min(at[0], at[1]), at[2]), high = glm::max(glm::max(at[0], at[1]), at[2]);
-    const Vec2 reach = kReach * (high - low) + Vec2(kReachPixels);
+    const Vec2 reach = kGridReach * (high - low) + Vec2(kGridReachPixels);
     if (high.y + reach.y < 0 || low.y - reach.y > film.height) return true;
     const int first = period > 0 ? static_cast<int>(std::ceil((-high.x - reach.x) / period)) : 0;
     for (int turn = first; low.x - reach.x + turn * period <= film.width; ++turn) {

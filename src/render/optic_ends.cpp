@@ -10,7 +10,7 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kSamplesPerTask = 256;
+constexpr std::size_t kEndsPerTask = 256;
 
 /// Calls body(sample of the part, sample of the whole) for all of a part.
 template <typename Body>
@@ -138,7 +138,7 @@ std::vector<LayerSamples> ShownDrawer::take_covered(const Shown& shown, const st
         one.entry.resize(grid_.size());
     }
     std::vector<std::optional<LayerThere>> covered(own.ends.size());
-    parallel_for(own.ends.size(), kSamplesPerTask, [&](std::size_t from, std::size_t to) {
+    parallel_for(own.ends.size(), kEndsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const Id s = own.sample[i];
             if (!shown.paths.leaves()[leaf[s]].layered) continue;

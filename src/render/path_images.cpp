@@ -13,8 +13,8 @@ namespace {
 /// Rays of traced parts that one search starts from.
 constexpr std::size_t kLoneStarts = 6;
 /// A point is free if what its ray meets lies within this share of the way.
-constexpr double kFreeShare = 1e-6;
-constexpr std::size_t kFacetsPerTask = 256, kLonePerTask = 4;
+constexpr double kPathFreeShare = 1e-6;
+constexpr std::size_t kPathFacetsPerTask = 256, kLonePerTask = 4;
 /// Traced parts whose paths are held at once, until their rays are added to their histories.
 constexpr std::size_t kLoneBatch = 1024;
 
@@ -43,7 +43,7 @@ bool is_hidden(const Looking& looking, const Vec3& screen, const Vec3& point, do
     Ray ray = looking.camera.ray(screen, point);
     if (looking.camera.parallel) ray = {point - size * ray.direction, size * ray.direction};
     const std::optional<SurfaceHit> hit = looking.world->optics[looking.optic].tracer->first_hit(ray);
-    return hit && hit->t < 1 - kFreeShare;
+    return hit && hit->t < 1 - kPathFreeShare;
 }
 
 /// Which corners of some facets the optic itself hides from the camera.
@@ -52,7 +52,7 @@ std::vector<char> hidden_corners(const OpticPaths& paths, const SurfaceGrid& gri
     std::vector<char> wanted(grid.corner_point.size(), 0), hidden(grid.corner_point.size(), 0);
     for (const Id f : facets)
         for (const Id corner : grid.facets[f]) wanted[corner] = 1;
-    parallel_for(hidden.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
+    parallel_for(hidden.size(), kPathFacetsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t c = from; c < to; ++c)
             hidden[c] = wanted[c] && is_hidden(paths.looking(), paths.outline().screen[c],
                                                grid.points[grid.corner_point[c]], size);
@@ -80,7 +80,7 @@ std::vector<Id> facets_in_view(const OpticPaths& paths, const SurfaceGrid& grid,
     const double size = 2 * length(box.size());
     const std::vector<char> hidden = hidden_corners(paths, grid, facets, size);
     std::vector<char> is_seen(facets.size());
-    parallel_for(facets.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
+    parallel_for(facets.size(), kPathFacetsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const IdTriple& corner = grid.facets[facets[i]];
             is_seen[i] = !hidden[corner[0]] || !hidden[corner[1]] || !hidden[corner[2]] ||

@@ -10,7 +10,7 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kSamplesPerTask = 256;
+constexpr std::size_t kRimSamplesPerTask = 256;
 
 /// The grid's facet that holds a place of the surface.
 Id facet_holding(const FacetLookup& facets, Id face, const Vec2& uv) {
@@ -89,7 +89,7 @@ void decide_rims(const RimParams& params, const SampleGrid& grid, SampleViews& v
         for (std::size_t s = 0; s < near.size(); ++s)
             if (near[s] && !(is_convex && views.samples[s].optic == i)) asked[s] = 1;
     }
-    parallel_for(grid.size(), kSamplesPerTask, [&](std::size_t from, std::size_t to) {
+    parallel_for(grid.size(), kRimSamplesPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t s = from; s < to; ++s)
             if (asked[s]) decide(params, grid.position(s), views.samples[s], views.of_optics[s]);
     });

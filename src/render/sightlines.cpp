@@ -4,20 +4,20 @@ namespace trilens {
 namespace {
 
 /// A segment is free if what it meets lies within this share of its ends.
-constexpr double kFreeShare = 1e-6;
+constexpr double kSightFreeShare = 1e-6;
 
 }  // namespace
 
 bool Sightlines::is_free_of_objects(const Vec3& from, const Vec3& to) const {
-    return !object_tracer(world_).occluded({from, to - from}, kFreeShare, 1 - kFreeShare);
+    return !object_tracer(world_).occluded({from, to - from}, kSightFreeShare, 1 - kSightFreeShare);
 }
 
 bool Sightlines::is_free_of_facets(const Ray& segment, std::size_t optic) const {
-    return !frame_.optics[optic].facets->tracer().occluded(segment, kFreeShare, 1 - kFreeShare);
+    return !frame_.optics[optic].facets->tracer().occluded(segment, kSightFreeShare, 1 - kSightFreeShare);
 }
 
 bool Sightlines::is_free_of_surface(const Ray& segment, std::size_t optic) const {
-    return !limit_tracer(world_, optic).meets(segment, kFreeShare, 1 - kFreeShare);
+    return !limit_tracer(world_, optic).meets(segment, kSightFreeShare, 1 - kSightFreeShare);
 }
 
 bool Sightlines::is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const {

@@ -7,7 +7,7 @@
 namespace trilens {
 namespace {
 
-constexpr std::size_t kSamplesPerTask = 256;
+constexpr std::size_t kTracedPerTask = 256;
 
 /// The camera's ray where it passes the exact surface by, at the rim of a facet: it goes straight on.
 void pass_by(const World& world, const SampleView& view, OpticEnds& out) {
@@ -33,12 +33,12 @@ Ray traced_ray(const PathCamera& camera, const Vec2& pixel, const Ray& of_facets
 void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samples, SampleViews& views,
                    OpticEnds& out) {
     const PathWorld& world = path_world(params.world);
-    std::vector<OpticEnds> found((samples.size() + kSamplesPerTask - 1) / kSamplesPerTask);
+    std::vector<OpticEnds> found((samples.size() + kTracedPerTask - 1) / kTracedPerTask);
     parallel_for(found.size(), 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t task = from; task < to; ++task) {
             OpticEnds& own = found[task];
-            const std::size_t last = std::min(samples.size(), (task + 1) * kSamplesPerTask);
-            for (std::size_t i = task * kSamplesPerTask; i < last; ++i) {
+            const std::size_t last = std::min(samples.size(), (task + 1) * kTracedPerTask);
+            for (std::size_t i = task * kTracedPerTask; i < last; ++i) {
                 SampleView& view = views.samples[samples[i]];
                 OpticView& on_optic = views.on_optic(view);
                 view.traced = true;

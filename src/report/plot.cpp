@@ -17,7 +17,8 @@
 namespace trilens {
 namespace {
 
-constexpr double kLeft = 62, kRight = 16, kBottom = 44;  // pixels around the frame, without the legend
+constexpr double kPlotLeft = 62, kPlotRight = 16,
+                 kPlotBottom = 44;  // pixels around the frame, without the legend
 constexpr double kTitleSize = 14, kLabelSize = 12, kNoteSize = 11;  // pixels, as in plot_style.cpp
 constexpr double kLegendRow = 18, kMarkerRoom = 22;
 constexpr double kReferenceLift = 1.8;  // reference orders start so far above the data
@@ -240,7 +241,7 @@ void draw_series(Plot& plot, std::size_t i) {
 /// The series in rows below the frame, as many to a row as fit.
 void draw_legend(Plot& plot) {
     const double left = 10, right = plot.params.width - 10;
-    Vec2 at(left, plot.y.first + kBottom + kLegendRow - 6);
+    Vec2 at(left, plot.y.first + kPlotBottom + kLegendRow - 6);
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         const PlotSeries& series = plot.series[i];
         const std::string order =
@@ -284,8 +285,8 @@ PlotDrawing draw(const PlotParams& params, std::span<const PlotSeries> series, S
     if (kind == ScaleKind::kLog && params.reference_orders && !ys.empty())
         ys.push_back(kReferenceLift * *std::max_element(ys.begin(), ys.end()));
     Plot plot{params, series, fit_scale(kind, xs), fit_scale(kind, ys), {}, {}, {}, 0};
-    plot.x.first = kLeft, plot.x.last = params.width - kRight;
-    plot.y.first = params.height - kBottom, plot.y.last = params.subtitle.empty() ? 34 : 48;
+    plot.x.first = kPlotLeft, plot.x.last = params.width - kPlotRight;
+    plot.y.first = params.height - kPlotBottom, plot.y.last = params.subtitle.empty() ? 34 : 48;
     plot.height = params.height;
 
     draw_frame(plot);

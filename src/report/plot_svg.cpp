@@ -10,11 +10,11 @@
 namespace trilens {
 namespace {
 
-std::string number(double pixel) {
+std::string pixel_text(double pixel) {
     return fixed_text(pixel, 2);
 }
 std::string attribute(const char* name, double pixel) {
-    return std::string(" ") + name + "=\"" + number(pixel) + "\"";
+    return std::string(" ") + name + "=\"" + pixel_text(pixel) + "\"";
 }
 std::string style_of(const PlotShape& shape) {
     return "class=\"" + shape.style + "\"";
@@ -37,7 +37,7 @@ std::string rectangle(const PlotShape& shape) {
 std::string path(const PlotShape& shape) {
     std::string places;
     for (const Vec2& at : shape.points)
-        places += (places.empty() ? "M" : "L") + number(at.x) + "," + number(at.y);
+        places += (places.empty() ? "M" : "L") + pixel_text(at.x) + "," + pixel_text(at.y);
     return "<path " + style_of(shape) + " d=\"" + places + "\"/>\n";
 }
 
@@ -47,7 +47,7 @@ std::string words(const PlotShape& shape) {
                              " text-anchor=\"" + shape.anchor + "\">" + escape_markup(shape.words) +
                              "</text>\n";
     if (!shape.is_upright) return text;
-    return "<g transform=\"translate(" + number(shape.points[0].x) + "," + number(shape.points[0].y) +
+    return "<g transform=\"translate(" + pixel_text(shape.points[0].x) + "," + pixel_text(shape.points[0].y) +
            ") rotate(-90)\">" + text + "</g>\n";
 }
 
@@ -61,7 +61,8 @@ std::string marker(const PlotShape& shape) {
         start = "<path d=\"";
         for (const std::vector<Vec2>& stroke : marker_strokes(shape.series)) {
             for (std::size_t i = 0; i < stroke.size(); ++i)
-                start += (i ? "L" : "M") + number(at.x + stroke[i].x) + "," + number(at.y + stroke[i].y);
+                start +=
+                    (i ? "L" : "M") + pixel_text(at.x + stroke[i].x) + "," + pixel_text(at.y + stroke[i].y);
             if (stroke.front() == stroke.back()) start += "z";
         }
         start += "\"";
@@ -113,7 +114,7 @@ std::vector<std::vector<Vec2>> marker_strokes(std::size_t series) {
 }
 
 std::string plot_svg(const PlotDrawing& drawing) {
-    const std::string width = shortest_text(drawing.width), height = number(drawing.height);
+    const std::string width = shortest_text(drawing.width), height = pixel_text(drawing.height);
     std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"tp\" width=\"" + width +
                       "\" height=\"" + height + "\" viewBox=\"0 0 " + width + " " + height +
                       "\" role=\"img\" aria-label=\"" + escape_markup(drawing.title) + "\">\n<style>" +

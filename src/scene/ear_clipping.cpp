@@ -15,7 +15,7 @@ constexpr double kGrid = 1 << 29;  // half the extent, in steps: twice an area s
 
 // Twice the area by which a flat corner may turn the wrong way once its points lie on the grid: half a step
 // each over differences of up to 2^30.
-constexpr std::int64_t kFlat = (std::int64_t{1} << 32) + 2;
+constexpr std::int64_t kFlatArea = (std::int64_t{1} << 32) + 2;
 
 struct GridPoint {
     std::int64_t x = 0, y = 0;
@@ -67,7 +67,7 @@ std::vector<GridPoint> project(const std::vector<Vec3>& corners, const Vec3& nor
 
 bool fan_covers(const std::vector<GridPoint>& p) {
     for (std::size_t k = 1; k + 1 < p.size(); ++k)
-        if (area(p[0], p[k], p[k + 1]) < -kFlat) return false;
+        if (area(p[0], p[k], p[k + 1]) < -kFlatArea) return false;
     return true;
 }
 

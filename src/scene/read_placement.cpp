@@ -8,7 +8,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kParallel = 1e-9;  // sine of an angle that counts as none
+constexpr double kParallelAxes = 1e-9;  // sine of an angle that counts as none
 
 /// At right angles to `axis`: what is left of +X, or of +Z where the axis is nearer to X.
 Vec3 default_tangent(const Vec3& axis) {
@@ -20,7 +20,7 @@ Vec3 read_tangent(const Node& primitive, const Vec3& axis) {
     if (!primitive.has("tangent")) return default_tangent(axis);
     const Vec3 tangent = read_direction(primitive["tangent"]);
     const Vec3 across = tangent - dot(tangent, axis) * axis;
-    if (!(length(across) > kParallel)) primitive["tangent"].fail("is parallel to the axis or normal");
+    if (!(length(across) > kParallelAxes)) primitive["tangent"].fail("is parallel to the axis or normal");
     return normalize(across);
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kMostLost = 0.1;  // share of an optic's pixels
 
-const OpticDisplacement* find_displacement(const RunRecord& run, const std::string& layer,
-                                           const std::string& optic) {
+const OpticDisplacement* find_optic_displacement(const RunRecord& run, const std::string& layer,
+                                                 const std::string& optic) {
     for (const OpticDisplacement& one : run.displacement)
         if (one.layer == layer && one.optic == optic) return &one;
     return nullptr;
@@ -65,7 +65,7 @@ SweepFit fit_displacement(SweepFit fit, const RunGroup& group, bool is_scale) {
     std::vector<bool> usable;
     std::vector<std::optional<double>> coverage;
     for (const RunRecord* run : group.runs) {
-        const OpticDisplacement* const one = find_displacement(*run, fit.layer, fit.optic);
+        const OpticDisplacement* const one = find_optic_displacement(*run, fit.layer, fit.optic);
         const std::optional<double> value = one ? find_value(one->metrics, fit.metric) : std::nullopt;
         if (!value) continue;
         fit.points.push_back({place_of(*run, fit.axis), *value, false});

@@ -20,7 +20,7 @@ std::string interval(const SweepFit& fit) {
     return "$[" + fixed_text(*fit.order_low, 2) + ", " + fixed_text(*fit.order_high, 2) + "]$";
 }
 
-std::string row(const std::vector<std::string>& cells) {
+std::string latex_row(const std::vector<std::string>& cells) {
     std::string line;
     for (const std::string& one : cells) line += (line.empty() ? "" : " & ") + one;
     return line + " \\\\\n";
@@ -40,7 +40,7 @@ std::string summary_latex(const SweepSummary& summary) {
                   {"layer", "optic", "order", "95\\,\\%", "constant", "$n$ for 1\\,px", "measured"});
     std::string text = "% " + one_line(summary.manifest.subject.title) +
                        ": error = constant * n^-order; needs \\usepackage{booktabs}\n\\begin{tabular}{" +
-                       words + "rrrrr}\n\\toprule\n" + row(header) + "\\midrule\n";
+                       words + "rrrrr}\n\\toprule\n" + latex_row(header) + "\\midrule\n";
     for (const SweepFit& fit : summary.fits) {
         if (fit.metric != metric) continue;
         std::vector<std::string> cells;
@@ -50,7 +50,7 @@ std::string summary_latex(const SweepSummary& summary) {
             {fit.layer.empty() ? "RGB" : latex_text(fit.layer), latex_text(fit.optic), cell(fit.order, 2),
              interval(fit), fit.constant ? "$" + rounded_text(*fit.constant, 3) + "$" : "--",
              cell(fit.n_for_1px, 0), fit.coverage ? latex_text(percent_text(*fit.coverage)) : "--"});
-        text += row(cells);
+        text += latex_row(cells);
     }
     return text + "\\bottomrule\n\\end{tabular}\n";
 }

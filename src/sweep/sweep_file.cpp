@@ -12,14 +12,14 @@ namespace trilens {
 namespace {
 
 /// A part of the file, with the place that messages name.
-struct Part {
+struct JsonPart {
     const std::string& file;
     const Json& json;
     std::string place;
 
     [[noreturn]] void fail(const std::string& why) const { throw InputError(file, place, why); }
-    Part at(const std::string& key) const { return {file, json.at(key), place + "/" + key}; }
-    Part at(std::size_t i) const { return {file, json.at(i), place + "/" + std::to_string(i)}; }
+    JsonPart at(const std::string& key) const { return {file, json.at(key), place + "/" + key}; }
+    JsonPart at(std::size_t i) const { return {file, json.at(i), place + "/" + std::to_string(i)}; }
 
     std::string text() const {
         if (!json.is_string()) fail("is no text");
@@ -44,23 +44,23 @@ struct Part {
 };
 
 /// As --over takes it: texts bare, all else as JSON.
-std::string value_text(const Json& json) {
+std::string scalar_text(const Json& json) {
     return json.is_string() ? json.get<std::string>() : json.dump();
 }
 
-AxisRequest read_axis(const Part& part) {
+AxisRequest read_axis(const JsonPart& part) {
     part.check_keys({"axis", "values"});
     for (const char* key : {"axis", "values"})
         if (!part.json.contains(key)) part.fail(std::string("has no \"") + key + "\"");
     AxisRequest request{part.at("axis").text(), {}};
-    const Part values = part.at("values");
+    const JsonPart values = part.at("values");
     if (values.json.is_string()) {
         request.values = parse_over(request.axis + "=" + values.text()).values;
         return request;
     }
     if (!values.json.is_array()) values.fail("is no list");
     if (values.json.empty()) values.fail("the axis " + request.axis + " has no point");
-    for (const Json& value : values.json) request.values.push_back(value_text(value));
+    for (const Json& value : values.json) request.values.push_back(scalar_text(value));
     return request;
 }
 
@@ -78,15 +78,15 @@ Json parse_file(const std::string& file) {
 
 SweepFile read_sweep_file(const std::string& file) {
     const Json json = parse_file(file);
-    const Part root{file, json, ""};
+    const JsonPart root{file, json, ""};
     root.check_keys({"version", "scenes", "over", "zip", "truth", "camera", "title", "repeats", "set"});
     SweepFile sweep;
     if (!json.contains("over")) root.fail("has no \"over\"");
-    const Part over = root.at("over");
+    const JsonPart over = root.at("over");
     over.require_array();
     for (std::size_t i = 0; i < over.json.size(); ++i) sweep.over.push_back(read_axis(over.at(i)));
     if (json.contains("scenes")) {
-        const Part scenes = root.at("scenes");
+        const JsonPart scenes = root.at("scenes");
         scenes.require_array();
         for (std::size_t i = 0; i < scenes.json.size(); ++i) sweep.scenes.push_back(scenes.at(i).text());
     }
@@ -96,13 +96,13 @@ SweepFile read_sweep_file(const std::string& file) {
     for (const auto& [key, target] : texts)
         if (json.contains(key)) *target = root.at(key).text();
     if (json.contains("repeats")) {
-        const Part repeats = root.at("repeats");
+        const JsonPart repeats = root.at("repeats");
         if (!repeats.json.is_number_integer() || repeats.json < 1 || repeats.json > 1000)
             repeats.fail("is no whole number from 1 to 1000");
         sweep.repeats = repeats.json;
     }
     if (json.contains("set")) {
-        const Part set = root.at("set");
+        const JsonPart set = root.at("set");
         if (!set.json.is_object()) set.fail("is no object");
         for (const auto& [pointer, value] : set.json.items()) sweep.set.emplace_back(pointer, value.dump());
     }

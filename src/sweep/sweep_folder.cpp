@@ -25,7 +25,7 @@ std::string users_lock(const std::string& folder) {
     return folder + "/lock";
 }
 
-bool is_there(const fs::path& file) {
+bool can_be_read(const fs::path& file) {
     std::error_code unreadable;
     return fs::exists(file, unreadable);
 }
@@ -52,12 +52,12 @@ std::optional<std::string> sweep_below(const std::string& folder) {
     std::error_code unreadable;
     for (fs::directory_iterator entry(folder, unreadable), end; !unreadable && entry != end;
          entry.increment(unreadable))
-        if (is_there(entry->path() / "manifest.json")) return entry->path().filename().string();
+        if (can_be_read(entry->path() / "manifest.json")) return entry->path().filename().string();
     return std::nullopt;
 }
 
 void require_free(const std::string& folder, const SweepManifest& manifest) {
-    if (!is_there(manifest_file(folder))) {
+    if (!can_be_read(manifest_file(folder))) {
         if (const std::optional<std::string> below = sweep_below(folder))
             throw UsageError(fmt::format("{} holds a gallery of sweeps ({} is one); choose another folder",
                                          folder, *below));
@@ -95,7 +95,7 @@ FileLock claim_folder(const std::string& folder, const SweepManifest& manifest,
     FileLock user = FileLock::wait(users_lock(folder), LockKind::kMany, progress);
     const FileLock planner = FileLock::wait(plan_lock(folder), LockKind::kOne, progress);
     require_free(folder, manifest);
-    const bool is_new = !is_there(manifest_file(folder));
+    const bool is_new = !can_be_read(manifest_file(folder));
     make_folder(folder + "/truth");
     make_folder(folder + "/runs");
     replace_text_file(manifest_file(folder), manifest_text(manifest, plan));
@@ -105,7 +105,7 @@ FileLock claim_folder(const std::string& folder, const SweepManifest& manifest,
 }
 
 void clear_folder(const std::string& folder) {
-    if (!is_there(manifest_file(folder))) return;
+    if (!can_be_read(manifest_file(folder))) return;
     const std::optional<FileLock> alone = FileLock::try_lock(users_lock(folder), LockKind::kOne);
     if (!alone) throw UsageError(folder + " cannot be replaced: another process is sweeping into it");
     bool is_sweep = true;
@@ -118,10 +118,10 @@ void clear_folder(const std::string& folder) {
 }
 
 void require_no_sweep(const std::string& folder) {
-    if (is_there(manifest_file(folder)))
+    if (can_be_read(manifest_file(folder)))
         throw UsageError(
             folder + " holds a sweep, whose report several scenes would write over; choose another folder");
-    if (is_there(folder + "/report.html") && !sweep_below(folder))
+    if (can_be_read(folder + "/report.html") && !sweep_below(folder))
         throw UsageError(folder +
                          "/report.html is there already and no gallery's: it would be lost; choose " +
                          "another folder");

@@ -6,7 +6,7 @@ namespace trilens {
 namespace {
 
 /// Text within [..] of a specification within single quotes.
-std::string in_quotes(const std::string& text) {
+std::string zsh_text(const std::string& text) {
     std::string safe;
     for (const char letter : text) {
         if (letter == '[' || letter == ']' || letter == ':' || letter == '\\') safe += '\\';
@@ -28,7 +28,7 @@ std::string function_name(std::string called) {
 std::string action(const Option& option, const Command& root) {
     std::string words;
     for (const std::string& word : offered_words(option, root)) words += (words.empty() ? "" : " ") + word;
-    const std::string message = ":" + in_quotes(value_name(option)) + ":";
+    const std::string message = ":" + zsh_text(value_name(option)) + ":";
     if (!words.empty()) return message + "(" + words + ")";
     if (option.offer == Offer::kFolder) return message + "_files -/";
     if (!offers_files(option.offer)) return message + " ";
@@ -42,7 +42,7 @@ std::string specification(const Option& option, const Command& root, std::size_t
     if (is_argument(option))
         return "'" + (takes_many(option) ? "*" : std::to_string(place)) + action(option, root) + "'";
     const std::vector<std::string> names = option_names(option);
-    const std::string help = "[" + in_quotes(option.help) + "]";
+    const std::string help = "[" + zsh_text(option.help) + "]";
     const std::string value = is_flag(option) ? "" : (option.value_follows ? ":" : "") + action(option, root);
     std::string excluded, text;
     for (const std::string& name : names) excluded += (excluded.empty() ? "" : " ") + name;
@@ -75,7 +75,7 @@ std::string function_text(const NamedCommand& named, const Command& root) {
         arguments_call(named, root) + "    case $state in\n        command)\n            local -a commands\n";
     text += "            commands=(";
     for (const Command& command : named.command->commands)
-        text += "\n                '" + command.name + ":" + in_quotes(command.summary) + "'";
+        text += "\n                '" + command.name + ":" + zsh_text(command.summary) + "'";
     text +=
         ")\n            _describe -t commands command commands ;;\n        rest)\n            case $words[1] "
         "in\n";

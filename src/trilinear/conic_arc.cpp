@@ -19,7 +19,7 @@ constexpr int kDeepest = 60;
 constexpr std::size_t kMostArcs = 200;
 
 // What rounding makes of form's products with weights.
-constexpr double kRounding = 2e-15;
+constexpr double kFormRounding = 2e-15;
 
 double size_of(const Mat3& form) {
     return length(form[0]) + length(form[1]) + length(form[2]);
@@ -41,7 +41,7 @@ std::optional<ConicArc> single_arc(const Mat3& form, const Vec3& p0, const Vec3&
     const double across = 0.5 * (dot(tangent0, p2) + dot(tangent2, p0));
     const double along = dot(m - p0, chord);
     const double straight = kStraight * length(chord) * std::max(slope(tangent0), slope(tangent2));
-    const double rounding = kRounding * size_of(form) * length(p0) * length(p2);
+    const double rounding = kFormRounding * size_of(form) * length(p0) * length(p2);
     if (std::fabs(across) <= straight + rounding) {
         if (along <= 0 || along >= dot(chord, chord)) return std::nullopt;
         return ConicArc{{p0, 0.5 * (p0 + p2), p2}, 0, 0};

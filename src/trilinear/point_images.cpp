@@ -20,7 +20,7 @@ Position position(const Coplanarity& f, double w1, double w2, double t) {
     return {t * f.direction + w1 * a + w2 * b, a, b, direction};
 }
 
-struct Solution {
+struct NewtonSolution {
     double w1, w2, t;
     Vec3 tolerance;  // of w0, w1, w2
     double t_tolerance;
@@ -28,8 +28,8 @@ struct Solution {
 };
 
 // Newton steps on the three equations, for as long as they bring the point closer.
-Solution polish(const Coplanarity& f, const Vec3& x, const Vec3& weights, double t) {
-    Solution s{weights.y, weights.z, t, Vec3(0), 0, 0};
+NewtonSolution polish(const Coplanarity& f, const Vec3& x, const Vec3& weights, double t) {
+    NewtonSolution s{weights.y, weights.z, t, Vec3(0), 0, 0};
     Position p = position(f, s.w1, s.w2, s.t);
     s.residual = length(p.point - x);
     for (int step = 0; step < 3; ++step) {
@@ -71,7 +71,7 @@ PointImages point_images(const Coplanarity& facet, const Vec3& point, const Imag
 
         const std::optional<Vec3> weights = weights_in_parametric_triangle(facet, root, point);
         if (!weights) continue;
-        const Solution s = polish(facet, x, *weights, root);
+        const NewtonSolution s = polish(facet, x, *weights, root);
         if (!(s.residual <= kImageResidual * size)) continue;
         const Vec3 w(1 - s.w1 - s.w2, s.w1, s.w2);
         const bool inside = w.x >= -s.tolerance.x && w.y >= -s.tolerance.y && w.z >= -s.tolerance.z;
