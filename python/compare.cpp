@@ -15,8 +15,6 @@ struct ImageComparison {
     CompareOptions options;
     Comparison comparison;
     std::vector<LayerComparison> layers;
-
-    const LayerComparison* main() const { return main_layer(layers, options.layer); }
 };
 
 const char* verdict_name(Verdict verdict) {
@@ -175,10 +173,10 @@ void bind_comparison(py::module_& module) {
         .def_property_readonly(
             "displacement",
             [](const ImageComparison& self) {
-                const LayerComparison* main = self.main();
-                return main ? std::optional(moved_of(*main->displacement)) : std::nullopt;
+                const Displacement total = total_displacement(self.layers, self.options.layer);
+                return total.coverage ? std::optional(moved_of(total)) : std::nullopt;
             },
-            "Of the layer that was asked for, or the first that shows something; None where none does.")
+            "Of the layer that was asked for, or of all that show something together; None where none does.")
         .def("displacement_arrays", displacement_arrays, py::arg("layer"),
              "Of a layer, per pixel of the window (height, width), views without a copy: state (uint8: 0 "
              "nothing\n"

@@ -118,8 +118,7 @@ Answer compare_answer(const CompareRequest& command, const ComparedInputs& input
                                {"inf_ref", c.inf_ref}, {"inf_test", c.inf_test}, {"masked", c.masked}};
     answer.fields["metrics"]["RGB"] = metrics_json(comparison.metrics);
     answer.fields["seen"] = seen_json(total_seen(layers));
-    const LayerComparison* main = main_layer(layers, o.layer);
-    answer.fields["displacement_px"] = displacement_json(main ? *main->displacement : Displacement());
+    answer.fields["displacement_px"] = displacement_json(total_displacement(layers, o.layer));
     for (const LayerComparison& layer : layers) {
         Json entry = Json::object();
         if (layer.seen) entry["seen"] = seen_json(*layer.seen);

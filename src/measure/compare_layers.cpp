@@ -1,8 +1,9 @@
 #include "measure/compare_layers.h"
 
-#include "measure/difference.h"
-
+#include <cmath>
 #include <utility>
+
+#include "measure/difference.h"
 
 namespace trilens {
 
@@ -35,12 +36,56 @@ SeenMismatch total_seen(const std::vector<LayerComparison>& layers) {
     return total;
 }
 
-const LayerComparison* main_layer(const std::vector<LayerComparison>& layers, const std::string& asked) {
+namespace {
+
+/// Adds one layer to the total; `lengths`: of all shifts found so far. `seen`: pixels that show a layer.
+struct Adding {
+    Displacement& total;
+    std::vector<double>& lengths;
+    double seen = 0, off_folds = 0;
+    std::size_t off_fold_pixels = 0;
+
+    void add(const Displacement& one) {
+        total.pixels += one.pixels;
+        total.lost += one.lost;
+        total.beyond_radius += one.beyond_radius;
+        total.missing += one.missing;
+        total.near_folds += one.near_folds;
+        if (*one.coverage > 0)
+            seen += static_cast<double>(one.pixels) / *one.coverage;
+        else
+            seen += static_cast<double>(one.lost + one.missing);
+        if (one.mean_off_folds) {
+            const std::size_t count = one.pixels - one.near_folds;
+            off_folds += *one.mean_off_folds * static_cast<double>(count);
+            off_fold_pixels += count;
+        }
+        for (std::size_t p = 0; p < one.state.size(); ++p)
+            if (one.state[p] == Shift::kFound)
+                lengths.push_back(
+                    std::hypot(static_cast<double>(one.shift_x[p]), static_cast<double>(one.shift_y[p])));
+    }
+};
+
+}  // namespace
+
+Displacement total_displacement(const std::vector<LayerComparison>& layers, const std::string& asked) {
     for (const LayerComparison& layer : layers)
-        if (layer.layer == asked && layer.displacement) return &layer;
+        if (layer.layer == asked && layer.displacement) return *layer.displacement;
+    std::vector<const Displacement*> shown;
     for (const LayerComparison& layer : layers)
-        if (layer.displacement && layer.displacement->coverage) return &layer;
-    return nullptr;
+        if (layer.displacement && layer.displacement->coverage) shown.push_back(&*layer.displacement);
+    if (shown.size() == 1) return *shown[0];
+    Displacement total;
+    std::vector<double> lengths;
+    Adding adding{total, lengths};
+    for (const Displacement* one : shown) adding.add(*one);
+    if (!lengths.empty()) total.summary = summarize(std::move(lengths));
+    if (!shown.empty())
+        total.coverage = adding.seen > 0 ? static_cast<double>(total.pixels) / adding.seen : 0;
+    if (adding.off_fold_pixels > 0)
+        total.mean_off_folds = adding.off_folds / static_cast<double>(adding.off_fold_pixels);
+    return total;
 }
 
 }  // namespace trilens

@@ -28,8 +28,9 @@ void add_shifts(const std::vector<LayerComparison>& layers, Image& difference);
 /// Sums over the layers.
 SeenMismatch total_seen(const std::vector<LayerComparison>& layers);
 
-/// The layer that stands for the whole: `asked` where it was measured, else the first that shows something;
-/// null where none does.
-const LayerComparison* main_layer(const std::vector<LayerComparison>& layers, const std::string& asked);
+/// The displacement of the layer `asked`, where it was measured; else that of all layers that show something,
+/// together: statistics over the found pixels of all, counts added up, without places by pixel. Unset numbers
+/// where none does.
+Displacement total_displacement(const std::vector<LayerComparison>& layers, const std::string& asked);
 
 }  // namespace trilens

@@ -8,6 +8,7 @@
 #include "base/format.h"
 #include "measure/compare_layers.h"
 #include "measure/fit.h"
+#include "suite/layer_rules.h"
 
 namespace trilens {
 namespace {
@@ -23,11 +24,6 @@ std::string size_text(const Image& image) {
 bool is_one_size(const Image& a, const Image& b) {
     return a.width == b.width && a.height == b.height && a.x0 == b.x0 && a.y0 == b.y0 &&
            a.data_width == b.data_width && a.data_height == b.data_height;
-}
-
-/// "reflectP" of "reflectP.X"; a channel without a layer is its own.
-std::string layer_of(const std::string& channel) {
-    return channel.substr(0, channel.rfind('.'));
 }
 
 void note_missing(const Image& reference, const std::vector<std::string>& channels, Judgement& judgement) {
@@ -83,7 +79,8 @@ void add_orders(const RenderTest& test, const Image& reference, const std::vecto
 
 }  // namespace
 
-Judgement judge(const RenderTest& test, const Image& reference, std::vector<TestPicture> pictures) {
+Judgement judge(const RenderTest& test, const Image& reference, std::vector<TestPicture> pictures,
+                bool by_layer) {
     Judgement judgement;
     const Image& picture = pictures.back().image;
     if (!is_one_size(reference, picture)) {
@@ -92,7 +89,14 @@ Judgement judge(const RenderTest& test, const Image& reference, std::vector<Test
         return judgement;
     }
     CommonChannels common = keep_common_channels(reference, picture);
-    note_missing(reference, common.only_reference, judgement);
+    if (by_layer) {
+        judgement.reasons = missing_layers(common);
+        for (std::string& reason : broken_layers(common)) judgement.reasons.push_back(std::move(reason));
+    } else {
+        note_missing(reference, common.only_reference, judgement);
+        for (const std::string& layer : layers_of(common.only_test))
+            judgement.notes.push_back("left out, only in the picture: " + layer);
+    }
     try {
         const Comparison comparison = compare(common.reference, common.test, test.compare);
         const std::vector<LayerComparison> layers =

@@ -26,7 +26,9 @@ struct Judgement {
 /// Judges the last of the pictures; the others count for the order of the displacement alone. Broken are:
 /// another size; channels of the reference that the picture lacks, where trilens wrote the reference (another
 /// program's are left out, with a note); values that are not finite; the rules of test.compare; test.max.
-Judgement judge(const RenderTest& test, const Image& reference, std::vector<TestPicture> pictures);
+/// `by_layer`: every layer that either image has is there in both and agrees (layer_rules.h).
+Judgement judge(const RenderTest& test, const Image& reference, std::vector<TestPicture> pictures,
+                bool by_layer = false);
 
 /// "rmse 0.01, rgb_flip 0.02, displacement_p95 0.3, lost_percent 0.1": the numbers that say most.
 std::string metrics_text(const std::vector<NamedMetric>& metrics);

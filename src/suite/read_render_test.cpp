@@ -237,7 +237,9 @@ RenderTest read_render_test(const std::string& folder) {
 
     RenderTest test;
     test.folder = folder;
-    const auto beside = [&](const std::string& name) { return (fs::path(folder) / name).lexically_normal().string(); };
+    const auto beside = [&](const std::string& name) {
+        return (fs::path(folder) / name).lexically_normal().string();
+    };
     test.scene = beside(reader.text_or("scene", "scene.json"));
     test.reference = beside(reader.text_or("reference", "ref/main.exr"));
     test.against = read_against(reader);

@@ -49,7 +49,9 @@ struct RenderTest {
 ///   these nor `max` are given;
 ///     else what is given and failpercent 0, failrelative 0, allowfailures 0, and no fail (0.004 beside
 ///     failpercent) and no hardfail
-///   max {}   limits by metric: the names of metric_names() and, with several resolutions, displacement_order
+///   max {}   where it is empty, every layer of a stored picture of ours is held against the same layer (see
+///     layer_rules.h). Else limits by metric: the names of metric_names() and, with several resolutions,
+///     displacement_order
 ///   (also
 ///     reflect.displacement_order and refract.displacement_order), of which more is better
 /// Throws InputError with the file and the place of the first problem, and the nearest known name.

@@ -52,6 +52,12 @@ Image reference_of(const RenderTest& test, Against against, const SuiteScene& sc
     return against == Against::kTruth ? scene.draw("limit", 0) : scene.draw("facets", finest);
 }
 
+/// Whether every layer is judged: of a stored picture of ours, where the test names no limits.
+bool judges_layers(const RenderTest& test, Against against) {
+    return against == Against::kGolden && test.max.empty() &&
+           test.reference_maker != ReferenceMaker::kElsewhere;
+}
+
 /// Judges the pictures against everything that the test names.
 void judge_all(const RenderTest& test, const SuiteScene& scene, const SuiteCallbacks& callbacks,
                const RunTestOptions& options, TestOutcome& outcome) {
@@ -65,7 +71,7 @@ void judge_all(const RenderTest& test, const SuiteScene& scene, const SuiteCallb
         }
         if (!pictures) pictures = draw(test, scene);
         const Image reference = reference_of(test, against, scene, callbacks);
-        Judgement judgement = judge(test, reference, *pictures);
+        Judgement judgement = judge(test, reference, *pictures, judges_layers(test, against));
         for (const std::string& reason : judgement.reasons) result.reasons.push_back(label + reason);
         for (const std::string& note : judgement.notes) result.notes.push_back(label + note);
         result.comparisons.push_back({against_name(against), judgement.metrics});

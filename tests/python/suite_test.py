@@ -110,6 +110,69 @@ FAULTS = {
 }
 
 
+def without_a_layer(folder):
+    image = stored(folder)
+    store(folder, {name: values for name, values in channels_of(image).items() if not name.startswith("reflectP")}, image)
+
+
+def twice_as_deep(folder):
+    image = stored(folder)
+    channels = channels_of(image)
+    seen = channels["Z"] < 1e29
+    channels["Z"][seen] *= 2
+    store(folder, channels, image)
+
+
+def with_ids_one_more(folder):
+    image = stored(folder)
+    channels = channels_of(image)
+    for name, values in channels.items():
+        if values.dtype == np.uint32:
+            values[values != trilens.NONE] += 1
+    store(folder, channels, image)
+
+
+def with_places_moved(folder):
+    image = stored(folder)
+    channels = channels_of(image)
+    channels["reflectP.X"] += 1
+    store(folder, channels, image)
+
+
+def with_a_part_of_the_light_gone(folder):
+    image = stored(folder)
+    channels = channels_of(image)
+    for part in "RGB":
+        channels["reflect." + part][:] = 0
+    store(folder, channels, image)
+
+
+UNLIMITED_FAULTS = {
+    without_a_layer: ["the reference lacks the layer reflectP"],
+    with_a_layer_more: ["the picture lacks the layer gloss"],
+    twice_as_deep: ["the layer Z differs at "],
+    with_ids_one_more: ["the layer reflectID differs at ", "the layer optic differs at "],
+    with_places_moved: ["the layer reflectP differs at "],
+    with_a_part_of_the_light_gone: ["the layer reflect differs at "],
+}
+
+
+@pytest.mark.parametrize("fault", UNLIMITED_FAULTS, ids=lambda fault: fault.__name__)
+def test_without_limits_every_layer_is_held(tmp_path, fault):
+    folder = tmp_path / "ball"
+    write_test(folder)
+    test = json.loads((folder / "test.json").read_text())
+    del test["max"]
+    (folder / "test.json").write_text(json.dumps(test))
+    assert only(folder, update=True).update == "new"
+    assert only(folder).state == "passed"
+    fault(folder)
+    judged = only(folder)
+    assert judged.state == "failed"
+    for reason in UNLIMITED_FAULTS[fault]:
+        assert any(said.startswith(reason) for said in judged.reasons), judged.reasons
+
+
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.__name__)
 def test_a_fault_is_caught_and_named_and_update_mends_it(ball, fault):
     fault(ball)

@@ -35,7 +35,7 @@ TEST_CASE("images that are none are refused by all that takes images", "[trilens
     layer.displacement->coverage = 1;
     only_errors("add_shifts", [&] { add_shifts({layer}, difference); });
     only_errors("total_seen", [&] { total_seen({layer, {}}); });
-    only_errors("main_layer", [&] { main_layer({}, "x"); });
+    only_errors("total_displacement", [&] { total_displacement({}, "x"); });
     only_errors("named_metrics", [&] { named_metrics({}, {layer, {}}); });
     only_errors("broken_limits", [&] { broken_limits({{"x", kNaN}, {"", 0}}, {}); });
     only_errors("metric_names", [] { metric_names(); });
