@@ -21,6 +21,9 @@ struct Box {
         low = glm::min(low, other.low);
         high = glm::max(high, other.high);
     }
+    bool holds(const Vec3& point) const {
+        return glm::all(glm::lessThanEqual(low, point)) && glm::all(glm::lessThanEqual(point, high));
+    }
     /// Lengths of the sides; zero for an empty box.
     Vec3 size() const { return glm::max(high - low, Vec3(0)); }
     /// Half the area of its surface; zero for an empty box.

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "base/parallel.h"
@@ -41,6 +43,7 @@ Vec2 curvatures(const SurfacePoint& at, const Vec3& normal) {
     const double e = dot(at.du, at.du), f = dot(at.du, at.dv), g = dot(at.dv, at.dv);
     const double l = dot(at.duu, normal), m = dot(at.duv, normal), n = dot(at.dvv, normal);
     const double area = e * g - f * f;
+    if (!(area > 0)) return Vec2(std::numeric_limits<double>::quiet_NaN());
     const double mean = 0.5 * (e * n - 2 * f * m + g * l) / area, gauss = (l * n - m * m) / area;
     const double root = std::sqrt(std::max(0.0, mean * mean - gauss));
     return {mean + root, mean - root};
@@ -88,6 +91,31 @@ Edge edge_of(const IdTriple& corners, std::size_t k) {
     return std::minmax(corners[k], corners[(k + 1) % 3]);
 }
 
+/// Whether the points are one loop that turns to one side only, and once around, seen along `up`.
+bool is_convex_loop(const std::map<Id, Id>& next, const std::vector<Vec3>& points, const Vec3& up) {
+    constexpr double kStraight = 1e-6;  // radians
+    if (next.empty()) return false;
+    const auto flat = [&](Id from, Id to) {
+        const Vec3 along = points[to] - points[from];
+        return normalize_or_zero(along - dot(along, up) * up);
+    };
+    double sum = 0, least = 0, most = 0;
+    std::size_t count = 0;
+    Id at = next.begin()->first;
+    do {
+        const auto one = next.find(at);
+        if (one == next.end()) return false;
+        const auto two = next.find(one->second);
+        if (two == next.end() || ++count > next.size()) return false;
+        const Vec3 in = flat(one->first, one->second), out = flat(two->first, two->second);
+        const double turn = std::atan2(dot(cross(in, out), up), dot(in, out));
+        sum += turn, least = std::min(least, turn), most = std::max(most, turn);
+        at = one->second;
+    } while (at != next.begin()->first);
+    const bool is_once = std::fabs(std::fabs(sum) - 2 * std::numbers::pi) < 1;
+    return count == next.size() && is_once && (least >= -kStraight || most <= kStraight);
+}
+
 }  // namespace
 
 PatchTree::PatchTree(const Surface& surface, const SurfaceGrid& grid) : patches_(grid.facets.size()) {
@@ -120,22 +148,30 @@ void PatchTree::add_rims(const SurfaceGrid& grid) {
 }
 
 void PatchTree::set_shape(const SurfaceGrid& grid) {
-    std::map<Edge, int> facets_at;
+    std::map<Edge, int> facets_at;  // by the edge from its first point to its second
     Vec3 sum(0);
     for (std::size_t f = 0; f < patches_.size(); ++f) {
-        const IdTriple& corners = grid.facets[f];
-        const IdTriple points{grid.corner_point[corners[0]], grid.corner_point[corners[1]],
-                              grid.corner_point[corners[2]]};
-        for (std::size_t k = 0; k < 3; ++k)
-            if (points[k] != points[(k + 1) % 3]) ++facets_at[edge_of(points, k)];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Id from = grid.corner_point[grid.facets[f][k]],
+                     to = grid.corner_point[grid.facets[f][(k + 1) % 3]];
+            if (from != to) ++facets_at[{from, to}];
+        }
         sum += patches_[f].normal;
     }
-    is_closed_ = !facets_at.empty() && std::all_of(facets_at.begin(), facets_at.end(),
-                                                   [](const auto& edge) { return edge.second == 2; });
+    std::map<Id, Id> border;  // from point to point along it
+    bool is_manifold = !facets_at.empty();
+    for (const auto& [edge, count] : facets_at) {
+        is_manifold = is_manifold && count == 1;
+        if (facets_at.count({edge.second, edge.first}) > 0) continue;
+        is_manifold = border.insert({edge.first, edge.second}).second && is_manifold;
+    }
+    is_closed_ = is_manifold && border.empty();
     const Vec3 up = normalize_or_zero(sum);
-    is_height_field_ = std::all_of(patches_.begin(), patches_.end(), [&](const SurfacePatch& patch) {
-        return dot(patch.normal, up) > patch.normal_radius;
-    });
+    is_height_field_ =
+        is_manifold &&
+        std::all_of(patches_.begin(), patches_.end(),
+                    [&](const SurfacePatch& patch) { return dot(patch.normal, up) > patch.normal_radius; }) &&
+        is_convex_loop(border, grid.points, up);
 }
 
 void PatchTree::build() {

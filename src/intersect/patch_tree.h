@@ -14,12 +14,12 @@ namespace trilens {
 /// A facet of a grid with the piece of surface that it stands for; world frame.
 struct SurfacePatch {
     std::array<Vec3, 3> corner;
-    double stray = 0;          // the surface lies within this distance of the facet
-    double size = 0;           // longest edge
+    double stray = 0;          // world units: the surface lies within this distance of the facet
+    double size = 0;           // longest edge, world units
     Vec3 normal{0};            // unit, along du x dv turned to the front; zero where there is none
-    double normal_radius = 2;  // no normal of the piece differs by more from it
-    bool bends_back = false;   // nowhere concave seen from its front
-    bool bends_front = false;  // nowhere concave seen from its back
+    double normal_radius = 2;  // no normal of the piece lies farther from it: a chord between unit vectors
+    bool bends_back = false;   // convex seen from its front, or flat but for a ten-thousandth of its size
+    bool bends_front = false;  // convex seen from its back, likewise
 };
 
 /// A piece of a border, or of a crease across which normals jump.
@@ -49,12 +49,17 @@ class PatchTree {
     };
 
     const std::vector<SurfacePatch>& patches() const { return patches_; }
+    /// A crease is there twice, once for either side.
     const std::vector<SurfaceRim>& rims() const { return rims_; }
-    /// Whether the surface has no border: a ray that does not cross it stays on one side of it.
+    /// Whether the surface has no border, and one orientation: a ray that does not cross it stays on one side
+    /// of it, if the surface does not cross itself.
     bool is_closed() const { return is_closed_; }
-    /// Whether all its normals lie on one side: a ray that leaves it meets it on that side first, unless it
-    /// goes around a border.
+    /// Whether it is the graph of a function over a convex region: one sheet, all its normals on one side,
+    /// its outline convex seen from there. A ray that leaves it on one side does not meet it from that side
+    /// again.
     bool is_height_field() const { return is_height_field_; }
+    /// Of all patches with their strays; empty where there are none.
+    Box bounds() const { return nodes_.empty() ? Box() : nodes_[0].box; }
     /// Half the diagonal of the box around all.
     double size() const { return size_; }
 

@@ -72,7 +72,7 @@ struct Flight {
     const Beam& beam;
     Id from = kNone;             // the optic where it starts; kNone: the camera
     double leaves = 1;           // sign of direction . normal there
-    Id medium = kNone;           // where it runs
+    Id history = kNone;          // that it is the last stretch of; kNone: the camera's
     bool arrives = false;        // its history goes on at an optic
     bool rests = false;          // or ends there, on an object
     Id to = kNone;               // which one; kNone: not known
@@ -110,6 +110,7 @@ class Prover {
     bool has_one_weight(const Stretch& stretch) const;
     Id next_optic_of(std::size_t h) const;
     bool is_clear(std::size_t h, const Stretch& stretch) const;
+    int side_at(Id history, Id optic) const;
     bool camera_arrives() const;
     bool misses_all(const Flight& flight, bool first) const;
     bool misses(const Flight& flight, Id optic, int& arriving) const;
@@ -139,6 +140,29 @@ bool Prover::has_one_weight(const Stretch& stretch) const {
            !is_off(stretch.middle[2], 0.5 * (a + b)) && !is_off(stretch.centre, (a + b + c) / 3.0);
 }
 
+/// The side of another optic, one that parts space, on which the beam of a history runs: 1 outside, -1
+/// inside, 0 where that is not known.
+int Prover::side_at(Id history, Id optic) const {
+    const FacetPart& part = proof_.part;
+    for (Id s = history; s != kNone; s = part.histories[s].parent) {
+        const PathSegment& one = part.histories[s];
+        if (one.step.optic != optic) continue;
+        const bool is_through = one.step.event != Event::kReflect;
+        return one.front == is_through ? -1 : 1;
+    }
+    const PathOptic& asked = world_.optics[optic];
+    if (!asked.mirror) {
+        const auto holds = [&](const PartCorner& corner) { return corner.look->around.holds(optic); };
+        const auto inside = std::count_if(part.corners.begin(), part.corners.end(), holds);
+        return inside == 0 ? 1 : inside == 3 ? -1 : 0;
+    }
+    // Nothing goes through a mirror: it is as for the camera's rays.
+    const Box box = asked.patches().bounds();
+    for (const PartCorner& corner : part.corners)
+        if (box.holds(corner.look->place.point - corner.look->incident)) return 0;
+    return 1;
+}
+
 /// A patch that the beam may touch: whether it changes no ray's history. `arriving`: the side on which the
 /// beam arrives, once it is known.
 bool Prover::passes(const Flight& flight, Id optic, const SurfacePatch& patch, int& arriving) const {
@@ -160,13 +184,12 @@ bool Prover::passes(const Flight& flight, Id optic, const SurfacePatch& patch, i
     const Interval start = heights(flight.start, piece);
     if (start.high < -flight.start.room - touch) return true;  // behind where the beam starts
 
-    // On the side that the beam is on it cannot be met: the side that it left by, or that of the medium. That
+    // From the side that the beam is on it cannot be met: the side that it left by, or on which it runs. That
     // holds for surfaces that part space, else where the beam starts.
     const PatchTree& tree = world_.optics[optic].patches();
     const bool is_own = optic == flight.from;
-    const double unmet = is_own                                                   ? flight.leaves
-                         : !world_.optics[optic].mirror && optic == flight.medium ? -1
-                                                                                  : 1;
+    const double unmet = is_own ? flight.leaves : side_at(flight.history, optic);
+    if (unmet == 0) return false;
     if (side == unmet && (tree.is_closed() || (is_own && tree.is_height_field()))) return true;
     if (!is_own) return side == unmet && start.low <= flight.start.room + touch;
     return start.low <= flight.start.room + patch.size &&
@@ -224,7 +247,7 @@ bool Prover::is_clear(std::size_t h, const Stretch& stretch) const {
     const std::optional<Beam> beam = Beam::around(rays);
     const bool reflects = history.step.event == Event::kReflect;
     if (!beam) return false;
-    Flight flight{*beam, history.step.optic, reflects == history.front ? 1.0 : -1.0, history.medium};
+    Flight flight{*beam, history.step.optic, reflects == history.front ? 1.0 : -1.0, static_cast<Id>(h)};
     const auto origin = [](const PathSegment& one) { return one.ray.origin; };
     flight.start =
         beam->plane_through(stretch.each<Vec3>(origin, [&](std::size_t k) { return turned(k).origin; }));
