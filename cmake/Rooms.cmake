@@ -19,7 +19,7 @@ target_link_options(trilens_options INTERFACE
 # namespace, or by #define) is therefore named once in a room; the compiler says where it is not. Apart: Highway's
 # kernels, which include themselves.
 option(TRILENS_UNITY "Compile a room's units together: faster as a whole, slower after a small change" ON)
-set(TRILENS_UNITY_BATCH 8 CACHE STRING "How many units of a room are compiled together; 0: all")
+set(TRILENS_UNITY_BATCH 16 CACHE STRING "How many units of a room are compiled together; 0: all")
 function(trilens_unite target)
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)
