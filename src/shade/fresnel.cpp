@@ -5,6 +5,11 @@
 
 namespace trilens {
 
+bool is_beyond_critical(double cos_incident, double eta) {
+    const double cosine = std::clamp(cos_incident, 0.0, 1.0);
+    return eta * eta * (1 - cosine * cosine) > 1;
+}
+
 double fresnel_reflectance(double cos_incident, double eta) {
     const double cos_i = std::clamp(cos_incident, 0.0, 1.0);
     const double sin2 = eta * eta * (1 - cos_i * cos_i);

@@ -9,4 +9,8 @@ namespace trilens {
 /// Source: the Fresnel equations, Born and Wolf, Principles of Optics, section 1.5.2.
 double fresnel_reflectance(double cos_incident, double eta);
 
+/// Whether no light goes through: total internal reflection, which there is only towards the thinner medium.
+/// At grazing incidence on a denser one the interface reflects all as well, but light has a way through.
+bool is_beyond_critical(double cos_incident, double eta);
+
 }  // namespace trilens

@@ -11,8 +11,9 @@ GlassInterface interface_of(const Material& material, bool front) {
 }
 
 double reflectance_of(const GlassInterface& interface, double cosine, bool fresnel, int colour) {
-    const double share = fresnel_reflectance(cosine, eta_of(interface, colour));
-    return fresnel || share >= 1 ? share : 0;
+    const double eta = eta_of(interface, colour);
+    if (fresnel) return fresnel_reflectance(cosine, eta);
+    return is_beyond_critical(cosine, eta) ? 1 : 0;
 }
 
 bool disperses(const Material* material) {
@@ -47,7 +48,7 @@ OpticWeights interface_weights(const GlassInterface& interface, double cosine, b
 }
 
 bool reflects_totally(const GlassInterface& interface, double cosine) {
-    return interface.before != interface.after && fresnel_reflectance(cosine, eta_of(interface, -1)) >= 1;
+    return interface.before != interface.after && is_beyond_critical(cosine, eta_of(interface, -1));
 }
 
 OpticWeights optic_weights(const Material& material, const Incidence& incidence, bool fresnel) {

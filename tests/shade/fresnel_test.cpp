@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "shade/optic_weights.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -90,5 +91,31 @@ TEST_CASE("total internal reflection reflects all, from the critical angle on") 
         CHECK(fresnel_reflectance(std::cos(critical + 1e-9), ior) == 1);
         CHECK(fresnel_reflectance(std::cos(critical - 1e-12), ior) == Approx(1).margin(1e-4));
         CHECK(fresnel_reflectance(std::cos(critical - 1e-3), ior) < 1);
+    }
+}
+
+TEST_CASE("glass reflects all only beyond the critical angle, from inside: not at grazing from outside") {
+    CHECK_FALSE(is_beyond_critical(0, 1 / 1.5));
+    CHECK_FALSE(is_beyond_critical(0, 1));
+    CHECK_FALSE(is_beyond_critical(1, 1.5));
+    const double critical = std::sqrt(1 - 1 / (1.5 * 1.5));
+    CHECK(is_beyond_critical(critical * (1 - 1e-9), 1.5));
+    CHECK_FALSE(is_beyond_critical(critical * (1 + 1e-9), 1.5));
+}
+
+TEST_CASE("without Fresnel glass passes everything on at grazing too, and so to its tint") {
+    Material glass;
+    glass.transmission_factor = 1;
+    glass.ior = 1.1;
+    glass.base_color_factor = {0.5, 0.6, 0.7};
+    for (const double dispersion : {0.0, 1.0}) {
+        glass.dispersion = dispersion;
+        const OpticWeights grazing = optic_weights(glass, {0, true}, false);
+        CHECK(grazing.reflect == Vec3(0));
+        CHECK(grazing.refract == glass.base_color_factor);
+        CHECK_FALSE(reflects_totally(glass, {0, true}));
+        CHECK(optic_weights(glass, {0, true}, true).reflect == Vec3(1));
+        CHECK(optic_weights(glass, {0, false}, false).reflect == Vec3(1));
+        CHECK(reflects_totally(glass, {0, false}));
     }
 }
