@@ -1,6 +1,7 @@
 #include "paths/follow.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "shade/shade.h"
@@ -14,10 +15,6 @@ constexpr std::size_t kMostSteps = 256;
 
 /// So often looks go on where an optic lies on an object.
 constexpr int kMostRests = 2;
-
-double largest_weight(const Vec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
 
 /// Whether the next optic lies on an object where the ray meets it.
 bool lies_on_object(const PathWorld& world, const Ray& ray, const NextOptic& next) {
@@ -55,12 +52,13 @@ class Follower {
     const FollowParams& params_;
     FollowedPaths followed_;
     std::vector<Pending> waiting_;
+    std::array<Vec3, 2> faint_behind_{Vec3(0), Vec3(0)};  // of paths that reflect first, and refract
 };
 
 void Follower::start(const PathStart& from) {
     const Meeting& first = from.first;
     const std::vector<Branch> ways = branches(world_, first, from.around, kAllColours);
-    if (ways.empty()) followed_.cut.lost += 1;
+    if (ways.empty()) followed_.cut.lost += Vec3(1);
     for (auto way_on = ways.rbegin(); way_on != ways.rend(); ++way_on) {
         const bool reflects = way_on->step.event == Event::kReflect;
         if (!(reflects ? world_.reflect : world_.refract)) continue;
@@ -83,7 +81,7 @@ void Follower::start(const PathStart& from) {
 
 void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
     const std::vector<Branch> ways = branches(world_, next.meeting, from.branch.media, from.branch.colours);
-    if (ways.empty()) followed_.cut.lost += largest_weight(from.first_weight * from.weight);
+    if (ways.empty()) followed_.cut.lost += from.first_weight * from.weight;
     const PathSegment& parent = followed_.segments[segment];
     Vec3 arrived = from.weight;
     if (parent.medium != kNone)
@@ -106,8 +104,9 @@ void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
 
 void Follower::run(const Pending& from) {
     const Vec3 light = from.first_weight * from.weight;
-    if (!from.principal && largest_weight(light) < params_.least_weight) {
-        followed_.cut.faint += largest_weight(light);
+    if (!from.principal && of_worst_colour(light) < params_.least_weight) {
+        followed_.cut.faint += light;
+        faint_behind_[from.path == Path::kRefract] += from.weight;
         return;
     }
     PathSegment segment;
@@ -141,7 +140,7 @@ void Follower::run(const Pending& from) {
     if (rests) segment.rest = next->distance;
     if (rests && from.rested >= kMostRests) next.reset();
     if (next && (from.depth >= world_.max_depth || from.steps >= kMostSteps)) {
-        followed_.cut.too_deep += largest_weight(light);
+        followed_.cut.too_deep += light;
         if (params_.objects) segment.hit = params_.objects->first_hit(segment.ray);
         next.reset();
     }
@@ -161,6 +160,7 @@ FollowedPaths Follower::follow(const PathStart& begin) {
         waiting_.pop_back();
         run(from);
     }
+    followed_.cut.faint_behind = glm::max(faint_behind_[0], faint_behind_[1]);
     return std::move(followed_);
 }
 

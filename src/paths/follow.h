@@ -34,16 +34,25 @@ struct PathSegment {
     bool ends = true;    // it meets an object, or no other optic: nothing goes on from it
 };
 
-/// What follow_paths leaves out, as shares of the light (the largest of the three colours), summed.
+/// What follow_paths leaves out of each colour, as shares of its light, summed over paths: a path of one
+/// colour takes from that colour alone, so no share of one ray is above 1.
 struct CutPaths {
-    double faint = 0;     // paths that carry less than FollowParams::least_weight
-    double too_deep = 0;  // paths that would meet an optic after the last that is followed: they see past it
-    double lost = 0;      // paths inside of more bodies at once than can be told
+    Vec3 faint{0};     // paths that carry less than FollowParams::least_weight
+    Vec3 too_deep{0};  // paths that would meet an optic after the last that is followed: they see past it
+    Vec3 lost{0};      // paths inside of more bodies at once than can be told
+    // The faint ones as a share of what leaves the first optic, of the first event where that is most.
+    Vec3 faint_behind{0};
 };
 
-/// Of each share the larger one.
+/// The share of the colour that loses most.
+inline double of_worst_colour(const Vec3& share) {
+    return std::max({share.x, share.y, share.z});
+}
+
+/// Of each share the larger one, colour by colour.
 inline CutPaths most_cut(const CutPaths& a, const CutPaths& b) {
-    return {std::max(a.faint, b.faint), std::max(a.too_deep, b.too_deep), std::max(a.lost, b.lost)};
+    return {glm::max(a.faint, b.faint), glm::max(a.too_deep, b.too_deep), glm::max(a.lost, b.lost),
+            glm::max(a.faint_behind, b.faint_behind)};
 }
 
 /// Less of a sample's light than this is not followed: half a step of 8 bits.

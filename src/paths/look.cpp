@@ -29,7 +29,7 @@ void follow(const Looking& looking, Look& look, double least_weight) {
     look.segments = std::move(followed.segments);
     look.cut = followed.cut;
     look.principal_only = least_weight == kPrincipalOnly;
-    if (look.principal_only) look.cut.faint = 0;  // nobody asked for those
+    if (look.principal_only) look.cut.faint = look.cut.faint_behind = Vec3(0);  // nobody asked for those
 }
 
 /// The paths from `place`, where this ray of the camera arrives.

@@ -161,9 +161,9 @@ void count(const World& world, const SampleViews& middle, const SampleView& view
     counts.traced_pixels += view.traced;
     counts.layered_pixels += !view.traced && view.layers > 0;
     counts.subdivided_pixels += !view.traced && view.level > 0;
-    counts.faint_light = std::max(counts.faint_light, on_optic.cut.faint);
+    counts.faint_light = std::max(counts.faint_light, of_worst_colour(on_optic.cut.faint));
     counts.predicted_error = std::max(counts.predicted_error, on_optic.predicted);
-    counts.deep_light = std::max(counts.deep_light, on_optic.cut.too_deep);
+    counts.deep_light = std::max(counts.deep_light, of_worst_colour(on_optic.cut.too_deep));
 }
 
 void merge(const LayerStatistics& from, LayerStatistics& to) {

@@ -207,12 +207,13 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
     Against result;
     for (std::size_t p = 0; p < other.size(); ++p) {
         const CutPaths cut = views.samples[p].optic == kNone ? CutPaths() : views.of_optics[p].cut;
-        if (cut.too_deep > 0.5) {
+        if (of_worst_colour(cut.too_deep) > 0.5) {
             ++result.trapped;
             continue;
         }
+        const double left_out = of_worst_colour(cut.faint) + of_worst_colour(cut.too_deep);
         const double off =
-            std::max(0.0, apart(beauty(*world, views, p), other[p]) - cut.faint - cut.too_deep);
+            std::max(0.0, apart(beauty(*world, views, p), other[p]) - left_out);
         if (off <= same) {
             result.worst = std::max(result.worst, off);
             continue;
@@ -226,7 +227,7 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
             SampleViews one;
             make_limit_viewer(*world, shifted(make_camera_rays(world->scene, 0), by))({x, y, x + 1, y + 1, 1},
                                                                                       one);
-            explained = apart(beauty(*world, one, 0), other[p]) <= same + cut.faint + cut.too_deep;
+            explained = apart(beauty(*world, one, 0), other[p]) <= same + left_out;
         }
         if (explained) continue;
         if (result.off_edge++ == 0)

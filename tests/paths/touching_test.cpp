@@ -55,7 +55,7 @@ TEST_CASE("light goes from one body into another that touches it as if no air la
                 const Vec3 towards(random.uniform(-3, 3), kTouch, random.uniform(-3, 3));
                 const auto paths = slabs.stage.follow(from, towards - from);
                 REQUIRE(paths);
-                CHECK(paths->cut.lost == 0);
+                CHECK(paths->cut.lost == Vec3(0));
                 const auto way = straight_through(*paths);
                 // Into the upper slab; out of it and into the lower one, once as an interface and once with
                 // none; out.
