@@ -29,6 +29,9 @@ struct PathLeaf {
     Vec3 centre{0};        // of kTraced: homogeneous screen position
     double predicted = 0;  // of kProjected: displacement in pixels, where an error is asked for
     bool layered = false;  // of kProjected: optics seen in this one are layers that lie over it
+    // Of kProjected: the most of each colour's light behind the first optic that no node carries, at any of
+    // its corners: paths too faint to be followed, or so faint at the others that none stands for them.
+    Vec3 faint{0};
 };
 
 /// All rays of one history: its last step starts them.
@@ -46,6 +49,9 @@ struct PathNode {
     std::vector<char> touches;    // per leaf: an object lies on the next optic, at its middle
     std::vector<double> next;     // per corner: t of the next optic; infinity: none
     std::vector<Vec3> weight;     // per corner: see PathSegment::weight
+    // Per corner: by how much its screen position is longer than the camera's, see node_corner.h; empty: all
+    // are 1.
+    std::vector<double> farther;
 };
 
 /// How finely facets are divided whose corners do not tell the truth about the rays between them.

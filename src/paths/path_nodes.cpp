@@ -1,5 +1,6 @@
 // Parts of facets become leaves, and their histories nodes with the rays of their corners.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -8,6 +9,29 @@
 #include "paths/node_corner.h"
 
 namespace trilens {
+namespace {
+
+/// What a part's histories leave out of the light behind the first optic. Layers have their own.
+Vec3 faint_light(const FacetPart& part) {
+    Vec3 most(0);
+    if (part.method != LeafMethod::kProjected || part.layered) return most;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (part.segment[k].empty()) continue;
+        const Look& look = *part.corners[k].look;
+        std::vector<char> carried(look.segments.size(), 0);
+        for (const std::size_t s : part.segment[k]) carried[s] = 1;
+        std::array<Vec3, 2> left{look.cut.faint_behind, look.cut.faint_behind};  // by the first event
+        for (std::size_t s = 0; s < look.segments.size(); ++s) {
+            const PathSegment& segment = look.segments[s];
+            if (!carried[s] && (segment.parent == kNone || carried[segment.parent]))
+                left[segment.path == Path::kRefract] += segment.weight;
+        }
+        most = glm::max(most, glm::max(left[0], left[1]));
+    }
+    return most;
+}
+
+}  // namespace
 
 /// Cell 0 of `divided` becomes `cell`, the others stand at the end.
 void OpticPaths::append(Id facet, Id cell, DividedFacet& divided) {
@@ -22,7 +46,8 @@ void OpticPaths::append(Id facet, Id cell, DividedFacet& divided) {
         if (from.part != kNone) leaf_cell_[first_leaf + from.part] = number(c);
     }
     for (FacetPart& part : divided.parts) {
-        leaves_.push_back({facet, part.level, part.method, part.centre, 0, part.layered});
+        leaves_.push_back({facet, part.level, part.method, part.centre, 0, part.layered,
+                           faint_light(part)});
         if (part.method != LeafMethod::kProjected) continue;
         ++projected_count_;
         append_part(static_cast<Id>(leaves_.size() - 1), part);
@@ -92,6 +117,7 @@ void OpticPaths::append_part(Id leaf, FacetPart& part) {
             node.mesh.screen.push_back(corner.screen);
             node.next.push_back(corner.next);
             node.weight.push_back(corner.weight);
+            node.farther.push_back(first ? 1 : farther(look, *segment, node.unfolds));
             if (shared != kNone) corner_of_node_[node_index[h]].insert({shared, facet[k]});
         }
         node.mesh.facets.resize(leaf + 1, {kNone, kNone, kNone});

@@ -120,8 +120,14 @@ void NodeDrawer::set_end(Id index, Id leaf, const Vec3& share, PathEnd& end) con
     end.node = index;
     end.medium = node.medium;
     end.ray = interpolated_ray(node.mesh, leaf, share);
+    // By the sample's place between the camera's own corners, which is the same in every node: so the weights
+    // of all ends add up to no more than they do at the corners.
+    Vec3 place = share;
+    if (!node.farther.empty())
+        for (int k = 0; k < 3; ++k) place[k] *= node.farther[corner[static_cast<std::size_t>(k)]];
+    place /= place.x + place.y + place.z;
     end.weight = Vec3(0);
-    for (int k = 0; k < 3; ++k) end.weight += share[k] * node.weight[corner[static_cast<std::size_t>(k)]];
+    for (int k = 0; k < 3; ++k) end.weight += place[k] * node.weight[corner[static_cast<std::size_t>(k)]];
     end.weight = glm::max(end.weight, Vec3(0));
     if (end.hit.seen()) end.magnification = magnification(node.mesh, leaf, share, end.hit.t);
 }
