@@ -67,7 +67,7 @@ TEST_CASE("every kind of bad option is told in one line with what the option tak
     check_usage("render a.json b.json", {"no further argument \"b.json\""});
     check_usage("render a.json --quiet=3", {"-q/--quiet takes no value"});
     check_usage("render a.json -q=3", {"-q/--quiet takes no value"});
-    check_usage("sweep plan a.json -o --json", {"-o", "but --json follows it"});
+    check_usage("sweep plan a.json -o --zip", {"-o", "but --zip follows it"});
     check_usage("render a.json --camera --size 3x3", {"--camera", "but --size follows it"});
     check_usage("render a.json -z", {"there is no option \"-z\"", "--help"});
     check_usage("render a.json --resolutoin=4", {"\"--resolutoin\"", "'--resolution'"});

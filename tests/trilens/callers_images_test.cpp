@@ -13,6 +13,7 @@ TEST_CASE("images that are none are refused by all that takes images", "[trilens
         only_errors("encode_image", [&] { encode_image(odd); });
         only_errors("encode_image_as", [&] { encode_image_as(odd, ImageFormat::kPng); });
         only_errors("write_image", [&] { write_image(folder + "/a.exr", odd); });
+        only_errors("image_format", [&] { image_format("picture.gif"); });
         only_errors("write_image_as", [&] { write_image_as(folder + "/a", odd, ImageFormat::kPng); });
         only_errors("count_regions", [&] { count_regions(odd, 0); });
         only_errors("keep_common_channels", [&] { keep_common_channels(odd, good); });
