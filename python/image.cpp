@@ -55,11 +55,11 @@ Channel channel_from(const std::string& name, const py::array& array) {
 }
 
 using Metadata = std::map<std::string, std::string>;
-using Window = std::array<int, 4>;
+using DataWindow = std::array<int, 4>;
 using Size = std::array<int, 2>;
 
 HeldImage from_arrays(const py::dict& channels, const std::optional<Size>& size,
-                      const std::optional<Window>& window, const Metadata& metadata) {
+                      const std::optional<DataWindow>& window, const Metadata& metadata) {
     HeldImage held;
     Image& image = held.image;
     for (const auto& [key, value] : channels) {
@@ -128,7 +128,7 @@ void bind_copying(py::class_<HeldImage, std::shared_ptr<HeldImage>>& image) {
             },
             [](const py::tuple& state) {
                 HeldImage held = from_arrays(state[0].cast<py::dict>(), state[1].cast<Size>(),
-                                             state[2].cast<Window>(), state[3].cast<Metadata>());
+                                             state[2].cast<DataWindow>(), state[3].cast<Metadata>());
                 held.statistics = state[4].cast<py::dict>();
                 return held;
             }));

@@ -123,7 +123,7 @@ Rows rows_of(const std::vector<PointProjection>& points) {
     return rows;
 }
 
-py::array array_of(const Rows& rows) {
+py::array rows_array(const Rows& rows) {
     const py::object dtype = py::module_::import("numpy").attr("dtype")(row_type(rows.steps));
     const auto stride = static_cast<py::ssize_t>(rows.row_size());
     return py::array(py::dtype::from_args(dtype), {static_cast<py::ssize_t>(rows.bytes.size()) / stride},
@@ -152,7 +152,7 @@ void bind_project(RendererClass& renderer) {
             request.refine = refine;
             request.visibility = visibility;
             request.derivatives = derivatives;
-            return array_of(Talk().run([&] { return rows_of(self.project(given, request)); }));
+            return rows_array(Talk().run([&] { return rows_of(self.project(given, request)); }));
         },
         py::arg("points"), py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(),
         py::arg("search") = "complete", py::arg("refine") = true, py::arg("visibility") = true,

@@ -12,17 +12,17 @@ using SurfacePointer = std::shared_ptr<Surface>;
 using Faces = std::vector<std::vector<int>>;
 using Creases = std::vector<std::pair<std::vector<int>, double>>;
 using Corners = std::vector<std::pair<int, double>>;
-using Names = std::vector<std::string>;
+using ShapeNames = std::vector<std::string>;
 
 SubdivisionScheme scheme_of(const std::string& name) {
-    require_known("scheme", name, Names{"catmullClark", "loop", "bilinear"});
+    require_known("scheme", name, ShapeNames{"catmullClark", "loop", "bilinear"});
     return name == "loop"       ? SubdivisionScheme::kLoop
            : name == "bilinear" ? SubdivisionScheme::kBilinear
                                 : SubdivisionScheme::kCatmullClark;
 }
 
 InterpolateBoundary boundary_of(const std::string& name) {
-    require_known("interpolate_boundary", name, Names{"none", "edgeOnly", "edgeAndCorner"});
+    require_known("interpolate_boundary", name, ShapeNames{"none", "edgeOnly", "edgeAndCorner"});
     return name == "none"       ? InterpolateBoundary::kNothing
            : name == "edgeOnly" ? InterpolateBoundary::kEdgeOnly
                                 : InterpolateBoundary::kEdgeAndCorner;
@@ -93,7 +93,7 @@ const char* domain_name(const Surface& surface, Id face) {
 }
 
 SurfacePointer primitive_surface(const std::string& type, Primitive primitive) {
-    require_known("primitive", type, Names{"sphere", "paraboloid", "cylinder", "plane"});
+    require_known("primitive", type, ShapeNames{"sphere", "paraboloid", "cylinder", "plane"});
     primitive.type = type == "sphere"       ? Primitive::Type::kSphere
                      : type == "paraboloid" ? Primitive::Type::kParaboloid
                      : type == "cylinder"   ? Primitive::Type::kCylinder
@@ -131,7 +131,7 @@ void bind_grid(py::module_& module) {
         });
 }
 
-void bind_makers(py::module_& module) {
+void bind_surface_makers(py::module_& module) {
     module.def(
         "limit_surface",
         [](const Doubles& points, const Faces& faces, const Creases& creases, const Corners& corners,
@@ -209,7 +209,7 @@ void bind_surface(py::module_& module) {
             py::arg("n"),
             "n x n squares of two facets on each face of four sides, n^2 facets on each triangular one; n in "
             "1..1024.");
-    bind_makers(module);
+    bind_surface_makers(module);
 }
 
 }  // namespace trilens::python

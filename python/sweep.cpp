@@ -12,7 +12,7 @@
 namespace trilens::python {
 namespace {
 
-using Path = std::filesystem::path;
+using SweepPath = std::filesystem::path;
 
 /// A value as --over takes it: texts bare, numbers as they read back.
 std::string value_text(const py::handle& value) {
@@ -163,10 +163,10 @@ void bind_summary(py::module_& module) {
         });
 }
 
-using SceneOrFile = std::variant<Path, std::reference_wrapper<const Scene>>;
+using SceneOrFile = std::variant<SweepPath, std::reference_wrapper<const Scene>>;
 
 void set_scene(const SceneOrFile& scene, const py::dict& overrides, SweepRequest& request) {
-    if (const Path* const file = std::get_if<Path>(&scene)) {
+    if (const SweepPath* const file = std::get_if<SweepPath>(&scene)) {
         request.scene = {file->string(), overrides_of(overrides), 0};
         return;
     }
@@ -180,10 +180,10 @@ template <class Work>
 void def_sweep(py::module_& module, const char* name, const Work& work, const char* doc) {
     module.def(
         name,
-        [work](const SceneOrFile& scene, const Path& folder, const py::object& over, const std::string& truth,
-               const std::optional<std::string>& camera, const py::dict& overrides, const std::string& shard,
-               const std::string& title, bool replace, bool zip, int jobs, int repeats,
-               const py::object& progress, const py::object& warn) {
+        [work](const SceneOrFile& scene, const SweepPath& folder, const py::object& over,
+               const std::string& truth, const std::optional<std::string>& camera, const py::dict& overrides,
+               const std::string& shard, const std::string& title, bool replace, bool zip, int jobs,
+               int repeats, const py::object& progress, const py::object& warn) {
             SweepRequest request;
             set_scene(scene, overrides, request);
             request.camera = camera.value_or("");
@@ -241,12 +241,12 @@ void bind_sweep(py::module_& module) {
         "Writes the plan of a sweep and runs nothing; returns the plan's file. Arguments: see sweep.");
     module.def(
         "load_sweep",
-        [](const Path& folder) { return Talk().run([&] { return load_sweep(folder.string()); }); },
+        [](const SweepPath& folder) { return Talk().run([&] { return load_sweep(folder.string()); }); },
         py::arg("folder"),
         "What a sweep's folder says, with fits; writes nothing. Raises InputError without a plan.");
     module.def(
         "report_sweep",
-        [](const Path& folder) { return Talk().run([&] { return report_sweep(folder.string()); }); },
+        [](const SweepPath& folder) { return Talk().run([&] { return report_sweep(folder.string()); }); },
         py::arg("folder"), "The same, and writes tables, plots and report.html.");
 }
 

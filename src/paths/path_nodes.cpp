@@ -133,13 +133,13 @@ void OpticPaths::append_part(Id leaf, FacetPart& part) {
 
 /// By the exact path at the part's middle.
 bool OpticPaths::touches_object(const FacetPart& part, std::size_t history) const {
-    constexpr double kTouch = 1e-8;  // of the way
+    constexpr double kTouching = 1e-8;  // of the way
     if (!params_.objects || part.histories[history].ends || part.inside.empty()) return false;
     const PartInside& middle = part.inside.back();
     if (middle.segment.empty()) return false;
     const PathSegment& exact = middle.at.look->segments[middle.segment[history]];
     const Hit hit = params_.objects->first_hit(exact.ray);
-    return hit.seen() && std::fabs(hit.t - exact.next) <= kTouch * exact.next;
+    return hit.seen() && std::fabs(hit.t - exact.next) <= kTouching * exact.next;
 }
 
 Id OpticPaths::leaf_at(Id facet, const Vec3& weights) const {

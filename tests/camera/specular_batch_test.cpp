@@ -26,15 +26,15 @@ bool same_list(const SpecularSearch& a, const SpecularSearch& b) {
            std::equal(a.images.begin(), a.images.end(), b.images.begin(), b.images.end(), same_image);
 }
 
-struct Tally {
+struct BatchTally {
     int different = 0, images = 0, incomplete = 0;
     std::size_t cells_alone = 0, cells = 0;
 };
 
-Tally compare(const SpecularSearcher& searcher, const SpecularQuery& query, const std::vector<Vec3>& points,
-              bool body = false) {
+BatchTally compare(const SpecularSearcher& searcher, const SpecularQuery& query,
+                   const std::vector<Vec3>& points, bool body = false) {
     const auto found = body ? searcher.find_each_in_body(query, points) : searcher.find_each(query, points);
-    Tally tally;
+    BatchTally tally;
     SpecularQuery one = query;
     for (std::size_t p = 0; p < points.size(); ++p) {
         one.point = points[p];
@@ -64,26 +64,26 @@ TEST_CASE("many points in one search have each the list that it has alone") {
     query.camera = camera_at({0.4, 2.5, 1.5}, Vec3(0));
     std::vector<Vec3> points = scattered(draw, 3000, 0.02, 4);
 
-    const Tally mirror = compare(searcher, query, points);
+    const BatchTally mirror = compare(searcher, query, points);
     CHECK(mirror.different == 0);
     CHECK(mirror.images > 3000);
 
     // Points side by side have most of the work in common.
     std::vector<Vec3> close;
     for (int p = 0; p < 1000; ++p) close.push_back(Vec3(1.5, 1.2, 2) + draw.in_cube(0.1));
-    const Tally side_by_side = compare(searcher, query, close);
+    const BatchTally side_by_side = compare(searcher, query, close);
     CHECK(side_by_side.different == 0);
     CHECK(side_by_side.cells < side_by_side.cells_alone / 2);
 
     query.event = SpecularEvent::kRefract;
     query.point_index = 1.5;
-    const Tally glass = compare(searcher, query, points, true);
+    const BatchTally glass = compare(searcher, query, points, true);
     CHECK(glass.different == 0);
     CHECK(glass.images > 500);
 
     query = {};
     query.camera = camera_at({0.3, -0.2, 0.6}, {0.1, 0.1, -1});
-    const Tally room = compare(searcher, query, scattered(draw, 2000, 0, 0.99));
+    const BatchTally room = compare(searcher, query, scattered(draw, 2000, 0, 0.99));
     CHECK(room.different == 0);
     CHECK(room.images > 2000);
 }

@@ -26,7 +26,7 @@ Vec3 goes_on(const SpecularQuery& query, const Vec3& in, const Vec3& normal) {
     return rest > 0 ? along + std::copysign(std::sqrt(rest), cosine) * normal : in;
 }
 
-struct Tally {
+struct LanesTally {
     int places = 0, empty = 0, leaving = 0, contracting = 0, open = 0, narrow = 0, different = 0,
         not_asked = 0;
 };
@@ -46,7 +46,8 @@ bool is_clear(const NewtonBounds& newton, const Vec2& half) {
     return true;
 }
 
-void compare_newton(const LaneQuestion& question, const CellTerms& terms, const Vec2& half, Tally& tally) {
+void compare_newton(const LaneQuestion& question, const CellTerms& terms, const Vec2& half,
+                    LanesTally& tally) {
     const NewtonLanes lanes = newton_lanes(question, terms, half);
     tally.not_asked += ((lanes.leaves | lanes.contracts | lanes.open | lanes.narrow) & ~question.asked) != 0;
     for (std::size_t i = 0; i < kPointLanes; ++i) {
@@ -72,9 +73,9 @@ void compare_newton(const LaneQuestion& question, const CellTerms& terms, const 
     }
 }
 
-Tally compare(Draw& draw, const Surface& surface, SpecularQuery query, int rounds) {
+LanesTally compare(Draw& draw, const Surface& surface, SpecularQuery query, int rounds) {
     const auto bounder = surface.make_bounder();
-    Tally tally;
+    LanesTally tally;
     for (int round = 0; round < rounds; ++round) {
         CellBox box{
             static_cast<Id>(draw.uniform(0, 0.999) * static_cast<double>(surface.face_count())), {}, {}};
@@ -112,7 +113,7 @@ Tally compare(Draw& draw, const Surface& surface, SpecularQuery query, int round
     return tally;
 }
 
-void check(const Tally& tally) {
+void check(const LanesTally& tally) {
     CHECK(tally.different == 0);
     CHECK(tally.not_asked == 0);
     CHECK(tally.empty > tally.places / 20);

@@ -53,7 +53,7 @@ std::vector<Vec3> refraction_by_angles(const Vec3& e, const Vec3& x, double insi
     return found;
 }
 
-struct Tally {
+struct SearchTally {
     int images = 0, missing = 0, extra = 0, incomplete = 0;
 
     void add(const SpecularSearch& search, const std::vector<Vec3>& expected, double size) {
@@ -75,7 +75,7 @@ struct Tally {
 
 TEST_CASE("the search lists exactly the solutions of Alhazen's problem") {
     Draw draw(31);
-    Tally tally;
+    SearchTally tally;
     std::array<int, 5> by_count{};
     for (int round = 0; round < 400; ++round) {
         const double size = draw.log_uniform(1e-4, 1e4);
@@ -110,7 +110,7 @@ TEST_CASE("the search lists exactly the refractions that a scan of all angles fi
     Draw draw(32);
     const CubeSphere sphere(Vec3(0), 1);
     const SpecularSearcher searcher(sphere);
-    Tally tally;
+    SearchTally tally;
     int backs = 0, several = 0;
     for (int round = 0; round < 600; ++round) {
         const bool eye_inside = round % 3 == 0;
@@ -142,7 +142,7 @@ TEST_CASE("the search lists exactly the refractions that a scan of all angles fi
 
 TEST_CASE("the search finds the one image in a flat mirror and the one through flat water") {
     Draw draw(33);
-    Tally mirror_tally, water_tally;
+    SearchTally mirror_tally, water_tally;
     for (int round = 0; round < 300; ++round) {
         const double size = draw.log_uniform(1e-4, 1e4);
         const Patch plane(size * draw.in_cube(1), size, 0);
@@ -173,7 +173,7 @@ TEST_CASE("the search finds the one image in a flat mirror and the one through f
             expected.push_back(above);
         water_tally.add(find_specular_points(plane, query), expected, size);
     }
-    for (const Tally& tally : {mirror_tally, water_tally}) {
+    for (const SearchTally& tally : {mirror_tally, water_tally}) {
         CHECK(tally.missing == 0);
         CHECK(tally.extra == 0);
         CHECK(tally.incomplete == 0);

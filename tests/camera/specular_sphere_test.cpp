@@ -14,7 +14,7 @@ using namespace trilens_test;
 
 namespace {
 
-struct Tally {
+struct SphereTally {
     int lit = 0, shaded = 0, silent = 0, wrong = 0, elsewhere = 0, inside = 0;
 };
 
@@ -32,7 +32,7 @@ bool is_near_any(const std::vector<Vec3>& zeros, const Vec3& place, double reach
                        [&](const Vec3& zero) { return length(zero - place) < reach; });
 }
 
-void compare(Draw& draw, double nearest, double furthest, Tally& tally) {
+void compare(Draw& draw, double nearest, double furthest, SphereTally& tally) {
     const CubeSphere sphere(draw.in_cube(1), draw.log_uniform(0.3, 3));
     const auto somewhere = [&] {
         const Vec3 direction = draw.unit();
@@ -65,11 +65,11 @@ void compare(Draw& draw, double nearest, double furthest, Tally& tally) {
 
 TEST_CASE("the zeros that are said of a sphere are those of Alhazen's problem") {
     Draw draw(87);
-    Tally near, wide, inside;
+    SphereTally near, wide, inside;
     for (int round = 0; round < 300; ++round) compare(draw, 1.001, 6, near);
     for (int round = 0; round < 300; ++round) compare(draw, 1.001, 60, wide);
     for (int round = 0; round < 100; ++round) compare(draw, 0.1, 1.2, inside);
-    for (const Tally& tally : {near, wide, inside}) {
+    for (const SphereTally& tally : {near, wide, inside}) {
         CAPTURE(tally.lit, tally.shaded, tally.silent, tally.elsewhere);
         CHECK(tally.wrong == 0);
         CHECK(tally.elsewhere <= (tally.lit + tally.shaded) / 200);

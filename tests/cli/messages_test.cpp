@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string quoted(const std::string& path) {
+std::string quoted_word(const std::string& path) {
     return "'" + path + "'";
 }
 
@@ -24,8 +24,9 @@ bool has(const std::string& text, const std::string& part) {
 TEST_CASE("one failure is told in one line", "[cli][messages]") {
     const std::string folder = scratch_dir("cli_messages_once");
     const std::string scene = write_file(folder, "room.json", small_scene());
-    const CommandRun run = run_trilens("render " + quoted(scene) + " -o " + quoted(folder + "/x.exr") +
-                                       " --json=" + quoted(folder + "/none/x.json"));
+    const CommandRun run =
+        run_trilens("render " + quoted_word(scene) + " -o " + quoted_word(folder + "/x.exr") +
+                    " --json=" + quoted_word(folder + "/none/x.json"));
     INFO(run.err);
     CHECK(run.exit_code == 4);
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
@@ -35,22 +36,23 @@ TEST_CASE("one failure is told in one line", "[cli][messages]") {
 TEST_CASE("a film that --size cannot make is that option's fault", "[cli][messages]") {
     const std::string scene = write_file(scratch_dir("cli_messages_size"), "room.json", small_scene());
     for (const char* size : {"0x0", "100000x100000", "32769x1", "1x32769", "30000x30000"}) {
-        const CommandRun run = run_trilens("project " + quoted(scene) + " --point 1,1,3 --size " + size);
+        const CommandRun run = run_trilens("project " + quoted_word(scene) + " --point 1,1,3 --size " + size);
         INFO(size << ": " << run.err);
         CHECK(run.exit_code == 2);
         CHECK(has(run.err, "--size " + std::string(size)));
         CHECK_FALSE(has(run.err, "room.json"));
     }
-    CHECK(run_trilens("project " + quoted(scene) + " --point 1,1,3 --size 32768x8192").exit_code == 0);
+    CHECK(run_trilens("project " + quoted_word(scene) + " --point 1,1,3 --size 32768x8192").exit_code == 0);
 }
 
 TEST_CASE("compare names the images that cannot be compared", "[cli][messages]") {
     const std::string folder = scratch_dir("cli_messages_compare");
     const std::string scene = write_file(folder, "room.json", small_scene());
     const std::string a = folder + "/a.exr", b = folder + "/b.exr", bare = folder + "/bare.exr";
-    REQUIRE(run_trilens("render " + quoted(scene) + " -o " + quoted(a)).exit_code == 0);
-    REQUIRE(run_trilens("render " + quoted(scene) + " --size 16x16 -o " + quoted(b)).exit_code == 0);
-    REQUIRE(run_trilens("render " + quoted(scene) + " --aov Z -o " + quoted(bare)).exit_code == 0);
+    REQUIRE(run_trilens("render " + quoted_word(scene) + " -o " + quoted_word(a)).exit_code == 0);
+    REQUIRE(run_trilens("render " + quoted_word(scene) + " --size 16x16 -o " + quoted_word(b)).exit_code ==
+            0);
+    REQUIRE(run_trilens("render " + quoted_word(scene) + " --aov Z -o " + quoted_word(bare)).exit_code == 0);
     const auto error = [&](const std::string& words, int code) {
         const CommandRun run = run_trilens("compare " + words);
         INFO(words << ": " << run.err);
@@ -58,12 +60,12 @@ TEST_CASE("compare names the images that cannot be compared", "[cli][messages]")
         return run.err;
     };
     const std::string both = a + " and " + a;
-    CHECK(has(error(quoted(a) + " " + quoted(b), 3), a + " and " + b + ": size: "));
-    CHECK(has(error(quoted(a) + " " + quoted(a) + " --mask-object 77", 3),
+    CHECK(has(error(quoted_word(a) + " " + quoted_word(b), 3), a + " and " + b + ": size: "));
+    CHECK(has(error(quoted_word(a) + " " + quoted_word(a) + " --mask-object 77", 3),
               both + ": optic.object: no pixel shows object 77"));
-    CHECK(has(error(quoted(a) + " " + quoted(bare) + " --layer reflect", 3),
+    CHECK(has(error(quoted_word(a) + " " + quoted_word(bare) + " --layer reflect", 3),
               bare + ": reflect.R: there is no such channel"));
-    CHECK(has(error(quoted(a) + " " + quoted(a) + " --layer nope", 3),
+    CHECK(has(error(quoted_word(a) + " " + quoted_word(a) + " --layer nope", 3),
               a + ": nope.R: there is no such channel"));
 }
 
@@ -74,10 +76,11 @@ TEST_CASE("scenes of one name, and standard input, are refused by what reads or 
         fs::create_directories(folder + below);
         write_file(folder + below, "scene.json", small_scene());
     }
-    const std::string scenes = quoted(folder + "/aa/scene.json") + " " + quoted(folder + "/bb/scene.json");
+    const std::string scenes =
+        quoted_word(folder + "/aa/scene.json") + " " + quoted_word(folder + "/bb/scene.json");
     std::string said;
     for (const char* command : {"sweep run ", "sweep engines "}) {
-        const CommandRun run = run_trilens(command + scenes + " -o " + quoted(folder + "/e"));
+        const CommandRun run = run_trilens(command + scenes + " -o " + quoted_word(folder + "/e"));
         INFO(run.err);
         CHECK(run.exit_code == 2);
         CHECK(has(run.err, "have one name"));
@@ -85,7 +88,7 @@ TEST_CASE("scenes of one name, and standard input, are refused by what reads or 
         said = run.err;
         CHECK_FALSE(fs::exists(folder + "/e"));
         const CommandRun stream =
-            run_trilens(std::string(command) + "- -o " + quoted(folder + "/e") + " </dev/null");
+            run_trilens(std::string(command) + "- -o " + quoted_word(folder + "/e") + " </dev/null");
         CHECK(stream.exit_code == 2);
         CHECK(has(stream.err, "standard input"));
     }
@@ -96,7 +99,8 @@ TEST_CASE("a study of engines leaves the plots of others as they are", "[cli][me
     const std::string scene = write_file(folder, "room.json", small_scene());
     fs::create_directories(folder + "/study/plots");
     const std::string theirs = write_file(folder + "/study/plots", "room.svg", "mine");
-    const std::string command = "sweep engines " + quoted(scene) + " -q -o " + quoted(folder + "/study");
+    const std::string command =
+        "sweep engines " + quoted_word(scene) + " -q -o " + quoted_word(folder + "/study");
     const CommandRun refused = run_trilens(command);
     INFO(refused.err);
     CHECK(refused.exit_code == 4);
@@ -112,16 +116,18 @@ TEST_CASE("points may come from standard input, where the scene does not", "[cli
     const std::string folder = scratch_dir("cli_messages_points");
     const std::string scene = write_file(folder, "room.json", small_scene());
     const std::string points = write_file(folder, "points.csv", "x,y,z\n1,1,3\n0.5,2,4\n");
-    const CommandRun file = run_trilens("project " + quoted(scene) + " --points " + quoted(points));
-    const CommandRun stream = run_trilens("project " + quoted(scene) + " --points - <" + quoted(points));
+    const CommandRun file = run_trilens("project " + quoted_word(scene) + " --points " + quoted_word(points));
+    const CommandRun stream =
+        run_trilens("project " + quoted_word(scene) + " --points - <" + quoted_word(points));
     CHECK(file.exit_code == 0);
     CHECK_FALSE(file.out.empty());
     CHECK(stream.out == file.out);
-    const CommandRun bad = run_trilens("project " + quoted(scene) + " --points - <" + quoted(scene));
+    const CommandRun bad =
+        run_trilens("project " + quoted_word(scene) + " --points - <" + quoted_word(scene));
     CHECK(bad.exit_code == 3);
     CHECK(has(bad.err, "standard input: line 2"));
-    const CommandRun both = run_trilens("project - --points - <" + quoted(scene));
+    const CommandRun both = run_trilens("project - --points - <" + quoted_word(scene));
     CHECK(both.exit_code == 2);
     CHECK(has(both.err, "both"));
-    CHECK(run_trilens("project " + quoted(scene) + " --points - </dev/null").exit_code == 3);
+    CHECK(run_trilens("project " + quoted_word(scene) + " --points - </dev/null").exit_code == 3);
 }

@@ -13,22 +13,22 @@ using namespace trilens;
 
 namespace {
 
-using Bytes = std::vector<unsigned char>;
+using ApngBytes = std::vector<unsigned char>;
 
-Bytes picture(float red, int width = 7) {
+ApngBytes picture(float red, int width = 7) {
     std::vector<float> rgb;
     for (int p = 0; p < width * 5; ++p)
         for (int c = 0; c < 3; ++c) rgb.push_back(c == 0 ? red : static_cast<float>(p % 4) / 4);
     return encode_png(width, 5, rgb);
 }
 
-std::size_t at32(const Bytes& bytes, std::size_t at) {
+std::size_t at32(const ApngBytes& bytes, std::size_t at) {
     return (std::size_t{bytes[at]} << 24) + (std::size_t{bytes[at + 1]} << 16) +
            (std::size_t{bytes[at + 2]} << 8) + bytes[at + 3];
 }
 
 /// The checksum of PNG, bit by bit.
-std::size_t crc(const Bytes& bytes, std::size_t first, std::size_t last) {
+std::size_t crc(const ApngBytes& bytes, std::size_t first, std::size_t last) {
     std::uint32_t sum = 0xffffffffu;
     for (std::size_t i = first; i < last; ++i) {
         sum ^= bytes[i];
@@ -39,10 +39,10 @@ std::size_t crc(const Bytes& bytes, std::size_t first, std::size_t last) {
 
 struct Chunk {
     std::string type;
-    Bytes data;
+    ApngBytes data;
 };
 
-std::vector<Chunk> chunks(const Bytes& bytes) {
+std::vector<Chunk> chunks(const ApngBytes& bytes) {
     std::vector<Chunk> all;
     for (std::size_t at = 8; at < bytes.size();) {
         const std::size_t size = at32(bytes, at);
@@ -50,8 +50,8 @@ std::vector<Chunk> chunks(const Bytes& bytes) {
         CHECK(at32(bytes, at + 8 + size) == crc(bytes, at + 4, at + 8 + size));
         all.push_back({std::string(bytes.begin() + static_cast<std::ptrdiff_t>(at) + 4,
                                    bytes.begin() + static_cast<std::ptrdiff_t>(at) + 8),
-                       Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(at) + 8,
-                             bytes.begin() + static_cast<std::ptrdiff_t>(at + 8 + size))});
+                       ApngBytes(bytes.begin() + static_cast<std::ptrdiff_t>(at) + 8,
+                                 bytes.begin() + static_cast<std::ptrdiff_t>(at + 8 + size))});
         at += 12 + size;
     }
     return all;
@@ -60,10 +60,10 @@ std::vector<Chunk> chunks(const Bytes& bytes) {
 }  // namespace
 
 TEST_CASE("an animated PNG has its frames in order, numbered, each as long as asked", "[image]") {
-    const std::vector<Bytes> pngs{picture(0.1f), picture(0.5f), picture(0.9f)};
-    const Bytes file = encode_apng(pngs, 25);
+    const std::vector<ApngBytes> pngs{picture(0.1f), picture(0.5f), picture(0.9f)};
+    const ApngBytes file = encode_apng(pngs, 25);
     std::size_t frames = 0, numbers = 0, shown = 0;
-    std::vector<Bytes> data(3);
+    std::vector<ApngBytes> data(3);
     for (const Chunk& chunk : chunks(file)) {
         if (chunk.type == "acTL") shown = at32(chunk.data, 0);
         if (chunk.type == "fcTL") {
@@ -85,7 +85,7 @@ TEST_CASE("an animated PNG has its frames in order, numbered, each as long as as
     }
     CHECK((frames == 3 && shown == 3));
     for (std::size_t k = 0; k < 3; ++k) {
-        Bytes whole;
+        ApngBytes whole;
         for (const Chunk& chunk : chunks(pngs[k]))
             if (chunk.type == "IDAT") whole.insert(whole.end(), chunk.data.begin(), chunk.data.end());
         CHECK(data[k] == whole);
@@ -96,7 +96,7 @@ TEST_CASE("an animated PNG has its frames in order, numbered, each as long as as
 }
 
 TEST_CASE("a delay that no fraction of 16 bits has is the nearest", "[image]") {
-    const std::vector<Bytes> pngs{picture(0.1f)};
+    const std::vector<ApngBytes> pngs{picture(0.1f)};
     for (const double fps : {23.976, 24.0, 29.97, 1000.0, 0.001, 0.3}) {
         for (const Chunk& chunk : chunks(encode_apng(pngs, fps)))
             if (chunk.type == "fcTL")
@@ -108,8 +108,8 @@ TEST_CASE("a delay that no fraction of 16 bits has is the nearest", "[image]") {
 
 TEST_CASE("what is no animation is refused", "[image]") {
     CHECK_THROWS_AS(encode_apng({}, 24), UsageError);
-    const std::vector<Bytes> different{picture(0.1f), picture(0.1f, 8)}, damaged{Bytes(100, 7)},
-        good{picture(0.1f)}, cut{Bytes(good[0].begin(), good[0].begin() + 50)};
+    const std::vector<ApngBytes> different{picture(0.1f), picture(0.1f, 8)}, damaged{ApngBytes(100, 7)},
+        good{picture(0.1f)}, cut{ApngBytes(good[0].begin(), good[0].begin() + 50)};
     CHECK_THROWS_AS(encode_apng(different, 24), InputError);
     CHECK_THROWS_AS(encode_apng(damaged, 24), InputError);
     CHECK_THROWS_AS(encode_apng(cut, 24), InputError);

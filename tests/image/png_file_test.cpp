@@ -16,7 +16,7 @@ namespace {
 
 using Bytes = std::vector<unsigned char>;
 
-Bytes file_bytes(const std::string& file) {
+Bytes png_bytes(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
@@ -68,7 +68,7 @@ TEST_CASE("an ordinary PNG has the values that the library of all pictures gives
         CHECK(read->width == 23);
         CHECK(read->height == 17);
         CHECK(read->rgb == library().read(file)->rgb);
-        CHECK(decode_ordinary_png(file_bytes(file))->rgb == read->rgb);
+        CHECK(decode_ordinary_png(png_bytes(file))->rgb == read->rgb);
     }
 }
 

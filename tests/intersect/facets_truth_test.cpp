@@ -12,7 +12,7 @@ using namespace trilens_test;
 
 namespace {
 
-bool same_bits(const Hit& a, const Hit& b) {
+bool same_hit(const Hit& a, const Hit& b) {
     return a.triangle == b.triangle && (!a.seen() || (a.t == b.t && a.barycentric == b.barycentric));
 }
 
@@ -47,7 +47,7 @@ TEST_CASE("facets truth traces the interpolated ray of every owned sample, and n
     int seen = 0;
     for (std::size_t s = 0; s < grid.size(); ++s) {
         if (owner[s] == kNone || owner[s] == 1) {
-            CHECK(same_bits(hits[s], untouched));
+            CHECK(same_hit(hits[s], untouched));
             continue;
         }
         // The direct formula: screen-linear weights over depth.
@@ -93,6 +93,6 @@ TEST_CASE("facets truth does not depend on the number of threads") {
     trace_facets(tracer, mesh, owned, grid, one);
     set_thread_count(0);
     trace_facets(tracer, mesh, owned, grid, many);
-    for (std::size_t s = 0; s < grid.size(); ++s) REQUIRE(same_bits(one[s], many[s]));
+    for (std::size_t s = 0; s < grid.size(); ++s) REQUIRE(same_hit(one[s], many[s]));
     CHECK(std::count_if(one.begin(), one.end(), [](const Hit& hit) { return hit.seen(); }) > 200);
 }

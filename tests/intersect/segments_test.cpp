@@ -15,7 +15,7 @@ using namespace trilens_test;
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// A step of any length, sometimes along axes, sometimes none that a ray can have.
 Vec3 any_step(Random& random, double size) {
@@ -27,7 +27,7 @@ Vec3 any_step(Random& random, double size) {
         case 1:
             return Vec3(nan, 0, 1);
         case 2:
-            return Vec3(0, kInfinity, 0);
+            return Vec3(0, kUnbounded, 0);
         case 3:
             return 1e-200 * step;
         case 4:
@@ -150,7 +150,7 @@ TEST_CASE("a segment that may not meet a box has no point in it") {
     }
     CHECK(apart > 5000);
     CHECK(met > 500);
-    const Box everywhere{Vec3(-kInfinity), Vec3(kInfinity)};
+    const Box everywhere{Vec3(-kUnbounded), Vec3(kUnbounded)};
     const Segments segments = any_segments(random, Vec3(0), 1);
     CHECK(may_meet(segments, everywhere) == segments.all());
 }

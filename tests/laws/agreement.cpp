@@ -46,8 +46,6 @@ CameraRays shifted(CameraRays camera, const Vec2& by) {
     return camera;
 }
 
-void ignore(const std::string&) {}
-
 double relative_t(const Hit& a, const Hit& b) {
     if (!a.seen() || !b.seen()) return 0;
     return std::fabs(a.t - b.t) / std::max({std::fabs(a.t), std::fabs(b.t), 1e-300});

@@ -19,9 +19,7 @@ using namespace trilens_test;
 
 namespace {
 
-void ignore(const std::string&) {}
-
-constexpr int kWidth = 96, kHeight = 72;
+constexpr int kOpticsWidth = 96, kHeight = 72;
 
 /// A ball of that material before a coloured wall and a floor, seen by `camera`.
 std::string ball_scene(const std::string& camera, const std::string& material, int depth) {
@@ -47,14 +45,14 @@ std::string as_ray_mesh(int n) {
     from.eye = {0.5, 0.6, 4};
     from.at = {0, 0, 0};
     from.yfov = 45;
-    const Camera camera = make_camera(from, {kWidth, kHeight});
+    const Camera camera = make_camera(from, {kOpticsWidth, kHeight});
     std::ostringstream points, directions, screen, triangles;
     for (std::ostringstream* text : {&points, &directions, &screen}) text->precision(17);
     for (int j = 0; j <= n; ++j)
         for (int i = 0; i <= n; ++i) {
             const char* comma = i + j > 0 ? "," : "";
             const Ray ray = *exact_ray(
-                camera, {i * kWidth / static_cast<double>(n), j * kHeight / static_cast<double>(n)});
+                camera, {i * kOpticsWidth / static_cast<double>(n), j * kHeight / static_cast<double>(n)});
             points << comma << "[" << ray.origin.x << "," << ray.origin.y << "," << ray.origin.z << "]";
             directions << comma << "[" << ray.direction.x << "," << ray.direction.y << "," << ray.direction.z
                        << "]";
@@ -75,7 +73,7 @@ SampleViews look(const World& world, Engine engine, GridKind grid = GridKind::kS
     SampleViews views;
     FrameParams frame;
     frame.grid = grid;
-    make_viewer(world, frame, engine, ignore)({0, 0, kWidth, kHeight, 1}, views);
+    make_viewer(world, frame, engine, ignore)({0, 0, kOpticsWidth, kHeight, 1}, views);
     return views;
 }
 
@@ -185,7 +183,7 @@ TEST_CASE(
         CHECK(off.compared > 2000);
         CHECK(traced.optic == 0);
         CHECK(static_cast<double>(traced.seen) <= 0.002 * static_cast<double>(traced.compared));
-        CHECK(static_cast<double>(off.optic) <= 0.02 * kWidth * kHeight);
+        CHECK(static_cast<double>(off.optic) <= 0.02 * kOpticsWidth * kHeight);
         CHECK(static_cast<double>(off.seen) <= 0.03 * static_cast<double>(off.compared));
         CHECK(off.median < 0.02);
     }

@@ -22,8 +22,6 @@ using namespace trilens_test;
 
 namespace {
 
-void ignore(const std::string&) {}
-
 std::string cameras_text() {
     std::ifstream in(source_dir() + "/scenes/cameras.json");
     std::stringstream all;
@@ -62,7 +60,7 @@ SampleViews look(const World& world, std::size_t camera, const EngineChoice& eng
     return views;
 }
 
-std::array<Id, 4> seen(const SampleViews& views, std::size_t s) {
+std::array<Id, 4> seen_by_camera(const SampleViews& views, std::size_t s) {
     const SampleView& view = views.samples[s];
     return {view.hit.triangle, view.optic, view.optic == kNone ? kNone : view.facet,
             views.hit(view, Path::kReflect).triangle};
@@ -92,8 +90,8 @@ TEST_CASE("through every camera the projector, the thesis' engine and Embree see
         std::size_t on_optic = 0, differing = 0, classic_differing = 0, without = 0;
         for (std::size_t s = 0; s < exact.samples.size(); ++s) {
             on_optic += exact.samples[s].optic != kNone;
-            differing += seen(exact, s) != seen(traced, s);
-            classic_differing += seen(exact, s) != seen(classic, s);
+            differing += seen_by_camera(exact, s) != seen_by_camera(traced, s);
+            classic_differing += seen_by_camera(exact, s) != seen_by_camera(classic, s);
             without += exact.samples[s].optic != kNone && exact.ends_of(exact.samples[s]).empty();
         }
         const double all = static_cast<double>(exact.samples.size());
@@ -155,7 +153,7 @@ TEST_CASE("every example is drawn by projection as its facets' rays have it, thr
                               traced = look(*world, c, Engine::kFacetsTruth);
             std::size_t differing = 0, shown = 0;
             for (std::size_t s = 0; s < exact.samples.size(); ++s) {
-                differing += seen(exact, s) != seen(traced, s);
+                differing += seen_by_camera(exact, s) != seen_by_camera(traced, s);
                 shown += exact.samples[s].hit.seen() || exact.samples[s].optic != kNone;
             }
             CHECK(differing <= 4);

@@ -13,8 +13,6 @@ using namespace trilens_test;
 
 namespace {
 
-void ignore(const std::string&) {}
-
 SampleViews look(const World& world, const EngineChoice& engine) {
     const Film& film = world.scene.film;
     const SampleGrid grid{0, 0, film.width, film.height, 1};
@@ -23,7 +21,7 @@ SampleViews look(const World& world, const EngineChoice& engine) {
     return views;
 }
 
-struct Difference {
+struct ClassicDifference {
     std::size_t pixels = 0, differing = 0;
     std::size_t uncovered = 0;  // the exact engine sees something, the classic one nothing
     double share() const { return static_cast<double>(differing) / static_cast<double>(pixels); }
@@ -35,7 +33,7 @@ std::array<Id, 3> seen(const SampleViews& views, const SampleView& view) {
             views.hit(view, Path::kRefract).triangle};
 }
 
-void add(Difference& sum, const SampleViews& exact, const SampleViews& classic) {
+void add(ClassicDifference& sum, const SampleViews& exact, const SampleViews& classic) {
     for (std::size_t p = 0; p < exact.samples.size(); ++p) {
         const SampleView &a = exact.samples[p], &b = classic.samples[p];
         const std::array<Id, 3> before = seen(exact, a), after = seen(classic, b);
@@ -52,8 +50,8 @@ void add(Difference& sum, const SampleViews& exact, const SampleViews& classic) 
 constexpr std::size_t kMostTessellated = 10'000;
 
 /// Over all shipped scenes that can be loaded.
-Difference difference(int n, const ClassicParams& params, int width, int height) {
-    Difference sum;
+ClassicDifference difference(int n, const ClassicParams& params, int width, int height) {
+    ClassicDifference sum;
     for (const std::string& name : shipped_scenes()) {
         std::string missing;
         const auto world = shipped_world(name, n, width, height, &missing);
@@ -77,7 +75,7 @@ Difference difference(int n, const ClassicParams& params, int width, int height)
 TEST_CASE("with arcs the classic engine shows the exact one's picture but for edges", "[laws][classic]") {
     for (const int n : {1, 2, 8}) {
         for (const Clip clip : {Clip::kScene, Clip::kScreen}) {
-            const Difference d = difference(n, {Curves::kArcs, clip}, 160, 120);
+            const ClassicDifference d = difference(n, {Curves::kArcs, clip}, 160, 120);
             INFO("n " << n << ": " << d.differing << " of " << d.pixels << " pixels differ");
             // An outline may lie 0.001 px from its conic.
             CHECK(d.share() < 2e-5);
@@ -89,7 +87,7 @@ TEST_CASE("slices and tessellation come to the exact picture as K grows", "[laws
     for (const Curves curves : {Curves::kSlices, Curves::kTessellate}) {
         double last = 1, first = 0;
         for (const int k : {1, 2, 4, 8, 16}) {
-            const Difference d = difference(2, {curves, Clip::kScene, k}, 160, 120);
+            const ClassicDifference d = difference(2, {curves, Clip::kScene, k}, 160, 120);
             INFO("K " << k << ": " << d.share() << " differ, before " << last);
             // A tenth more, or a few pixels, is noise.
             CHECK(d.share() <= 1.1 * last + 6.0 / static_cast<double>(d.pixels));
@@ -108,7 +106,7 @@ TEST_CASE("a mirror in a closed room shows the room in every pixel", "[laws][cla
         const auto world = shipped_world("closed", n, 200, 150);
         const SampleViews exact = look(*world, Engine::kExact);
         const auto uncovered = [&](Curves curves, Clip clip, int k) {
-            Difference d;
+            ClassicDifference d;
             add(d, exact, look(*world, ClassicParams{curves, clip, k}));
             return d.uncovered;
         };

@@ -15,9 +15,7 @@ using namespace trilens_test;
 
 namespace {
 
-void ignore(const std::string&) {}
-
-const char* const kRoom =
+const char* const kFittedRoom =
     R"({"name":"floor","role":"object","material":"grey","points":[[-6,-1.5,6],[6,-1.5,6],[6,-1.5,-6],[-6,-1.5,-6]],
        "faceVertexCounts":[4],"faceVertexIndices":[0,1,2,3]},
       {"name":"back","role":"object","material":"grey","points":[[-6,-1.5,-6],[6,-1.5,-6],[6,5,-6],[-6,5,-6]],
@@ -31,16 +29,16 @@ std::unique_ptr<World> room_with(const std::string& optics, int max_depth, int n
         R"({"version":1,"film":{"width":200,"height":150},"cameras":[{"lookAt":{"eye":[0.4,0.9,4.2],"at":[0,0,0]}}],
         "materials":[{"name":"grey"},{"name":"chrome","metallicFactor":1},{"name":"glass","transmissionFactor":1}],
         "render":{"maxDepth":)" +
-            std::to_string(max_depth) + R"(},"meshes":[)" + optics + "," + kRoom + "]}",
+            std::to_string(max_depth) + R"(},"meshes":[)" + optics + "," + kFittedRoom + "]}",
         n);
 }
 
 const std::string kTwoPlanes =
     R"({"name":"low","role":"optic","material":"chrome","primitive":{"type":"plane","center":[0,-0.6,0],"normal":[0,1,0.2],"size":[2,2]}},
       {"name":"back","role":"optic","material":"chrome","primitive":{"type":"plane","center":[0,0.2,-1],"normal":[0.1,-0.1,1],"size":[2,1.6]}})";
-const std::string kBall =
+const std::string kFittedBall =
     R"({"name":"ball","role":"optic","material":"chrome","primitive":{"type":"sphere","radius":1}})";
-const std::string kGlassBall =
+const std::string kFittedGlassBall =
     R"({"name":"ball","role":"optic","material":"glass","primitive":{"type":"sphere","radius":1}})";
 
 FrameParams with(CornerRays rays) {
@@ -142,7 +140,7 @@ TEST_CASE("fitting leaves the rays of flat mirrors as they are, one after the ot
 }
 
 TEST_CASE("fitted rays show a ball's mirror image nearer to its place, with order 2") {
-    const auto world = room_with(kBall, 0, 8);
+    const auto world = room_with(kFittedBall, 0, 8);
     const Image truth = draw(*world, {}, Engine::kLimitTruth).image;
     double before = 0;
     for (const int n : {8, 16, 32}) {
@@ -158,7 +156,7 @@ TEST_CASE("fitted rays show a ball's mirror image nearer to its place, with orde
 }
 
 TEST_CASE("fitted rays show what is behind a glass ball nearer to its place") {
-    const auto world = room_with(kGlassBall, 4, 8);
+    const auto world = room_with(kFittedGlassBall, 4, 8);
     const Image truth = draw(*world, {}, Engine::kLimitTruth).image;
     FrameParams frame = with(CornerRays::kInterpolated);
     frame.resolution = 16;
@@ -169,7 +167,7 @@ TEST_CASE("fitted rays show what is behind a glass ball nearer to its place") {
 
 TEST_CASE("fitted pictures do not depend on crops or threads") {
     for (const int max_depth : {0, 3}) {
-        const auto world = room_with(kGlassBall, max_depth, 6);
+        const auto world = room_with(kFittedGlassBall, max_depth, 6);
         LayerRequest window;
         window.layers = layer_names();
         set_thread_count(1);
@@ -188,7 +186,7 @@ TEST_CASE("facets divided for an error keep it, whatever they began with") {
         int max_depth;
         const char* layer;
     };
-    for (const Case& one : {Case{kBall, 0, "reflect"}, Case{kGlassBall, 4, "refract"}}) {
+    for (const Case& one : {Case{kFittedBall, 0, "reflect"}, Case{kFittedGlassBall, 4, "refract"}}) {
         const auto world = room_with(one.optic, one.max_depth, 4);
         const Image truth = draw(*world, {}, Engine::kLimitTruth).image;
         for (const CornerRays rays : {CornerRays::kInterpolated, CornerRays::kFitted}) {
@@ -210,7 +208,7 @@ TEST_CASE("facets divided for an error keep it, whatever they began with") {
 }
 
 TEST_CASE("an error asked for does not depend on crops or threads") {
-    const auto world = room_with(kGlassBall, 3, 4);
+    const auto world = room_with(kFittedGlassBall, 3, 4);
     FrameParams frame;
     frame.max_error = 0.5;
     LayerRequest window;

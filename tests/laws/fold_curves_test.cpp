@@ -13,7 +13,7 @@ using namespace trilens;
 
 namespace {
 
-constexpr int kFiner = 8;  // the truth's pixels along one of the drawing's
+constexpr int kFinerCurves = 8;  // the truth's pixels along one of the drawing's
 
 Scene before_wall(const Primitive& optic, bool glass, double wall, const Vec3& eye) {
     Scene scene;
@@ -44,7 +44,7 @@ Scene before_wall(const Primitive& optic, bool glass, double wall, const Vec3& e
 class TurningTruth {
   public:
     TurningTruth(Scene scene, const std::string& path) {
-        scene.film.width *= kFiner, scene.film.height *= kFiner;
+        scene.film.width *= kFinerCurves, scene.film.height *= kFinerCurves;
         PictureRequest request;
         request.engine = Engine::kLimitTruth;
         request.layers.layers = {path};
@@ -70,8 +70,8 @@ class TurningTruth {
     /// drawing's pixels.
     bool turns_near(const Vec2& place, double reach) const {
         bool plus = false, minus = false;
-        const int x = static_cast<int>(place.x * kFiner), y = static_cast<int>(place.y * kFiner),
-                  r = static_cast<int>(std::ceil(reach * kFiner));
+        const int x = static_cast<int>(place.x * kFinerCurves), y = static_cast<int>(place.y * kFinerCurves),
+                  r = static_cast<int>(std::ceil(reach * kFinerCurves));
         for (int dy = -r; dy <= r; ++dy)
             for (int dx = -r; dx <= r; ++dx) {
                 plus |= side(x + dx, y + dy) > 0;
@@ -86,8 +86,9 @@ class TurningTruth {
         for (int y = 0; y < image_.height; ++y)
             for (int x = 0; x < image_.width; ++x) {
                 if (side(x, y) * side(x + 1, y) < 0)
-                    found.push_back(Vec2(x + 1.0, y + 0.5) / 1.0 / double(kFiner));
-                if (side(x, y) * side(x, y + 1) < 0) found.push_back(Vec2(x + 0.5, y + 1.0) / double(kFiner));
+                    found.push_back(Vec2(x + 1.0, y + 0.5) / 1.0 / double(kFinerCurves));
+                if (side(x, y) * side(x, y + 1) < 0)
+                    found.push_back(Vec2(x + 0.5, y + 1.0) / double(kFinerCurves));
             }
         return found;
     }

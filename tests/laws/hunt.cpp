@@ -18,7 +18,7 @@ using namespace trilens;
 namespace trilens_test {
 namespace {
 
-constexpr int kWidth = 160, kHeight = 120;
+constexpr int kHuntWidth = 160, kHeight = 120;
 /// Ends that carry less than this share of a pixel's light are not looked for: Projection may leave them out.
 constexpr double kMuchLight = 1.0 / 16;
 
@@ -75,7 +75,7 @@ std::string camera(Dice& dice, std::string& what) {
     return fmt::format(R"({{ "name": "c", "type": "{}", {}, {} }})", type, fields, look);
 }
 
-const char* const kCube =
+const char* const kHuntCube =
     R"("points": [[-1,-1,1],[1,-1,1],[1,1,1],[-1,1,1],[-1,-1,-1],[1,-1,-1],[1,1,-1],[-1,1,-1]],
   "faceVertexCounts": [4,4,4,4,4,4], "faceVertexIndices": [0,1,2,3, 1,5,6,2, 5,4,7,6, 4,0,3,7, 3,2,6,7, 4,5,1,0])";
 
@@ -91,7 +91,7 @@ std::string placed_cube(const Vec3& at, const Vec3& size, const Vec3& axis, doub
     const Vec3 v = std::sin(0.5 * angle) * axis;
     return fmt::format(
         R"({}, "transform": {{ "translate": {}, "rotate": [{:.6f}, {:.6f}, {:.6f}, {:.6f}], "scale": {} }})",
-        kCube, text(at), v.x, v.y, v.z, std::cos(0.5 * angle), text(size));
+        kHuntCube, text(at), v.x, v.y, v.z, std::cos(0.5 * angle), text(size));
 }
 
 /// What the small ones are seen in or through: about two units wide, near the origin.
@@ -156,7 +156,7 @@ std::string small_optic(Dice& dice, int number, std::string& what) {
     }
 }
 
-const char* const kRoom =
+const char* const kHuntRoom =
     R"({ "name": "floor", "role": "object", "material": "red", "points": [[-6,-2,-6],[6,-2,-6],[6,-2,8],[-6,-2,8]],
     "faceVertexCounts": [4], "faceVertexIndices": [3,2,1,0] },
   { "name": "back", "role": "object", "material": "green", "points": [[-6,-2,-6],[6,-2,-6],[6,4,-6],[-6,4,-6]],
@@ -267,7 +267,7 @@ Quarry make_quarry(std::uint64_t seed) {
     {{ "name": "blue", "unlit": true, "baseColorFactor": [0.1, 0.2, 0.8] }} ],
   "meshes": [ {},
   {} ] }})",
-                              kWidth, kHeight, cameras, depth, dice.between(1.2, 1.8), meshes, kRoom);
+                              kHuntWidth, kHeight, cameras, depth, dice.between(1.2, 1.8), meshes, kHuntRoom);
     return quarry;
 }
 

@@ -19,8 +19,6 @@ using namespace trilens_test;
 
 namespace {
 
-void ignore(const std::string&) {}
-
 /// The inside of a cube of half size 6, a mesh per side.
 std::string room() {
     const char* const sides[6] = {

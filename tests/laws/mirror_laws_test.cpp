@@ -18,8 +18,6 @@ using namespace trilens_test;
 
 namespace {
 
-void ignore(const std::string&) {}
-
 /// The point of the unit sphere round the origin that mirrors `x` to `e`: in their plane, where the angles to
 /// both are equal, by bisection between the two directions.
 Vec3 alhazen_point(const Vec3& e, const Vec3& x) {

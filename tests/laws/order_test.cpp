@@ -16,10 +16,8 @@ using namespace trilens_test;
 
 namespace {
 
-constexpr int kWidth = 320, kHeight = 240;
+constexpr int kOrderWidth = 320, kHeight = 240;
 constexpr std::size_t kLevels = 3;  // n, 2 n, 4 n
-
-void ignore(const std::string&) {}
 
 Image draw(const World& world, Engine engine) {
     PictureRequest request;
@@ -65,7 +63,7 @@ Smooth measure_smooth(const Image& truth, const std::array<Image, kLevels>& imag
     return smooth;
 }
 
-struct Case {
+struct OrderCase {
     const char* scene;
     int n = 8;
 };
@@ -74,23 +72,23 @@ struct Case {
 
 TEST_CASE("on smooth parts displacement falls with order 1.9 or more, whatever the path", "[laws]") {
     // The wine glass and the water have so many faces that fewer facets on each are as small.
-    for (const Case& one : std::vector<Case>{{"sphere"},
-                                             {"torus"},
-                                             {"paths/crystal-ball"},
-                                             {"paths/plano-convex"},
-                                             {"paths/meniscus"},
-                                             {"paths/glass-torus"},
-                                             {"paths/wine-glass", 4},
-                                             {"paths/under-water", 4},
-                                             {"paths/mirror-balls"},
-                                             {"paths/mirror-torus"},
-                                             {"paths/bowl"},
-                                             {"paths/glass-before-mirror"}}) {
+    for (const OrderCase& one : std::vector<OrderCase>{{"sphere"},
+                                                       {"torus"},
+                                                       {"paths/crystal-ball"},
+                                                       {"paths/plano-convex"},
+                                                       {"paths/meniscus"},
+                                                       {"paths/glass-torus"},
+                                                       {"paths/wine-glass", 4},
+                                                       {"paths/under-water", 4},
+                                                       {"paths/mirror-balls"},
+                                                       {"paths/mirror-torus"},
+                                                       {"paths/bowl"},
+                                                       {"paths/glass-before-mirror"}}) {
         std::string missing;
         std::array<Image, kLevels> images;
         Image truth;
         for (std::size_t i = 0; i < kLevels; ++i) {
-            const auto world = shipped_world(one.scene, one.n << i, kWidth, kHeight, &missing);
+            const auto world = shipped_world(one.scene, one.n << i, kOrderWidth, kHeight, &missing);
             if (!world) break;
             images[i] = draw(*world, Engine::kExact);
             if (i == 0) truth = draw(*world, Engine::kLimitTruth);

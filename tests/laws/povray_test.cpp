@@ -16,7 +16,7 @@ using namespace trilens_test;
 
 namespace {
 
-constexpr int kWidth = 320, kHeight = 240;
+constexpr int kPovrayWidth = 320, kHeight = 240;
 
 /// A ball in both languages.
 struct Ball {
@@ -42,7 +42,7 @@ struct Stage {
 };
 
 /// Checkers on the walls of a closed room around the balls: every square's colour is its own.
-std::vector<Square> room() {
+std::vector<Square> povray_room() {
     std::vector<Square> squares;
     constexpr int kCells = 4;
     const Vec3 low(-4, -1.5, -5), high(4, 4, 6);
@@ -82,7 +82,7 @@ std::string pov(const Vec3& v) {
 std::string scene_json(const Stage& stage) {
     std::ostringstream out;
     out.precision(17);
-    out << "{\"version\":1,\"film\":{\"width\":" << kWidth << ",\"height\":" << kHeight
+    out << "{\"version\":1,\"film\":{\"width\":" << kPovrayWidth << ",\"height\":" << kHeight
         << "},\"cameras\":[{\"name\":\"main\",\"yfov\":" << stage.yfov
         << ",\"lookAt\":{\"eye\":" << json(stage.eye) << ",\"at\":" << json(stage.at)
         << ",\"up\":[0,1,0]}}],\"materials\":[";
@@ -122,7 +122,7 @@ std::string scene_pov(const Stage& stage) {
     out << "#version 3.7;\nglobal_settings { assumed_gamma 1.0 max_trace_level 31 adc_bailout 1/10000 "
            "ambient_light 1 }\nbackground { rgb 0 }\n"
         << "camera { perspective location " << pov(stage.eye) << " direction " << pov(forward) << " right "
-        << pov(high * kWidth / kHeight * right) << " up " << pov(high * up) << " }\n";
+        << pov(high * kPovrayWidth / kHeight * right) << " up " << pov(high * up) << " }\n";
     for (const Ball& ball : stage.balls) {
         out << "sphere { " << pov(ball.center) << ", " << ball.radius << " ";
         const std::string fresnel = stage.fresnel ? " reflection { 0, 1 fresnel on } conserve_energy" : "";
@@ -151,7 +151,7 @@ std::vector<Vec3> read_ppm(const std::string& file) {
     while (in.peek() == '#') in.ignore(1 << 16, '\n');
     in >> width >> height >> most;
     in.get();
-    if (kind != "P6" || width != kWidth || height != kHeight || most != 65535) return {};
+    if (kind != "P6" || width != kPovrayWidth || height != kHeight || most != 65535) return {};
     std::vector<Vec3> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     for (Vec3& pixel : pixels)
         for (int c = 0; c < 3; ++c) {
@@ -165,7 +165,7 @@ std::vector<Vec3> draw_pov(const Stage& stage, const std::string& name) {
     const std::string folder = scratch_dir("povray_" + name);
     std::ofstream(folder + "/scene.pov") << scene_pov(stage);
     const std::string command = "cd '" + folder + "' && povray -D -GA +Iscene.pov +Oscene.ppm +FP16 +W" +
-                                std::to_string(kWidth) + " +H" + std::to_string(kHeight) +
+                                std::to_string(kPovrayWidth) + " +H" + std::to_string(kHeight) +
                                 " -A File_Gamma=1.0 >povray.log 2>&1";
     const int status = std::system(command.c_str());
     INFO("see " << folder << "/povray.log");
@@ -173,7 +173,7 @@ std::vector<Vec3> draw_pov(const Stage& stage, const std::string& name) {
     return read_ppm(folder + "/scene.ppm");
 }
 
-CameraRays shifted(CameraRays camera, const Vec2& by) {
+CameraRays shifted_rays(CameraRays camera, const Vec2& by) {
     camera.linear->screen_x += by.x * camera.linear->screen_w;
     camera.linear->screen_y += by.y * camera.linear->screen_w;
     for (Vec3& s : camera.mesh.screen) s += Vec3(by.x * s.z, by.y * s.z, 0);
@@ -203,7 +203,7 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
     REQUIRE(!other.empty());
     const auto world = world_from("povray_" + name, scene_json(stage), 8);
     SampleViews views;
-    make_limit_viewer(*world, make_camera_rays(world->scene, 0))({0, 0, kWidth, kHeight, 1}, views);
+    make_limit_viewer(*world, make_camera_rays(world->scene, 0))({0, 0, kPovrayWidth, kHeight, 1}, views);
     Against result;
     for (std::size_t p = 0; p < other.size(); ++p) {
         const CutPaths cut = views.samples[p].optic == kNone ? CutPaths() : views.of_optics[p].cut;
@@ -219,13 +219,13 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
             continue;
         }
         ++result.differing;
-        const int x = static_cast<int>(p) % kWidth, y = static_cast<int>(p) / kWidth;
+        const int x = static_cast<int>(p) % kPovrayWidth, y = static_cast<int>(p) / kPovrayWidth;
         bool explained = false;
         for (int k = 0; k < 24 && !explained; ++k) {
             const double far = reach * (k / 8 + 1) / 3.0;
             const Vec2 by(far * std::cos(k * M_PI / 4), far * std::sin(k * M_PI / 4));
             SampleViews one;
-            make_limit_viewer(*world, shifted(make_camera_rays(world->scene, 0), by))({x, y, x + 1, y + 1, 1},
+            make_limit_viewer(*world, shifted_rays(make_camera_rays(world->scene, 0), by))({x, y, x + 1, y + 1, 1},
                                                                                       one);
             explained = apart(beauty(*world, one, 0), other[p]) <= same + left_out;
         }
@@ -251,8 +251,8 @@ void check(const Stage& stage, const std::string& name, double same) {
     const Against a = compare_with_pov(stage, name, same, kEdge);
     INFO(a.first);
     CHECK(a.off_edge == 0);
-    CHECK(a.differing < kWidth * kHeight / 500);
-    CHECK(a.trapped < kWidth * kHeight / 100);
+    CHECK(a.differing < kPovrayWidth * kHeight / 500);
+    CHECK(a.trapped < kPovrayWidth * kHeight / 100);
 }
 
 bool povray_missing() {
@@ -266,17 +266,17 @@ const Ball kLeft{{-0.9, 0.2, -0.2}, 0.8}, kRight{{0.95, -0.1, 0.3}, 0.75};
 
 TEST_CASE("POV-Ray sees the same squares through a glass ball", "[laws][povray]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
-    check({{kGlassBall}, room()}, "glass ball", kSameColour);
+    check({{kGlassBall}, povray_room()}, "glass ball", kSameColour);
 }
 
 TEST_CASE("POV-Ray sees the same squares in two mirror balls", "[laws][povray]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
-    check({{kLeft, kRight}, room()}, "two mirrors", kSameColour);
+    check({{kLeft, kRight}, povray_room()}, "two mirrors", kSameColour);
 }
 
 TEST_CASE("POV-Ray sees the same squares through glass in glass", "[laws][povray]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
-    Stage stage{{kGlassBall, {{0.15, 0.2, 0.1}, 0.55, 1.2, 1}}, room()};
+    Stage stage{{kGlassBall, {{0.15, 0.2, 0.1}, 0.55, 1.2, 1}}, povray_room()};
     check(stage, "water in glass", kSameColour);
     stage.balls[1].ior = 1;  // a bubble
     check(stage, "bubble in glass", kSameColour);
@@ -288,7 +288,7 @@ TEST_CASE("POV-Ray sees the same squares from inside of glass, past other glass 
           "[laws][povray]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
     Stage stage{{{{0, 0.1, 0}, 2, 1.5}, {{0.15, 0.2, -0.3}, 0.55, 1.2, 1}, {{-0.9, -0.2, -0.4}, 0.35}},
-                room()};
+                povray_room()};
     stage.eye = {0.2, 0.4, 1.4};
     stage.yfov = 70;
     check(stage, "eye in glass", kSameColour);
@@ -299,7 +299,7 @@ TEST_CASE("POV-Ray sees the same squares from inside of glass, past other glass 
 
 TEST_CASE("POV-Ray weighs reflection and transmission of a glass ball alike", "[laws][povray]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
-    Stage stage{{kGlassBall}, room()};
+    Stage stage{{kGlassBall}, povray_room()};
     stage.fresnel = true;
     check(stage, "glass ball with Fresnel", 1e-3);
 }

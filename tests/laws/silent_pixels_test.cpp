@@ -20,8 +20,6 @@ constexpr int kWidth = 320, kHeight = 240;
 constexpr int kFiner = 16;  // times as many pixels, where the truth is looked at more closely
 constexpr double kMostOff = 1;
 
-void ignore(const std::string&) {}
-
 Image draw(const World& world, Engine engine, const LayerRequest& window = {},
            const FrameParams& frame = {}) {
     PictureRequest request;

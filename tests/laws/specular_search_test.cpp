@@ -76,11 +76,11 @@ double law_miss(const Surface& surface, const SpecularQuery& query, const Specul
     return length(query.eye_index * sine_e - query.point_index * sine_x) + (same_way ? 0 : 2);
 }
 
-struct Counts {
+struct SearchCounts {
     int images = 0, missing = 0, wrong = 0, more = 0, incomplete = 0;
 };
 
-struct Case {
+struct SearchCase {
     const Surface& surface;
     SpecularEvent event;
     double inside;  // refractive index
@@ -88,7 +88,7 @@ struct Case {
 };
 
 /// Random points around the surface; the camera looks at it from outside.
-Counts compare_with_brute_force(const Case& test, unsigned seed) {
+SearchCounts compare_with_brute_force(const SearchCase& test, unsigned seed) {
     const Surface& surface = test.surface;
     const SpecularSearcher searcher(surface);
     const Lattice lattice = lattice_of(surface, test.fineness);
@@ -104,7 +104,7 @@ Counts compare_with_brute_force(const Case& test, unsigned seed) {
         for (int k = 0; k < 3; ++k) p[k] = static_cast<double>(engine()) / 2147483648.0 - 1;
         return p;
     };
-    Counts counts;
+    SearchCounts counts;
     for (int round = 0; round < test.points; ++round) {
         PerspectiveParams camera;
         camera.look_at = {middle + size * normalize(cube()) * 1.3, middle, {0.1, 1, 0.2}};
@@ -135,7 +135,7 @@ Counts compare_with_brute_force(const Case& test, unsigned seed) {
     return counts;
 }
 
-void check(const Counts& counts, int least_images) {
+void check(const SearchCounts& counts, int least_images) {
     CAPTURE(counts.images, counts.missing, counts.wrong, counts.more, counts.incomplete);
     CHECK(counts.missing == 0);
     CHECK(counts.wrong == 0);

@@ -14,7 +14,7 @@ using namespace trilens_test;
 
 namespace {
 
-const std::string kPerspective =
+const std::string kPlainPerspective =
     R"({"name":"main","yfov":70,"lookAt":{"eye":[0.2,0.3,1.5],"at":[0,0,-0.4],"up":[0,1,0]}})";
 
 /// A big ball of tinted glass with a ball of light glass and a mirror in it, in a room; `more` meshes.
@@ -42,8 +42,6 @@ std::vector<std::string> said(const World& world, Engine engine) {
     return all;
 }
 
-void ignore(const std::string&) {}
-
 }  // namespace
 
 TEST_CASE("from inside of glass, past other glass: projector and Embree on the same facets", "[laws]") {
@@ -52,9 +50,9 @@ TEST_CASE("from inside of glass, past other glass: projector and Embree on the s
     };
     const std::string look = R"("lookAt":{"eye":[0.2,0.3,1.2],"at":[0,0,-0.4],"up":[0,1,0]}})";
     const std::vector<Case> cases = {
-        {"perspective", kPerspective, R"("maxDepth":8,"fresnel":false)"},
-        {"perspective, weighted", kPerspective, R"("maxDepth":8)"},
-        {"first optic alone", kPerspective, R"("maxDepth":0)"},
+        {"perspective", kPlainPerspective, R"("maxDepth":8,"fresnel":false)"},
+        {"perspective, weighted", kPlainPerspective, R"("maxDepth":8)"},
+        {"first optic alone", kPlainPerspective, R"("maxDepth":0)"},
         {"in both",
          R"({"name":"main","yfov":70,"lookAt":{"eye":[0.1,0.1,-0.4],"at":[-1,0,-0.6],"up":[0,1,0]}})",
          R"("maxDepth":8,"fresnel":false)"},
@@ -76,7 +74,7 @@ TEST_CASE("from inside of glass, past other glass: projector and Embree on the s
 
 TEST_CASE("from inside of glass the projected picture is the truth's", "[laws]") {
     const auto world =
-        world_from("in_glass", glass_room(kPerspective, R"("maxDepth":8,"fresnel":false)"), 16);
+        world_from("in_glass", glass_room(kPlainPerspective, R"("maxDepth":8,"fresnel":false)"), 16);
     const SampleGrid grid{0, 0, 96, 72, 1};
     SampleViews projected, traced;
     make_viewer(*world, {}, Engine::kExact, ignore)(grid, projected);
@@ -105,7 +103,7 @@ TEST_CASE("from inside of glass the projected picture is the truth's", "[laws]")
 }
 
 TEST_CASE("tinted glass around the eye takes light on the way to what is seen in it", "[laws]") {
-    const auto world = world_from("in_glass", glass_room(kPerspective, R"("maxDepth":8)"), 8);
+    const auto world = world_from("in_glass", glass_room(kPlainPerspective, R"("maxDepth":8)"), 8);
     for (const Engine engine : {Engine::kExact, Engine::kLimitTruth}) {
         SampleViews views;
         make_viewer(*world, {}, engine, ignore)({0, 0, 96, 72, 1}, views);
@@ -126,7 +124,7 @@ TEST_CASE("tinted glass around the eye takes light on the way to what is seen in
 
 TEST_CASE("points are imaged into glass where its truth shows them", "[laws]") {
     const auto world =
-        world_from("in_glass", glass_room(kPerspective, R"("maxDepth":8,"fresnel":false)"), 16);
+        world_from("in_glass", glass_room(kPlainPerspective, R"("maxDepth":8,"fresnel":false)"), 16);
     SampleViews views;
     const SampleGrid grid{0, 0, 96, 72, 1};
     make_viewer(*world, {}, Engine::kLimitTruth, ignore)(grid, views);
@@ -159,7 +157,7 @@ TEST_CASE("glass that holds the eye in some directions only is told of", "[laws]
     const std::string gutter =
         R"({"name":"gutter","role":"optic","material":"glass","points":[[-2,-1,-3],[2,-1,-3],[2,-1,3],[-2,-1,3],[2,2,-3],[2,2,3],[-2,2,-3],[-2,2,3]],
            "faceVertexCounts":[4,4,4],"faceVertexIndices":[0,1,2,3, 1,4,5,2, 0,3,7,6]},)";
-    const auto world = world_from("in_glass", glass_room(kPerspective, R"("maxDepth":8)", gutter), 4);
+    const auto world = world_from("in_glass", glass_room(kPlainPerspective, R"("maxDepth":8)", gutter), 4);
     for (const Engine engine : {Engine::kExact, Engine::kLimitTruth}) {
         const std::vector<std::string> warnings = said(*world, engine);
         REQUIRE(warnings.size() == 1);

@@ -13,8 +13,6 @@ namespace {
 
 constexpr double kWater = 1.33, kGlass = 1.5;
 
-void ignore(const std::string&) {}
-
 std::string box(const std::string& name, const std::string& material, const Vec3& low, const Vec3& high) {
     std::string points;
     for (int i = 0; i < 8; ++i) {

@@ -17,8 +17,6 @@ using namespace trilens_test;
 
 namespace {
 
-void ignore(const std::string&) {}
-
 std::unique_ptr<World> world_of(const std::string& json) {
     return make_world(load_scene_text(json, SceneSource("test", ""), {}, {}), ignore);
 }

@@ -15,8 +15,6 @@ namespace fs = std::filesystem;
 namespace trilens_test {
 namespace {
 
-void ignore(const std::string&) {}
-
 std::unique_ptr<World> finish(Scene scene, int n) {
     for (Mesh& mesh : scene.meshes)
         if (mesh.role == Role::kOptic) mesh.resolution = n;

@@ -15,7 +15,7 @@ using trilens_test::Seen;
 
 namespace {
 
-constexpr int kWidth = 96, kHeight = 72;
+constexpr int kEnvironmentWidth = 96, kHeight = 72;
 
 /// What a curved mirror may show of the sky: directions of a film in front of an eye, bent a little.
 Seen sky(double x, double y) {
@@ -28,11 +28,11 @@ Image with_optic(Image image, Id optic) {
     return image;
 }
 
-using Warp = std::function<Vec2(double x, double y)>;
+using EnvironmentWarp = std::function<Vec2(double x, double y)>;
 
-Displacement measure(const Field& field, const Warp& warp) {
-    const Image reference = with_optic(image_of(kWidth, kHeight, field), 5);
-    const Image test = with_optic(image_of(kWidth, kHeight,
+Displacement measure(const Field& field, const EnvironmentWarp& warp) {
+    const Image reference = with_optic(image_of(kEnvironmentWidth, kHeight, field), 5);
+    const Image test = with_optic(image_of(kEnvironmentWidth, kHeight,
                                            [&](double x, double y) {
                                                const Vec2 from = warp(x, y);
                                                return field(from.x, from.y);
@@ -47,13 +47,15 @@ struct Errors {
     double inside = 0, beyond = 0;
 };
 
-Errors errors_of(const Displacement& found, const Warp& warp) {
+Errors errors_of(const Displacement& found, const EnvironmentWarp& warp) {
     Errors errors;
     for (std::size_t i = 0; i < found.state.size(); ++i) {
         if (found.state[i] != Shift::kFound) continue;
-        const double x = static_cast<double>(i % kWidth) + 0.5, y = static_cast<double>(i / kWidth) + 0.5;
+        const double x = static_cast<double>(i % kEnvironmentWidth) + 0.5,
+                     y = static_cast<double>(i / kEnvironmentWidth) + 0.5;
         const Vec2 to = warp(x, y);
-        const bool is_inside = to.x > 0.5 && to.y > 0.5 && to.x < kWidth - 0.5 && to.y < kHeight - 0.5;
+        const bool is_inside =
+            to.x > 0.5 && to.y > 0.5 && to.x < kEnvironmentWidth - 0.5 && to.y < kHeight - 0.5;
         double& largest = is_inside ? errors.inside : errors.beyond;
         largest = std::max(largest, glm::length(to - Vec2(x, y) - Vec2(found.shift_x[i], found.shift_y[i])));
     }
@@ -64,26 +66,27 @@ Errors errors_of(const Displacement& found, const Warp& warp) {
 
 TEST_CASE("a field of directions that is moved, turned or scaled gives its shift", "[measure][environment]") {
     for (const double size : {0.002, 0.05, 0.7, 4.0}) {
-        const Warp moved = [=](double x, double y) { return Vec2(x + size, y - 0.4 * size); };
-        const Warp turned = [=](double x, double y) {
+        const EnvironmentWarp moved = [=](double x, double y) { return Vec2(x + size, y - 0.4 * size); };
+        const EnvironmentWarp turned = [=](double x, double y) {
             const double angle = size / 40;
             return Vec2(48 + (x - 48) * std::cos(angle) - (y - 36) * std::sin(angle),
                         36 + (x - 48) * std::sin(angle) + (y - 36) * std::cos(angle));
         };
-        const Warp scaled = [=](double x, double y) {
+        const EnvironmentWarp scaled = [=](double x, double y) {
             return Vec2(48 + (x - 48) * (1 - size / 100), 36 + (y - 36) * (1 - size / 100));
         };
         int which = 0;
-        for (const Warp& warp : {moved, turned, scaled}) {
+        for (const EnvironmentWarp& warp : {moved, turned, scaled}) {
             INFO("shift " << size << " warp " << which++);
             const Displacement found = measure(sky, warp);
             // Directions of length 1, 1 / 60 per pixel: their rounding is 1e-5 pixels.
             const Errors errors = errors_of(found, warp);
             CHECK(errors.inside < 3e-4);
             CHECK(errors.beyond < 0.03);
-            const double beyond = (size + 1) * (kWidth + kHeight);
-            CHECK(static_cast<double>(found.pixels) >= kWidth * kHeight - (size < 0.8 ? 0 : beyond));
-            CHECK(found.pixels + found.lost == kWidth * kHeight);
+            const double beyond = (size + 1) * (kEnvironmentWidth + kHeight);
+            CHECK(static_cast<double>(found.pixels) >=
+                  kEnvironmentWidth * kHeight - (size < 0.8 ? 0 : beyond));
+            CHECK(found.pixels + found.lost == kEnvironmentWidth * kHeight);
         }
     }
 }
@@ -98,13 +101,14 @@ TEST_CASE("a turn of the whole sky moves its picture as a pinhole says", "[measu
             return environment(Vec3(way.x * std::cos(turn) - way.z * std::sin(turn), way.y,
                                     way.x * std::sin(turn) + way.z * std::cos(turn)));
         };
-        const Image reference =
-            with_optic(image_of(kWidth, kHeight, [&](double x, double y) { return pinhole(x, y, 0); }), 1);
+        const Image reference = with_optic(
+            image_of(kEnvironmentWidth, kHeight, [&](double x, double y) { return pinhole(x, y, 0); }), 1);
         const Image test = with_optic(
-            image_of(kWidth, kHeight, [&](double x, double y) { return pinhole(x, y, angle); }), 1);
+            image_of(kEnvironmentWidth, kHeight, [&](double x, double y) { return pinhole(x, y, angle); }),
+            1);
         const Displacement found = measure_displacement(reference, test, "reflect").value();
         for (int column = 10; column < 80; ++column) {
-            const std::size_t i = 36 * kWidth + static_cast<std::size_t>(column);
+            const std::size_t i = 36 * kEnvironmentWidth + static_cast<std::size_t>(column);
             const double x = column + 0.5 - 48, expected = f * std::tan(std::atan(x / f) + angle) - x;
             REQUIRE(found.state[i] == Shift::kFound);
             CHECK(static_cast<double>(found.shift_x[i]) == Approx(expected).margin(3e-4));
@@ -116,17 +120,17 @@ TEST_CASE("a turn of the whole sky moves its picture as a pinhole says", "[measu
 TEST_CASE("the environment and an object never answer for one another", "[measure][environment]") {
     // A ball of radius 1 round the origin shows points that are, as numbers, directions.
     const Field ball = [](double x, double y) { return Seen{3, 0, sky(x, y).point}; };
-    const Image directions = with_optic(image_of(kWidth, kHeight, sky), 5),
-                points = with_optic(image_of(kWidth, kHeight, ball), 5);
+    const Image directions = with_optic(image_of(kEnvironmentWidth, kHeight, sky), 5),
+                points = with_optic(image_of(kEnvironmentWidth, kHeight, ball), 5);
     const Displacement found = measure_displacement(directions, points, "reflect").value();
     CHECK(found.pixels == 0);
-    CHECK(found.lost == kWidth * kHeight);
-    CHECK(found.missing == kWidth * kHeight);
+    CHECK(found.lost == kEnvironmentWidth * kHeight);
+    CHECK(found.missing == kEnvironmentWidth * kHeight);
 
     // Side by side, with a border that moves by less than a pixel.
     const Field both = [&](double x, double y) { return x + 0.3 * y < 50 ? ball(x, y) : sky(x, y); };
     for (const double by : {0.01, 0.6}) {
-        const Warp warp = [=](double x, double y) { return Vec2(x + by, y); };
+        const EnvironmentWarp warp = [=](double x, double y) { return Vec2(x + by, y); };
         const Displacement moved = measure(both, warp);
         // At the border either side is continued by as much as it moved.
         CHECK(errors_of(moved, warp).inside < 0.02 * by + 1e-3);
@@ -136,21 +140,22 @@ TEST_CASE("the environment and an object never answer for one another", "[measur
 }
 
 TEST_CASE("the environment counts through an optic and with a direction only", "[measure][environment]") {
-    const Image test = image_of(kWidth, kHeight, sky);
+    const Image test = image_of(kEnvironmentWidth, kHeight, sky);
     // No optic at all.
     const Displacement unlit =
         measure_displacement(with_optic(test, kNone), with_optic(test, kNone), "reflect").value();
     CHECK_FALSE(unlit.coverage.has_value());
     // Zeros: an image that gives no direction.
-    const Image blank = with_optic(image_of(kWidth, kHeight, [](double, double) { return Seen{}; }), 5);
+    const Image blank =
+        with_optic(image_of(kEnvironmentWidth, kHeight, [](double, double) { return Seen{}; }), 5);
     CHECK_FALSE(measure_displacement(blank, blank, "reflect")->coverage.has_value());
     // Through another optic it is another thing.
     CHECK(measure_displacement(with_optic(test, 4), with_optic(test, 5), "reflect")->lost ==
-          kWidth * kHeight);
+          kEnvironmentWidth * kHeight);
     // A direction that is no number is lost, not skipped.
     Image broken = with_optic(test, 5);
     broken.find("reflect.Z")->floats()[77] = std::nanf("");
     const Displacement found = measure_displacement(with_optic(test, 5), broken, "reflect").value();
     CHECK(found.lost == 1);
-    CHECK(found.pixels == kWidth * kHeight - 1);
+    CHECK(found.pixels == kEnvironmentWidth * kHeight - 1);
 }

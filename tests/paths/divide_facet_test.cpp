@@ -26,7 +26,7 @@ PathCamera camera_at(const Vec3& eye) {
 }
 
 /// A ball of glass, with another one and a mirror behind it.
-void put_up(Stage& stage) {
+void put_up_stage(Stage& stage) {
     stage.add_ball({0, 0, 0}, 1, glass_of(1.5));
     stage.add_ball({0.9, 0.3, -2}, 0.8, glass_of(1.3));
     stage.add_ball({-1.2, -0.4, -2.5}, 0.9, mirror_of());
@@ -85,7 +85,7 @@ FullLooks full_looks(const Looking& looking, const FacetPart& part) {
 
 TEST_CASE("a look's principal paths are the same whether others are followed or not") {
     Stage stage;
-    put_up(stage);
+    put_up_stage(stage);
     const Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};
     Random random(71);
     std::size_t seen = 0, fainter = 0, refused = 0;
@@ -122,7 +122,7 @@ TEST_CASE("a look's principal paths are the same whether others are followed or 
 
 TEST_CASE("parts are projected where all paths agree, and traced only where they do not") {
     Stage stage;
-    put_up(stage);
+    put_up_stage(stage);
     const Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};
     const SurfaceGrid grid = make_grid(stage.surface(0), 4);
     DivideParams params;

@@ -31,7 +31,7 @@ FitValue random_value(Random& random) {
     return value;
 }
 
-Vec3 random_weights(Random& random) {
+Vec3 random_fit_weights(Random& random) {
     const Vec3 e(random.uniform(0.05, 1), random.uniform(0.05, 1), random.uniform(0.05, 1));
     return e / (e.x + e.y + e.z);
 }
@@ -124,8 +124,8 @@ TEST_CASE("three uneven samples a facet are fitted as well, more slowly") {
         for (int k = 0; k < 3; ++k) {
             Vec3 weights(1.0 / 6);
             weights[k] = 2.0 / 3;
-            samples.push_back({facet, 0.8 * weights + 0.2 * random_weights(random), random.uniform(0.8, 1.25),
-                               random_value(random)});
+            samples.push_back({facet, 0.8 * weights + 0.2 * random_fit_weights(random),
+                               random.uniform(0.8, 1.25), random_value(random)});
         }
     std::vector<FitValue> values(25, FitValue{});
     fit_linear(samples, values);
@@ -140,7 +140,7 @@ TEST_CASE("linear functions stay as they are, and so do corners without samples"
     std::vector<FitSample> samples;
     for (const IdTriple& facet : facets)
         for (int i = 0; i < 4; ++i) {
-            FitSample sample{facet, random_weights(random), random.uniform(0.1, 3), {}};
+            FitSample sample{facet, random_fit_weights(random), random.uniform(0.1, 3), {}};
             for (std::size_t p = 0; p < kFitParts; ++p)
                 for (int k = 0; k < 3; ++k)
                     sample.value[p] += sample.weights[k] * values[facet[static_cast<std::size_t>(k)]][p];

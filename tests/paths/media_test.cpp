@@ -30,7 +30,7 @@ class Shell : public Surface {
 
 /// A ray at the distance h from the centre passes a sphere of radius r from index n to m: it is turned
 /// towards the centre by this. n r sin(angle) = h on its whole way (Bouguer).
-double turn_at(double h, double r, double n, double m) {
+double media_turn_at(double h, double r, double n, double m) {
     return std::asin(h / (n * r)) - std::asin(h / (m * r));
 }
 
@@ -53,7 +53,7 @@ double turned(const Stage& stage, double h, std::size_t* events = nullptr) {
     return 0;
 }
 
-constexpr double kGlass = 1.5, kWater = 1.33, kInner = 0.6, kLiquid = 0.75;
+constexpr double kMediaGlass = 1.5, kWater = 1.33, kInner = 0.6, kLiquid = 0.75;
 
 }  // namespace
 
@@ -61,13 +61,17 @@ TEST_CASE("liquid that reaches into its glass: the one of higher priority is ins
     for (const double h : {0.0, 0.1, 0.3, 0.5, 0.65}) {
         for (const bool glass_first : {true, false}) {
             const auto stage_of = [&](Stage& stage, int glass, int liquid) {
-                const auto add_glass = [&] { stage.add_body(Shell(1, kInner), glass_of(kGlass), glass); };
+                const auto add_glass = [&] {
+                    stage.add_body(Shell(1, kInner), glass_of(kMediaGlass), glass);
+                };
                 if (glass_first) add_glass();
                 stage.add_ball(Vec3(0), kLiquid, glass_of(kWater), liquid);
                 if (!glass_first) add_glass();
             };
-            const double outside = 2 * turn_at(h, 1, 1, kGlass);
-            const auto inside = [&](double r) { return h < kWater * r ? turn_at(h, r, kGlass, kWater) : 0; };
+            const double outside = 2 * media_turn_at(h, 1, 1, kMediaGlass);
+            const auto inside = [&](double r) {
+                return h < kWater * r ? media_turn_at(h, r, kMediaGlass, kWater) : 0;
+            };
             INFO("h " << h << ", glass " << (glass_first ? "first" : "second"));
 
             Stage glass_wins;
@@ -92,12 +96,13 @@ TEST_CASE("liquid that reaches into its glass: the one of higher priority is ins
 TEST_CASE("liquid that just fills its glass, or ends before it") {
     // A gap of air: turned at every skin.
     Stage gap;
-    gap.add_body(Shell(1, 0.8), glass_of(kGlass), 1);
+    gap.add_body(Shell(1, 0.8), glass_of(kMediaGlass), 1);
     gap.add_ball(Vec3(0), 0.5, glass_of(kWater));
     const double h = 0.3;
     std::size_t steps = 0;
     CHECK(turned(gap, h, &steps) ==
-          Approx(2 * (turn_at(h, 1, 1, kGlass) + turn_at(h, 0.8, kGlass, 1) + turn_at(h, 0.5, 1, kWater)))
+          Approx(2 * (media_turn_at(h, 1, 1, kMediaGlass) + media_turn_at(h, 0.8, kMediaGlass, 1) +
+                      media_turn_at(h, 0.5, 1, kWater)))
               .margin(1e-9));
     CHECK(steps == 6);
 }

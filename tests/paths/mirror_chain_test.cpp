@@ -33,7 +33,7 @@ Vec3 alhazen_point(const Vec3& e, const Vec3& x) {
     return normalize((1 - low) * a + low * b);
 }
 
-Primitive plane_at(const Vec3& center, const Vec3& axis, const Vec3& tangent) {
+Primitive mirror_plane_at(const Vec3& center, const Vec3& axis, const Vec3& tangent) {
     Primitive plane;
     plane.type = Primitive::Type::kPlane;
     plane.center = center;
@@ -74,8 +74,8 @@ TEST_CASE("a point's image in a ball is Alhazen's") {
 
 TEST_CASE("flat mirrors image a point where it is mirrored to, with kappa 1") {
     Stage stage;
-    const Primitive first = plane_at({0, 0, -3}, {0.05, 0.02, 1}, {1, 0, 0});
-    const Primitive second = plane_at({4, 0, 0}, {-1, 0, 0.05}, {0, 1, 0});
+    const Primitive first = mirror_plane_at({0, 0, -3}, {0.05, 0.02, 1}, {1, 0, 0});
+    const Primitive second = mirror_plane_at({4, 0, 0}, {-1, 0, 0.05}, {0, 1, 0});
     stage.add(make_primitive_surface(first), mirror_of());
     stage.add(make_primitive_surface(second), mirror_of());
     const Vec3 eye(-1, 0.5, 1), x(1.5, 0.2, 0);

@@ -10,7 +10,7 @@ using namespace trilens_test;
 namespace {
 
 /// A camera at `eye` that looks to -z; 400 pixels to a unit at distance 1, the axis at (300, 300).
-PathCamera camera_at(const Vec3& eye) {
+PathCamera layers_camera_at(const Vec3& eye) {
     PathCamera camera;
     camera.film = {600, 600};
     camera.screen = [=](const Vec3& p) {
@@ -38,7 +38,7 @@ struct Layered {
             layers.optics.push_back({&stage.surface(i), &grids.back()});
         }
         layers.eye = eye;
-        layers.camera = camera_at(eye);
+        layers.camera = layers_camera_at(eye);
     }
     SeenLayers seen_in(Id mirror) const {
         std::vector<Vec3> towards;

@@ -10,7 +10,7 @@ using namespace trilens_test;
 
 namespace {
 
-struct Tally {
+struct BruteForceTally {
     std::size_t samples = 0, seen = 0, marginal = 0, wrong = 0, inaccurate = 0;
 };
 
@@ -24,7 +24,7 @@ bool rounding_explains(const std::vector<PlaneHit>& hits, std::size_t seen, std:
            std::fabs(s.t - t.t) <= s.t_error + t.t_error + 2 * static_cast<Real>(kDepthTie) * t.t;
 }
 
-void compare_sample(const TriangleScene& scene, const RealRay& ray, const Hit& hit, Tally& tally) {
+void compare_sample(const TriangleScene& scene, const RealRay& ray, const Hit& hit, BruteForceTally& tally) {
     std::vector<PlaneHit> all(scene.size());
     for (std::size_t i = 0; i < scene.size(); ++i) all[i] = meet(ray, scene, i);
     const std::size_t truth = first_along(all, scene);
@@ -45,7 +45,7 @@ void compare_sample(const TriangleScene& scene, const RealRay& ray, const Hit& h
 }
 
 void compare_case(const RayMesh& mesh, const TriangleScene& scene, const SampleGrid& grid,
-                  const FacetSamples& owned, Tally& tally) {
+                  const FacetSamples& owned, BruteForceTally& tally) {
     std::vector<Hit> hits(grid.size());
     draw(PreparedScene(scene), mesh, owned, grid, hits);
     for (const Id sample : owned.of(0)) {
@@ -59,7 +59,7 @@ TEST_CASE("draw sees the same first triangle as brute force, for rays of every k
     Random random(1);
     for (int rays = 0; rays < static_cast<int>(Rays::kCount); ++rays) {
         for (int screen = 0; screen < static_cast<int>(Screen::kCount); ++screen) {
-            Tally tally;
+            BruteForceTally tally;
             const int cases = static_cast<Screen>(screen) == Screen::kSliver ? 600 : 60;
             for (int i = 0; i < cases; ++i) {
                 const int x0 = random.below(2000), y0 = random.below(2000);
@@ -83,7 +83,7 @@ TEST_CASE("draw sees the same first triangle as brute force, for rays of every k
 
 TEST_CASE("draw is right for samples outside their facet, on either side of its horizon") {
     Random random(2);
-    Tally tally;
+    BruteForceTally tally;
     for (int i = 0; i < 150; ++i) {
         const SampleGrid grid{0, 0, 24, 24, 1};
         const Frame frame = random_frame(random);

@@ -58,7 +58,7 @@ std::size_t unseen(const std::vector<Hit>& hits) {
         std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return !hit.seen(); }));
 }
 
-bool same(const Hit& a, const Hit& b) {
+bool same_hit(const Hit& a, const Hit& b) {
     return a.triangle == b.triangle && a.t == b.t && a.barycentric == b.barycentric;
 }
 
@@ -209,7 +209,7 @@ TEST_CASE("the classic engine: the number of threads and the order of triangles 
     const RayMesh mesh = bulging_mesh(grid, 5, 0.4);
     TriangleScene scene = random_triangles(random, {}, 100);
     const auto all_same = [](const std::vector<Hit>& a, const std::vector<Hit>& b) {
-        return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
+        return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_hit);
     };
     for (const Curves curves : {Curves::kArcs, Curves::kSlices, Curves::kTessellate}) {
         const ClassicParams params{curves, Clip::kScene, 3};

@@ -10,7 +10,7 @@ using namespace trilens;
 
 namespace {
 
-struct Draw {
+struct Drawn {
     std::mt19937_64 engine{31};
     double uniform(double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(engine);
@@ -23,7 +23,7 @@ struct Draw {
 
 TEST_CASE(
     "the angle of reflection is the angle of incidence, in the plane of incidence, at the same length") {
-    Draw draw;
+    Drawn draw;
     for (int i = 0; i < 2000; ++i) {
         const Vec3 incoming = draw.scaled(), normal = normalize(draw.vector());
         const Vec3 outgoing = mirrored(incoming, normal);
@@ -37,7 +37,7 @@ TEST_CASE(
 }
 
 TEST_CASE("mirroring twice gives the ray back, and the side of the normal does not matter") {
-    Draw draw;
+    Drawn draw;
     for (int i = 0; i < 2000; ++i) {
         const Vec3 incoming = draw.scaled(), normal = normalize(draw.vector());
         CHECK(length(mirrored(mirrored(incoming, normal), normal) - incoming) <= 1e-14 * length(incoming));

@@ -10,7 +10,7 @@ using namespace trilens;
 
 namespace {
 
-struct Draw {
+struct Drawn {
     std::mt19937_64 engine{32};
     double uniform(double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(engine);
@@ -28,7 +28,7 @@ const Vec3 kUp{0, 1, 0};
 }  // namespace
 
 TEST_CASE("refraction keeps the plane and the length, and the sines have the ratio of the indices") {
-    Draw draw;
+    Drawn draw;
     int refracted_count = 0, reflected_count = 0;
     for (int i = 0; i < 5000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3);
@@ -55,7 +55,7 @@ TEST_CASE("refraction keeps the plane and the length, and the sines have the rat
 }
 
 TEST_CASE("light takes the same way back") {
-    Draw draw;
+    Drawn draw;
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3);
         const Vec3 incoming = arriving(draw.uniform(0, 1.5));

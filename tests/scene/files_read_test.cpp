@@ -24,7 +24,7 @@ std::string triangle_buffer() {
     return bytes;
 }
 
-const char* kGltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+const char* kReadGltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
   "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],
   "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],
   "images":[{"uri":"leaf%20green.png"}],
@@ -50,7 +50,7 @@ std::map<std::string, std::string> write_files(const std::string& folder) {
         {"parts/chair.obj", "mtllib chair.mtl\nmtllib missing.mtl\nusemtl wood\n" + quad},
         {"parts/chair.mtl", "newmtl wood\nmap_Kd wood.png\nnewmtl unused\nmap_Kd unused.png\n"},
         {"parts/wood.png", "wood"},
-        {"parts/tree.gltf", kGltf},
+        {"parts/tree.gltf", kReadGltf},
         {"parts/my tree.bin", triangle_buffer()},
         {"parts/leaf green.png", "leaves"},
         {"bowl.obj", quad}};

@@ -17,7 +17,7 @@ namespace {
 const std::string kModels = "/usr/share/assimp/models";
 
 template <class T>
-void append(std::string& bytes, std::initializer_list<T> values) {
+void append_bytes(std::string& bytes, std::initializer_list<T> values) {
     for (const T value : values) {
         char raw[sizeof(T)];
         std::memcpy(raw, &value, sizeof value);

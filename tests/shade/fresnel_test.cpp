@@ -11,7 +11,7 @@ using namespace trilens;
 
 namespace {
 
-struct Draw {
+struct Drawn {
     std::mt19937_64 engine{32};
     double uniform(double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(engine);
@@ -37,7 +37,7 @@ TEST_CASE("reflectance: 4 percent for glass head on, all at grazing, sums of tan
     CHECK(fresnel_reflectance(0, 1 / 1.5) == 1);
     CHECK(fresnel_reflectance(0.3, 1) == Approx(0).margin(1e-30));
 
-    Draw draw;
+    Drawn draw;
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0.01, 1.5);
         if (eta * std::sin(in) >= 0.999 || std::fabs(eta - 1) < 1e-3) continue;
@@ -61,7 +61,7 @@ TEST_CASE("at Brewster's angle the part parallel to the plane of incidence is no
 
 TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy") {
     // Transmitted intensity from the amplitudes of transmission, weighted by index and cosine.
-    Draw draw;
+    Drawn draw;
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0, 1.55);
         const double sin_out = eta * std::sin(in);
@@ -74,7 +74,7 @@ TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy") {
 }
 
 TEST_CASE("the interface reflects alike from both sides") {
-    Draw draw;
+    Drawn draw;
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0, 1.5);
         const double sin_out = eta * std::sin(in);

@@ -109,8 +109,9 @@ Primitive primitive_of(Primitive::Type type) {
     return primitive;
 }
 
-constexpr std::array<Primitive::Type, 4> kTypes = {Primitive::Type::kSphere, Primitive::Type::kParaboloid,
-                                                   Primitive::Type::kCylinder, Primitive::Type::kPlane};
+constexpr std::array<Primitive::Type, 4> kBoundedTypes = {
+    Primitive::Type::kSphere, Primitive::Type::kParaboloid, Primitive::Type::kCylinder,
+    Primitive::Type::kPlane};
 
 /// An octahedron as a Loop cage: all its vertices have four faces, so none is regular.
 Cage octahedron() {
@@ -124,7 +125,7 @@ Cage octahedron() {
 }  // namespace
 
 TEST_CASE("no point of a primitive lies outside its bounds") {
-    for (const Primitive::Type type : kTypes) {
+    for (const Primitive::Type type : kBoundedTypes) {
         const auto surface = make_primitive_surface(primitive_of(type));
         const Outside outside = points_outside(*surface, 1 + static_cast<unsigned>(type), 4000);
         CAPTURE(static_cast<int>(type), outside.worst);
@@ -164,7 +165,7 @@ TEST_CASE("bounds shrink at least in proportion to the box") {
         if (name == "sheet" || name == "cube" || name == "prism 5" || name == "octahedron")
             surfaces.emplace_back(name, make_limit_surface(cage, name, {}));
     }
-    for (const Primitive::Type type : kTypes)
+    for (const Primitive::Type type : kBoundedTypes)
         surfaces.emplace_back("primitive", make_primitive_surface(primitive_of(type)));
     REQUIRE(surfaces.size() == 8);
 

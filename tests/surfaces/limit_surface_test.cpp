@@ -23,7 +23,7 @@ double spread(const Cage& cage) {
     return length(high - low);
 }
 
-std::unique_ptr<Surface> quietly(const Cage& cage) {
+std::unique_ptr<Surface> quiet_cage(const Cage& cage) {
     return make_limit_surface(cage, "cage", {});
 }
 
@@ -48,7 +48,7 @@ struct Comparison {
 Comparison compare_with_reference(const Cage& cage, int levels) {
     ReferenceMesh mesh = reference_mesh(cage);
     for (int level = 0; level < levels; ++level) mesh = refine(mesh);
-    const auto surface = quietly(cage);
+    const auto surface = quiet_cage(cage);
     const auto numbers = face_numbers(cage);
     REQUIRE(surface->face_count() == numbers.size());
 
@@ -131,7 +131,7 @@ TEST_CASE("Derivatives are the derivatives of the position, and the normal is ac
     std::uniform_real_distribution<double> within(0.03, 0.09);
     for (const auto& [name, cage] : small_cages()) {
         CAPTURE(name);
-        const auto surface = quietly(cage);
+        const auto surface = quiet_cage(cage);
         for (Id face = 0; face < surface->face_count(); ++face)
             for (int i = 0; i < 8; ++i) {
                 const Vec2 uv(eighth(random) / 8.0 + within(random), eighth(random) / 8.0 + within(random));
@@ -145,31 +145,31 @@ TEST_CASE("Derivatives are the derivatives of the position, and the normal is ac
     loop = make_cage({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {2, 2, 1}, {-1, 1, 1}, {1, -1, 1}},
                      {{0, 1, 2}, {1, 3, 2}, {0, 2, 4}, {1, 0, 5}});
     loop.scheme = SubdivisionScheme::kLoop;
-    const auto surface = quietly(loop);
+    const auto surface = quiet_cage(loop);
     for (const Vec2& uv : {Vec2(0.21, 0.17), Vec2(0.1, 0.6), Vec2(0.55, 0.3), Vec2(0.4, 0.3)})
         CHECK(worst_derivative(*surface, 0, uv, spread(loop)) < 1e-6);
 }
 
 TEST_CASE("Parameters outside the domain are clamped to it", "[surfaces]") {
-    const auto square = quietly(cube());
+    const auto square = quiet_cage(cube());
     CHECK(square->eval(0, {-3, 0.5}).position == square->eval(0, {0, 0.5}).position);
     CHECK(square->eval(0, {0.5, 9}).position == square->eval(0, {0.5, 1}).position);
     CHECK(square->eval(0, {std::nan(""), 1}).position == square->eval(0, {0, 1}).position);
     Cage loop = make_cage({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
     loop.scheme = SubdivisionScheme::kLoop;
-    const auto triangle = quietly(loop);
+    const auto triangle = quiet_cage(loop);
     CHECK(length(triangle->eval(0, {1, 1}).position - triangle->eval(0, {0.5, 0.5}).position) < 1e-15);
 }
 
 TEST_CASE("A limit surface scales, moves and turns with its cage", "[surfaces]") {
     const Cage cage = prism(5);
-    const auto surface = quietly(cage);
+    const auto surface = quiet_cage(cage);
     const Mat3 turn(Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 1, 0));
     for (double scale : {1e-4, 1e-2, 1.0, 1e2, 1e4}) {
         Cage moved = cage;
         const Vec3 shift = scale * Vec3(100, -20, 3);
         for (Vec3& p : moved.points) p = scale * (turn * p) + shift;
-        const auto image = quietly(moved);
+        const auto image = quiet_cage(moved);
         for (Id face = 0; face < surface->face_count(); ++face)
             for (const Vec2& uv : {Vec2(0, 0), Vec2(1, 0.5), Vec2(0.3, 0.7)}) {
                 const SurfacePoint a = surface->eval(face, uv), b = image->eval(face, uv);
@@ -193,7 +193,7 @@ TEST_CASE("Where derivatives vanish the normal comes from nearby", "[surfaces]")
     }
     pole = make_cage(pole.points, faces);
     pole.scheme = SubdivisionScheme::kBilinear;
-    const auto cone = quietly(pole);
+    const auto cone = quiet_cage(pole);
     for (Id face = 0; face < 8; ++face) {
         const SurfacePoint tip = cone->eval(face, {0.5, 1}), below = cone->eval(face, {0.5, 0.5});
         CHECK(length(tip.du) < 1e-15);
@@ -202,17 +202,17 @@ TEST_CASE("Where derivatives vanish the normal comes from nearby", "[surfaces]")
     }
     Cage point = cube();
     for (Vec3& p : point.points) p = Vec3(1, 2, 3);
-    CHECK(quietly(point)->eval(0, {0.5, 0.5}).normal == Vec3(0));
-    CHECK(quietly(point)->eval(0, {0.5, 0.5}).position == Vec3(1, 2, 3));
+    CHECK(quiet_cage(point)->eval(0, {0.5, 0.5}).normal == Vec3(0));
+    CHECK(quiet_cage(point)->eval(0, {0.5, 0.5}).position == Vec3(1, 2, 3));
     Cage line = sheet(1, 1);
     for (Vec3& p : line.points) p = Vec3(p.x + p.y, 0, 0);
-    CHECK(quietly(line)->eval(0, {0.25, 0.5}).normal == Vec3(0));
+    CHECK(quiet_cage(line)->eval(0, {0.25, 0.5}).normal == Vec3(0));
 }
 
 TEST_CASE("Holes have no faces and change nothing else", "[surfaces]") {
     Cage holed = cube();
     holed.hole_indices = {2};
-    const auto with = quietly(holed), without = quietly(cube());
+    const auto with = quiet_cage(holed), without = quiet_cage(cube());
     REQUIRE(with->face_count() == 5);
     for (Id face = 0; face < 5; ++face)
         CHECK(with->eval(face, {0.3, 0.8}).position ==
@@ -224,7 +224,7 @@ TEST_CASE("the first order is the same bit for bit without the second", "[surfac
     std::uniform_real_distribution<double> anywhere(0, 1), exponent(-9, -2);
     for (const auto& [name, cage] : made_cages()) {
         CAPTURE(name);
-        const std::unique_ptr<Surface> surface = quietly(cage);
+        const std::unique_ptr<Surface> surface = quiet_cage(cage);
         for (Id face = 0; face < surface->face_count(); ++face) {
             std::vector<Vec2> places{{0, 0}, {1, 0}, {0, 1}, {1, 1}, {0.5, 0.5}, {0.5, 0}, {-1, 2}};
             for (int i = 0; i < 20; ++i) places.emplace_back(anywhere(random), anywhere(random));

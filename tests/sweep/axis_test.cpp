@@ -13,13 +13,13 @@ using namespace trilens;
 namespace {
 
 const AxisKind kResolution{"resolution", "n", "n", ValueKind::kWhole, 1, 1024, true};
-const AxisKind kEngine{"engine", "", "engine", ValueKind::kWord, 0, 0, false, {"exact", "classic"}};
+const AxisKind kAxisEngine{"engine", "", "engine", ValueKind::kWord, 0, 0, false, {"exact", "classic"}};
 const AxisKind kSize{"size", "", "pixels", ValueKind::kSize, 1, 1e9, true, {}, 32768};
 const AxisKind kScene{"scene", "", "scene", ValueKind::kText};
 
 Axis parse_axis(const std::string& text, bool keeps_order = false) {
     const AxisRequest request = parse_over(text);
-    for (const AxisKind& kind : {kResolution, kEngine, kSize, kScene})
+    for (const AxisKind& kind : {kResolution, kAxisEngine, kSize, kScene})
         if (kind.name == request.axis) return make_axis(kind, request, "--over " + text, keeps_order);
     return make_axis(pointer_kind(request.axis), request, "--over " + text, keeps_order);
 }

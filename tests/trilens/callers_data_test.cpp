@@ -16,7 +16,7 @@ namespace {
 const std::vector<std::string> kOddTexts{"",   "#",   "\xff\xfe", "1e999", "nan",
                                          "-1", "a/b", "..",       "{",     std::string(3, '\0')};
 
-Scene small_scene() {
+Scene callers_scene() {
     return parse_scene(scene_examples()[0].json, "",
                        std::vector<SceneOverride>{{"/film/width", "16"}, {"/film/height", "12"}});
 }
@@ -108,7 +108,7 @@ TEST_CASE("numbers and texts that are none are refused or written", "[trilens]")
 
 TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens]") {
     std::vector<Scene> all(1);
-    const auto add = [&](const auto& change) { change(all.emplace_back(small_scene())); };
+    const auto add = [&](const auto& change) { change(all.emplace_back(callers_scene())); };
     add([](Scene&) {});
     for (const char* text : {"{", "[]", "3", "{\"animation\":3}", "{\"meshes\":[]}"})
         add([&](Scene& scene) { scene.resolved = text; });
@@ -159,7 +159,7 @@ TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens
             Renderer(scene, quiet).draw(picture_of({find_camera(scene, ""), 2}), {}, quiet);
         });
     }
-    CHECK_THROWS_AS(turntable(small_scene(), 0, 1, 0), UsageError);
+    CHECK_THROWS_AS(turntable(callers_scene(), 0, 1, 0), UsageError);
     CHECK_THROWS_AS(make_scene_info(Scene()), InputError);
     for (const std::string& text : kOddTexts) {
         only_errors("load_scene_text", [&] { load_scene_text(text, SceneSource("x"), {}, {}); });
@@ -171,7 +171,7 @@ TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens
 
 TEST_CASE("a renderer refuses requests that are none", "[trilens]") {
     const Warn quiet = [](const std::string&) {};
-    Renderer renderer(small_scene(), quiet);
+    Renderer renderer(callers_scene(), quiet);
     const std::string written = scratch_dir("renderer_requests") + "/a.exr";
     for (const int n : kOddInts) {
         PictureRequest request;
@@ -197,7 +197,7 @@ TEST_CASE("a renderer refuses requests that are none", "[trilens]") {
         BenchRequest bench;
         bench.frame.resolution = n > 4 ? -n : n;
         bench.race.repeats = n > 4 ? 0 : n;
-        only_errors("run_bench", [&] { run_bench(small_scene(), bench, quiet); });
+        only_errors("run_bench", [&] { run_bench(callers_scene(), bench, quiet); });
     }
     for (const double x : kOddNumbers) {
         FrameParams frame{0, 2};
@@ -213,7 +213,7 @@ TEST_CASE("a renderer refuses requests that are none", "[trilens]") {
     CHECK_THROWS_AS(renderer.draw_lines(nobody), UsageError);
     BenchRequest bench;
     bench.frame = nobody;
-    CHECK_THROWS_AS(run_bench(small_scene(), bench), UsageError);
+    CHECK_THROWS_AS(run_bench(callers_scene(), bench), UsageError);
     CHECK_THROWS_AS(renderer.change(Scene()), InputError);
     CHECK(renderer.scene().film.width == 16);
 }
@@ -278,7 +278,7 @@ TEST_CASE("sweeps and suites refuse requests that are none", "[trilens]") {
         only_errors("find_axis_kind", [&] { find_axis_kind(text, "here"); });
         only_errors("plan_sweep", [&] {
             SweepRequest request;
-            request.loaded = small_scene();
+            request.loaded = callers_scene();
             request.over = {{text, {text}}};
             request.folder = folder + "/plan";
             plan_sweep(request);
