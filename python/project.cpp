@@ -20,6 +20,7 @@ struct ImageRow {
     Id optic, object, facet, step_count;
     char32_t path[7];
     bool inside, visible, refined, complete, has_derivative;
+    double off;
 };
 
 struct StepRow {
@@ -55,6 +56,7 @@ py::object row_type(std::size_t steps) {
     add("visible", "?", offsetof(ImageRow, visible));
     add("refined", "?", offsetof(ImageRow, refined));
     add("complete", "?", offsetof(ImageRow, complete));
+    add("off", "f8", offsetof(ImageRow, off));
     add("has_derivative", "?", offsetof(ImageRow, has_derivative));
     add("derivative", "(2,3)f8", offsetof(ImageRow, derivative));
     add("step_count", "u4", offsetof(ImageRow, step_count));
@@ -87,6 +89,7 @@ ImageRow row_of(const WorldImage& image) {
     copy_text(path_name(image.path), row.path);
     row.inside = image.inside, row.visible = image.visible, row.refined = image.refined;
     row.has_derivative = image.has_derivative;
+    row.off = image.off;
     for (int axis = 0; axis < 2; ++axis)
         for (int k = 0; k < 3; ++k)
             row.derivative[axis][k] = image.derivative[static_cast<std::size_t>(axis)][k];
@@ -176,6 +179,7 @@ void bind_project(RendererClass& renderer) {
         "  inside   on the film\n"
         "  visible  nothing lies between\n"
         "  refined  on the exact surface\n"
+        "  off      pixels that it may lie from the exact image: 0 where refined, inf where not known\n"
         "  complete no image of this point is missing from the list, which is proven\n"
         "  derivative      (2, 3): how x and y move with the point, pixels per scene unit; set where\n"
         "  has_derivative\n"

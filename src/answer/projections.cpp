@@ -28,6 +28,7 @@ Json image_json(const Renderer& renderer, const WorldImage& image) {
                    {"length", json_number(image.length)},
                    {"visible", image.visible},
                    {"refined", image.refined},
+                   {"off", json_number(image.off)},
                    {"steps", steps_json(renderer, image.steps)}};
     if (image.has_derivative)
         fields["derivative"] = {vector_json(image.derivative[0]), vector_json(image.derivative[1])};

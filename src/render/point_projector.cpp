@@ -14,6 +14,9 @@ constexpr double kLeastDepth = 1e-12;
 /// An image through the facets this near to an exact one, in pixels, is taken for the same.
 constexpr double kSameImage = 3;
 
+/// An exact image farther from the facets' than this, in pixels, is another one.
+constexpr double kFilmReach = 16;
+
 /// The cosine of the angle by which an image that only facets have may miss its point, on the exact surface.
 constexpr double kLeastCosine = 0.866;
 
@@ -41,7 +44,7 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
     : world_(world),
       request_(request),
       frame_(make_frame(world, frame_of_seeds(request), {})),
-      sight_(world, frame_, searches_surfaces()) {
+      sight_(world, frame_, request.refine) {
     object_tracer(world);
     if (!camera_.linear && !camera_.model) {
         camera_mesh_ = std::make_unique<MeshPointImages>(camera_.mesh);
@@ -177,12 +180,35 @@ std::vector<OpticImage> PointProjector::images_on_film(const OpticPath& path,
     return images;
 }
 
+/// Through a camera without one eye: each image of the facets is moved to where the exact ray passes through
+/// the point; two that come to one place count once.
+void PointProjector::refine_on_film(const OpticPath& path, const Vec3& point,
+                                    std::vector<OpticImage>& images) const {
+    const Event event = path.path == Path::kReflect ? Event::kReflect : Event::kTransmit;
+    const HistoryQuery query = history_query(world_, frame_, {{path.optic, event}}, point);
+    std::vector<OpticImage> kept;
+    for (OpticImage image : images) {
+        const auto exact = refine_history_image(query, image.pixel);
+        if (exact && length(exact->pixel - image.pixel) < kFilmReach)
+            image = {image.facet,     exact->pixel,          exact->distance / exact->first_way,
+                     exact->distance, exact->corners.back(), true};
+        const bool known = std::any_of(kept.begin(), kept.end(), [&](const OpticImage& one) {
+            return one.refined && image.refined && length(one.pixel - image.pixel) < kSamePixels;
+        });
+        if (!known) kept.push_back(image);
+    }
+    images = std::move(kept);
+}
+
 std::vector<OpticImage> PointProjector::optic_images(const OpticPath& path, const Vec3& point,
                                                      const SpecularSearch& searched,
                                                      PointProjection& result) const {
     if (!searches_surfaces()) {
         result.complete = false;
-        return path.facets->images(point, request_.refine && camera_.linear.has_value());
+        std::vector<OpticImage> images =
+            path.facets->images(point, request_.refine && camera_.linear.has_value());
+        if (request_.refine && !camera_.linear) refine_on_film(path, point, images);
+        return images;
     }
     std::vector<OpticImage> found = images_on_film(path, searched);
     if (searched.complete) return found;
@@ -234,6 +260,7 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, co
         image.t = one.t;
         image.length = one.length;
         image.refined = one.refined;
+        image.off = one.refined ? 0 : kUnknownOffset;
         image.inside = on_film(image.pixel);
         image.visible = request_.visibility && image.inside && is_between_planes(t) &&
                         sight_.is_free_of_objects(one.from, point) && sight_.sees(eye, one.from, on_facet);

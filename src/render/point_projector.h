@@ -43,6 +43,7 @@ class PointProjector {
     std::vector<SpecularSearch> search(const OpticPath& path, std::span<const Vec3> points) const;
     std::vector<OpticImage> optic_images(const OpticPath& path, const Vec3& point,
                                          const SpecularSearch& searched, PointProjection& result) const;
+    void refine_on_film(const OpticPath& path, const Vec3& point, std::vector<OpticImage>& images) const;
     std::vector<OpticImage> images_on_film(const OpticPath& path, const SpecularSearch& searched) const;
     bool is_between_planes(double t) const { return t >= camera_.near_depth && t <= camera_.far_depth; }
     bool on_film(const Vec2& pixel) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -13,18 +14,23 @@ namespace trilens {
 
 struct World;
 
+/// WorldImage::off where it is not known.
+inline constexpr double kUnknownOffset = std::numeric_limits<double>::infinity();
+
 /// One place where a point appears.
 struct WorldImage {
     Path path = Path::kDirect;
-    Id optic = kNone;         // which of the scene's optics, counted in scene order; none for the direct path
-    Id object = kNone;        // its index in Scene::meshes
-    Id facet = kNone;         // of the optic's grid (of the camera's mesh for a rayMesh camera)
-    Vec2 pixel{0};            // from the film's top left; a pixel's centre is at .5
-    double t = 0;             // along the last ray, in units of its direction (direct: depth)
-    double length = 0;        // the same in scene units
-    bool inside = false;      // on the film
-    bool visible = false;     // nothing lies between the eye, the optic and the point
-    bool refined = false;     // on the exact surface; else the facets' image
+    Id optic = kNone;      // which of the scene's optics, counted in scene order; none for the direct path
+    Id object = kNone;     // its index in Scene::meshes
+    Id facet = kNone;      // of the optic's grid (of the camera's mesh for a rayMesh camera)
+    Vec2 pixel{0};         // from the film's top left; a pixel's centre is at .5
+    double t = 0;          // along the last ray, in units of its direction (direct: depth)
+    double length = 0;     // the same in scene units
+    bool inside = false;   // on the film
+    bool visible = false;  // nothing lies between the eye, the optic and the point
+    bool refined = false;  // on the exact surface; else the facets' image
+    // Pixels that it may lie from the exact image: 0 where refined, else kUnknownOffset: nothing is known.
+    double off = 0;
     std::vector<Step> steps;  // the meetings with optics, the first among them; none for the direct path
 
     /// How the pixel moves with the point: row 0 for x, row 1 for y, in pixels per scene unit. Set where

@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kFloat = 1e-6;  // pixels are floats
 
-const std::string kBeside =
-    R"("film":{"width":96,"height":72},"background":{"color":[1,1,1]},"version":1,)";
+const std::string kBeside = R"("film":{"width":96,"height":72},"background":{"color":[1,1,1]},"version":1,)";
 
 /// A ball that lies half across the film's middle.
-const std::string kBall = "{" + kBeside +
-                          R"("cameras":[{"name":"main","yfov":66.9,"lookAt":{"eye":[3.0347,1,2.2893],"at":[2.0231,1,1.5262],"up":[0,1,0]}}],
+const std::string kBall =
+    "{" + kBeside +
+    R"("cameras":[{"name":"main","yfov":66.9,"lookAt":{"eye":[3.0347,1,2.2893],"at":[2.0231,1,1.5262],"up":[0,1,0]}}],
     "materials":[{"name":"glass","transmissionFactor":1,"ior":1.351}],
     "meshes":[{"name":"ball","role":"optic","material":"glass","primitive":{"type":"sphere","center":[0,0,0],"radius":1}}],
     "render":{"maxDepth":32}})";
@@ -45,11 +45,10 @@ const std::string kInBox = "{" + kBeside +
                            R"(,"render":{"maxDepth":16}})";
 
 /// A box that parts the colours, and holds most of its light back for long.
-const std::string kColours = "{" + kBeside +
-                             R"("cameras":[{"name":"main","yfov":30,"lookAt":{"eye":[1.1,1.9,3.5],"at":[0,0,0],"up":[0,1,0]}}],)" +
-                             box(R"("ior":2.2,"dispersion":2)",
-                                 R"(,"subdivisionScheme":"bilinear")") +
-                             R"(,"render":{"maxDepth":2}})";
+const std::string kColours =
+    "{" + kBeside +
+    R"("cameras":[{"name":"main","yfov":30,"lookAt":{"eye":[1.1,1.9,3.5],"at":[0,0,0],"up":[0,1,0]}}],)" +
+    box(R"("ior":2.2,"dispersion":2)", R"(,"subdivisionScheme":"bilinear")") + R"(,"render":{"maxDepth":2}})";
 
 void ignore(const std::string&) {}
 
