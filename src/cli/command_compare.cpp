@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include "answer/comparison.h"
@@ -18,11 +19,24 @@
 namespace trilens {
 namespace {
 
+constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kNoCount = std::numeric_limits<std::size_t>::max();
+
+CompareOptions not_given() {
+    CompareOptions rules;
+    rules.fail = rules.failrelative = rules.failpercent = rules.hardfail = kNotGiven;
+    rules.allowfailures = kNoCount;
+    return rules;
+}
+
 /// The command line's words.
 struct CompareCommand {
     CompareRequest request;
     std::vector<std::string> limits;  // "METRIC=VALUE"
     long long mask = -1;
+
+    // Rules of colour as they are given; no number, or the largest: not given.
+    CompareOptions rules = not_given();
 };
 
 bool is_png(const std::string& file) {
@@ -135,9 +149,26 @@ Answer run(const CompareRequest& request, Console& console) {
     return compare_answer(request, inputs);
 }
 
+/// The rules of colour: those given, else the usual ones; where limits are given and none of these, they
+/// judge alone.
+void set_rules(const CompareOptions& given, bool has_limits, CompareOptions& rules) {
+    bool is_any = given.allowfailures != kNoCount;
+    for (double CompareOptions::*const rule : {&CompareOptions::fail, &CompareOptions::failrelative,
+                                               &CompareOptions::failpercent, &CompareOptions::hardfail}) {
+        if (std::isnan(given.*rule)) continue;
+        rules.*rule = given.*rule;
+        is_any = true;
+    }
+    if (given.allowfailures != kNoCount || (has_limits && !is_any)) rules.allowfailures = given.allowfailures;
+    // A pixel beyond a larger difference that is allowed is no failure by itself.
+    if (!std::isnan(given.fail) && std::isnan(given.hardfail))
+        rules.hardfail = std::max(rules.hardfail, given.fail);
+}
+
 Answer run(const CompareCommand& command, Console& console) {
     CompareRequest request = command.request;
     request.limits = limits_of(command);
+    set_rules(command.rules, !request.limits.empty(), request.options);
     if (command.mask >= 0) request.options.mask_object = static_cast<Id>(command.mask);
     return run(request, console);
 }
@@ -196,23 +227,28 @@ std::vector<Option> tolerance_options(CompareCommand& command) {
              "fail where a metric is beyond VALUE (ssim, psnr_db, coverage: below it); may be given several "
              "times: " +
              one_of(common_metric_names()) +
-             "; of what is seen and displaced also for one layer: refract.lost_percent",
+             "; of what is seen and displaced also for one layer: refract.lost_percent. Without a rule of "
+             "colour beside "
+             "it (--fail and so on) colours are not judged",
          .value = "METRIC=VALUE"},
-        {.names = "--fail", .target = &o.fail, .help = "difference beyond which a pixel fails", .range = {0}},
+        {.names = "--fail",
+         .target = &command.rules.fail,
+         .help = "difference beyond which a pixel fails",
+         .range = {0}},
         {.names = "--failpercent",
-         .target = &o.failpercent,
+         .target = &command.rules.failpercent,
          .help = "percentage of pixels that may fail",
          .range = {0, 100}},
         {.names = "--hardfail",
-         .target = &o.hardfail,
+         .target = &command.rules.hardfail,
          .help = "difference that no pixel may exceed",
          .range = {0}},
         {.names = "--failrelative",
-         .target = &o.failrelative,
+         .target = &command.rules.failrelative,
          .help = "a failing pixel must also differ by this share",
          .range = {0}},
         {.names = "--allowfailures",
-         .target = &o.allowfailures,
+         .target = &command.rules.allowfailures,
          .help = "so many pixels may differ by any amount",
          .range = {0}},
         {.names = "--warn", .target = &o.warn, .help = "difference worth a warning", .range = {0}},

@@ -145,6 +145,11 @@ void FacetViewer::meet_optic(std::size_t index, const Hit& hit, std::size_t samp
                              SampleViews& views) const {
     SampleView& view = views.samples[sample];
     const bool sees_optic = view.optic != kNone, sees_object = view.hit.seen();
+    if (rims.limit != kAnyError && (sees_optic || sees_object)) {
+        const MetSurface shown{view.optic, view.facet, view.depth};
+        view.unsure = view.unsure || may_change_order({*world, frame, rims, reach()}, view.ray,
+                                                      {static_cast<Id>(index), hit.triangle, hit.t}, shown);
+    }
     if (sees_object && touches(hit.t, view.depth) && leaves_body(index, hit, view.ray)) return;
     if (sees_optic || sees_object) {
         const Id other =

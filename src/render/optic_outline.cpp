@@ -226,6 +226,20 @@ double outline_area(std::span<const OutlineEdge> edges, double limit, const Samp
     return area;
 }
 
+double surface_stray(const Surface& surface, const SurfaceGrid& grid, Id facet) {
+    double most = 0;
+    for (const Vec3& weights : kSamples) {
+        Vec2 uv(0);
+        Vec3 chord(0);
+        for (std::size_t k = 0; k < 3; ++k) {
+            uv += weights[static_cast<int>(k)] * grid.facet_uv[facet][k];
+            chord += weights[static_cast<int>(k)] * grid.points[grid.corner_point[grid.facets[facet][k]]];
+        }
+        most = std::max(most, length(surface.eval_first_order(grid.facet_face[facet], uv).position - chord));
+    }
+    return kSafety * most;
+}
+
 bool is_off(const OutlineEdge& edge, double limit) {
     return kSafety * edge.off > limit;
 }

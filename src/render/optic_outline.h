@@ -26,6 +26,10 @@ std::vector<OutlineEdge> optic_outline(const World& world, const Frame& frame, s
 /// length times sagitta). Of stretches that are off by `limit` at most.
 double outline_area(std::span<const OutlineEdge> edges, double limit, const SampleGrid& window);
 
+/// How far the surface may stray from a facet of its grid, world units, with room for what lies between the
+/// samples.
+double surface_stray(const Surface& surface, const SurfaceGrid& grid, Id facet);
+
 /// Whether a stretch is off by more than `limit` pixels, with room for what lies between the samples.
 bool is_off(const OutlineEdge& edge, double limit);
 

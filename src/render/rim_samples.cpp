@@ -1,6 +1,7 @@
 #include "render/rim_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -45,7 +46,40 @@ void decide(const RimParams& params, const Vec2& at, SampleView& view, OpticView
     view.depth = first.object.seen() ? first.object.t : SampleView().depth;
 }
 
+/// How far along the ray the surface may lie from where the ray meets the facet.
+double room_along(const RimParams& params, const Ray& ray, const MetSurface& met) {
+    if (met.optic == kNone) return 0;
+    constexpr double kGrazing = 0.05;  // a cosine: below it the outline is near
+    const SurfaceGrid& grid = params.frame.optics[met.optic].facets->grid();
+    std::array<Vec3, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = grid.points[grid.corner_point[grid.facets[met.facet][k]]];
+    const Vec3 normal = normalize_or_zero(cross(corner[1] - corner[0], corner[2] - corner[0]));
+    const double speed = length(ray.direction);
+    const double cosine = std::max(std::fabs(dot(normal, ray.direction)) / speed, kGrazing);
+    return surface_stray(*params.world.optics[met.optic].surface, grid, met.facet) / (cosine * speed);
+}
+
+/// No less than room_along, without asking the surface: a facet is as long as the surface strays, at most.
+double longest_room(const RimParams& params, const Ray& ray, const MetSurface& met) {
+    if (met.optic == kNone) return 0;
+    constexpr double kSteepest = 20;
+    const SurfaceGrid& grid = params.frame.optics[met.optic].facets->grid();
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        longest =
+            std::max(longest, length(grid.points[grid.corner_point[grid.facets[met.facet][k]]] -
+                                     grid.points[grid.corner_point[grid.facets[met.facet][(k + 1) % 3]]]));
+    return kSteepest * longest / length(ray.direction);
+}
+
 }  // namespace
+
+bool may_change_order(const RimParams& params, const Ray& ray, const MetSurface& one,
+                      const MetSurface& other) {
+    const double apart = std::fabs(one.t - other.t);
+    if (apart > longest_room(params, ray, one) + longest_room(params, ray, other)) return false;
+    return apart <= room_along(params, ray, one) + room_along(params, ray, other);
+}
 
 OpticRims make_rims(const World& world, const Frame& frame, double limit) {
     OpticRims rims;
@@ -59,7 +93,8 @@ OpticRims make_rims(const World& world, const Frame& frame, double limit) {
             else
                 rims.error = std::max(rims.error, edge.off);
     }
-    // A sample near one optic's outline may see another optic.
+    // A sample near one optic's outline, or where two cross, may see another optic.
+    any = any || limit != kAnyError;
     rims.facets.resize(frame.optics.size());
     for (std::size_t i = 0; any && i < frame.optics.size(); ++i)
         rims.facets[i] = std::make_unique<FacetLookup>(frame.optics[i].facets->grid(),
@@ -91,7 +126,8 @@ void decide_rims(const RimParams& params, const SampleGrid& grid, SampleViews& v
     }
     parallel_for(grid.size(), kRimSamplesPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t s = from; s < to; ++s)
-            if (asked[s]) decide(params, grid.position(s), views.samples[s], views.of_optics[s]);
+            if (asked[s] || views.samples[s].unsure)
+                decide(params, grid.position(s), views.samples[s], views.of_optics[s]);
     });
 }
 

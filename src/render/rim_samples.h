@@ -33,6 +33,17 @@ struct RimParams {
     double reach = 0;  // of the camera's rays
 };
 
+/// What a ray meets at t: a facet of an optic, or (kNone) an object.
+struct MetSurface {
+    Id optic = kNone, facet = kNone;
+    double t = 0;
+};
+
+/// Whether two surfaces that a ray meets by their facets may come in the other order on the exact surfaces:
+/// they lie apart by no more than these may stray from the facets.
+bool may_change_order(const RimParams& params, const Ray& ray, const MetSurface& one,
+                      const MetSurface& other);
+
 /// What the samples of the grid near outlines that are off see first, on the exact surfaces. Those that see
 /// an optic are to be traced: SampleView::traced is set, and they have a facet, but no leaf.
 void decide_rims(const RimParams& params, const SampleGrid& grid, SampleViews& views);

@@ -21,6 +21,7 @@ struct SampleView {
 
     Id leaf = kNone;          // of its optic's OpticPaths; limit truth: none
     bool traced = false;      // its own paths were followed, those of no facet
+    bool unsure = false;      // the exact surfaces may come in another order than the facets
     std::uint8_t level = 0;   // how often its facet was divided
     std::uint8_t layers = 0;  // layers of optics seen in optics that lie over its facet
 };

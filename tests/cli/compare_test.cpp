@@ -176,6 +176,13 @@ TEST_CASE("--max limits any metric by the name that the JSON has", "[cli][compar
     CHECK(run.out.find("at least 1.5") != std::string::npos);
     CHECK(run.out.find("rmse is ") == std::string::npos);
 
+    // Colours that were not asked for do not judge; one that was does.
+    const std::string usual = "compare " + folder + "/truth.exr " + folder + "/mine.exr ";
+    REQUIRE(run_trilens(usual).exit_code == 1);
+    CHECK(run_trilens(usual + "--max displacement_p95=1000").exit_code == 0);
+    CHECK(run_trilens(usual + "--max displacement_p95=1000 --failpercent 0").exit_code == 1);
+    CHECK(run_trilens(usual + "--fail 9").exit_code == 0);
+
     // A limit on what nothing was measured of does not hold.
     const std::string plain = write(folder, "plain.exr", coloured(""));
     const CommandRun nothing = run_trilens("compare " + plain + " " + plain + " --max lost_percent=100");

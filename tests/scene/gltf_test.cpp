@@ -29,11 +29,11 @@ void append_bytes(std::string& bytes, std::initializer_list<T> values) {
 /// index (uint16, 56..57, padded) and its value (60..71), uvs as normalised uint16 (72..87).
 std::string square_buffer() {
     std::string bytes;
-    append<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
-    append<std::uint8_t>(bytes, {0, 1, 2, 2, 1, 3, 0, 0});
-    append<std::uint16_t>(bytes, {3, 0});
-    append<float>(bytes, {5, 6, 7});
-    append<std::uint16_t>(bytes, {0, 0, 65535, 0, 0, 65535, 65535, 65535});
+    append_bytes<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
+    append_bytes<std::uint8_t>(bytes, {0, 1, 2, 2, 1, 3, 0, 0});
+    append_bytes<std::uint16_t>(bytes, {3, 0});
+    append_bytes<float>(bytes, {5, 6, 7});
+    append_bytes<std::uint16_t>(bytes, {0, 0, 65535, 0, 0, 65535, 65535, 65535});
     return bytes;
 }
 
