@@ -19,17 +19,20 @@ def test_no_command_that_must_fail_is_passed_over(file):
     assert "set -euo pipefail" in file.read_text()
 
 
-def test_each_package_has_one_purpose():
-    purpose, of_package = None, {}
+def test_each_package_is_named_once_for_a_purpose():
+    purpose, packages = None, {}
     for line in (SOURCE / "scripts/packages.txt").read_text().splitlines():
         line = line.split("#")[0].strip()
         if line.startswith("["):
             purpose = line[1:-1]
+            assert purpose not in packages
+            packages[purpose] = set()
         elif line:
-            assert purpose and line not in of_package
-            of_package[line] = purpose
-    assert set(of_package.values()) == {"program", "tests", "checks"}
-    assert of_package["slurm-wlm"] == of_package["catch2"] == "tests" and of_package["doxygen"] == "checks"
+            assert purpose and line not in packages[purpose]
+            packages[purpose].add(line)
+    assert set(packages) == {"program", "package", "tests", "checks"}
+    assert {"slurm-wlm", "catch2"} <= packages["tests"] and "doxygen" in packages["checks"]
+    assert "lintian" in packages["package"]
 
 
 def test_a_purpose_that_there_is_not_is_refused():
