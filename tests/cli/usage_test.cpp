@@ -1,6 +1,7 @@
 // What the command says of command lines that it does not take: one line in its own words, with the option
 // and what it takes.
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -115,4 +116,11 @@ TEST_CASE("values that look like options, and groups of short ones, are read", "
     CHECK(run_trilens("scene validate -qn 2 " + scene).exit_code == 0);
     CHECK(run_trilens("scene info --set=/film/width=16 " + scene).out.find("film 16 x 24") !=
           std::string::npos);
+}
+
+TEST_CASE("An option does not take the next one for its value", "[cli]") {
+    const CommandRun run = run_trilens("sweep plan a.json -o --json");
+    CHECK(run.exit_code == 2);
+    CHECK(run.err.find("but --json follows it") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists("--json=-"));
 }

@@ -141,6 +141,28 @@ TEST_CASE("Paths that end at the first optic are true where the eye is in it", "
         }
 }
 
+TEST_CASE("A path that carries no light shows nothing, projected or traced", "[law]") {
+    // Glass without Fresnel passes all light on: at its front nothing is reflected.
+    std::string json = scene_of(kAbove, 0, ball("ball", "glass", {0, 0, 0}, 1));
+    json.replace(json.find("\"maxDepth\": 0"), 13, "\"maxDepth\": 0, \"fresnel\": false");
+    const auto world = world_of(json);
+    for (const Engine engine : {Engine::kExact, Engine::kFacetsTruth, Engine::kLimitTruth}) {
+        PictureRequest request;
+        request.frame.resolution = 8;
+        request.engine.engine = engine;
+        const Picture picture = draw_picture(*world, request, {}, ignore);
+        const auto count = [&](const char* channel) {
+            const Channel* ids = picture.image.find(channel);
+            REQUIRE(ids);
+            return std::count_if(ids->ids().begin(), ids->ids().end(), [](Id id) { return id != kNone; });
+        };
+        INFO(engine_name(engine));
+        CHECK(count("optic.object") > 3000);
+        CHECK(count("reflectID.object") == 0);
+        CHECK(count("refractID.object") > 1000);
+    }
+}
+
 TEST_CASE("The outline of an optic is that of its surface within the error asked for", "[law]") {
     const std::string balls =
         ball("ball", "gold", {-0.4, 0, 0}, 0.9) + ", " + ball("small", "glass", {1, 0.4, -1}, 0.3);
