@@ -190,8 +190,13 @@ void FacetViewer::view_rims(const SampleGrid& grid, SampleViews& views) const {
         decide_rims({*world, frame, rims, reach()}, grid, views);
         views.outline_error = rims.error;
     }
-    for (const std::vector<OutlineEdge>& edges : rims.edges)
-        views.outline_pixels += outline_area(edges, rims.limit, grid);
+    for (std::size_t i = 0; i < rims.edges.size(); ++i) {
+        const auto shows = [&](const Vec2& at) {
+            const std::size_t sample = grid.first_sample(static_cast<int>(at.x), static_cast<int>(at.y));
+            return views.samples[sample].optic == i;
+        };
+        views.outline_pixels += outline_area(rims.edges[i], rims.limit, grid, shows);
+    }
 }
 
 /// Where no optic is first, what the engine itself shows of the objects.

@@ -211,17 +211,25 @@ std::vector<OutlineEdge> optic_outline(const World& world, const Frame& frame, s
     return OutlineFinder(world, frame, optic).find();
 }
 
-double outline_area(std::span<const OutlineEdge> edges, double limit, const SampleGrid& window) {
-    constexpr int kPlaces = 8;  // along an edge, which may be in the window in part
+double outline_area(std::span<const OutlineEdge> edges, double limit, const SampleGrid& window,
+                    const std::function<bool(const Vec2&)>& shows) {
+    constexpr int kPlaces = 8;      // along an edge, which may be in the window in part
+    constexpr double kAside = 1.5;  // pixels
+    const auto inside = [&](const Vec2& at) {
+        return at.x >= window.x0 && at.x < window.x1 && at.y >= window.y0 && at.y < window.y1;
+    };
     double area = 0;
     for (const OutlineEdge& edge : edges) {
-        if (is_off(edge, limit)) continue;
-        int inside = 0;
+        const Vec2 along = edge.end[1] - edge.end[0];
+        const double size = length(along);
+        if (is_off(edge, limit) || !(size > 0)) continue;
+        const Vec2 aside = kAside / size * Vec2(-along.y, along.x);
+        int counted = 0;
         for (int i = 0; i < kPlaces; ++i) {
-            const Vec2 at = edge.end[0] + (i + 0.5) / kPlaces * (edge.end[1] - edge.end[0]);
-            inside += at.x >= window.x0 && at.x < window.x1 && at.y >= window.y0 && at.y < window.y1;
+            const Vec2 at = edge.end[0] + (i + 0.5) / kPlaces * along, one = at + aside, other = at - aside;
+            counted += inside(at) && inside(one) && inside(other) && shows(one) != shows(other);
         }
-        area += 2.0 / 3 * length(edge.end[1] - edge.end[0]) * edge.inset * inside / kPlaces;
+        area += 2.0 / 3 * size * edge.inset * counted / kPlaces;
     }
     return area;
 }

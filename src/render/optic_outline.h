@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,8 +24,10 @@ struct OutlineEdge {
 std::vector<OutlineEdge> optic_outline(const World& world, const Frame& frame, std::size_t optic);
 
 /// What of the window's pixels lies between the two outlines, as predicted: of arcs over their chords (2/3 of
-/// length times sagitta). Of stretches that are off by `limit` at most.
-double outline_area(std::span<const OutlineEdge> edges, double limit, const SampleGrid& window);
+/// length times sagitta). Of stretches that are off by `limit` at most, and only where `shows` (whether the
+/// film shows the optic at a place of the window, in pixels) differs between their two sides.
+double outline_area(std::span<const OutlineEdge> edges, double limit, const SampleGrid& window,
+                    const std::function<bool(const Vec2&)>& shows);
 
 /// How far the surface may stray from a facet of its grid, world units, with room for what lies between the
 /// samples.
