@@ -63,9 +63,8 @@ int main(int argc, char** argv) try {
     good &= check(back.find("R")->floats() == projected.image.find("R")->floats(), "an image reads back as written");
 
     const std::vector<trilens::LayerComparison> layers = trilens::compare_layers(truth.image, projected.image);
-    const trilens::LayerComparison* reflect = trilens::main_layer(layers, "reflect");
-    good &= check(reflect && reflect->displacement && reflect->displacement->summary &&
-                      reflect->displacement->summary->mean < 0.1,
+    const trilens::Displacement moved = trilens::total_displacement(layers, "reflect");
+    good &= check(moved.summary && moved.summary->mean < 0.1,
                   "the projection is within a tenth of a pixel of the truth");
 
     const std::vector<trilens::Vec3> points{{0.5, -1, 2}};
