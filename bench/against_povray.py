@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Times `trilens render` beside POV-Ray as a user would: whole commands, one scene, a PNG of each.
 
     python3 bench/against_povray.py TRILENS FOLDER [WIDTHxHEIGHT [REPEATS]]

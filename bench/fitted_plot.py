@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Plots what bench_fitted printed: displacement over n, fitted and interpolated corner rays, and the usual approximations.
 
     for s in scenes/sphere.json scenes/torus.json; do bench_fitted rays 4,8,16 $s; done > rays.csv

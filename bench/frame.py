@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Times whole commands as a user waits for them, and says where a picture's time goes.
 
     python3 bench/frame.py BUILD FOLDER [REPEATS]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Facets chosen for an error against uniform grids of the same error, over scenes at their full films.
 
     bench/max_error.py [--error 0.5] [--most 64] [--patience 60] [--trilens PROGRAM] FOLDER SCENE.json[@CAMERA] ...

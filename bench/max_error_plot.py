@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Plots what max_error.py measured: facets and seconds of facets chosen for an error over those of the uniform grid of the same error.
 
     bench/max_error_plot.py MAX-ERROR.csv OUT.svg

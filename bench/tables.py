@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws what bench_race measured: python3 bench/tables.py FILE.csv... FOLDER
 
 Writes FOLDER/table.md (today beside the aim), plots of the ratio over triangles, over n, over the film, over the

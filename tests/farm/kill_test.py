@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A sweep over optics x n x engine x spp, killed at random moments and resumed, against an unbroken one; and
 three shards in folders of their own, merged.
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A sweep as a Slurm job array on this machine: two nodes, one of which dies in the middle.
 
 usage: slurm_test.py TRILENS SCRATCH_FOLDER [JOBS, a multiple of 4]. Starts a controller and two daemons of its own, hands in what
