@@ -48,7 +48,8 @@ void SpecularBatch::sift(TreeNode& part, Parts& left) {
         const NewtonBounds newton = newton_bounds(tree_.terms_of(part), ball_.point, half, radius_);
         if (newton.known && leaves_cell(newton, half)) return;
     }
-    if (is_last || !(test.by_place > kPartShare * test.by_points)) {
+    const bool is_full = !part.is_halved && tree_.size() >= kMostNodes;
+    if (is_last || is_full || !(test.by_place > kPartShare * test.by_points)) {
         left.push_back(&part);
         return;
     }

@@ -24,7 +24,7 @@ double largest(const Vec3& v) {
 struct LeafPoint {
     const Looking& looking;
     const PathNode& node;
-    Id leaf = kNone;
+    Id facet = kNone;  // of the node's mesh
     const Look& look;
     std::optional<Look>& closer;  // the look with those beside it, once some history wanted them
     std::size_t segment = 0;
@@ -33,7 +33,7 @@ struct LeafPoint {
     double displacement(const Vec3& weights, const Ray& ray, const Hit& hit) const {
         if (!params.estimates) return predicted_displacement({looking, look, segment, ray, hit});
         const double estimate =
-            estimated_displacement({node.mesh, leaf, weights, look.segments[segment].ray, hit});
+            estimated_displacement({node.mesh, facet, weights, look.segments[segment].ray, hit});
         if (estimate <= params.max_error / kSure) return estimate;
         if (!closer) {
             closer = look;  // others may look at the same
@@ -44,10 +44,10 @@ struct LeafPoint {
 
     double predicted(const Vec3& weights) const {
         const PathSegment& exact = look.segments[segment];
-        const IdTriple& corner = node.mesh.facets[leaf];
-        const Ray ray = interpolated_ray(node.mesh, leaf, weights);
+        const IdTriple& corner = node.mesh.facets[facet];
+        const Ray ray = interpolated_ray(node.mesh, facet, weights);
         const Hit hit = params.objects->first_hit(ray);
-        if (!node.ends[leaf]) {
+        if (!node.ends[facet]) {
             double next = 0;
             for (int k = 0; k < 3; ++k) next += weights[k] * node.next[corner[static_cast<std::size_t>(k)]];
             if (!(hit.seen() && hit.t <= next)) return 0;
@@ -68,14 +68,15 @@ double OpticPaths::predicted(const FittedLeaf& open) const {
     std::array<std::optional<Look>, 3> closer_corner;
     for (std::size_t h = 0; h < part.histories.size() && !(most > params_.max_error); ++h) {
         const PathNode& node = nodes_[part.node[h]];
-        const IdTriple& corners = node.mesh.facets[open.leaf];
+        const Id facet = part.node_facet[h];
+        const IdTriple& corners = node.mesh.facets[facet];
         const auto look_at_point = [&](const Look& look, std::optional<Look>& closer,
                                        const std::vector<std::size_t>& segment, Vec3 weights) {
             if (segment.empty()) return;
             for (std::size_t k = 0; k < 3; ++k)
                 weights[static_cast<int>(k)] *=
                     part.corners[k].look->screen.z / node.mesh.screen[corners[k]].z;
-            const LeafPoint point{looking_, node, open.leaf, look, closer, segment[h], params_};
+            const LeafPoint point{looking_, node, facet, look, closer, segment[h], params_};
             most = std::max(most, point.predicted(weights / (weights.x + weights.y + weights.z)));
         };
         for (std::size_t i = 0; i < part.inside.size(); ++i)
@@ -120,7 +121,8 @@ void OpticPaths::divide_batch_by_error(std::vector<FittedLeaf> open) {
                 if (!params_.estimates) leaves_[leaf.leaf].predicted = error[i];
                 continue;
             }
-            for (const Id node : leaf.part->node) nodes_[node].mesh.facets[leaf.leaf] = {kNone, kNone, kNone};
+            for (std::size_t h = 0; h < leaf.part->node.size(); ++h)
+                nodes_[leaf.part->node[h]].mesh.facets[leaf.part->node_facet[h]] = {kNone, kNone, kNone};
             --projected_count_;
             const Id first_leaf = static_cast<Id>(leaves_.size());
             append(leaves_[leaf.leaf].facet, leaf_cell_[leaf.leaf], divided[i]);
@@ -130,7 +132,6 @@ void OpticPaths::divide_batch_by_error(std::vector<FittedLeaf> open) {
                 if (params_.fit) fit_alone(next.back(), nodes_);
             }
         }
-        complete_nodes();
         open = std::move(next);
     }
 }

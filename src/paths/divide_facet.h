@@ -30,6 +30,7 @@ struct FacetPart {
     Vec3 centre{0};                      // of kTraced: homogeneous screen position
     std::vector<PathSegment> histories;  // of kProjected: parents before children; empty: no rays
     std::vector<Id> node;                // per history: of OpticPaths::nodes, once it has one
+    std::vector<Id> node_facet;          // per history: of the node's mesh
     std::array<PartCorner, 3> corners;
     std::array<std::vector<std::size_t>, 3> segment;  // per corner and history: of the corner's look; empty
                                                       // for a corner that is turned away from the eye

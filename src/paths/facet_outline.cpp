@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "paths/divide_facet.h"
@@ -124,6 +125,8 @@ OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
         segment.medium = felt_body(*looking_.world, media);
         PathNode& node = nodes_[node_of(kNone, segment)];
         node.mesh = mesh;
+        node.leaves.resize(facets);
+        std::iota(node.leaves.begin(), node.leaves.end(), Id{0});
         node.ends.assign(facets, 1);
         node.principal.assign(facets, 1);
         node.touches.assign(facets, 0);

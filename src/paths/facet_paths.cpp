@@ -90,15 +90,6 @@ std::vector<Id> OpticPaths::wanted_facets(std::span<const Id> facets) {
     return fresh;
 }
 
-void OpticPaths::complete_nodes() {
-    for (PathNode& node : nodes_) {
-        node.mesh.facets.resize(leaves_.size(), {kNone, kNone, kNone});
-        node.ends.resize(leaves_.size(), 1);
-        node.principal.resize(leaves_.size(), 0);
-        node.touches.resize(leaves_.size(), 0);
-    }
-}
-
 /// Which facets' paths there is room for, by what the looks at some corners take: the same whatever is asked
 /// for first. A facet has four looks of its own and half a corner.
 void OpticPaths::keep_room() {
@@ -175,7 +166,6 @@ void OpticPaths::prepare(std::span<const Id> facets) {
                 fit_alone(leaf, nodes_);
         }
     }
-    complete_nodes();
     if (params_.fit) fit_nodes(whole, nodes_);
     divide_by_error(open);
 }

@@ -43,15 +43,19 @@ struct PathNode {
     Id medium = kNone;
     std::uint16_t step_count = 1;
     bool unfolds = true;     // all steps are reflections, or pass, and the camera has an eye: see farther
-    RayMesh mesh;            // facet l: leaf l; {kNone, kNone, kNone}: no such path there
-    std::vector<char> ends;  // per leaf: no other optic follows
-    std::vector<char> principal;  // per leaf: see PathSegment
-    std::vector<char> touches;    // per leaf: an object lies on the next optic, at its middle
+    RayMesh mesh;            // a facet for each leaf that has the history
+    std::vector<Id> leaves;  // per facet of the mesh: its leaf, ascending
+    std::vector<char> ends;  // per facet: no other optic follows
+    std::vector<char> principal;  // per facet: see PathSegment
+    std::vector<char> touches;    // per facet: an object lies on the next optic, at its middle
     std::vector<double> next;     // per corner: t of the next optic; infinity: none
     std::vector<Vec3> weight;     // per corner: see PathSegment::weight
     // Per corner: by how much its screen position is longer than the camera's, see node_corner.h; empty: all
     // are 1.
     std::vector<double> farther;
+
+    /// The mesh's facet over a leaf; kNone: no rays of this history are there.
+    Id facet_of(Id leaf) const;
 };
 
 /// How finely facets are divided whose corners do not tell the truth about the rays between them.
@@ -166,7 +170,6 @@ class OpticPaths {
     void set_kappas(std::span<const DividedFacet> divided) const;
     void append(Id facet, Id cell, DividedFacet& divided);
     void append_part(Id leaf, FacetPart& part);
-    void complete_nodes();
     void keep_room();
     void divide_by_error(std::span<const FittedLeaf> open);
     void divide_batch_by_error(std::vector<FittedLeaf> open);

@@ -132,7 +132,7 @@ void fit_alone(const FittedLeaf& leaf, std::vector<PathNode>& nodes) {
     for (std::size_t h = 0; h < leaf.part->histories.size(); ++h) {
         PathNode& node = nodes[leaf.part->node[h]];
         samples.clear();
-        NodeFacet{node, *leaf.part, h, node.mesh.facets[leaf.leaf]}.append(samples);
+        NodeFacet{node, *leaf.part, h, node.mesh.facets[leaf.part->node_facet[h]]}.append(samples);
         fit_facet(samples, node);
     }
 }
@@ -143,7 +143,7 @@ void fit_nodes(std::span<const FittedLeaf> leaves, std::vector<PathNode>& nodes)
         if (!takes_part(*one.part)) continue;
         for (std::size_t h = 0; h < one.part->histories.size(); ++h) {
             const Id n = one.part->node[h];
-            NodeFacet{nodes[n], *one.part, h, nodes[n].mesh.facets[one.leaf]}.append(samples[n]);
+            NodeFacet{nodes[n], *one.part, h, nodes[n].mesh.facets[one.part->node_facet[h]]}.append(samples[n]);
         }
     }
     for (std::size_t n = 0; n < nodes.size(); ++n)

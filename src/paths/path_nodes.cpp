@@ -33,6 +33,13 @@ Vec3 faint_light(const FacetPart& part) {
 
 }  // namespace
 
+Id PathNode::facet_of(Id leaf) const {
+    const auto found = std::lower_bound(leaves.begin(), leaves.end(), leaf);
+    if (found == leaves.end() || *found != leaf) return kNone;
+    const Id facet = static_cast<Id>(found - leaves.begin());
+    return mesh.has_rays(facet) ? facet : kNone;
+}
+
 /// Cell 0 of `divided` becomes `cell`, the others stand at the end.
 void OpticPaths::append(Id facet, Id cell, DividedFacet& divided) {
     const Id first_leaf = static_cast<Id>(leaves_.size()), behind = static_cast<Id>(cells_.size()) - 1;
@@ -79,6 +86,7 @@ Id OpticPaths::node_of(Id parent, const PathSegment& segment) {
 void OpticPaths::append_part(Id leaf, FacetPart& part) {
     std::vector<Id>& node_index = part.node;
     node_index.assign(part.histories.size(), kNone);
+    part.node_facet.assign(part.histories.size(), kNone);
     const bool alone = params_.fit && part.level > 0;  // fitted by itself
     for (std::size_t h = 0; h < part.histories.size(); ++h) {
         const PathSegment& history = part.histories[h];
@@ -120,14 +128,12 @@ void OpticPaths::append_part(Id leaf, FacetPart& part) {
             node.farther.push_back(first ? 1 : farther(look, *segment, node.unfolds));
             if (shared != kNone) corner_of_node_[node_index[h]].insert({shared, facet[k]});
         }
-        node.mesh.facets.resize(leaf + 1, {kNone, kNone, kNone});
-        node.mesh.facets[leaf] = facet;
-        node.ends.resize(leaf + 1, 1);
-        node.ends[leaf] = history.ends;
-        node.principal.resize(leaf + 1, 0);
-        node.principal[leaf] = history.principal;
-        node.touches.resize(leaf + 1, 0);
-        node.touches[leaf] = touches_object(part, h);
+        part.node_facet[h] = static_cast<Id>(node.mesh.facets.size());
+        node.mesh.facets.push_back(facet);
+        node.leaves.push_back(leaf);
+        node.ends.push_back(history.ends);
+        node.principal.push_back(history.principal);
+        node.touches.push_back(touches_object(part, h));
     }
 }
 

@@ -26,7 +26,8 @@ void name_end_facets(const FacetViews& views, PixelExplanation& explained) {
     for (const PathEnd& end : explained.views.ends) {
         explained.end_kinds.emplace_back();
         if (end.node == kNone || view.leaf == kNone || !views.paths) continue;
-        explained.end_kinds.back() = facet_kind(views.paths(view.optic).nodes()[end.node].mesh, view.leaf);
+        const PathNode& node = views.paths(view.optic).nodes()[end.node];
+        explained.end_kinds.back() = facet_kind(node.mesh, node.facet_of(view.leaf));
     }
 }
 

@@ -34,9 +34,10 @@ double magnification(const RayMesh& mesh, Id facet, const Vec3& weights, double 
     return area != 0 && std::isfinite(film / area) ? film / area : 0;
 }
 
-/// Whether a place lies on the plane of the points from which a node's rays start over a facet.
-bool lies_where_rays_start(const PathNode& node, Id facet, const Vec3& place) {
-    if (facet >= node.mesh.facets.size() || !node.mesh.has_rays(facet)) return false;
+/// Whether a place lies on the plane of the points from which a node's rays start over a leaf.
+bool lies_where_rays_start(const PathNode& node, Id leaf, const Vec3& place) {
+    const Id facet = node.facet_of(leaf);
+    if (facet == kNone) return false;
     const IdTriple& corner = node.mesh.facets[facet];
     const Vec3& a = node.mesh.rays[corner[0]].origin;
     const Vec3 along_b = node.mesh.rays[corner[1]].origin - a, along_c = node.mesh.rays[corner[2]].origin - a;
@@ -49,9 +50,9 @@ bool lies_where_rays_start(const PathNode& node, Id facet, const Vec3& place) {
 std::vector<std::size_t> first_ends(const FacetSamples& owned, const std::vector<char>& is_end,
                                     std::size_t before) {
     std::vector<std::size_t> first(owned.first.size(), before);
-    for (std::size_t l = 0; l + 1 < first.size(); ++l) {
-        first[l + 1] = first[l];
-        for (std::size_t i = owned.first[l]; i < owned.first[l + 1]; ++i) first[l + 1] += is_end[i] != 0;
+    for (std::size_t f = 0; f + 1 < first.size(); ++f) {
+        first[f + 1] = first[f];
+        for (std::size_t i = owned.first[f]; i < owned.first[f + 1]; ++i) first[f + 1] += is_end[i] != 0;
     }
     return first;
 }
@@ -59,30 +60,34 @@ std::vector<std::size_t> first_ends(const FacetSamples& owned, const std::vector
 }  // namespace
 
 /// Whether what a sample sees lies before the next optic or on it: the path ends there.
-bool NodeDrawer::ends_before_next(Id index, Id leaf, const Hit& hit, const Vec3& share) const {
+bool NodeDrawer::ends_before_next(Id index, Id facet, const Hit& hit, const Vec3& share) const {
     const PathNode& node = paths_.nodes()[index];
-    const IdTriple& corner = node.mesh.facets[leaf];
+    const IdTriple& corner = node.mesh.facets[facet];
     double next = 0;
     for (int k = 0; k < 3; ++k) next += share[k] * node.next[corner[static_cast<std::size_t>(k)]];
     if (hit.t <= next * (1 + kTouch)) return true;
-    if (!node.touches[leaf]) return false;
+    if (!node.touches[facet]) return false;
     if (hit.t <= next * (1 + kNear)) return true;
-    const Ray ray = interpolated_ray(node.mesh, leaf, share);
+    const Ray ray = interpolated_ray(node.mesh, facet, share);
     const Vec3 place = ray.origin + hit.t * ray.direction;
     return std::any_of(paths_.nodes().begin(), paths_.nodes().end(), [&](const PathNode& other) {
-        return other.parent == index && lies_where_rays_start(other, leaf, place);
+        return other.parent == index && lies_where_rays_start(other, node.leaves[facet], place);
     });
 }
 
-/// Samples whose path came as far as this node, with their leaves.
+/// Per sample the node's facet, if its path came as far as this node.
 std::vector<Id> NodeDrawer::owners(const PathNode& node) const {
     std::vector<Id> owner(grid_.size(), kNone);
     const std::vector<char>* parent = node.parent == kNone ? nullptr : &goes_on_[node.parent];
     if (parent && parent->empty()) return owner;  // no sample came as far as the node before
+    Id leaf = kNone, facet = kNone;  // the sample's before
     for (std::size_t s = 0; s < owner.size(); ++s) {
-        const Id leaf = leaf_[s];
-        if (leaf == kNone || leaf >= node.mesh.facets.size() || !node.mesh.has_rays(leaf)) continue;
-        if (!parent || (*parent)[s]) owner[s] = leaf;
+        if (leaf_[s] == kNone || (parent && !(*parent)[s])) continue;
+        if (leaf_[s] != leaf) {
+            leaf = leaf_[s];
+            facet = node.facet_of(leaf);
+        }
+        owner[s] = facet;
     }
     return owner;
 }
@@ -94,14 +99,14 @@ std::vector<char> NodeDrawer::find_ends(Id index, const FacetSamples& owned, std
     goes_on.resize(grid_.size(), 0);
     std::vector<char> is_end(owned.sample.size(), 0);
     parallel_for(node.mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
-        for (std::size_t l = from; l < to; ++l) {
-            if (owned.of(l).empty()) continue;
-            const FacetWeights weights = facet_weights(node.mesh, l);
+        for (std::size_t f = from; f < to; ++f) {
+            if (owned.of(f).empty()) continue;
+            const FacetWeights weights = facet_weights(node.mesh, f);
             if (weights.edge_on) continue;
-            for (std::size_t i = owned.first[l]; i < owned.first[l + 1]; ++i) {
+            for (std::size_t i = owned.first[f]; i < owned.first[f + 1]; ++i) {
                 const Id s = owned.sample[i];
-                is_end[i] = node.ends[l] ||
-                            (hits[s].seen() && ends_before_next(index, static_cast<Id>(l), hits[s],
+                is_end[i] = node.ends[f] ||
+                            (hits[s].seen() && ends_before_next(index, static_cast<Id>(f), hits[s],
                                                                 share_of(weights, grid_.position(s))));
                 goes_on[s] = !is_end[i];
             }
@@ -110,16 +115,16 @@ std::vector<char> NodeDrawer::find_ends(Id index, const FacetSamples& owned, std
     return is_end;
 }
 
-/// Sets the end of a sample over facet `leaf`, all but its steps.
-void NodeDrawer::set_end(Id index, Id leaf, const Vec3& share, PathEnd& end) const {
+/// Sets the end of a sample over a facet of the node, all but its steps.
+void NodeDrawer::set_end(Id index, Id facet, const Vec3& share, PathEnd& end) const {
     const PathNode& node = paths_.nodes()[index];
-    const IdTriple& corner = node.mesh.facets[leaf];
+    const IdTriple& corner = node.mesh.facets[facet];
     end.path = node.path;
-    end.principal = node.principal[leaf];
+    end.principal = node.principal[facet];
     end.colours = node.colours;
     end.node = index;
     end.medium = node.medium;
-    end.ray = interpolated_ray(node.mesh, leaf, share);
+    end.ray = interpolated_ray(node.mesh, facet, share);
     // By the sample's place between the camera's own corners, which is the same in every node: so the weights
     // of all ends add up to no more than they do at the corners.
     Vec3 place = share;
@@ -129,7 +134,7 @@ void NodeDrawer::set_end(Id index, Id leaf, const Vec3& share, PathEnd& end) con
     end.weight = Vec3(0);
     for (int k = 0; k < 3; ++k) end.weight += place[k] * node.weight[corner[static_cast<std::size_t>(k)]];
     end.weight = glm::max(end.weight, Vec3(0));
-    if (end.hit.seen()) end.magnification = magnification(node.mesh, leaf, share, end.hit.t);
+    if (end.hit.seen()) end.magnification = magnification(node.mesh, facet, share, end.hit.t);
 }
 
 void NodeDrawer::draw(Id index, OpticEnds& out) {
@@ -149,18 +154,18 @@ void NodeDrawer::draw(Id index, OpticEnds& out) {
     out.ends.resize(first_end.back(), PathEnd());  // copied: made one by one they take longer (measured)
     out.sample.resize(first_end.back());
     parallel_for(node.mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
-        for (std::size_t l = from; l < to; ++l) {
-            if (first_end[l] == first_end[l + 1]) continue;
-            const FacetWeights weights = facet_weights(node.mesh, l);
-            std::size_t next = first_end[l];
-            for (std::size_t i = owned.first[l]; i < owned.first[l + 1]; ++i) {
+        for (std::size_t f = from; f < to; ++f) {
+            if (first_end[f] == first_end[f + 1]) continue;
+            const FacetWeights weights = facet_weights(node.mesh, f);
+            std::size_t next = first_end[f];
+            for (std::size_t i = owned.first[f]; i < owned.first[f + 1]; ++i) {
                 if (!is_end[i]) continue;
                 const Id s = out.sample[next] = owned.sample[i];
                 PathEnd& end = out.ends[next++];
                 end.hit = hits[s];
                 end.first_step = first_step;
                 end.step_count = node.step_count;
-                set_end(index, static_cast<Id>(l), share_of(weights, grid_.position(s)), end);
+                set_end(index, static_cast<Id>(f), share_of(weights, grid_.position(s)), end);
             }
         }
     });

@@ -37,9 +37,9 @@ class NodeDrawer {
 
   private:
     std::vector<Id> owners(const PathNode& node) const;
-    bool ends_before_next(Id node, Id leaf, const Hit& hit, const Vec3& share) const;
+    bool ends_before_next(Id node, Id facet, const Hit& hit, const Vec3& share) const;
     std::vector<char> find_ends(Id node, const FacetSamples& owned, std::span<const Hit> hits);
-    void set_end(Id node, Id leaf, const Vec3& share, PathEnd& end) const;
+    void set_end(Id node, Id facet, const Vec3& share, PathEnd& end) const;
 
     const DrawMesh& draw_mesh_;
     const OpticPaths& paths_;

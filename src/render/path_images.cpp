@@ -124,8 +124,6 @@ SeveralOpticsImages::SeveralOpticsImages(const World& world, const Frame& frame,
 }
 
 void SeveralOpticsImages::add_nodes() {
-    std::vector<Id> facet_of_leaf;
-    for (const PathLeaf& leaf : paths_->leaves()) facet_of_leaf.push_back(leaf.facet);
     const std::vector<PathNode>& nodes = paths_->nodes();
     for (std::size_t n = 0; n < nodes.size(); ++n) {
         // Where light parts into colours the middle one stands for all.
@@ -142,7 +140,7 @@ void SeveralOpticsImages::add_nodes() {
             segments[i].parent = i == 0 ? kNone : static_cast<Id>(i - 1);
         History& history = history_of(segments, static_cast<Id>(segments.size() - 1));
         history.seeds = std::make_unique<MeshPointImages>(nodes[n].mesh);
-        history.facet_of_leaf = facet_of_leaf;
+        for (const Id leaf : nodes[n].leaves) history.grid_facet.push_back(paths_->leaves()[leaf].facet);
     }
 }
 
@@ -216,7 +214,7 @@ std::vector<std::pair<Vec2, Id>> SeveralOpticsImages::starts(const History& hist
     std::vector<std::pair<Vec2, Id>> starts;
     if (history.seeds)
         for (const MeshPointImage& seed : history.seeds->images(point))
-            starts.emplace_back(seed.screen, history.facet_of_leaf[seed.facet]);
+            starts.emplace_back(seed.screen, history.grid_facet[seed.facet]);
 
     // The lone rays that pass the point at the smallest angles.
     std::vector<std::pair<double, const LoneRay*>> nearest;

@@ -50,7 +50,7 @@ class SeveralOpticsImages {
         std::vector<Step> steps;
         std::vector<PathSegment> chain;
         std::unique_ptr<MeshPointImages> seeds;  // null: no facet has it
-        std::vector<Id> facet_of_leaf;
+        std::vector<Id> grid_facet;              // per facet of the seeds' mesh
         std::vector<LoneRay> lone;
     };
 

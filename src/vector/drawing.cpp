@@ -80,12 +80,12 @@ double scene_size(const TriangleScene& visible) {
     return box.empty() ? 1 : std::max(length(box.size()), 1e-300);
 }
 
-/// The leaves of the samples whose path over this optic ends at that node.
-std::vector<Id> leaves_at(const SampleIds& ids, Id optic, std::size_t path, Id node) {
-    std::vector<Id> leaf(ids.optic.size(), kNone);
-    for (std::size_t s = 0; s < leaf.size(); ++s)
-        if (ids.optic[s] == optic && ids.node[path][s] == node) leaf[s] = ids.leaf[s];
-    return leaf;
+/// The node's facets of the samples whose path over this optic ends there.
+std::vector<Id> facets_at(const SampleIds& ids, Id optic, std::size_t path, Id index, const PathNode& node) {
+    std::vector<Id> facet(ids.optic.size(), kNone);
+    for (std::size_t s = 0; s < facet.size(); ++s)
+        if (ids.optic[s] == optic && ids.node[path][s] == index) facet[s] = node.facet_of(ids.leaf[s]);
+    return facet;
 }
 
 /// The camera's facets of the samples that see no optic.
@@ -165,15 +165,15 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     const DrawnEdges edges = drawn_edges(world.objects, {material, world.objects.size()});
     for (Id i = 0; i < world.optics.size(); ++i)
         for (std::size_t p = 0; p < kOpticPaths.size(); ++p)
-            for (const Id node : nodes_seen(ids, i, p)) {
+            for (const Id index : nodes_seen(ids, i, p)) {
                 const OpticPaths& paths = views.paths(i);
-                const RayMesh& mesh = paths.nodes()[node].mesh;
-                const std::vector<Id> leaves = leaves_at(ids, i, p, node);
+                const PathNode& node = paths.nodes()[index];
+                const std::vector<Id> facets = facets_at(ids, i, p, index, node);
                 add(kOpticPaths[p], world.optics[i].mesh,
-                    {world.objects, edges, mesh, grid, leaves, ids.seen[p], lines.wire});
-                add_folds(mesh, leaves);
+                    {world.objects, edges, node.mesh, grid, facets, ids.seen[p], lines.wire});
+                add_folds(node.mesh, facets);
                 for (EdgeCurve& curve : drawing->layers.back()->curves)
-                    curve.facet = frame.optics[i].grid_facet(paths.leaves()[curve.facet].facet);
+                    curve.facet = frame.optics[i].grid_facet(paths.leaves()[node.leaves[curve.facet]].facet);
             }
     return drawing;
 }

@@ -124,6 +124,7 @@ TEST_CASE("fitting leaves the rays of flat mirrors as they are, one after the ot
             const PathNode &x = a->nodes()[n], &y = b->nodes()[n];
             later += x.step_count > 1;
             // Corners of divided facets are numbered apart, so facets are compared, not corners.
+            REQUIRE(x.leaves == y.leaves);
             for (std::size_t f = 0; f < x.mesh.facets.size(); ++f) {
                 REQUIRE(x.mesh.has_rays(f) == y.mesh.has_rays(f));
                 if (!x.mesh.has_rays(f)) continue;

@@ -85,16 +85,17 @@ RaysAt rays_at(const OpticPaths& paths, const SurfaceGrid& grid, Id facet, const
     const Vec3 s = on_facet(paths, grid, facet, weights).screen;
     for (std::size_t n = 0; n < paths.nodes().size(); ++n) {
         const PathNode& node = paths.nodes()[n];
-        if (leaf >= node.mesh.facets.size() || !node.mesh.has_rays(leaf)) continue;
+        const Id own = node.facet_of(leaf);
+        if (own == kNone) continue;
         std::string history;
         for (const Step& step : steps_of(paths, static_cast<Id>(n)))
             history += std::to_string(step.optic) + event_name(step.event) + " ";
-        const FacetWeights of_node = facet_weights(node.mesh, leaf);
-        const Ray ray = sample_ray(node.mesh, leaf, of_node, {s.x / s.z, s.y / s.z});
+        const FacetWeights of_node = facet_weights(node.mesh, own);
+        const Ray ray = sample_ray(node.mesh, own, of_node, {s.x / s.z, s.y / s.z});
         const bool added =
             rays.insert({{history, node.colours, node.medium != kNone},
                          {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
-                          ray.direction.z, static_cast<double>(node.ends[leaf]),
+                          ray.direction.z, static_cast<double>(node.ends[own]),
                           static_cast<double>(paths.leaves()[leaf].level)}})
                 .second;
         CHECK(added);
@@ -158,7 +159,8 @@ void check_flat_mirrors(const std::vector<Primitive>& planes, const Vec3& eye, b
             if (!exact || paths.leaves()[leaf].method != LeafMethod::kProjected) continue;
             for (std::size_t n = 0; n < paths.nodes().size(); ++n) {
                 const PathNode& node = paths.nodes()[n];
-                if (leaf >= node.mesh.facets.size() || !node.mesh.has_rays(leaf)) continue;
+                const Id own = node.facet_of(leaf);
+                if (own == kNone) continue;
                 const std::vector<Step> steps = steps_of(paths, static_cast<Id>(n));
                 const auto same =
                     std::find_if(exact->segments.begin(), exact->segments.end(), [&](const auto& one) {
@@ -166,7 +168,7 @@ void check_flat_mirrors(const std::vector<Primitive>& planes, const Vec3& eye, b
                                steps;
                     });
                 if (same == exact->segments.end()) continue;  // where the part's corners did not tell
-                const Ray ray = sample_ray(node.mesh, leaf, facet_weights(node.mesh, leaf),
+                const Ray ray = sample_ray(node.mesh, own, facet_weights(node.mesh, own),
                                            {at.screen.x / at.screen.z, at.screen.y / at.screen.z});
                 CHECK(length(ray.origin - same->ray.origin) < 1e-9);
                 CHECK(length(normalize(ray.direction) - same->ray.direction) < 1e-10);
@@ -205,8 +207,9 @@ TEST_CASE("the parts of a facet cover it once, each where leaf_at says") {
             // Every mesh of the leaf has the place inside of its facet on the screen.
             const Vec3 s = on_facet(paths, grid, f, weights).screen;
             for (const PathNode& node : paths.nodes()) {
-                if (l >= node.mesh.facets.size() || !node.mesh.has_rays(l)) continue;
-                const FacetWeights of_node = facet_weights(node.mesh, l);
+                const Id own = node.facet_of(l);
+                if (own == kNone) continue;
+                const FacetWeights of_node = facet_weights(node.mesh, own);
                 if (of_node.edge_on) continue;
                 const Vec3 e = of_node.unnormalised(s.x / s.z, s.y / s.z);
                 const double sum = e.x + e.y + e.z;
@@ -296,7 +299,8 @@ TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times ka
         const Id leaf = paths.leaf_at(f, Vec3(1.0 / 3));
         for (std::size_t n = 0; n < paths.nodes().size(); ++n) {
             const PathNode& node = paths.nodes()[n];
-            if (leaf >= node.mesh.facets.size() || !node.mesh.has_rays(leaf)) continue;
+            const Id own = node.facet_of(leaf);
+            if (own == kNone) continue;
             for (std::size_t k = 0; k < 3; ++k) {
                 const Vec3& point = grid.points[grid.corner_point[grid.facets[f][k]]];
                 const auto exact = exact_paths(stage, 0, camera, point);
@@ -304,7 +308,7 @@ TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times ka
                 for (std::size_t s = 0; s < exact->segments.size(); ++s) {
                     if (steps_to(exact->segments, static_cast<Id>(s)) != steps_of(paths, static_cast<Id>(n)))
                         continue;
-                    const Ray& ray = node.mesh.rays[node.mesh.facets[leaf][k]];
+                    const Ray& ray = node.mesh.rays[node.mesh.facets[own][k]];
                     CHECK(length(ray.origin - exact->segments[s].ray.origin) < 1e-8);
                     CHECK(length(normalize(ray.direction) - exact->segments[s].ray.direction) < 1e-8);
                     ++compared;
