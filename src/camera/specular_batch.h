@@ -21,6 +21,9 @@ class SpecularBatch {
     /// SpecularSearcher::find_each.
     std::vector<SpecularSearch> run(std::span<const Vec3> points);
 
+    /// Nodes of the surface's tree that are held: some 900 bytes each.
+    std::size_t node_count() const { return tree_.size(); }
+
     /// Whether such queries are this batch's.
     bool serves(SpecularQuery query, const SearchLimits& limits) const {
         query.point = ball_.point;
