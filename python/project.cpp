@@ -20,7 +20,7 @@ struct ImageRow {
     Id optic, object, facet, step_count;
     char32_t path[7];
     bool inside, visible, refined, complete, has_derivative;
-    double off;
+    double off, weight[3];
 };
 
 struct StepRow {
@@ -57,6 +57,7 @@ py::object row_type(std::size_t steps) {
     add("refined", "?", offsetof(ImageRow, refined));
     add("complete", "?", offsetof(ImageRow, complete));
     add("off", "f8", offsetof(ImageRow, off));
+    add("weight", "(3,)f8", offsetof(ImageRow, weight));
     add("has_derivative", "?", offsetof(ImageRow, has_derivative));
     add("derivative", "(2,3)f8", offsetof(ImageRow, derivative));
     add("step_count", "u4", offsetof(ImageRow, step_count));
@@ -90,6 +91,7 @@ ImageRow row_of(const WorldImage& image) {
     row.inside = image.inside, row.visible = image.visible, row.refined = image.refined;
     row.has_derivative = image.has_derivative;
     row.off = image.off;
+    for (int k = 0; k < 3; ++k) row.weight[k] = image.weight[k];
     for (int axis = 0; axis < 2; ++axis)
         for (int k = 0; k < 3; ++k)
             row.derivative[axis][k] = image.derivative[static_cast<std::size_t>(axis)][k];

@@ -29,6 +29,7 @@ Json image_json(const Renderer& renderer, const WorldImage& image) {
                    {"visible", image.visible},
                    {"refined", image.refined},
                    {"off", json_number(image.off)},
+                   {"weight", vector_json(image.weight)},
                    {"steps", steps_json(renderer, image.steps)}};
     if (image.has_derivative)
         fields["derivative"] = {vector_json(image.derivative[0]), vector_json(image.derivative[1])};
@@ -65,6 +66,8 @@ void add_line(std::string& text, const Renderer& renderer, std::size_t point, co
     else
         add_count(text, image.facet);
     for (const bool flag : {image.inside, image.visible, image.refined}) text += flag ? "1," : "0,";
+    add_number(text, image.off, std::chars_format::general, 6);
+    for (int k = 0; k < 3; ++k) add_number(text, image.weight[k], std::chars_format::general, 6);
     text.back() = '\n';
 }
 
@@ -108,7 +111,7 @@ std::string points_text(const Renderer& renderer, std::vector<PointProjection> i
             std::async([&, from = images.size() * i / count, to = images.size() * (i + 1) / count] {
                 return lines_of(renderer, images, from, to);
             }));
-    std::string text = "point,x,y,t,path,optic,facet,inside,visible,refined\n";
+    std::string text = "point,x,y,t,path,optic,facet,inside,visible,refined,off,weight_r,weight_g,weight_b\n";
     for (std::future<std::string>& piece : pieces) text += piece.get();
     return text;
 }

@@ -7,6 +7,7 @@
 #include "refract/snell.h"
 #include "shade/fresnel.h"
 #include "shade/optic_weights.h"
+#include "shade/shade.h"
 
 namespace trilens {
 namespace {
@@ -98,6 +99,10 @@ std::vector<Branch> glass_branches(const Interface& interface, Colours colours) 
 }
 
 }  // namespace
+
+Vec3 body_transmittance(const PathWorld& world, Id body, double way) {
+    return body == kNone ? Vec3(1) : volume_transmittance(*world.optics[body].material, way);
+}
 
 std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Media& media, Colours colours) {
     const PathOptic& optic = world.optics[at.optic];

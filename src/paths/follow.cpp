@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "shade/shade.h"
-
 namespace trilens {
 namespace {
 
@@ -20,6 +18,14 @@ constexpr int kMostRests = 2;
 bool lies_on_object(const PathWorld& world, const Ray& ray, const NextOptic& next) {
     return world.objects &&
            world.objects->occluded(ray, next.distance - next.touch, next.distance + next.touch);
+}
+
+/// Of what leaves the first optic in these colours.
+Vec3 first_weight(Colours colours) {
+    if (colours == kAllColours) return Vec3(1);
+    Vec3 weight(0);
+    weight[colours] = 1;
+    return weight;
 }
 
 /// A branch that waits to be followed.
@@ -71,10 +77,7 @@ void Follower::start(const PathStart& from) {
         pending.turned = std::fabs(dot(first.incoming, first.normal));
         pending.front = first.front;
         pending.first_weight = way_on->weight;
-        if (way_on->colours != kAllColours) {
-            pending.weight = Vec3(0);
-            pending.weight[way_on->colours] = 1;
-        }
+        pending.weight = first_weight(way_on->colours);
         waiting_.push_back(pending);
     }
 }
@@ -83,9 +86,7 @@ void Follower::go_on(const Pending& from, Id segment, const NextOptic& next) {
     const std::vector<Branch> ways = branches(world_, next.meeting, from.branch.media, from.branch.colours);
     if (ways.empty()) followed_.cut.lost += from.first_weight * from.weight;
     const PathSegment& parent = followed_.segments[segment];
-    Vec3 arrived = from.weight;
-    if (parent.medium != kNone)
-        arrived *= volume_transmittance(*world_.optics[parent.medium].material, next.distance);
+    const Vec3 arrived = from.weight * body_transmittance(world_, parent.medium, next.distance);
     for (auto way_on = ways.rbegin(); way_on != ways.rend(); ++way_on) {
         Pending pending = from;
         pending.branch = *way_on;
@@ -237,6 +238,7 @@ std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, con
         std::vector<Branch> ways;  // from the optic at the segment's far end
         Meeting meeting;
         double way = 0;
+        Vec3 weight{1};
     };
     const Arrived begin{branches(world, start.first, start.around, kAllColours), start.first, start.way};
     std::vector<Arrived> after(like.size());
@@ -248,6 +250,9 @@ std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, con
         if (!branch) continue;
         segment.ray = {from.meeting.point, branch->direction};
         segment.way = from.way;
+        segment.weight =
+            segment.parent == kNone ? first_weight(segment.colours) : from.weight * branch->weight;
+        segment.medium = felt_body(world, branch->media);
         segment.turned = std::fabs(dot(from.meeting.incoming, from.meeting.normal));
         segment.refraction = branch->refraction;
         if (!segment.ends) {
@@ -256,7 +261,8 @@ std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, con
             if (!next) continue;
             segment.next = next->distance;
             after[i] = {branches(world, next->meeting, branch->media, branch->colours), next->meeting,
-                        from.way + next->distance};
+                        from.way + next->distance,
+                        segment.weight * body_transmittance(world, segment.medium, next->distance)};
         }
         again[i] = segment;
     }

@@ -81,8 +81,9 @@ struct PathStart {
 /// third.
 FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params = {});
 
-/// The segments of `like` once more from another start nearby: ray, way, next, turned and refraction of each
-/// are set again; none where the path from there has another history. Nothing is cut and nothing blocks.
+/// The segments of `like` once more from another start nearby: ray, way, weight, medium, next, turned and
+/// refraction of each are set again; none where the path from there has another history. Nothing is cut and
+/// nothing blocks.
 std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const PathStart& start,
                                                      const std::vector<PathSegment>& like);
 

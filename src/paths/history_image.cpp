@@ -18,7 +18,19 @@ struct Exit {
     Ray ray;  // unit, after the last optic
     std::vector<Vec3> corners;
     double first_way = 0;
+    Vec3 weight{1};     // of light from where the last ray starts to the eye
+    Id medium = kNone;  // the body in whose glass the last ray runs; kNone: air
 };
+
+/// Of the light that leaves the first optic along a history's first step, the way to the eye included.
+Vec3 first_weight(const HistoryQuery& query, const PathStart& start) {
+    const PathSegment& begin = query.history[0];
+    for (const Branch& branch : branches(*query.world, start.first, start.around, kAllColours))
+        if (branch.step == begin.step && branch.colours == begin.colours)
+            return branch.weight *
+                   body_transmittance(*query.world, felt_body(*query.world, start.around), start.way);
+    return Vec3(0);
+}
 
 std::optional<Exit> exit_at(const HistoryQuery& query, const Vec2& pixel) {
     const Ray ray = query.camera_ray(pixel);
@@ -30,12 +42,15 @@ std::optional<Exit> exit_at(const HistoryQuery& query, const Vec2& pixel) {
     const Vec3 incoming = normalize_or_zero(ray.direction);
     const Meeting first{optic, incoming, hit->point.position, hit->point.normal,
                         dot(incoming, hit->point.normal) <= 0};
-    const Media around = query.around ? query.around(ray) : Media();
-    for (const auto& segment : repeat_paths(*query.world, {first, exit.first_way, around}, query.history)) {
+    const PathStart start{first, exit.first_way, query.around ? query.around(ray) : Media()};
+    for (const auto& segment : repeat_paths(*query.world, start, query.history)) {
         if (!segment) return std::nullopt;
         exit.ray = segment->ray;
+        exit.weight = segment->weight;
+        exit.medium = segment->medium;
         exit.corners.push_back(segment->ray.origin);
     }
+    exit.weight *= first_weight(query, start);
     return exit;
 }
 
@@ -116,6 +131,7 @@ std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, cons
     image.corners = exit->corners;
     image.first_way = exit->first_way;
     image.distance = dot(query.point - exit->ray.origin, exit->ray.direction);
+    image.weight = exit->weight * body_transmittance(*query.world, exit->medium, image.distance);
     image.residual = size;
     if (!(image.distance > 0) || size > kMostResidual * (image.distance + image.first_way))
         return std::nullopt;

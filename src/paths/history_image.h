@@ -25,7 +25,9 @@ struct HistoryImage {
     std::vector<Vec3> corners;  // where the path meets the optics, the last of them included
     double first_way = 0;       // from the eye to the first of them
     double distance = 0;        // from the last of them to the point
-    double residual = 0;        // distance from the ray to the point, scene units
+    /// The share of each colour of the point's light that comes to the camera this way.
+    Vec3 weight{1};
+    double residual = 0;  // distance from the ray to the point, scene units
     /// How the pixel moves with the point: row 0 for x, row 1 for y, in pixels per scene unit.
     std::array<Vec3, 2> derivative{};
 };

@@ -44,6 +44,9 @@ inline const Material* felt_glass(const PathWorld& world, const Media& media) {
     return body == kNone ? nullptr : world.optics[body].material;
 }
 
+/// What of each colour is left after `way` scene units in a body's glass; kNone: air, which takes nothing.
+Vec3 body_transmittance(const PathWorld& world, Id body, double way);
+
 /// Where a ray meets an optic.
 struct Meeting {
     Id optic = kNone;

@@ -60,6 +60,13 @@ bool FacetImages::hidden(const MeshPointImage& image) const {
     return facets_.tracer().occluded({eye, on_facet - eye}, kFreeShare, 1 - kFreeShare);
 }
 
+bool FacetImages::shows_front(const MeshPointImage& image) const {
+    const SurfaceGrid& grid = facets_.grid();
+    const std::optional<Ray> view = exact_ray(frame_.camera, image.screen);
+    return !view ||
+           faces_front(grid, grid.facets[frame_.optics[optic_].grid_facet(image.facet)], view->direction);
+}
+
 std::optional<SpecularPoint> FacetImages::refined(const MeshPointImage& image, const Vec3& point) const {
     const Surface& surface = *world_.optics[optic_].surface;
     const SurfaceGrid& grid = facets_.grid();
@@ -109,14 +116,15 @@ std::vector<OpticImage> FacetImages::images(const Vec3& point, bool refine,
         if (!is_shown(found) || hidden(found)) continue;
         const Ray ray = interpolated_ray(path_.mesh, found.facet, found.weights);
         const Id facet = frame_.optics[optic_].grid_facet(found.facet);
-        OpticImage image{facet, found.screen, found.t, found.t * length(ray.direction), ray.origin, false};
+        OpticImage image{facet,      found.screen, found.t,           found.t * length(ray.direction),
+                         ray.origin, false,        shows_front(found)};
         if (const auto exact = refine ? refined(found, point) : std::nullopt) {
             known.push_back(*exact);
             if (distinct_images(known).size() < known.size()) {
                 known.pop_back();
                 continue;
             }
-            image = {facet, exact->pixel, exact->t, exact->distance, exact->position, true};
+            image = {facet, exact->pixel, exact->t, exact->distance, exact->position, true, exact->front};
         }
         images.push_back(image);
     }

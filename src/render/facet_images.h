@@ -20,6 +20,7 @@ struct OpticImage {
     double length = 0;  // the same in scene units
     Vec3 from{0};       // where light leaves the optic: on the exact surface where refined, else on the facet
     bool refined = false;
+    bool front = true;  // the camera sees the optic's front there
 };
 
 /// The law by which the optic images `point` on this path; for glass seen from its front.
@@ -40,6 +41,7 @@ class FacetImages {
   private:
     bool is_shown(const MeshPointImage& image) const;
     bool hidden(const MeshPointImage& image) const;
+    bool shows_front(const MeshPointImage& image) const;
     std::optional<SpecularPoint> refined(const MeshPointImage& image, const Vec3& point) const;
 
     const World& world_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "reflect/mirror.h"
+#include "render/image_weight.h"
 
 namespace trilens {
 namespace {
@@ -91,6 +92,8 @@ void PointProjector::add_several(const SeveralOpticsImages& several, const Vec3&
         const std::optional<Ray> view = exact_ray(camera_, found.exact.pixel);
         if (!view || !sight_.goes_straight(corner.back(), point)) continue;
         WorldImage image;
+        image.weight = found.exact.weight;
+        if (image.weight == Vec3(0)) continue;  // no light comes this way
         image.path = found.path;
         image.optic = found.optic;
         image.object = world_.optics[found.optic].mesh;
@@ -123,6 +126,7 @@ void PointProjector::add_direct(const Vec3& point, PointProjection& result) cons
         image.length = length(point - found.origin);
         image.inside = on_film(image.pixel);
         image.refined = true;
+        image.weight = weight_of_direct(world_, frame_, {found.origin, point - found.origin}, image.length);
         image.visible = request_.visibility && image.inside && sight_.sees(found.origin, point);
         if (camera_.linear) {
             // d (s / w) = (ds - (s / w) dw) / w.
@@ -146,6 +150,7 @@ void PointProjector::add_camera_mesh(const Vec3& point, PointProjection& result)
         image.pixel = found.screen;
         image.t = found.t;
         image.length = found.t * length(ray.direction);
+        image.weight = weight_of_direct(world_, frame_, ray, image.length);
         image.inside = on_film(image.pixel);
         image.visible = request_.visibility && image.inside && sight_.is_free_of_objects(ray.origin, point);
         result.images.push_back(image);
@@ -171,7 +176,7 @@ std::vector<OpticImage> PointProjector::images_on_film(const OpticPath& path,
     for (const SpecularPoint& exact : searched.images) {
         const Id facet = facets_at_[path.optic].at(exact.at.face, exact.at.uv);
         const auto add = [&](const Vec2& pixel) {
-            images.push_back({facet, pixel, exact.t, exact.distance, exact.position, true});
+            images.push_back({facet, pixel, exact.t, exact.distance, exact.position, true, exact.front});
         };
         if (camera_.linear) add(exact.pixel);
         if (camera_.model)
@@ -191,7 +196,8 @@ void PointProjector::refine_on_film(const OpticPath& path, const Vec3& point,
         const auto exact = refine_history_image(query, image.pixel);
         if (exact && length(exact->pixel - image.pixel) < kFilmReach)
             image = {image.facet,     exact->pixel,          exact->distance / exact->first_way,
-                     exact->distance, exact->corners.back(), true};
+                     exact->distance, exact->corners.back(), true,
+                     image.front};
         const bool known = std::any_of(kept.begin(), kept.end(), [&](const OpticImage& one) {
             return one.refined && image.refined && length(one.pixel - image.pixel) < kSamePixels;
         });
@@ -251,6 +257,9 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, co
         const double t =
             camera_.near_depth + dot(one.from - eye, view->direction) / dot(view->direction, view->direction);
         WorldImage image;
+        image.weight =
+            weight_over_one(world_, frame_, {path.optic, path.path, *view, one.from, one.front, point});
+        if (image.weight == Vec3(0)) continue;  // no light comes this way
         image.path = path.path;
         image.steps = {{path.optic, path.path == Path::kReflect ? Event::kReflect : Event::kTransmit}};
         image.optic = path.optic;

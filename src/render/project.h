@@ -31,6 +31,10 @@ struct WorldImage {
     bool refined = false;  // on the exact surface; else the facets' image
     // Pixels that it may lie from the exact image: 0 where refined, else kUnknownOffset: nothing is known.
     double off = 0;
+    // The share of each colour of the point's light that comes this way, as pictures have it: Fresnel, tint
+    // and absorption along the whole path. Where glass disperses, steps over one optic are those of its
+    // `ior`, and paths over several those of green, the only colour that is then not 0.
+    Vec3 weight{1};
     std::vector<Step> steps;  // the meetings with optics, the first among them; none for the direct path
 
     /// How the pixel moves with the point: row 0 for x, row 1 for y, in pixels per scene unit. Set where
@@ -61,9 +65,10 @@ struct ProjectRequest {
 
 /// The images of every point: direct, after one event at each optic and, as far as the scene has paths
 /// followed (maxDepth), after several: those are found from the facets that lie on the film. Images that
-/// another optic cuts off from the point are none, since light goes on there. Images that the optic itself
-/// hides from the camera (the back of a closed body) are left out. A list that is not complete (points near a
-/// caustic, overridden normals, kFacets) holds what the facets lead to as well.
+/// another optic cuts off from the point are none, since light goes on there, and neither are those that
+/// carry no light (weight 0). Images that the optic itself hides from the camera (the back of a closed body)
+/// are left out. A list that is not complete (points near a caustic, overridden normals, kFacets) holds what
+/// the facets lead to as well.
 std::vector<PointProjection> project_points(const World& world, const ProjectRequest& request,
                                             std::span<const Vec3> points);
 

@@ -116,9 +116,13 @@ void set_surroundings(const Surroundings& around, SampleViews& views) {
 
 Vec3 light_of_view(const World& world, const SampleViews& views, const SampleView& view) {
     if (view.around == kNone) return Vec3(1);
-    const Material* glass = glass_of(world, felt(world, views.around_of(view)));
+    const Material* glass = glass_around(world, views.around_of(view));
     if (view.optic != kNone) return volume_transmittance(*glass, views.on_optic(view).way);
     return view.hit.seen() ? volume_transmittance(*glass, view.hit.t * length(view.ray.direction)) : Vec3(1);
+}
+
+const Material* glass_around(const World& world, const Media& around) {
+    return glass_of(world, felt(world, around));
 }
 
 GlassInterface interface_of(const World& world, Id optic, const Media& around, bool front) {

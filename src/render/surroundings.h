@@ -41,6 +41,9 @@ Vec3 light_of_view(const World& world, const SampleViews& views, const SampleVie
 /// The weights of the light at the first optic of a sample, the way there included.
 OpticWeights first_weights(const World& world, const SampleViews& views, const SampleView& view);
 
+/// The glass that a ray inside of these runs in; null: air.
+const Material* glass_around(const World& world, const Media& around);
+
 /// An optic's surface for a ray that is inside of `around` before it; of mirrors, too.
 GlassInterface interface_of(const World& world, Id optic, const Media& around, bool front);
 
