@@ -10,6 +10,7 @@
 #include "render/optic_ends.h"
 #include "render/optic_window.h"
 #include "render/rim_samples.h"
+#include "render/trace_samples.h"
 
 namespace trilens {
 namespace {
@@ -65,6 +66,8 @@ struct FacetViewer {
                     SampleViews& views) const;
     void meet_optic(std::size_t index, const Hit& hit, std::size_t sample, SampleViews& views) const;
     void view_rims(const SampleGrid& grid, SampleViews& views) const;
+    void trace_each(std::span<const Id> samples, const SampleGrid& grid, SampleViews& views,
+                    std::vector<OpticEnds>& ends) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void describe_optic(std::size_t index, const Hit& hit, SampleView& view, OpticView& on_optic) const;
 };
@@ -211,6 +214,17 @@ void FacetViewer::redraw_direct(const FacetSamples& owned, const SampleGrid& gri
     }
 }
 
+/// The ends of samples that no facet speaks for, by the optic that their exact rays meet first.
+void FacetViewer::trace_each(std::span<const Id> samples, const SampleGrid& grid, SampleViews& views,
+                             std::vector<OpticEnds>& ends) const {
+    decide_traced({*world, frame, rims, reach()}, grid, samples, views);
+    std::vector<std::vector<Id>> of_optic(frame.optics.size());
+    for (const Id s : samples) of_optic[views.samples[s].optic].push_back(s);
+    for (std::size_t i = 0; i < of_optic.size(); ++i)
+        trace_samples({*world, static_cast<Id>(i), paths[i]->looking().camera, grid}, of_optic[i], views,
+                      ends[i]);
+}
+
 void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     const FacetSamples owned = rasterize_facets(frame.camera.mesh, grid);
     view_objects(owned, grid, views);
@@ -221,10 +235,12 @@ void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     count_from_eye(frame.camera, views.samples);
     std::vector<OpticEnds> ends;
     ends.reserve(frame.optics.size());
+    std::vector<Id> traced;
     for (std::size_t i = 0; i < frame.optics.size(); ++i)
         ends.push_back(draw_optic_paths({*world, static_cast<Id>(i), draw_paths, frame.optics[i],
-                                         layers[i].get(), part_in(grid, windows[i])},
-                                        *paths[i], grid, views));
+                                         layers[i].get(), grid, part_in(grid, windows[i])},
+                                        *paths[i], views, traced));
+    trace_each(traced, grid, views, ends);
     collect_ends(std::move(ends), views);
 }
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "render/trace_samples.h"
 
 namespace trilens {
 namespace {
@@ -239,20 +238,20 @@ void ShownDrawer::draw(const Shown& shown, OpticEnds& out) {
 
 }  // namespace
 
-OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, const SampleGrid& grid,
-                           SampleViews& views) {
+OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, SampleViews& views,
+                           std::vector<Id>& traced) {
+    const SampleGrid& grid = params.grid;
     OpticEnds out;
     if (params.part.size() == 0) return out;
     ShownDrawer drawer(params, grid, views);
     drawer.draw({paths, params.layers, samples_by_facet(params, paths, grid, views)}, out);
     for (Id& s : out.sample) s = static_cast<Id>(params.part.sample_in(grid, s));
-    std::vector<Id> traced = drawer.traced();
+    traced.insert(traced.end(), drawer.traced().begin(), drawer.traced().end());
     // Those at the outline were given to the optic without one of its facets.
     for_each_sample(params.part, grid, [&](std::size_t, std::size_t s) {
         if (views.samples[s].optic == params.optic && views.samples[s].traced)
             traced.push_back(static_cast<Id>(s));
     });
-    trace_samples({params.world, params.optic, paths.looking().camera, grid}, traced, views, out);
     return out;
 }
 

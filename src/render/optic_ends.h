@@ -18,15 +18,17 @@ struct OpticEndsParams {
     const DrawMesh& draw;  // of the objects
     const FramedOptic& framed;
     SeenLayers* layers = nullptr;  // optics seen in it; null: none is a layer
+    SampleGrid grid;               // of the samples
     SampleGrid part;               // of the grid: no sample beyond it shows the optic
 };
 
 /// The ends of all samples whose first surface is the optic's, and their method, level, and what was not
 /// followed. A segment ends at an object that is nearer than the next optic is, as its corners have it; where
 /// optics are layers, the nearest that covers the sample and that no object is nearer than is seen, and so on
-/// in that one. Works out the facets that are seen and were not before.
-OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, const SampleGrid& grid,
-                           SampleViews& views);
+/// in that one. Works out the facets that are seen and were not before. `traced`: gets the samples that no
+/// facet speaks for, whose ends are still to be found; those near outlines are among them.
+OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, SampleViews& views,
+                           std::vector<Id>& traced);
 
 /// Puts the ends of all optics into the record, which has none, those of one sample side by side.
 void collect_ends(std::vector<OpticEnds> optics, SampleViews& views);

@@ -22,28 +22,42 @@ Id facet_holding(const FacetLookup& facets, Id face, const Vec2& uv) {
     return facets.at(face, glm::mix(uv, Vec2(1.0 / 3), kHair));
 }
 
-void show_optic(const RimParams& params, const FirstSurface& first, SampleView& view, OpticView& on_optic) {
+/// A sample's exact ray and what it meets first.
+struct ExactView {
+    Ray ray;
+    FirstSurface first;
+};
+
+/// None where the camera has no ray.
+std::optional<ExactView> exact_view(const RimParams& params, const Vec2& at, const SampleView& view) {
+    std::optional<Ray> ray = view.ray;
+    if (!params.frame.camera.linear) ray = exact_ray(params.frame.camera, at);
+    if (!ray || ray->direction == Vec3(0)) return std::nullopt;
+    return ExactView{
+        *ray, first_surface(path_world(params.world), object_tracer(params.world), *ray, params.reach)};
+}
+
+void show_optic(const RimParams& params, const ExactView& exact, SampleView& view, OpticView& on_optic) {
+    const FirstSurface& first = exact.first;
+    view.ray = exact.ray;
     view.hit = {};
     view.optic = first.optic;
     view.depth = first.at.t;
     view.traced = true;
+    view.leaf = kNone;
     view.facet = facet_holding(*params.rims.facets[first.optic], first.at.face, first.at.uv);
     on_optic = {};
     on_optic.uv = first.at.uv;
 }
 
 void decide(const RimParams& params, const Vec2& at, SampleView& view, OpticView& on_optic) {
-    std::optional<Ray> ray = view.ray;
-    if (!params.frame.camera.linear) ray = exact_ray(params.frame.camera, at);
-    if (!ray || ray->direction == Vec3(0)) return;
-    const FirstSurface first =
-        first_surface(path_world(params.world), object_tracer(params.world), *ray, params.reach);
-    if (first.optic == kNone && view.optic == kNone) return;
-    view.ray = *ray;
-    if (first.optic != kNone) return show_optic(params, first, view, on_optic);
+    const std::optional<ExactView> exact = exact_view(params, at, view);
+    if (!exact || (exact->first.optic == kNone && view.optic == kNone)) return;
+    if (exact->first.optic != kNone) return show_optic(params, *exact, view, on_optic);
+    view.ray = exact->ray;
     view.optic = view.facet = kNone;
-    view.hit = first.object;
-    view.depth = first.object.seen() ? first.object.t : SampleView().depth;
+    view.hit = exact->first.object;
+    view.depth = view.hit.seen() ? view.hit.t : SampleView().depth;
 }
 
 /// How far along the ray the surface may lie from where the ray meets the facet.
@@ -94,7 +108,7 @@ OpticRims make_rims(const World& world, const Frame& frame, double limit) {
                 rims.error = std::max(rims.error, edge.off);
     }
     // A sample near one optic's outline, or where two cross, may see another optic.
-    any = any || limit != kAnyError;
+    any = any || limit != kAnyError || frame.optics.size() > 1;
     rims.facets.resize(frame.optics.size());
     for (std::size_t i = 0; any && i < frame.optics.size(); ++i)
         rims.facets[i] = std::make_unique<FacetLookup>(frame.optics[i].facets->grid(),
@@ -112,6 +126,19 @@ SampleGrid window_with_rim(const OpticRims& rims, std::size_t optic, const Sampl
     return {std::max(window.x0 - wider, 0), std::max(window.y0 - wider, 0),
             std::min(window.x1 + wider, static_cast<int>(film.width)),
             std::min(window.y1 + wider, static_cast<int>(film.height)), window.side};
+}
+
+void decide_traced(const RimParams& params, const SampleGrid& grid, std::span<const Id> samples,
+                   SampleViews& views) {
+    if (params.frame.optics.size() < 2) return;
+    parallel_for(samples.size(), kRimSamplesPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            SampleView& view = views.samples[samples[i]];
+            const std::optional<ExactView> exact = exact_view(params, grid.position(samples[i]), view);
+            if (!exact || exact->first.optic == kNone || exact->first.optic == view.optic) continue;
+            show_optic(params, *exact, view, views.of_optics[samples[i]]);
+        }
+    });
 }
 
 void decide_rims(const RimParams& params, const SampleGrid& grid, SampleViews& views) {

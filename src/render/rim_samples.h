@@ -48,4 +48,9 @@ bool may_change_order(const RimParams& params, const Ray& ray, const MetSurface&
 /// an optic are to be traced: SampleView::traced is set, and they have a facet, but no leaf.
 void decide_rims(const RimParams& params, const SampleGrid& grid, SampleViews& views);
 
+/// Of samples that are traced those that see another optic first, on the exact surfaces, than by facets: they
+/// show that one then. Else a path would start inside of a mirror that crosses the optic.
+void decide_traced(const RimParams& params, const SampleGrid& grid, std::span<const Id> samples,
+                   SampleViews& views);
+
 }  // namespace trilens

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <sstream>
 
 #include "base/box.h"
 #include "base/error.h"
@@ -117,6 +119,18 @@ std::vector<std::string> data_cages() {
         if (entry.path().extension() == ".obj") found.push_back(entry.path().filename().string());
     std::sort(found.begin(), found.end());
     return found;
+}
+
+std::unique_ptr<World> data_world(const std::string& name) {
+    std::ifstream in(data_dir() + "/scenes/" + name + ".json");
+    std::stringstream text;
+    text << in.rdbuf();
+    // Their files are named by where they lay when the scenes were written.
+    const std::regex cage("\"[^\"]*/(cages/[^\"]*)\""), texture("\"[^\"]*/(textures/[^\"]*)\"");
+    const std::string cages = std::regex_replace(text.str(), cage, "\"" + data_dir() + "/$1\"");
+    const std::string json = std::regex_replace(cages, texture, "\"" + source_dir() + "/scenes/$1\"");
+    return make_world(load_scene_text(json, SceneSource(name, ""), {}, {read_texture, decode_texture}),
+                      ignore);
 }
 
 std::unique_ptr<World> world_from(const std::string& name, const std::string& json, int n) {

@@ -27,6 +27,9 @@ std::unique_ptr<trilens::World> cage_world(const trilens::Cage& cage, int n, int
 /// The outside data's cages, "catmark_cube.obj" and so on; empty where the data are missing.
 std::vector<std::string> data_cages();
 
+/// A scene of the outside data, "scenes/NAME.json", whose cages are looked for there.
+std::unique_ptr<trilens::World> data_world(const std::string& name);
+
 /// A world from JSON text.
 std::unique_ptr<trilens::World> world_from(const std::string& name, const std::string& json, int n);
 
