@@ -10,7 +10,26 @@
 namespace trilens {
 namespace {
 
+/// The ways between two balls are those from the one's middle to a ball of both radii, `radius`. False where
+/// the balls meet.
+bool sight_from(const Vec3& from, double radius, const Vec3& to, Sight& sight) {
+    const Vec3 way = to - from;
+    const double distance = length(way);
+    if (!(distance > radius)) return false;
+    sight.by_distance = 1 / distance;
+    sight.direction = way * sight.by_distance;
+    sight.sine = radius * sight.by_distance;
+    sight.turn = chord_of(sight.sine);
+    return true;
+}
+
 using Reach = CellTerms::Reach;
+
+/// The most that (a . Q b) / d changes, Q the projection across a sight of distance d.
+double turning_radius(const Sight& sight, double stretch, const Reach& a, const Reach& b) {
+    return stretch * a.all * b.all +
+           sight.by_distance * (a.radius * b.all + a.length * (sight.sine * b.all + b.radius));
+}
 
 double largest_coordinate(const Vec3& v) {
     return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
@@ -36,27 +55,6 @@ double rounding_of_law(const CellTerms& terms, const Sight& sight, const Vec3& p
 }
 
 }  // namespace
-
-bool sight_from(const Vec3& from, double radius, const Vec3& to, Sight& sight) {
-    const Vec3 way = to - from;
-    const double distance = length(way);
-    if (!(distance > radius)) return false;
-    sight.by_distance = 1 / distance;
-    sight.direction = way * sight.by_distance;
-    sight.sine = radius * sight.by_distance;
-    sight.turn = chord_of(sight.sine);
-    return true;
-}
-
-double turning_radius(const Sight& sight, double stretch, const Reach& a, const Reach& b) {
-    return stretch * a.all * b.all +
-           sight.by_distance * (a.radius * b.all + a.length * (sight.sine * b.all + b.radius));
-}
-
-CellTerms::Reach reach_of(const Vec3& middle, double radius) {
-    const double size = length(middle);
-    return {size, size + radius, radius};
-}
 
 PlaceBounds place_of(const SurfaceBounds& bounds) {
     return {bounds.middle.position, bounds.position_radius, bounds.middle.normal, bounds.normal_radius};
@@ -117,15 +115,19 @@ PlaceTest test_place(const SpecularQuery& query, const PlaceBounds& place, const
 }
 
 CellTerms cell_terms(const SpecularQuery& query, const SurfaceBounds& bounds, const EyeView& view) {
+    const auto reach = [](const Vec3& v, double radius) {
+        const double size = length(v);
+        return CellTerms::Reach{size, size + radius, radius};
+    };
     const SurfacePoint& m = bounds.middle;
     CellTerms terms;
     terms.bounds = &bounds;
     terms.is_apart = view.is_apart;
-    terms.u = reach_of(m.du, bounds.du_radius);
-    terms.v = reach_of(m.dv, bounds.dv_radius);
-    terms.uu = reach_of(m.duu, bounds.duu_radius);
-    terms.uv = reach_of(m.duv, bounds.duv_radius);
-    terms.vv = reach_of(m.dvv, bounds.dvv_radius);
+    terms.u = reach(m.du, bounds.du_radius);
+    terms.v = reach(m.dv, bounds.dv_radius);
+    terms.uu = reach(m.duu, bounds.duu_radius);
+    terms.uv = reach(m.duv, bounds.duv_radius);
+    terms.vv = reach(m.dvv, bounds.dvv_radius);
     terms.n = path_indices(query);
     const Sight& eye = view.sight;
     const double n = terms.n.eye, stretch = eye.stretch();

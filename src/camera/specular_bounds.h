@@ -33,10 +33,6 @@ struct Sight {
     double stretch() const { return by_distance * sine / (1 - sine); }
 };
 
-/// The ways between two balls are those from the one's middle to a ball of both radii, `radius`. False where
-/// the balls meet.
-bool sight_from(const Vec3& from, double radius, const Vec3& to, Sight& sight);
-
 /// How the query's eye sees a piece: the same for all points.
 struct EyeView {
     bool is_behind = false;  // proven: behind the camera, or seen from a side that is not asked for
@@ -99,14 +95,6 @@ struct CellTerms {
     double eye_by_distance = 0;
     double coordinate = 0;  // the largest of eye and middle
 };
-
-/// The length of a derivative with this middle and radius.
-CellTerms::Reach reach_of(const Vec3& middle, double radius);
-
-/// The most that (a . Q b) / d changes, Q the projection across a sight of distance d, whose stretch() is
-/// known.
-double turning_radius(const Sight& sight, double stretch, const CellTerms::Reach& a,
-                      const CellTerms::Reach& b);
 
 /// `view` is eye_view of the cell's place.
 CellTerms cell_terms(const SpecularQuery& query, const SurfaceBounds& bounds, const EyeView& view);
