@@ -9,12 +9,12 @@
 
 #include "base/rasterize.h"
 #include "camera/perspective.h"
-#include "camera/specular_search.h"
 #include "image/exr_chunk.h"
 #include "intersect/tracer.h"
 #include "projector/prepared_scene.h"
 #include "projector/projector.h"
 #include "projector/sample_tiles.h"
+#include "specular/specular_search.h"
 #include "surfaces/surfaces.h"
 #include "workloads.h"
 

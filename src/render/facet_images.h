@@ -6,8 +6,8 @@
 
 #include "base/facets_around.h"
 #include "base/lazy.h"
-#include "camera/specular_point.h"
 #include "render/frame.h"
+#include "specular/specular_point.h"
 #include "trilinear/mesh_point_images.h"
 
 namespace trilens {

@@ -4,8 +4,8 @@
 
 #include "base/box.h"
 #include "base/parallel.h"
-#include "camera/specular_point.h"
 #include "render/geometry.h"
+#include "specular/specular_point.h"
 
 namespace trilens {
 namespace {

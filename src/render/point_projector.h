@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "camera/specular_search.h"
 #include "render/facet_images.h"
 #include "render/facet_lookup.h"
 #include "render/path_images.h"
 #include "render/project.h"
 #include "render/sightlines.h"
+#include "specular/specular_search.h"
 
 namespace trilens {
 

@@ -9,7 +9,7 @@
 
 #include "camera/film_mesh.h"
 #include "camera/ray_spread.h"
-#include "draw.h"
+#include "support/draw.h"
 #include "every_camera.h"
 #include "support/test.h"
 

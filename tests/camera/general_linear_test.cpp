@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "camera/facet_kinds.h"
-#include "draw.h"
+#include "support/draw.h"
 #include "every_camera.h"
 #include "support/test.h"
 

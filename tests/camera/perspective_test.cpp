@@ -2,7 +2,7 @@
 #include "camera/perspective.h"
 
 #include "base/error.h"
-#include "camera/draw.h"
+#include "support/draw.h"
 #include "support/test.h"
 
 using namespace trilens;

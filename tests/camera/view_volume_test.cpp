@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "camera/camera.h"
 #include "camera/perspective.h"
-#include "draw.h"
+#include "support/draw.h"
 #include "support/test.h"
 
 using namespace trilens;

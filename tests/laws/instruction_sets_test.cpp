@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "camera/specular_search.h"
 #include "measure/displacement.h"
 #include "measure/synthetic.h"
 #include "projector/kernel.h"
 #include "render/picture.h"
+#include "specular/specular_search.h"
 #include "support/test.h"
 #include "surfaces/surfaces.h"
 #include "worlds.h"

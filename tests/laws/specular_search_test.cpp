@@ -1,5 +1,5 @@
 // The search for images against brute force, on surfaces that have no closed form.
-#include "camera/specular_search.h"
+#include "specular/specular_search.h"
 
 #include <algorithm>
 #include <cmath>

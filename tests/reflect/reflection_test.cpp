@@ -2,10 +2,10 @@
 // two.
 #include "reflect/reflection.h"
 
-#include "camera/draw.h"
 #include "camera/pinhole.h"
-#include "camera/test_surfaces.h"
+#include "support/draw.h"
 #include "support/test.h"
+#include "support/test_surfaces.h"
 
 using namespace trilens_test;
 

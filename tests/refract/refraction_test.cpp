@@ -1,10 +1,10 @@
 // Laws of interface meshes: Snell at every corner on the side that its facet is seen from.
 #include "refract/refraction.h"
 
-#include "camera/draw.h"
 #include "camera/pinhole.h"
-#include "camera/test_surfaces.h"
+#include "support/draw.h"
 #include "support/test.h"
+#include "support/test_surfaces.h"
 
 using namespace trilens_test;
 

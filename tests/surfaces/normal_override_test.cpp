@@ -2,9 +2,9 @@
 // surface.
 #include "surfaces/normal_override.h"
 
-#include "camera/draw.h"
-#include "camera/test_surfaces.h"
+#include "support/draw.h"
 #include "support/test.h"
+#include "support/test_surfaces.h"
 
 using namespace trilens_test;
 

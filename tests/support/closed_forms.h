@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "camera/perspective.h"
-#include "camera/test_surfaces.h"
+#include "support/test_surfaces.h"
 
 namespace trilens_test {
 

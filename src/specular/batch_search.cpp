@@ -1,12 +1,12 @@
-// Two trees at once: whichever of points and surface is the larger is halved, and pairs without images go.
-#include "camera/specular_batch.h"
+// Dual-tree search: halves whichever of points and surface is the larger, and drops pairs without images.
+#include "specular/batch_search.h"
 
 #include <algorithm>
 #include <numeric>
 #include <optional>
 
 #include "base/halve_points.h"
-#include "camera/specular_group.h"
+#include "specular/point_packet.h"
 
 namespace trilens {
 namespace {
@@ -27,8 +27,8 @@ constexpr std::size_t kMostKept = 1u << 13;
 
 }  // namespace
 
-SpecularBatch::SpecularBatch(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query,
-                             const SearchLimits& limits)
+BatchSearch::BatchSearch(const Surface& surface, const CellBvh& cells, const SpecularQuery& query,
+                         const SearchLimits& limits)
     : surface_(surface),
       cells_(cells),
       limits_(limits),
@@ -37,7 +37,7 @@ SpecularBatch::SpecularBatch(const Surface& surface, const SurfaceCells& cells, 
       ball_(query) {}
 
 /// Adds to `left` what may hold an image of any point of the ball.
-void SpecularBatch::sift(TreeNode& part, Parts& left) {
+void BatchSearch::sift(TreeNode& part, Parts& left) {
     const PlaceTest test = test_place(ball_, part.place, part.view, radius_);
     if (test.empty) return;
     const bool is_last = part.bounds && (part.bounds->is_finest || part.place.normal_radius < kFlatPart ||
@@ -58,17 +58,17 @@ void SpecularBatch::sift(TreeNode& part, Parts& left) {
         if (half) sift(*half, left);
 }
 
-SpecularSearch SpecularBatch::search_whole(const Vec3& point) {
+SpecularSearch BatchSearch::search_whole(const Vec3& point) {
     SpecularQuery query = ball_;
     query.point = point;
     if (tree_.size() < kMostNodes)
-        return SpecularWalk(surface_, *cells_.bounder(), tree_, limits_).run(query);
-    SpecularTree tree(surface_, cells_, query);
-    return SpecularWalk(surface_, *cells_.bounder(), tree, limits_).run(query);
+        return BranchAndBound(surface_, *cells_.bounder(), tree_, limits_).run(query);
+    ViewTree tree(surface_, cells_, query);
+    return BranchAndBound(surface_, *cells_.bounder(), tree, limits_).run(query);
 }
 
 /// Sifted when first asked for: most points need no parts.
-const SpecularBatch::Parts& SpecularBatch::parts_of(Level& level) {
+const BatchSearch::Parts& BatchSearch::parts_of(Level& level) {
     if (level.is_sifted) return level.parts;
     level.is_sifted = true;
     Parts whole;
@@ -82,7 +82,7 @@ const SpecularBatch::Parts& SpecularBatch::parts_of(Level& level) {
 }
 
 /// As a walk through the whole surface has it: where something stays undecided, by that walk.
-void SpecularBatch::search(Level& level) {
+void BatchSearch::search(Level& level) {
     const std::span<const std::size_t> some = level.some;
     std::vector<std::optional<SpecularSearch>> found(some.size());
     if (tree_.size() < kMostNodes) {
@@ -95,10 +95,10 @@ void SpecularBatch::search(Level& level) {
         found_[some[k]] = found[k] ? std::move(*found[k]) : search_whole(points_[some[k]]);
 }
 
-void SpecularBatch::descend(std::span<std::size_t> some, Level* above) {
+void BatchSearch::descend(std::span<std::size_t> some, Level* above) {
     Level level{above, some, false, {}};
     if (some.size() <= kFewPoints) {
-        if (some.size() > SpecularGroup::kNearPoints) halve_points(points_, some, SpecularGroup::kNearPoints);
+        if (some.size() > PointPacket::kNearPoints) halve_points(points_, some, PointPacket::kNearPoints);
         search(level);
         return;
     }
@@ -107,7 +107,7 @@ void SpecularBatch::descend(std::span<std::size_t> some, Level* above) {
     descend(some.subspan(half), &level);
 }
 
-std::vector<SpecularSearch> SpecularBatch::run(std::span<const Vec3> points) {
+std::vector<SpecularSearch> BatchSearch::run(std::span<const Vec3> points) {
     if (tree_.size() > kMostKept) tree_.begin_anew();
     points_ = points;
     found_ = std::vector<SpecularSearch>(points.size());

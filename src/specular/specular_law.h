@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/surface.h"
-#include "camera/specular_point.h"
+#include "specular/specular_point.h"
 
 namespace trilens {
 

@@ -1,13 +1,13 @@
 // Branch and bound over cells; interval Newton decides where images stand alone.
-#include "camera/specular_walk.h"
+#include "specular/branch_and_bound.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include "camera/specular_lanes.h"
-#include "camera/specular_law.h"
+#include "specular/simd_bounds.h"
+#include "specular/specular_law.h"
 
 namespace trilens {
 namespace {
@@ -35,19 +35,19 @@ bool is_clear_of_border(const TreeNode& cell, const Vec2& uv) {
 
 }  // namespace
 
-bool SpecularWalk::in_domain(Id face, const Vec2& uv) const {
+bool BranchAndBound::in_domain(Id face, const Vec2& uv) const {
     return surface_.domain(face) == FaceDomain::kSquare || uv.x + uv.y <= 1 + kBorder;
 }
 
-SurfacePoint SpecularWalk::point_at(Id face, const Vec2& uv) const {
+SurfacePoint BranchAndBound::point_at(Id face, const Vec2& uv) const {
     if (in_domain(face, uv)) return surface_.eval(face, uv);
     return bounder_.bounds(face, uv, uv).middle;
 }
 
 /// True if the zero's image is listed, or the zero is none: seen from a wrong side or behind the camera.
 /// `point` and `path` are of a place close by, or of the zero where `is_there`.
-bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& point,
-                             const SpecularPath& path, bool is_there) {
+bool BranchAndBound::add_image(const SurfaceParameter& zero, const SurfacePoint& point,
+                               const SpecularPath& path, bool is_there) {
     if (sides_fit(query_, path, point.normal) && screen_from_world(query_.camera, point.position).z > 0) {
         const bool is_inside =
             surface_.domain(zero.face) == FaceDomain::kSquare || zero.uv.x + zero.uv.y <= 1;
@@ -61,8 +61,8 @@ bool SpecularWalk::add_image(const SurfaceParameter& zero, const SurfacePoint& p
 }
 
 /// A cell with one zero at most: finds it, or shows that it lies outside.
-SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoint& middle,
-                                           const NewtonBounds& newton) {
+BranchAndBound::Verdict BranchAndBound::settle(const CellBox& box, const SurfacePoint& middle,
+                                               const NewtonBounds& newton) {
     const Vec2 half = box.half();
     Vec2 uv = glm::clamp(box.middle() + newton.step, box.low, box.high);
     SurfacePoint point = middle;
@@ -103,7 +103,7 @@ SpecularWalk::Verdict SpecularWalk::settle(const CellBox& box, const SurfacePoin
     return add_image({box.face, uv}, point, path, false) ? Verdict::kSettled : Verdict::kSplit;
 }
 
-SpecularWalk::Verdict SpecularWalk::ask_newton(TreeNode& cell) {
+BranchAndBound::Verdict BranchAndBound::ask_newton(TreeNode& cell) {
     share_ = HUGE_VAL;
     if (cell.place.normal_radius > kHopelessTurn && !is_last(cell)) return Verdict::kSplit;
     const Vec2 half = cell.box.half();
@@ -117,14 +117,14 @@ SpecularWalk::Verdict SpecularWalk::ask_newton(TreeNode& cell) {
     return settle(cell.box, cell.bounds->middle, newton);
 }
 
-SpecularWalk::Verdict SpecularWalk::judge_cell(TreeNode& cell) {
+BranchAndBound::Verdict BranchAndBound::judge_cell(TreeNode& cell) {
     const Verdict verdict = ask_newton(cell);
     if (verdict != Verdict::kSplit || !(is_last(cell) || result_.cells >= limits_.most_cells)) return verdict;
     undecided_.push_back({cell.box.face, cell.box.middle()});
     return Verdict::kEmpty;
 }
 
-void SpecularWalk::visit(TreeNode& node) {
+void BranchAndBound::visit(TreeNode& node) {
     ++result_.cells;
     if (test_place(query_, node.place, node.view, 0).empty) return;
     if (node.bounds && judge_cell(node) != Verdict::kSplit) return;
@@ -133,7 +133,7 @@ void SpecularWalk::visit(TreeNode& node) {
         if (half) waiting_.push_back(half);
 }
 
-void SpecularWalk::visit_all(TreeNode& from) {
+void BranchAndBound::visit_all(TreeNode& from) {
     waiting_.assign(1, &from);
     while (!waiting_.empty()) {
         TreeNode* next = waiting_.back();
@@ -142,12 +142,12 @@ void SpecularWalk::visit_all(TreeNode& from) {
     }
 }
 
-bool SpecularWalk::has_settled(const CellBox& box) const {
+bool BranchAndBound::has_settled(const CellBox& box) const {
     return std::any_of(isolated_.begin(), isolated_.end(),
                        [&](const CellBox& b) { return is_within(box, b); });
 }
 
-bool SpecularWalk::must_split(TreeNode& cell) {
+bool BranchAndBound::must_split(TreeNode& cell) {
     const std::size_t zeros = zeros_.size(), images = result_.images.size();
     const Verdict verdict = ask_newton(cell);
     if (verdict == Verdict::kSettled) {
@@ -160,7 +160,7 @@ bool SpecularWalk::must_split(TreeNode& cell) {
 }
 
 /// The zero near `start`, by its cell.
-void SpecularWalk::settle_near(SurfaceParameter start, const AskCell& ask) {
+void BranchAndBound::settle_near(SurfaceParameter start, const AskCell& ask) {
     for (int step = 0; step < kNearSteps; ++step) {
         const SurfacePoint point = surface_.eval(start.face, start.uv);
         const SpecularPath path = specular_path(query_, point.position);
@@ -173,7 +173,7 @@ void SpecularWalk::settle_near(SurfaceParameter start, const AskCell& ask) {
 }
 
 /// A zero that was settled in a smaller cell than a search of the whole has it in: in that one.
-void SpecularWalk::settle_again(const SurfaceParameter& zero) {
+void BranchAndBound::settle_again(const SurfaceParameter& zero) {
     if (has_settled({zero.face, zero.uv, zero.uv})) return;
     const std::size_t known = zeros_.size();
     settle_at(zero, [](TreeNode&) { return CellWord::kUnknown; });
@@ -182,7 +182,7 @@ void SpecularWalk::settle_again(const SurfaceParameter& zero) {
 
 /// Goes down through the cells that hold the place to the one where a search of the whole settles it, if
 /// there is, and notes the largest in which it stands alone.
-void SpecularWalk::settle_at(const SurfaceParameter& zero, const AskCell& ask) {
+void BranchAndBound::settle_at(const SurfaceParameter& zero, const AskCell& ask) {
     if (has_settled({zero.face, zero.uv, zero.uv})) return;
     TreeNode* alone = nullptr;
     for (TreeNode* cell = &tree_.face(zero.face); cell; cell = half_around(*cell, zero.uv)) {
@@ -203,7 +203,7 @@ void SpecularWalk::settle_at(const SurfaceParameter& zero, const AskCell& ask) {
 }
 
 /// The half that holds a place; null where that is near the other.
-TreeNode* SpecularWalk::half_around(TreeNode& cell, const Vec2& uv) {
+TreeNode* BranchAndBound::half_around(TreeNode& cell, const Vec2& uv) {
     tree_.halve(cell);
     const CellBox& first = cell.halves[0]->box;
     const int axis = first.high.x < cell.box.high.x ? 0 : 1;
@@ -211,7 +211,7 @@ TreeNode* SpecularWalk::half_around(TreeNode& cell, const Vec2& uv) {
     return cell.halves[uv[axis] > first.high[axis] ? 1 : 0];
 }
 
-void SpecularWalk::refine_undecided() {
+void BranchAndBound::refine_undecided() {
     result_.undecided = undecided_.size();
     const std::size_t stride = undecided_.size() / kUndecidedStarts + 1;
     for (std::size_t k = 0; k < undecided_.size(); k += stride)
@@ -219,7 +219,7 @@ void SpecularWalk::refine_undecided() {
             result_.images.push_back(*image);
 }
 
-void SpecularWalk::begin(const SpecularQuery& query) {
+void BranchAndBound::begin(const SpecularQuery& query) {
     query_ = query;
     is_lost_ = false;
     undecided_.clear();
@@ -228,31 +228,32 @@ void SpecularWalk::begin(const SpecularQuery& query) {
     result_ = {};
 }
 
-SpecularSearch SpecularWalk::end() {
+SpecularSearch BranchAndBound::end() {
     refine_undecided();
     result_.complete = undecided_.empty();
     result_.images = distinct_images(std::move(result_.images));
     return std::move(result_);
 }
 
-SpecularSearch SpecularWalk::run(const SpecularQuery& query) {
+SpecularSearch BranchAndBound::run(const SpecularQuery& query) {
     begin(query);
     if (tree_.root()) visit_all(*tree_.root());
     return end();
 }
 
-void SpecularWalk::begin_near(const SpecularQuery& query, std::span<const LawZero> near, const AskCell& ask) {
+void BranchAndBound::begin_near(const SpecularQuery& query, std::span<const LawZero> near,
+                                const AskCell& ask) {
     begin(query);
     for (const LawZero& start : near) settle_near(start.at, ask);
 }
 
-void SpecularWalk::begin_at(const SpecularQuery& query, std::span<const SurfaceParameter> zeros,
-                            const AskCell& ask) {
+void BranchAndBound::begin_at(const SpecularQuery& query, std::span<const SurfaceParameter> zeros,
+                              const AskCell& ask) {
     begin(query);
     for (const SurfaceParameter& zero : zeros) settle_at(zero, ask);
 }
 
-std::optional<SpecularSearch> SpecularWalk::end_near() {
+std::optional<SpecularSearch> BranchAndBound::end_near() {
     if (is_lost_) return std::nullopt;
     return end();
 }

@@ -1,5 +1,5 @@
 // One image of a point on a curved surface: Levenberg-Marquardt on the law that Fermat's principle gives.
-#include "camera/specular_point.h"
+#include "specular/specular_point.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/check.h"
-#include "camera/specular_law.h"
+#include "specular/specular_law.h"
 
 namespace trilens {
 namespace {

@@ -1,14 +1,14 @@
 // Chooses how a surface is searched: by its bounds, or from regular starts.
-#include "camera/specular_search.h"
+#include "specular/specular_search.h"
 
 #include <algorithm>
 #include <mutex>
 #include <utility>
 
 #include "base/check.h"
-#include "camera/specular_batch.h"
-#include "camera/specular_cells.h"
-#include "camera/specular_walk.h"
+#include "specular/batch_search.h"
+#include "specular/branch_and_bound.h"
+#include "specular/cell_bvh.h"
 
 namespace trilens {
 
@@ -17,37 +17,37 @@ constexpr std::size_t kMostIdle = 64;
 
 struct SpecularSearcher::Impl {
     const Surface& surface;
-    SurfaceCells cells;
+    CellBvh cells;
     std::mutex guard;
-    std::vector<std::unique_ptr<SpecularBatch>> idle;  // batches of earlier calls
+    std::vector<std::unique_ptr<BatchSearch>> idle;  // batches of earlier calls
 
-    std::unique_ptr<SpecularBatch> take(const SpecularQuery& query, const SearchLimits& limits);
-    void give_back(std::unique_ptr<SpecularBatch> batch);
+    std::unique_ptr<BatchSearch> take(const SpecularQuery& query, const SearchLimits& limits);
+    void give_back(std::unique_ptr<BatchSearch> batch);
 };
 
-std::unique_ptr<SpecularBatch> SpecularSearcher::Impl::take(const SpecularQuery& query,
-                                                            const SearchLimits& limits) {
+std::unique_ptr<BatchSearch> SpecularSearcher::Impl::take(const SpecularQuery& query,
+                                                          const SearchLimits& limits) {
     {
         const std::lock_guard lock(guard);
         const auto found = std::find_if(idle.begin(), idle.end(),
                                         [&](const auto& batch) { return batch->serves(query, limits); });
         if (found != idle.end()) {
-            std::unique_ptr<SpecularBatch> batch = std::move(*found);
+            std::unique_ptr<BatchSearch> batch = std::move(*found);
             idle.erase(found);
             return batch;
         }
     }
-    return std::make_unique<SpecularBatch>(surface, cells, query, limits);
+    return std::make_unique<BatchSearch>(surface, cells, query, limits);
 }
 
-void SpecularSearcher::Impl::give_back(std::unique_ptr<SpecularBatch> batch) {
+void SpecularSearcher::Impl::give_back(std::unique_ptr<BatchSearch> batch) {
     const std::lock_guard lock(guard);
     if (idle.size() == kMostIdle) idle.erase(idle.begin());
     idle.push_back(std::move(batch));
 }
 
 SpecularSearcher::SpecularSearcher(const Surface& surface)
-    : impl_(new Impl{surface, SurfaceCells(surface), {}, {}}) {}
+    : impl_(new Impl{surface, CellBvh(surface), {}, {}}) {}
 
 SpecularSearcher::~SpecularSearcher() = default;
 
@@ -81,8 +81,8 @@ SpecularSearch together(SpecularSearch search, const SpecularSearch& other) {
 SpecularSearch SpecularSearcher::find(const SpecularQuery& query, const SearchLimits& limits) const {
     check(query, limits);
     if (impl_->cells.bounder() && query.own_normals) {
-        SpecularTree tree(impl_->surface, impl_->cells, query);
-        return SpecularWalk(impl_->surface, *impl_->cells.bounder(), tree, limits).run(query);
+        ViewTree tree(impl_->surface, impl_->cells, query);
+        return BranchAndBound(impl_->surface, *impl_->cells.bounder(), tree, limits).run(query);
     }
     SpecularSearch search;
     search.images = specular_points(impl_->surface, regular_starts(impl_->surface, limits.starts), query);
@@ -99,7 +99,7 @@ std::vector<SpecularSearch> SpecularSearcher::find_each(const SpecularQuery& que
                                                         const SearchLimits& limits) const {
     check(query, limits);
     if (impl_->cells.bounder() && query.own_normals) {
-        std::unique_ptr<SpecularBatch> batch = impl_->take(query, limits);
+        std::unique_ptr<BatchSearch> batch = impl_->take(query, limits);
         std::vector<SpecularSearch> found = batch->run(points);
         impl_->give_back(std::move(batch));
         return found;

@@ -1,11 +1,11 @@
-#include "camera/specular_lanes.h"
+#include "specular/simd_bounds.h"
 
 #include <limits>
 
-#include "camera/specular_law.h"
+#include "specular/specular_law.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "camera/specular_lanes.cpp"
+#define HWY_TARGET_INCLUDE "specular/simd_bounds.cpp"
 #include <hwy/foreach_target.h>
 #include "base/double_lanes-inl.h"
 

@@ -1,4 +1,4 @@
-// A surface as a tree of cells with bounds, so that most of it is excluded at a glance.
+// Bounding volume hierarchy over a surface's cells: groups of faces, faces, halved cells.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/surface.h"
-#include "camera/specular_bounds.h"
+#include "specular/cell_bounds.h"
 
 namespace trilens {
 
@@ -49,9 +49,9 @@ std::pair<CellBox, CellBox> halves_of(const CellBox& box, const SurfacePoint& mi
 
 /// The tree: groups over the faces, the faces' cells halved down to where their normals hardly turn.
 /// Deterministic; thread-safe to read. The surface must live longer.
-class SurfaceCells {
+class CellBvh {
   public:
-    explicit SurfaceCells(const Surface& surface);
+    explicit CellBvh(const Surface& surface);
 
     /// Null where the surface has no bounds: then there are no cells.
     const SurfaceBounder* bounder() const { return bounder_.get(); }

@@ -1,11 +1,11 @@
-// Arithmetic on balls: a vector known to lie within a radius of a middle.
-#include "camera/specular_bounds.h"
+// Ball arithmetic: a vector known to lie within a radius of a middle.
+#include "specular/cell_bounds.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "camera/specular_law.h"
+#include "specular/specular_law.h"
 
 namespace trilens {
 namespace {

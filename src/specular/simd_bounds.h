@@ -1,11 +1,11 @@
-// What bounds of a surface say about several points of one query, one in each lane of a vector.
+// The interval tests of cell_bounds.h on SIMD lanes: several points of one query at once.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "camera/specular_bounds.h"
-#include "camera/specular_law.h"
+#include "specular/cell_bounds.h"
+#include "specular/specular_law.h"
 
 namespace trilens {
 

@@ -1,15 +1,15 @@
 // Laws of the bounds over balls of points: no image that exists is ever excluded, no two are called one.
-#include "camera/specular_bounds.h"
+#include "specular/cell_bounds.h"
 
 #include <cmath>
 #include <optional>
 
-#include "camera/closed_forms.h"
-#include "camera/draw.h"
-#include "camera/specular_tree.h"
-#include "camera/specular_walk.h"
-#include "camera/test_surfaces.h"
+#include "specular/branch_and_bound.h"
+#include "specular/view_tree.h"
+#include "support/closed_forms.h"
+#include "support/draw.h"
 #include "support/test.h"
+#include "support/test_surfaces.h"
 
 using namespace trilens_test;
 

@@ -1,5 +1,5 @@
 // Builds the tree level by level, all faces at once.
-#include "camera/specular_cells.h"
+#include "specular/cell_bvh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ std::pair<CellBox, CellBox> halves_of(const CellBox& box, const SurfacePoint& mi
     return halves;
 }
 
-SurfaceCells::SurfaceCells(const Surface& surface) : surface_(surface), bounder_(surface.make_bounder()) {
+CellBvh::CellBvh(const Surface& surface) : surface_(surface), bounder_(surface.make_bounder()) {
     if (!bounder_ || surface.face_count() == 0) return;
     const std::size_t faces = surface.face_count();
     cells_.resize(faces);
@@ -75,7 +75,7 @@ SurfaceCells::SurfaceCells(const Surface& surface) : surface_(surface), bounder_
     add_groups(order);
 }
 
-void SurfaceCells::add_halves(std::size_t from, std::size_t to) {
+void CellBvh::add_halves(std::size_t from, std::size_t to) {
     for (std::size_t c = from; c < to; ++c) {
         const SurfaceBounds& bounds = cells_[c].bounds;
         const FaceDomain domain = surface_.domain(cells_[c].box.face);
@@ -95,7 +95,7 @@ void SurfaceCells::add_halves(std::size_t from, std::size_t to) {
     });
 }
 
-std::size_t SurfaceCells::add_groups(std::span<std::size_t> faces) {
+std::size_t CellBvh::add_groups(std::span<std::size_t> faces) {
     CellGroup group;
     if (faces.size() == 1) {
         group.leaf = true;

@@ -1,16 +1,16 @@
 // Laws of the search: its lists are the closed forms' lists, and where it cannot know it says so.
-#include "camera/specular_search.h"
+#include "specular/specular_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "base/parallel.h"
-#include "camera/closed_forms.h"
-#include "camera/draw.h"
 #include "camera/perspective.h"
-#include "camera/test_surfaces.h"
+#include "support/closed_forms.h"
+#include "support/draw.h"
 #include "support/test.h"
+#include "support/test_surfaces.h"
 
 using namespace trilens_test;
 

@@ -1,13 +1,13 @@
-#include "camera/specular_tree.h"
+#include "specular/view_tree.h"
 
 namespace trilens {
 
-SpecularTree::SpecularTree(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query)
+ViewTree::ViewTree(const Surface& surface, const CellBvh& cells, const SpecularQuery& query)
     : surface_(surface), cells_(cells), query_(query) {
     begin_anew();
 }
 
-void SpecularTree::begin_anew() {
+void ViewTree::begin_anew() {
     nodes_.clear();
     fresh_.clear();
     terms_.clear();
@@ -15,20 +15,20 @@ void SpecularTree::begin_anew() {
     root_ = cells_.groups().empty() ? nullptr : add_group(cells_.groups().size() - 1);
 }
 
-TreeNode* SpecularTree::add(const PlaceBounds& place) {
+TreeNode* ViewTree::add(const PlaceBounds& place) {
     TreeNode node;
     node.place = place;
     node.view = eye_view(query_, place);
     return &nodes_.add(node);
 }
 
-TreeNode* SpecularTree::add_group(std::size_t index) {
+TreeNode* ViewTree::add_group(std::size_t index) {
     TreeNode* node = add(cells_.groups()[index].place);
     node->stored = index;
     return node;
 }
 
-TreeNode* SpecularTree::add_cell(const CellBox& box, const SurfaceBounds& bounds, std::size_t halves) {
+TreeNode* ViewTree::add_cell(const CellBox& box, const SurfaceBounds& bounds, std::size_t halves) {
     TreeNode* node = add(place_of(bounds));
     node->box = box;
     node->bounds = &bounds;
@@ -36,28 +36,28 @@ TreeNode* SpecularTree::add_cell(const CellBox& box, const SurfaceBounds& bounds
     return node;
 }
 
-TreeNode* SpecularTree::add_stored(std::size_t index) {
+TreeNode* ViewTree::add_stored(std::size_t index) {
     const SurfaceCell& cell = cells_.cells()[index];
     if (is_outside(surface_.domain(cell.box.face), cell.box)) return nullptr;
     return add_cell(cell.box, cell.bounds, cell.halves);
 }
 
-TreeNode* SpecularTree::add_fresh(const CellBox& box) {
+TreeNode* ViewTree::add_fresh(const CellBox& box) {
     if (is_outside(surface_.domain(box.face), box)) return nullptr;
     return add_cell(box, fresh_.add(cells_.bounder()->bounds(box.face, box.low, box.high)), 0);
 }
 
-TreeNode& SpecularTree::face(Id face) {
+TreeNode& ViewTree::face(Id face) {
     if (!faces_[face]) faces_[face] = add_stored(face);
     return *faces_[face];
 }
 
-const CellTerms& SpecularTree::terms_of(TreeNode& cell) {
+const CellTerms& ViewTree::terms_of(TreeNode& cell) {
     if (!cell.terms) cell.terms = &terms_.add(cell_terms(query_, *cell.bounds, cell.view));
     return *cell.terms;
 }
 
-void SpecularTree::halve(TreeNode& node) {
+void ViewTree::halve(TreeNode& node) {
     if (node.is_halved) return;
     node.is_halved = true;
     if (!node.bounds) {

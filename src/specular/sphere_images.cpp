@@ -1,7 +1,7 @@
-#include "camera/specular_sphere.h"
+#include "specular/sphere_images.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "camera/specular_sphere.cpp"
+#define HWY_TARGET_INCLUDE "specular/sphere_images.cpp"
 #include <hwy/foreach_target.h>
 #include "base/double_lanes-inl.h"
 

@@ -1,4 +1,4 @@
-#include "camera/specular_group.h"
+#include "specular/point_packet.h"
 
 #include <algorithm>
 #include <bit>
@@ -28,12 +28,12 @@ void for_each_lane(LaneBits lanes, Act act) {
 
 }  // namespace
 
-SpecularGroup::SpecularGroup(const Surface& surface, const SurfaceBounder& bounder, SpecularTree& tree,
-                             const SpecularQuery& query, const SearchLimits& limits)
+PointPacket::PointPacket(const Surface& surface, const SurfaceBounder& bounder, ViewTree& tree,
+                         const SpecularQuery& query, const SearchLimits& limits)
     : surface_(surface),
       tree_(tree),
       query_(query),
-      walks_(kPointLanes, SpecularWalk(surface, bounder, tree, limits)),
+      walks_(kPointLanes, BranchAndBound(surface, bounder, tree, limits)),
       curvature_(surface.sphere_curvature()),
       may_count_(curvature_ > 0 && query.event == SpecularEvent::kReflect && !query.camera.parallel &&
                  limits.smallest_cell <= SearchLimits().smallest_cell &&
@@ -45,7 +45,7 @@ SpecularGroup::SpecularGroup(const Surface& surface, const SurfaceBounder& bound
 }
 
 /// Of a sphere: by the normal at some place of it, and in units of its cells.
-bool SpecularGroup::is_far_from_surface(const Vec3& place, const LawZero& zero) const {
+bool PointPacket::is_far_from_surface(const Vec3& place, const LawZero& zero) const {
     const Vec3 way = place - zero.point.position;
     const double height = dot(way, zero.point.normal) + 0.5 * curvature_ * dot(way, way);
     return std::fabs(height) > kFarInCells * (length(zero.point.du) + length(zero.point.dv));
@@ -53,7 +53,7 @@ bool SpecularGroup::is_far_from_surface(const Vec3& place, const LawZero& zero) 
 
 /// What the lane's walk knows, but of points and eyes so near to the surface that cells of the smallest size
 /// stay undecided.
-void SpecularGroup::note_zeros(std::size_t lane) {
+void PointPacket::note_zeros(std::size_t lane) {
     const std::vector<LawZero>& zeros = walks_[lane].zeros();
     for (std::size_t k = 0; k < kMostZeros; ++k) {
         ZeroLanes& known = known_[k];
@@ -67,7 +67,7 @@ void SpecularGroup::note_zeros(std::size_t lane) {
 }
 
 /// Whether a lane's walk has both zeros of a sphere that has two.
-bool SpecularGroup::knows_all(std::size_t lane) const {
+bool PointPacket::knows_all(std::size_t lane) const {
     std::size_t outside = 0, inside = 0;
     for (const LawZero& zero : walks_[lane].zeros()) {
         outside += zero.along < -kClearOfEdge;
@@ -78,14 +78,14 @@ bool SpecularGroup::knows_all(std::size_t lane) const {
 }
 
 /// The zeros of a sphere that has two, roughly; else no faces.
-std::array<SurfaceParameter, 2> SpecularGroup::places_on_sphere(std::size_t lane) const {
+std::array<SurfaceParameter, 2> PointPacket::places_on_sphere(std::size_t lane) const {
     if (!((sphere_zeros_.lit | sphere_zeros_.shaded) >> lane & 1)) return {};
     return {surface_.sphere_place(sphere_zeros_.first.at(lane)),
             surface_.sphere_place(sphere_zeros_.second.at(lane))};
 }
 
 /// Asks for the lane and those next to it at once.
-CellWord SpecularGroup::ask(TreeNode& cell, std::size_t lane) {
+CellWord PointPacket::ask(TreeNode& cell, std::size_t lane) {
     if (!cell.view.is_apart || walks_.front().is_last(cell)) return CellWord::kUnknown;
     if (cell.place.normal_radius > kHopelessTurn) return CellWord::kOpen;
     if (cell.asked_by != turn_) {
@@ -106,13 +106,13 @@ CellWord SpecularGroup::ask(TreeNode& cell, std::size_t lane) {
 }
 
 /// Each point begins where its neighbour ended, if not where a sphere has its zeros.
-void SpecularGroup::settle(std::span<const Vec3> points) {
+void PointPacket::settle(std::span<const Vec3> points) {
     for (std::size_t lane = 0; lane < kPointLanes; ++lane)
         points_.set(lane, points[std::min(lane, points.size() - 1)]);
     if (may_count_) find_zeros(sphere_, query_.camera.eye, points_, sphere_zeros_);
     ++turn_;
     for (std::size_t lane = 0; lane < points.size(); ++lane) {
-        SpecularWalk& walk = walks_[lane];
+        BranchAndBound& walk = walks_[lane];
         const auto ask_in_lanes = [this, lane](TreeNode& cell) { return ask(cell, lane); };
         query_.point = points[lane];
         const std::array<SurfaceParameter, 2> on_sphere = places_on_sphere(lane);
@@ -125,7 +125,7 @@ void SpecularGroup::settle(std::span<const Vec3> points) {
     }
 }
 
-void SpecularGroup::note_settled() {
+void PointPacket::note_settled() {
     settled_.clear();
     for_each_lane(under_way_, [&](std::size_t lane) {
         if (knows_all(lane)) under_way_ &= ~(LaneBits{1} << lane);
@@ -144,13 +144,13 @@ void SpecularGroup::note_settled() {
     });
 }
 
-void SpecularGroup::lose(LaneBits lanes) {
+void PointPacket::lose(LaneBits lanes) {
     for_each_lane(lanes, [&](std::size_t lane) { walks_[lane].lose(); });
     under_way_ &= ~lanes;
 }
 
 /// Which of the lanes have to look at the cell's halves.
-LaneBits SpecularGroup::judge(TreeNode& cell, LaneBits lanes) {
+LaneBits PointPacket::judge(TreeNode& cell, LaneBits lanes) {
     const bool is_last = walks_.front().is_last(cell);
     if (cell.place.normal_radius > (cell.is_halved ? kTurnAround : kHopelessTurn) && !is_last) return lanes;
     if (!cell.view.is_apart) {
@@ -170,7 +170,7 @@ LaneBits SpecularGroup::judge(TreeNode& cell, LaneBits lanes) {
     return is_last ? 0 : lanes;
 }
 
-void SpecularGroup::visit(const Wait& wait) {
+void PointPacket::visit(const Wait& wait) {
     TreeNode& node = *wait.node;
     LaneBits lanes = wait.lanes & under_way_;
     for (std::size_t lane = 0; lane < kPointLanes; ++lane) looked_at_[lane] += lanes >> lane & 1;
@@ -192,7 +192,7 @@ void SpecularGroup::visit(const Wait& wait) {
         if (half) waiting_.push_back({half, lanes});
 }
 
-void SpecularGroup::begin(std::span<const Vec3> points) {
+void PointPacket::begin(std::span<const Vec3> points) {
     TRILENS_CHECK(!points.empty() && points.size() <= kPointLanes, "a group has a lane for each point");
     count_ = points.size();
     under_way_ = static_cast<LaneBits>((std::uint64_t{1} << points.size()) - 1);
@@ -200,7 +200,7 @@ void SpecularGroup::begin(std::span<const Vec3> points) {
     note_settled();
 }
 
-std::vector<std::optional<SpecularSearch>> SpecularGroup::end(std::span<TreeNode* const> parts) {
+std::vector<std::optional<SpecularSearch>> PointPacket::end(std::span<TreeNode* const> parts) {
     waiting_.clear();
     looked_at_.fill(0);
     for (TreeNode* part : parts) waiting_.push_back({part, under_way_});

@@ -1,4 +1,4 @@
-// Several points that lie close together, walked through a surface's cells as one.
+// Packet traversal: several points that lie close together walk through the cells as one.
 #pragma once
 
 #include <array>
@@ -6,24 +6,24 @@
 #include <span>
 #include <vector>
 
-#include "camera/specular_lanes.h"
-#include "camera/specular_sphere.h"
-#include "camera/specular_walk.h"
+#include "specular/branch_and_bound.h"
+#include "specular/simd_bounds.h"
+#include "specular/sphere_images.h"
 
 namespace trilens {
 
 /// One thread each; surface, bounder and tree must live longer.
-class SpecularGroup {
+class PointPacket {
   public:
     /// For queries that differ from this in the point alone.
-    SpecularGroup(const Surface& surface, const SurfaceBounder& bounder, SpecularTree& tree,
-                  const SpecularQuery& query, const SearchLimits& limits);
+    PointPacket(const Surface& surface, const SurfaceBounder& bounder, ViewTree& tree,
+                const SpecularQuery& query, const SearchLimits& limits);
 
     /// Settles what lies near the images of the points before: at most kPointLanes of them.
     void begin(std::span<const Vec3> points);
     /// Whether that is all for some reason or other, so that `end` needs no parts.
     bool is_done() const { return under_way_ == 0; }
-    /// For each of the points SpecularWalk::run's list, from `parts`, which are taken to hold every image;
+    /// For each of the points BranchAndBound::run's list, from `parts`, which are taken to hold every image;
     /// none where something stays undecided, or a zero lies on the border of a cell.
     std::vector<std::optional<SpecularSearch>> end(std::span<TreeNode* const> parts);
 
@@ -56,12 +56,12 @@ class SpecularGroup {
     void lose(LaneBits lanes);
 
     const Surface& surface_;
-    SpecularTree& tree_;
+    ViewTree& tree_;
     SpecularQuery query_;
-    std::vector<SpecularWalk> walks_;  // one for each lane
-    std::vector<LawZero> zeros_;       // of the last point
-    const double curvature_;           // Surface::sphere_curvature
-    const bool may_count_;             // whether find_zeros speaks of such queries
+    std::vector<BranchAndBound> walks_;  // one for each lane
+    std::vector<LawZero> zeros_;         // of the last point
+    const double curvature_;             // Surface::sphere_curvature
+    const bool may_count_;               // whether find_zeros speaks of such queries
     SphereShape sphere_;
     SphereZeros sphere_zeros_;
     std::size_t count_ = 0;  // of points

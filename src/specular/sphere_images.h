@@ -1,8 +1,8 @@
-// The zeros of the law of reflection on a whole sphere: how many there are, without a look at its cells.
+// Counts the reflections in a whole sphere (Alhazen's problem) without a look at its cells.
 #pragma once
 
 #include "base/vec.h"
-#include "camera/specular_lanes.h"
+#include "specular/simd_bounds.h"
 
 namespace trilens {
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/check.h"
-#include "camera/specular_point.h"
+#include "specular/specular_point.h"
 
 namespace trilens {
 

@@ -1,14 +1,14 @@
 // What is said about points side by side is what is said about each alone.
-#include "camera/specular_lanes.h"
+#include "specular/simd_bounds.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "camera/closed_forms.h"
-#include "camera/draw.h"
-#include "camera/specular_cells.h"
-#include "camera/test_surfaces.h"
+#include "specular/cell_bvh.h"
+#include "support/closed_forms.h"
+#include "support/draw.h"
 #include "support/test.h"
+#include "support/test_surfaces.h"
 
 using namespace trilens_test;
 

@@ -1,4 +1,4 @@
-// All images of a point in a curved surface, with a proof that there are no more, or word that there may be.
+// Finds all reflections or refractions of a point; reports whether the list is proven complete.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/surface.h"
-#include "camera/specular_point.h"
+#include "specular/specular_point.h"
 
 namespace trilens {
 

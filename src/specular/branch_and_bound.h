@@ -1,4 +1,4 @@
-// The walk of one query through a surface's cells, from the whole or from what is left of it.
+// Branch and bound over the cells of a surface for one query, from the whole or from what is left of it.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "camera/specular_law.h"
-#include "camera/specular_search.h"
-#include "camera/specular_tree.h"
+#include "specular/specular_law.h"
+#include "specular/specular_search.h"
+#include "specular/view_tree.h"
 
 namespace trilens {
 
@@ -29,10 +29,10 @@ struct LawZero {
 
 /// Branch and bound for one query after the other, all of one tree. One thread each; surface, bounder and
 /// tree must live longer.
-class SpecularWalk {
+class BranchAndBound {
   public:
-    SpecularWalk(const Surface& surface, const SurfaceBounder& bounder, SpecularTree& tree,
-                 const SearchLimits& limits)
+    BranchAndBound(const Surface& surface, const SurfaceBounder& bounder, ViewTree& tree,
+                   const SearchLimits& limits)
         : surface_(surface), bounder_(bounder), tree_(tree), limits_(limits) {}
 
     using AskCell = std::function<CellWord(TreeNode& cell)>;
@@ -91,7 +91,7 @@ class SpecularWalk {
 
     const Surface& surface_;
     const SurfaceBounder& bounder_;
-    SpecularTree& tree_;
+    ViewTree& tree_;
     SearchLimits limits_;
     SpecularQuery query_;
     double share_ = 0;  // to which the Newton operator shrinks the cell asked last

@@ -1,5 +1,5 @@
 // Directions, their turning, and the second derivatives of the optical path.
-#include "camera/specular_law.h"
+#include "specular/specular_law.h"
 
 #include <limits>
 

@@ -1,22 +1,22 @@
-// Many points of one query: what they have in common is searched once.
+// Batched search: what the points of one query have in common is excluded once (dual-tree branch and bound).
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "camera/specular_cells.h"
-#include "camera/specular_group.h"
-#include "camera/specular_search.h"
+#include "specular/cell_bvh.h"
+#include "specular/point_packet.h"
+#include "specular/specular_search.h"
 
 namespace trilens {
 
 /// Keeps what it learns of the surface from one list of points to the next. One thread each; surface and
 /// cells, which have bounds, must live longer.
-class SpecularBatch {
+class BatchSearch {
   public:
     /// For queries with own normals that differ from this in the point alone.
-    SpecularBatch(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query,
-                  const SearchLimits& limits);
+    BatchSearch(const Surface& surface, const CellBvh& cells, const SpecularQuery& query,
+                const SearchLimits& limits);
 
     /// SpecularSearcher::find_each.
     std::vector<SpecularSearch> run(std::span<const Vec3> points);
@@ -48,10 +48,10 @@ class SpecularBatch {
     void sift(TreeNode& part, Parts& left);
 
     const Surface& surface_;
-    const SurfaceCells& cells_;
+    const CellBvh& cells_;
     const SearchLimits limits_;
-    SpecularTree tree_;
-    SpecularGroup group_;
+    ViewTree tree_;
+    PointPacket group_;
     SpecularQuery ball_;  // its point is the middle of the points that are sifted for
     double radius_ = 0;
     std::span<const Vec3> points_;

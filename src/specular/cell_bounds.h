@@ -1,9 +1,9 @@
-// What bounds of a surface say about images: that a cell holds none, or at most one.
+// Interval tests of a cell: that it holds no image, or at most one (Krawczyk's operator).
 #pragma once
 
 #include "base/surface.h"
-#include "camera/specular_law.h"
-#include "camera/specular_point.h"
+#include "specular/specular_law.h"
+#include "specular/specular_point.h"
 
 namespace trilens {
 

@@ -1,14 +1,14 @@
 // Laws of exact images: against Alhazen's problem, virtual images, Snell at a flat water surface, and the
 // mirror law itself.
-#include "camera/specular_point.h"
+#include "specular/specular_point.h"
 
 #include <algorithm>
 
-#include "camera/closed_forms.h"
-#include "camera/draw.h"
 #include "camera/perspective.h"
-#include "camera/test_surfaces.h"
+#include "support/closed_forms.h"
+#include "support/draw.h"
 #include "support/test.h"
+#include "support/test_surfaces.h"
 
 using namespace trilens_test;
 

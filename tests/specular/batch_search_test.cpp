@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "base/halve_points.h"
-#include "camera/closed_forms.h"
-#include "camera/draw.h"
-#include "camera/specular_search.h"
-#include "camera/test_surfaces.h"
+#include "specular/specular_search.h"
+#include "support/closed_forms.h"
+#include "support/draw.h"
 #include "support/test.h"
+#include "support/test_surfaces.h"
 
 using namespace trilens_test;
 

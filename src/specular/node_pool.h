@@ -1,4 +1,4 @@
-// Many values of one kind in few allocations, at places that stay.
+// Arena of values of one type: few allocations, addresses that stay.
 #pragma once
 
 #include <cstddef>

@@ -1,14 +1,14 @@
-// A surface's cells as one camera sees them, halved as far as anybody came.
+// Lazily refined tree of surface cells; per-camera terms are cached in each node.
 #pragma once
 
 #include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "camera/node_pool.h"
-#include "camera/specular_bounds.h"
-#include "camera/specular_cells.h"
-#include "camera/specular_lanes.h"
+#include "specular/cell_bounds.h"
+#include "specular/cell_bvh.h"
+#include "specular/node_pool.h"
+#include "specular/simd_bounds.h"
 
 namespace trilens {
 
@@ -28,10 +28,10 @@ struct TreeNode {
 };
 
 /// Grows on request: one thread each. Surface cells must live longer.
-class SpecularTree {
+class ViewTree {
   public:
     /// For all queries that differ from this in the point alone.
-    SpecularTree(const Surface& surface, const SurfaceCells& cells, const SpecularQuery& query);
+    ViewTree(const Surface& surface, const CellBvh& cells, const SpecularQuery& query);
 
     /// Forgets all nodes: none that it gave is valid after.
     void begin_anew();
@@ -53,7 +53,7 @@ class SpecularTree {
     TreeNode* add_fresh(const CellBox& box);
 
     const Surface& surface_;
-    const SurfaceCells& cells_;
+    const CellBvh& cells_;
     const SpecularQuery query_;
     NodePool<TreeNode> nodes_;
     NodePool<SurfaceBounds> fresh_;

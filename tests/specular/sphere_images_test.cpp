@@ -1,14 +1,14 @@
 // The zeros that a sphere is said to have, against the solutions of Alhazen's problem.
-#include "camera/specular_sphere.h"
+#include "specular/sphere_images.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "camera/closed_forms.h"
-#include "camera/draw.h"
-#include "camera/specular_law.h"
-#include "camera/test_surfaces.h"
+#include "specular/specular_law.h"
+#include "support/closed_forms.h"
+#include "support/draw.h"
 #include "support/test.h"
+#include "support/test_surfaces.h"
 
 using namespace trilens_test;
 
