@@ -1,8 +1,8 @@
 // trilens bench: the projector against Embree on the same rays, in the same run.
 #include <trilens/bench.h>
 
-#include "answer/race.h"
 #include "cli/commands.h"
+#include "cli/print/race.h"
 #include "cli/scene_options.h"
 #include "terminal/format.h"
 

@@ -12,7 +12,7 @@
 #include <limits>
 #include <utility>
 
-#include "answer/comparison.h"
+#include "cli/print/comparison.h"
 #include "terminal/format.h"
 #include "terminal/option.h"
 

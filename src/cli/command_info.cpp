@@ -1,6 +1,6 @@
 // trilens info: the build, its libraries and the machine, for bug reports.
-#include "answer/build.h"
 #include "cli/commands.h"
+#include "cli/print/build.h"
 
 namespace trilens {
 

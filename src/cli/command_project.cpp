@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "answer/projections.h"
 #include "cli/commands.h"
+#include "cli/print/projections.h"
 #include "cli/scene_options.h"
 #include "terminal/format.h"
 

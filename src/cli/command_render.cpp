@@ -1,11 +1,11 @@
 // trilens render and trilens trace: one picture, or the frames of an animation.
 #include <trilens/regions.h>
 
-#include "answer/explanation.h"
-#include "answer/output.h"
-#include "answer/picture.h"
 #include "cli/commands.h"
 #include "cli/draw_frames.h"
+#include "cli/print/explanation.h"
+#include "cli/print/output.h"
+#include "cli/print/picture.h"
 #include "cli/render_options.h"
 
 namespace trilens {

@@ -3,8 +3,8 @@
 #include <trilens/scene.h>
 #include <trilens/text.h>
 
-#include "answer/scene_info.h"
 #include "cli/commands.h"
+#include "cli/print/scene_info.h"
 #include "cli/scene_options.h"
 
 namespace trilens {

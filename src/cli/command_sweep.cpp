@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "answer/sweeps.h"
 #include "cli/commands.h"
+#include "cli/print/sweeps.h"
 #include "cli/sweep_options.h"
 
 namespace trilens {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "answer/sweeps.h"
 #include "cli/commands.h"
+#include "cli/print/sweeps.h"
 
 namespace trilens {
 namespace {

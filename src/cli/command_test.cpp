@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "answer/tests.h"
 #include "cli/commands.h"
+#include "cli/print/tests.h"
 #include "terminal/format.h"
 
 namespace trilens {

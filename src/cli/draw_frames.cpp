@@ -1,5 +1,5 @@
 #include "cli/draw_frames.h"
-#include "answer/output.h"
+#include "cli/print/output.h"
 
 #include <trilens/animation.h>
 #include <trilens/stopwatch.h>

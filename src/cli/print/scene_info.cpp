@@ -1,4 +1,4 @@
-#include "answer/scene_info.h"
+#include "cli/print/scene_info.h"
 
 #include <trilens/camera.h>
 

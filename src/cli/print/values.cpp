@@ -1,4 +1,4 @@
-#include "answer/values.h"
+#include "cli/print/values.h"
 
 namespace trilens {
 

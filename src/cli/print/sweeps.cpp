@@ -1,8 +1,8 @@
-#include "answer/sweeps.h"
+#include "cli/print/sweeps.h"
 
 #include <cmath>
 
-#include "answer/values.h"
+#include "cli/print/values.h"
 #include "terminal/format.h"
 
 namespace trilens {

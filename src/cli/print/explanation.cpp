@@ -1,6 +1,6 @@
-#include "answer/explanation.h"
+#include "cli/print/explanation.h"
 
-#include "answer/values.h"
+#include "cli/print/values.h"
 
 namespace trilens {
 namespace {

@@ -1,4 +1,4 @@
-#include "answer/build.h"
+#include "cli/print/build.h"
 
 #include <trilens/version.h>
 #include <string>

@@ -1,4 +1,4 @@
-#include "answer/projections.h"
+#include "cli/print/projections.h"
 
 #include <trilens/text.h>
 #include <trilens/version.h>
@@ -8,7 +8,7 @@
 #include <future>
 #include <utility>
 
-#include "answer/values.h"
+#include "cli/print/values.h"
 
 namespace trilens {
 namespace {

@@ -1,4 +1,4 @@
-#include "answer/output.h"
+#include "cli/print/output.h"
 
 #include <trilens/files.h>
 #include <trilens/stopwatch.h>

@@ -1,4 +1,4 @@
-#include "answer/race.h"
+#include "cli/print/race.h"
 
 #include "terminal/format.h"
 

@@ -1,6 +1,6 @@
-#include "answer/tests.h"
+#include "cli/print/tests.h"
 
-#include "answer/values.h"
+#include "cli/print/values.h"
 #include "terminal/format.h"
 
 namespace trilens {

@@ -1,7 +1,7 @@
 // What a comparison prints, and its JSON.
-#include "answer/comparison.h"
+#include "cli/print/comparison.h"
 
-#include "answer/values.h"
+#include "cli/print/values.h"
 #include "terminal/format.h"
 
 namespace trilens {

@@ -1,4 +1,4 @@
-#include "answer/picture.h"
+#include "cli/print/picture.h"
 
 #include "terminal/format.h"
 
