@@ -11,7 +11,7 @@
 #include "camera/perspective.h"
 #include "image/exr_chunk.h"
 #include "intersect/tracer.h"
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 #include "projector/projector.h"
 #include "projector/sample_tiles.h"
 #include "specular/specular_search.h"

@@ -14,7 +14,7 @@
 #include "bench/times.h"
 #include "intersect/packet_tracer.h"
 #include "projector/draw_options.h"
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 #include "projector/sample_tiles.h"
 
 namespace trilens {

@@ -15,7 +15,7 @@
 #include "projector/beam.h"
 #include "projector/classic_fill.h"
 #include "projector/first_hits.h"
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 #include "trilinear/outline.h"
 
 namespace trilens {

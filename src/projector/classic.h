@@ -3,7 +3,7 @@
 #pragma once
 
 #include "projector/classic_params.h"
-#include "projector/projector.h"
+#include "projector/prepared_scene.h"
 
 namespace trilens {
 

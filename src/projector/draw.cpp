@@ -9,7 +9,7 @@
 #include "projector/draw_blocks.h"
 #include "projector/draw_options.h"
 #include "projector/kernel_state.h"
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 #include "projector/sample_blocks.h"
 
 namespace trilens {

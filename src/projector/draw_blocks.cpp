@@ -10,7 +10,7 @@
 #include "projector/block_rays.h"
 #include "projector/draw_blocks.h"
 #include "projector/first_hits.h"
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 #include "projector/sample_blocks.h"
 #include "projector/triangle_in_block.h"
 

@@ -4,7 +4,7 @@
 #include "base/facet_samples.h"
 #include "base/sample_grid.h"
 #include "projector/facet_rays.h"
-#include "projector/projector.h"
+#include "projector/prepared_scene.h"
 
 namespace trilens {
 

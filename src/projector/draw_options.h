@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "projector/kernel.h"
-#include "projector/projector.h"
+#include "projector/prepared_scene.h"
 #include "projector/sample_tiles.h"
 
 namespace trilens {

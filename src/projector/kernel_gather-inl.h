@@ -10,7 +10,7 @@
 #include <bit>
 
 #include "projector/kernel_place-inl.h"
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {

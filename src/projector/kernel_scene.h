@@ -8,7 +8,7 @@
 #include "base/sample_grid.h"
 #include "base/visible.h"
 #include "projector/leaf_tree.h"
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 #include "projector/sample_tiles.h"
 
 namespace trilens {

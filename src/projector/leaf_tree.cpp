@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 
 namespace trilens {
 namespace {

@@ -8,7 +8,7 @@
 #include "base/ids.h"
 #include "base/vec.h"
 #include "projector/bvh.h"
-#include "projector/projector.h"
+#include "projector/prepared_scene.h"
 
 namespace trilens {
 

@@ -1,5 +1,5 @@
 // Copies a scene into leaf order.
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 
 #include <algorithm>
 #include <cmath>

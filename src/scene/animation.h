@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "scene/load.h"
+#include "scene/scene_override.h"
+#include "scene/texture_reader.h"
 #include "scene/scene.h"
 
 namespace trilens {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "scene/load.h"
+#include "scene/scene_override.h"
 #include "scene/override.h"
 
 namespace trilens {

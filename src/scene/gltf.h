@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/load.h"
+#include "scene/texture_reader.h"
 #include "scene/polygons.h"
 
 namespace trilens {

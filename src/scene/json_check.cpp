@@ -8,7 +8,7 @@
 
 #include "base/check.h"
 #include "base/nearest.h"
-#include "scene/load.h"
+#include "scene/schema.h"
 
 namespace trilens {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "scene/json.h"
-#include "scene/load.h"
+#include "scene/scene_override.h"
 
 namespace trilens {
 

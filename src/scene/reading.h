@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "scene/json.h"
-#include "scene/load.h"
+#include "scene/texture_reader.h"
 #include "scene/polygons.h"
 
 namespace trilens {

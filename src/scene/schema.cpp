@@ -2,7 +2,7 @@
 // read.
 #include <string>
 
-#include "scene/load.h"
+#include "scene/schema.h"
 #include "scene/schema_parts.h"
 
 namespace trilens {

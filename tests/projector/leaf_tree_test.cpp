@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "base/parallel.h"
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 #include "random_cases.h"
 #include "support/test.h"
 

@@ -6,7 +6,7 @@
 #include "engines_compared.h"
 #include "projector/draw_options.h"
 #include "projector/kernel.h"
-#include "projector/prepared_scene.h"
+#include "projector/prepared_data.h"
 #include "projector/projector.h"
 #include "random_cases.h"
 #include "support/test.h"
