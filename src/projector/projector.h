@@ -3,11 +3,11 @@
 
 #include <span>
 
-#include "base/facet_samples.h"
-#include "base/ray_mesh.h"
-#include "base/sample_grid.h"
-#include "base/visible.h"
-#include "projector/prepared_scene.h"
+#include "base/raymesh/facet_samples.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
+#include "base/raymesh/visible.h"
+#include "projector/scene/prepared_scene.h"
 
 namespace trilens {
 

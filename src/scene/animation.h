@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "scene/scene_override.h"
-#include "scene/texture_reader.h"
-#include "scene/scene.h"
+#include "scene/data/scene.h"
+#include "scene/data/scene_override.h"
+#include "scene/data/texture_reader.h"
 
 namespace trilens {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
-#include "scene/scene.h"
-#include "scene/scene_override.h"
-#include "scene/schema.h"
-#include "scene/texture_reader.h"
+#include "scene/data/scene.h"
+#include "scene/data/scene_override.h"
+#include "scene/data/texture_reader.h"
+#include "scene/json/schema.h"
 
 namespace trilens {
 
