@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "image/image_io.h"
-#include "measure/displacement.h"
-#include "measure/folds.h"
-#include "render/picture.h"
-#include "render/world.h"
+#include "measure/displacement/displacement.h"
+#include "measure/displacement/folds.h"
+#include "render/picture/picture.h"
+#include "render/world/world.h"
 #include "scene/load.h"
 
 namespace {

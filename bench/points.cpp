@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "base/facet_scene.h"
-#include "base/parallel.h"
-#include "camera/perspective.h"
+#include "base/raymesh/facet_scene.h"
+#include "base/util/parallel.h"
+#include "camera/linear/perspective.h"
 #include "intersect/tracer.h"
 #include "reflect/reflection.h"
 #include "surfaces/surfaces.h"

@@ -12,8 +12,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "base/parallel.h"
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
+#include "base/util/parallel.h"
 #include "bench/measure.h"
 #include "intersect/tracer.h"
 #include "projector/draw_options.h"

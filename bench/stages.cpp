@@ -7,13 +7,13 @@
 #include <random>
 #include <vector>
 
-#include "base/rasterize.h"
-#include "camera/perspective.h"
+#include "base/raymesh/rasterize.h"
+#include "camera/linear/perspective.h"
 #include "image/exr_chunk.h"
 #include "intersect/tracer.h"
-#include "projector/prepared_scene.h"
 #include "projector/projector.h"
-#include "projector/sample_tiles.h"
+#include "projector/scene/prepared_data.h"
+#include "projector/tiles/sample_tiles.h"
 #include "specular/specular_search.h"
 #include "surfaces/surfaces.h"
 #include "workloads.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "camera/perspective.h"
+#include "camera/linear/perspective.h"
 #include "reflect/reflection.h"
 #include "surfaces/surfaces.h"
 #include "timing.h"

@@ -2,7 +2,7 @@
 # are installed: a public one is <trilens/x.h>, one of a room <trilens/room/x.h>. They are written again whenever one
 # of them changes.
 function(trilens_header_path include result)
-  # "base/vec.h" -> src/base/vec.h; "surfaces/surfaces.h" -> surfaces/surfaces.h
+  # "base/math/vec.h" -> src/base/math/vec.h; "surfaces/surfaces.h" -> surfaces/surfaces.h
   if(EXISTS ${PROJECT_SOURCE_DIR}/src/${include})
     set(${result} ${PROJECT_SOURCE_DIR}/src/${include} PARENT_SCOPE)
   elseif(EXISTS ${PROJECT_SOURCE_DIR}/${include})
@@ -24,7 +24,7 @@ function(trilens_public_headers folder)
     trilens_header_path(${include} path)
     set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
     file(READ ${path} text)
-    string(REGEX MATCHALL "#include [\"<][a-z_]+/[a-z_]+\\.h[\">]" lines "${text}")
+    string(REGEX MATCHALL "#include [\"<][a-z_]+/[a-z_/]+\\.h[\">]" lines "${text}")
     foreach(line IN LISTS lines)
       string(REGEX REPLACE "#include [\"<](.*)[\">]" "\\1" next "${line}")
       if(line MATCHES "\"" OR next MATCHES "^trilens/")
@@ -33,7 +33,7 @@ function(trilens_public_headers folder)
     endforeach()
 
     string(REGEX REPLACE "#include \"trilens/([a-z_]+\\.h)\"" "#include <trilens/\\1>" text "${text}")
-    string(REGEX REPLACE "#include \"([a-z_]+/[a-z_]+\\.h)\"" "#include <trilens/\\1>" text "${text}")
+    string(REGEX REPLACE "#include \"([a-z_]+/[a-z_/]+\\.h)\"" "#include <trilens/\\1>" text "${text}")
     string(REGEX REPLACE "^trilens/" "" name ${include})
     file(CONFIGURE OUTPUT ${folder}/trilens/${name} CONTENT "${text}" @ONLY)
   endwhile()

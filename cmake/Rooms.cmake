@@ -1,5 +1,7 @@
-# trilens_room(NAME FOLDER [SEES rooms...] [DOORS libraries...]): one room = one static library that
-# links what it may see publicly and its outside libraries privately, so no other room finds their headers.
+# trilens_room(NAME FOLDER [FOLDERS folders...] [SEES rooms...] [DOORS libraries...]): one room = one static library
+# that links what it may see publicly and its outside libraries privately, so no other room finds their headers.
+# FOLDERS: those inside of the room, each of which may see those named before it; what stands in the room itself, its
+# door, sees them all (a test holds that).
 include(CMakeParseArguments)
 
 # Contraction off: the same source gives the same last bit on every machine.
@@ -26,8 +28,9 @@ function(trilens_unite target)
   foreach(source IN LISTS sources)
     file(STRINGS ${source} kernel REGEX "hwy/foreach_target\\.h" LIMIT_COUNT 1)
     if(NOT kernel)
-      get_filename_component(folder ${source} DIRECTORY)
-      get_filename_component(folder ${folder} NAME)
+      # By rooms, whatever folders are inside of them: src/ROOM/..., tests/ROOM/..., ROOM/...
+      file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${source})
+      string(REGEX REPLACE "^((src|tests)/)?([^/]+)/.*$" "\\3" folder ${folder})
       math(EXPR batch "0${count_${folder}} / ${TRILENS_UNITY_BATCH}")
       math(EXPR count_${folder} "0${count_${folder}} + 1")
       set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${folder}_${batch})
@@ -43,8 +46,8 @@ add_library(trilens_sources INTERFACE)
 target_include_directories(trilens_sources INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
 
 function(trilens_room name folder)
-  cmake_parse_arguments(ROOM "" "" "SEES;DOORS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+  cmake_parse_arguments(ROOM "" "" "FOLDERS;SEES;DOORS" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   add_library(trilens_${name} STATIC ${sources})
   target_link_libraries(trilens_${name} PUBLIC trilens_options trilens_sources)
   foreach(room IN LISTS ROOM_SEES)

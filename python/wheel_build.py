@@ -13,7 +13,7 @@ except ImportError:  # before setuptools 70
     from wheel.bdist_wheel import bdist_wheel
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
-VERSION = re.search(r'kVersion = "(.+?)"', (SOURCE / "src/base/version.h").read_text()).group(1)
+VERSION = re.search(r'kVersion = "(.+?)"', (SOURCE / "src/base/util/version.h").read_text()).group(1)
 OPTIONS = {
     "CMAKE_BUILD_TYPE": "Release",
     "Python_EXECUTABLE": sys.executable,

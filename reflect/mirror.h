@@ -1,7 +1,7 @@
 // The mirror law for one ray.
 #pragma once
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 

@@ -1,8 +1,8 @@
 // The mirror law at every corner of a grid.
 #include "reflect/reflection.h"
 
-#include "base/check.h"
-#include "base/parallel.h"
+#include "base/util/check.h"
+#include "base/util/parallel.h"
 #include "reflect/mirror.h"
 
 namespace trilens {

@@ -4,10 +4,10 @@
 
 #include <span>
 
-#include "base/corner_view.h"
-#include "base/linear_camera.h"
-#include "base/ray_mesh.h"
-#include "base/surface.h"
+#include "base/raymesh/corner_view.h"
+#include "base/raymesh/linear_camera.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "base/check.h"
-#include "base/parallel.h"
+#include "base/util/check.h"
+#include "base/util/parallel.h"
 #include "refract/snell.h"
 
 namespace trilens {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 

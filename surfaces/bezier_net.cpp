@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "base/check.h"
+#include "base/util/check.h"
 
 namespace trilens {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <unordered_set>
 
-#include "base/error.h"
+#include "base/util/error.h"
 
 namespace trilens {
 namespace {

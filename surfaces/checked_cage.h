@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/cage.h"
-#include "base/progress.h"
+#include "base/description/cage.h"
+#include "base/util/progress.h"
 
 namespace trilens {
 

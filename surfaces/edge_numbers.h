@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 

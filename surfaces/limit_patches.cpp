@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/check.h"
+#include "base/util/check.h"
 #include "surfaces/bounded_cache.h"
 #include "surfaces/patch_mesh.h"
 #include "surfaces/surfaces.h"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 #include "surfaces/checked_cage.h"
 
 namespace trilens {

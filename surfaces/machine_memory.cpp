@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "base/error.h"
+#include "base/util/error.h"
 
 namespace trilens {
 namespace {

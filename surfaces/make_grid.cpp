@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/check.h"
-#include "base/parallel.h"
+#include "base/util/check.h"
+#include "base/util/parallel.h"
 #include "surfaces/lattice.h"
 #include "surfaces/surfaces.h"
 

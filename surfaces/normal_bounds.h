@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 

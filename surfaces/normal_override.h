@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens {
 

@@ -12,7 +12,7 @@
 #include <mutex>
 #include <utility>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "surfaces/machine_memory.h"
 
 namespace trilens {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "surfaces/normal_bounds.h"
 #include "surfaces/polynomial_parts.h"
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 #include "surfaces/bezier_net.h"
 
 namespace trilens {

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "base/cage.h"
-#include "base/surface.h"
+#include "base/description/cage.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens {
 

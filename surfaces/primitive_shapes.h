@@ -5,8 +5,8 @@
 #include <array>
 #include <memory>
 
-#include "base/cage.h"
-#include "base/surface.h"
+#include "base/description/cage.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens {
 

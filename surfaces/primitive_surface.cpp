@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "surfaces/primitive_bounds.h"
 #include "surfaces/primitive_shapes.h"
 #include "surfaces/surfaces.h"

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "base/cage.h"
-#include "base/progress.h"
-#include "base/surface.h"
+#include "base/description/cage.h"
+#include "base/raymesh/surface.h"
+#include "base/util/progress.h"
 #include "surfaces/machine_memory.h"
 
 namespace trilens {

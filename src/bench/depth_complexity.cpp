@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "intersect/tracer.h"
 
 namespace trilens {

@@ -6,16 +6,17 @@
 #include <bit>
 #include <cmath>
 
-#include "base/check.h"
-#include "base/check_data.h"
-#include "base/error.h"
-#include "base/parallel.h"
+#include "base/raymesh/check_data.h"
+#include "base/util/check.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "bench/depth_complexity.h"
 #include "bench/times.h"
 #include "intersect/packet_tracer.h"
 #include "projector/draw_options.h"
-#include "projector/prepared_scene.h"
-#include "projector/sample_tiles.h"
+#include "projector/projector.h"
+#include "projector/scene/prepared_data.h"
+#include "projector/tiles/sample_tiles.h"
 
 namespace trilens {
 namespace {

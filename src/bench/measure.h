@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "base/facet_samples.h"
-#include "base/ray_mesh.h"
-#include "base/sample_grid.h"
-#include "base/triangle_scene.h"
+#include "base/raymesh/facet_samples.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
+#include "base/raymesh/triangle_scene.h"
 
 namespace trilens {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/stopwatch.h"
+#include "base/util/stopwatch.h"
 
 namespace trilens {
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/check.h"
-#include "base/format.h"
-#include "base/rasterize.h"
-#include "camera/film_mesh.h"
-#include "camera/linear_view.h"
-#include "camera/models.h"
-#include "camera/perspective.h"
+#include "base/raymesh/rasterize.h"
+#include "base/util/check.h"
+#include "base/util/format.h"
+#include "camera/linear/linear_view.h"
+#include "camera/linear/perspective.h"
+#include "camera/model/film_mesh.h"
+#include "camera/model/models.h"
 
 namespace trilens {
 namespace {

@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 
-#include "base/camera_description.h"
-#include "base/linear_camera.h"
-#include "base/ray_mesh.h"
-#include "camera/camera_model.h"
-#include "camera/film_axes.h"
+#include "base/description/camera_description.h"
+#include "base/raymesh/linear_camera.h"
+#include "base/raymesh/ray_mesh.h"
+#include "camera/model/camera_model.h"
+#include "camera/model/film_axes.h"
 
 namespace trilens {
 

@@ -1,7 +1,7 @@
 #include "camera/facet_kinds.h"
 
-#include "base/check_data.h"
-#include "base/error.h"
+#include "base/raymesh/check_data.h"
+#include "base/util/error.h"
 
 namespace trilens {
 

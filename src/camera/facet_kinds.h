@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <optional>
 
-#include "base/ray_mesh.h"
+#include "base/raymesh/ray_mesh.h"
 #include "camera/camera.h"
-#include "camera/general_linear.h"
+#include "camera/model/general_linear.h"
 
 namespace trilens {
 

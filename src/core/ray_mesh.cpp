@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "base/check_data.h"
-#include "base/error.h"
-#include "base/format.h"
-#include "base/rasterize.h"
+#include "base/raymesh/check_data.h"
+#include "base/raymesh/rasterize.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
 #include "projector/projector.h"
 #include "reflect/reflection.h"
 #include "refract/refraction.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "image/png_chunk.h"
 
 namespace trilens {

@@ -18,9 +18,9 @@
 #include <fstream>
 #include <new>
 
-#include "base/error.h"
-#include "base/file_bytes.h"
-#include "base/parallel.h"
+#include "base/files/file_bytes.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "image/exr_channels.h"
 #include "image/exr_unzip.h"
 #include "image/library_reason.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/image.h"
+#include "base/image/image.h"
 
 namespace trilens {
 

@@ -3,8 +3,8 @@
 #include <set>
 #include <string_view>
 
-#include "base/error.h"
-#include "base/file_bytes.h"
+#include "base/files/file_bytes.h"
+#include "base/util/error.h"
 #include "image/exr_file.h"
 #include "image/image_io.h"
 

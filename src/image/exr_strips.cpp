@@ -11,9 +11,9 @@
 #include <set>
 #include <span>
 
-#include "base/check.h"
-#include "base/error.h"
-#include "base/parallel.h"
+#include "base/util/check.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "image/exr_chunk.h"
 #include "image/library_reason.h"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "image/exr_chunk.h"
 
 namespace trilens {

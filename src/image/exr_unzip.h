@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "base/image.h"
+#include "base/image/image.h"
 
 namespace trilens {
 

@@ -1,6 +1,6 @@
 // Images as whole OpenEXR files.
-#include "base/check.h"
-#include "base/new_file.h"
+#include "base/files/new_file.h"
+#include "base/util/check.h"
 #include "image/exr_strips.h"
 #include "image/image_io.h"
 

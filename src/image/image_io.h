@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/appearance.h"
-#include "base/image.h"
+#include "base/description/appearance.h"
+#include "base/image/image.h"
 
 namespace trilens {
 

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <limits>
 
-#include "base/check.h"
-#include "base/error.h"
-#include "base/file_bytes.h"
-#include "base/parallel.h"
+#include "base/files/file_bytes.h"
+#include "base/util/check.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "image/exr_file.h"
 #include "image/image_io.h"
 #include "image/picture_library.h"

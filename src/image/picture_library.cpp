@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <mutex>
 
-#include "base/error.h"
-#include "base/version.h"
+#include "base/util/error.h"
+#include "base/util/version.h"
 
 namespace trilens {
 namespace {

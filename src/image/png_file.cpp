@@ -9,8 +9,8 @@
 #include <new>
 #include <string_view>
 
-#include "base/error.h"
-#include "base/file_bytes.h"
+#include "base/files/file_bytes.h"
+#include "base/util/error.h"
 #include "image/png_chunk.h"
 #include "image/srgb.h"
 #include "image/zlib_stream.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/appearance.h"
+#include "base/description/appearance.h"
 
 namespace trilens {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
+#include "base/util/error.h"
 
 namespace trilens {
 namespace {

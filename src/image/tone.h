@@ -1,7 +1,7 @@
 // From the light of a scene to what a screen shows: exposure and a tone curve.
 #pragma once
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 

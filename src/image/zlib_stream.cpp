@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "base/check.h"
+#include "base/util/check.h"
 
 namespace trilens {
 namespace {

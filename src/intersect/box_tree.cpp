@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "base/check.h"
+#include "base/util/check.h"
 #include "intersect/box_tree_data.h"
 
 namespace trilens {

@@ -7,9 +7,9 @@
 #include <string>
 #include <type_traits>
 
-#include "base/box.h"
-#include "base/ids.h"
-#include "base/segments.h"
+#include "base/math/box.h"
+#include "base/raymesh/segments.h"
+#include "base/util/ids.h"
 
 namespace trilens {
 

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <string_view>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "intersect/tracer.h"
 
 namespace trilens {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "base/check.h"
-#include "base/parallel.h"
+#include "base/util/check.h"
+#include "base/util/parallel.h"
 #include "intersect/box_tree.h"
 #include "intersect/local_segments.h"
 #include "intersect/surface_newton.h"

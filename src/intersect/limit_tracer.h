@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "base/segments.h"
-#include "base/surface.h"
+#include "base/raymesh/segments.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens {
 

@@ -5,7 +5,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "intersect/local_segments.cpp"
 #include <hwy/foreach_target.h>
-#include "base/double_lanes-inl.h"
+#include "base/math/double_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens::segment_lanes {

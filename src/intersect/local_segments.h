@@ -1,8 +1,8 @@
 // Segments made ready for a tree in float, many side by side.
 #pragma once
 
-#include "base/box.h"
-#include "base/segments.h"
+#include "base/math/box.h"
+#include "base/raymesh/segments.h"
 
 namespace trilens {
 

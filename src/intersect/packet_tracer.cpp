@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "base/check.h"
-#include "base/parallel.h"
+#include "base/util/check.h"
+#include "base/util/parallel.h"
 #include "intersect/embree_device.h"
 
 namespace trilens {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 
 namespace trilens {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/box.h"
-#include "base/surface.h"
+#include "base/math/box.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens {
 

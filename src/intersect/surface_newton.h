@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens {
 

@@ -5,11 +5,11 @@
 #include <span>
 #include <string>
 
-#include "base/facet_samples.h"
-#include "base/ray_mesh.h"
-#include "base/sample_grid.h"
-#include "base/segments.h"
-#include "base/triangle_scene.h"
+#include "base/raymesh/facet_samples.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
+#include "base/raymesh/segments.h"
+#include "base/raymesh/triangle_scene.h"
 
 namespace trilens {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-#include "base/ray.h"
+#include "base/raymesh/ray.h"
 
 namespace trilens {
 

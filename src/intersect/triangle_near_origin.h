@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 

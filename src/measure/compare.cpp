@@ -8,12 +8,12 @@
 #include <sstream>
 #include <utility>
 
-#include "base/error.h"
-#include "base/parallel.h"
-#include "measure/comparable.h"
-#include "measure/flip.h"
-#include "measure/ssim.h"
-#include "measure/statistics.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
+#include "measure/common/comparable.h"
+#include "measure/common/statistics.h"
+#include "measure/pixel/flip.h"
+#include "measure/pixel/ssim.h"
 
 namespace trilens {
 namespace {

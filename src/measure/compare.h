@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/ids.h"
-#include "base/image.h"
+#include "base/image/image.h"
+#include "base/util/ids.h"
 
 namespace trilens {
 

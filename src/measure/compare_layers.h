@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "measure/displacement.h"
-#include "measure/seen.h"
+#include "measure/displacement/displacement.h"
+#include "measure/displacement/seen.h"
 
 namespace trilens {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "base/error.h"
-#include "measure/comparable.h"
+#include "base/util/error.h"
+#include "measure/common/comparable.h"
 #include "measure/compare.h"
 
 namespace trilens {

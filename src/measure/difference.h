@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "base/ids.h"
-#include "base/image.h"
-#include "measure/displacement.h"
+#include "base/image/image.h"
+#include "base/util/ids.h"
+#include "measure/displacement/displacement.h"
 
 namespace trilens {
 

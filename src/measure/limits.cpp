@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/error.h"
-#include "base/format.h"
-#include "base/nearest.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "base/util/nearest.h"
 
 namespace trilens {
 namespace {

@@ -12,9 +12,9 @@
 #include <optional>
 #include <string_view>
 
-#include "base/error.h"
-#include "base/file_bytes.h"
-#include "base/version.h"
+#include "base/files/file_bytes.h"
+#include "base/util/error.h"
+#include "base/util/version.h"
 #include "image/library_reason.h"
 #include "image/library_talk.h"
 #include "image/picture_library.h"

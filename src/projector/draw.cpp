@@ -4,13 +4,13 @@
 #include <bit>
 #include <memory>
 
-#include "base/check.h"
-#include "base/parallel.h"
-#include "projector/draw_blocks.h"
+#include "base/util/check.h"
+#include "base/util/parallel.h"
+#include "projector/blocks/draw_blocks.h"
 #include "projector/draw_options.h"
-#include "projector/kernel_state.h"
-#include "projector/prepared_scene.h"
-#include "projector/sample_blocks.h"
+#include "projector/exact/sample_blocks.h"
+#include "projector/kernel/kernel_state.h"
+#include "projector/scene/prepared_data.h"
 
 namespace trilens {
 namespace {

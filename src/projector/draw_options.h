@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "projector/kernel.h"
-#include "projector/projector.h"
-#include "projector/sample_tiles.h"
+#include "projector/kernel/kernel.h"
+#include "projector/scene/prepared_scene.h"
+#include "projector/tiles/sample_tiles.h"
 
 namespace trilens {
 

@@ -1,33 +1,15 @@
 // Draws a scene through a RayMesh: the exact engine.
 #pragma once
 
-#include <memory>
 #include <span>
 
-#include "base/facet_samples.h"
-#include "base/ray_mesh.h"
-#include "base/sample_grid.h"
-#include "base/triangle_scene.h"
-#include "base/visible.h"
+#include "base/raymesh/facet_samples.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
+#include "base/raymesh/visible.h"
+#include "projector/scene/prepared_scene.h"
 
 namespace trilens {
-
-/// A scene made ready for drawing: triangles in leaf order, and a tree over them.
-/// Holds a reference to nothing: the scene is copied into structure-of-arrays form. The scene's points are
-/// finite.
-class PreparedScene {
-  public:
-    explicit PreparedScene(const TriangleScene& scene);
-    ~PreparedScene();
-    PreparedScene(PreparedScene&&) noexcept;
-    PreparedScene& operator=(PreparedScene&&) noexcept;
-
-    struct Data;
-    const Data& data() const { return *data_; }
-
-  private:
-    std::unique_ptr<Data> data_;
-};
 
 /// For every sample that `owned` gives to a facet with rays and an area on the screen: the first triangle
 /// along the facet's interpolated ray (t >= 0), written to hits[sample]; other entries of `hits` are left

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/check.h"
-#include "base/error.h"
-#include "base/parallel.h"
+#include "base/util/check.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "image/image_io.h"
 
 namespace trilens {

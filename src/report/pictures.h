@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/image.h"
+#include "base/image/image.h"
 #include "report/colour_map.h"
 
 namespace trilens {

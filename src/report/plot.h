@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 #include "report/plot_drawing.h"
 
 namespace trilens {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 

@@ -4,14 +4,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/check_data.h"
-#include "base/error.h"
-#include "base/format.h"
-#include "scene/animation_keys.h"
-#include "scene/json_check.h"
-#include "scene/override.h"
-#include "scene/reading.h"
-#include "scene/resolved.h"
+#include "base/raymesh/check_data.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "scene/animation/animation_keys.h"
+#include "scene/json/json_check.h"
+#include "scene/load.h"
+#include "scene/read/override.h"
+#include "scene/read/reading.h"
+#include "scene/read/resolved.h"
 
 namespace trilens {
 namespace {

@@ -6,8 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "scene/load.h"
-#include "scene/scene.h"
+#include "scene/data/scene.h"
+#include "scene/data/scene_override.h"
+#include "scene/data/texture_reader.h"
 
 namespace trilens {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/check_scene.h"
+#include "scene/data/check_scene.h"
 
 namespace trilens {
 namespace {

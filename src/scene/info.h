@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/box.h"
-#include "scene/scene.h"
+#include "base/math/box.h"
+#include "scene/data/scene.h"
 
 namespace trilens {
 

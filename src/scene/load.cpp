@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <set>
 
-#include "scene/animation_keys.h"
-#include "scene/files.h"
-#include "scene/json_check.h"
-#include "scene/override.h"
-#include "scene/reading.h"
+#include "scene/animation/animation_keys.h"
+#include "scene/json/files.h"
+#include "scene/json/json_check.h"
+#include "scene/read/override.h"
+#include "scene/read/reading.h"
 
 namespace trilens {
 namespace {

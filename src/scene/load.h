@@ -1,31 +1,16 @@
 // Reads a scene file with everything it names into a Scene.
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 
-#include "scene/scene.h"
+#include "scene/data/scene.h"
+#include "scene/data/scene_override.h"
+#include "scene/data/texture_reader.h"
+#include "scene/json/schema.h"
 
 namespace trilens {
-
-/// How the scene room gets pixels without knowing the image room: returns a linear Rec.709 picture, or throws
-/// an InputError that names the file. `encoded` overloads read a picture held in memory (GLB).
-struct TextureReader {
-    std::function<std::shared_ptr<const Texture>(const std::string& file)> from_file;
-    std::function<std::shared_ptr<const Texture>(std::span<const unsigned char> encoded,
-                                                 const std::string& name)>
-        from_memory;
-};
-
-/// One `--set /json/pointer=VALUE`. VALUE is JSON; what does not parse as JSON is taken as a string.
-struct SceneOverride {
-    std::string pointer;
-    std::string value;
-    bool removes = false;  // takes what the pointer names away, whatever the value; later entries move up
-};
 
 /// Reads, checks and resolves a scene file. `overrides` are applied to the JSON before it is checked; a
 /// pointer that names nothing is an error, but missing keys that the schema knows are added, with the objects
@@ -47,8 +32,5 @@ struct SceneSource {
 /// The same from text in memory, as an image's header holds it: Scene::files lacks the scene file itself.
 Scene load_scene_text(const std::string& text, const SceneSource& source,
                       std::span<const SceneOverride> overrides, const TextureReader& textures);
-
-/// The JSON Schema (draft 7) of a scene file, as text.
-const char* scene_schema();
 
 }  // namespace trilens

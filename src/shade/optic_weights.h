@@ -2,7 +2,7 @@
 // engines.
 #pragma once
 
-#include "base/appearance.h"
+#include "base/description/appearance.h"
 
 namespace trilens {
 

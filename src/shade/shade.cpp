@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ray.h"
+#include "base/raymesh/ray.h"
 #include "shade/texture.h"
 
 namespace trilens {

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "base/appearance.h"
-#include "base/ray.h"
-#include "base/segments.h"
-#include "base/triangle_scene.h"
+#include "base/description/appearance.h"
+#include "base/raymesh/ray.h"
+#include "base/raymesh/segments.h"
+#include "base/raymesh/triangle_scene.h"
 
 namespace trilens {
 

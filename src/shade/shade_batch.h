@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "base/segments.h"
+#include "base/raymesh/segments.h"
 
 namespace trilens {
 

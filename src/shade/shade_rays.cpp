@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/check.h"
+#include "base/util/check.h"
 #include "shade/shade.h"
 #include "shade/shade_batch.h"
 #include "shade/texture.h"

@@ -1,7 +1,7 @@
 // Looking up pictures: bilinear, repeated or wrapped around the sphere of directions.
 #pragma once
 
-#include "base/appearance.h"
+#include "base/description/appearance.h"
 
 namespace trilens {
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "base/halve_points.h"
+#include "base/math/halve_points.h"
 #include "specular/point_packet.h"
 
 namespace trilens {

@@ -1,7 +1,7 @@
 // Interval tests of a cell: that it holds no image, or at most one (Krawczyk's operator).
 #pragma once
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 #include "specular/specular_law.h"
 #include "specular/specular_point.h"
 

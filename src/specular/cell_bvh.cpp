@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 
 namespace trilens {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 #include "specular/cell_bounds.h"
 
 namespace trilens {

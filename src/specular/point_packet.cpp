@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "base/check.h"
+#include "base/util/check.h"
 
 namespace trilens {
 namespace {

@@ -7,7 +7,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "specular/simd_bounds.cpp"
 #include <hwy/foreach_target.h>
-#include "base/double_lanes-inl.h"
+#include "base/math/double_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens::specular {

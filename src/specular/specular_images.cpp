@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/check.h"
+#include "base/util/check.h"
 #include "specular/specular_point.h"
 
 namespace trilens {

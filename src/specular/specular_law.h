@@ -1,7 +1,7 @@
 // The law of one reflection or refraction as Fermat's principle gives it.
 #pragma once
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 #include "specular/specular_point.h"
 
 namespace trilens {

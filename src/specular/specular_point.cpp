@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/check.h"
+#include "base/util/check.h"
 #include "specular/specular_law.h"
 
 namespace trilens {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "base/linear_camera.h"
-#include "base/surface.h"
+#include "base/raymesh/linear_camera.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens {
 

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <utility>
 
-#include "base/check.h"
+#include "base/util/check.h"
 #include "specular/batch_search.h"
 #include "specular/branch_and_bound.h"
 #include "specular/cell_bvh.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 #include "specular/specular_point.h"
 
 namespace trilens {

@@ -1,7 +1,7 @@
 // Counts the reflections in a whole sphere (Alhazen's problem) without a look at its cells.
 #pragma once
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 #include "specular/simd_bounds.h"
 
 namespace trilens {

@@ -8,7 +8,7 @@
 #include <set>
 #include <system_error>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "suite/render_test.h"
 
 namespace trilens {

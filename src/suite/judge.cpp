@@ -4,10 +4,10 @@
 #include <map>
 #include <utility>
 
-#include "base/error.h"
-#include "base/format.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "measure/common/fit.h"
 #include "measure/compare_layers.h"
-#include "measure/fit.h"
 #include "suite/layer_rules.h"
 
 namespace trilens {

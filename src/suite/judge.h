@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/image.h"
-#include "measure/common_channels.h"
+#include "base/image/image.h"
+#include "measure/common/common_channels.h"
 #include "suite/render_test.h"
 
 namespace trilens {

@@ -1,6 +1,6 @@
 #include "suite/junit.h"
 
-#include "base/format.h"
+#include "base/util/format.h"
 #include "report/text.h"
 
 namespace trilens {

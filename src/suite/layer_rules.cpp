@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "base/format.h"
+#include "base/util/format.h"
 
 namespace trilens {
 namespace {

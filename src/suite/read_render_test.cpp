@@ -6,10 +6,10 @@
 #include <set>
 #include <utility>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/format.h"
-#include "base/nearest.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "base/util/nearest.h"
 #include "suite/json.h"
 #include "suite/render_test.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "measure/compare.h"
-#include "measure/displacement.h"
+#include "measure/displacement/displacement.h"
 #include "measure/limits.h"
 
 namespace trilens {

@@ -6,8 +6,8 @@
 #include <system_error>
 #include <utility>
 
-#include "base/error.h"
-#include "base/stopwatch.h"
+#include "base/util/error.h"
+#include "base/util/stopwatch.h"
 #include "suite/judge.h"
 #include "suite/test_pictures.h"
 #include "suite/update_reference.h"

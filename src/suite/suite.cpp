@@ -8,11 +8,11 @@
 #include <optional>
 #include <utility>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/parallel.h"
-#include "base/run_on_threads.h"
-#include "base/stopwatch.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
+#include "base/util/run_on_threads.h"
+#include "base/util/stopwatch.h"
 #include "suite/find_tests.h"
 #include "suite/junit.h"
 #include "suite/run_test.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/image.h"
-#include "base/progress.h"
+#include "base/image/image.h"
+#include "base/util/progress.h"
 #include "suite/render_test.h"
 #include "suite/results.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/format.h"
+#include "base/util/format.h"
 #include "report/page.h"
 #include "report/text.h"
 #include "suite/judge.h"

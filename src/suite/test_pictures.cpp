@@ -4,7 +4,7 @@
 #include <functional>
 #include <limits>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "measure/compare_layers.h"
 #include "measure/difference.h"
 #include "report/text.h"

@@ -6,9 +6,9 @@
 #include <system_error>
 #include <utility>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/format.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
 #include "image/image_io.h"
 #include "suite/judge.h"
 

@@ -16,7 +16,7 @@
 
 #include "image/apng.h"
 #include "scene/animation.h"
-#include "scene/frame_numbers.h"
+#include "scene/animation/frame_numbers.h"
 
 namespace trilens {
 

@@ -2,17 +2,17 @@
 
 #include <algorithm>
 
-#include "base/check_data.h"
-#include "base/error.h"
-#include "base/parallel.h"
-#include "base/rasterize.h"
+#include "base/raymesh/check_data.h"
+#include "base/raymesh/rasterize.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "bench/times.h"
-#include "render/check_frame.h"
-#include "render/facet_engine.h"
-#include "render/frame.h"
-#include "render/sample_colour.h"
-#include "render/world.h"
-#include "scene/check_scene.h"
+#include "render/engines/facet_engine.h"
+#include "render/frame/check_frame.h"
+#include "render/frame/frame.h"
+#include "render/picture/sample_colour.h"
+#include "render/world/world.h"
+#include "scene/data/check_scene.h"
 #include "trilens/view_collector.h"
 
 namespace trilens {

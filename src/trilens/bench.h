@@ -9,10 +9,10 @@
 
 #include <string>
 
-#include "base/progress.h"
+#include "base/util/progress.h"
 #include "bench/measure.h"
-#include "render/request.h"
-#include "scene/scene.h"
+#include "render/frame/request.h"
+#include "scene/data/scene.h"
 
 namespace trilens {
 

@@ -13,4 +13,4 @@
 
 #include "camera/camera.h"
 #include "camera/facet_kinds.h"
-#include "camera/view_volume.h"
+#include "camera/linear/view_volume.h"

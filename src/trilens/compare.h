@@ -9,10 +9,10 @@
 //             std::printf("%s moved by %g px\n", layer.layer.c_str(), layer.displacement->summary->mean);
 #pragma once
 
-#include "measure/common_channels.h"
+#include "measure/common/common_channels.h"
+#include "measure/common/fit.h"
 #include "measure/compare.h"
 #include "measure/compare_layers.h"
 #include "measure/difference.h"
-#include "measure/fit.h"
 #include "measure/limits.h"
 #include "trilens/compare_inputs.h"

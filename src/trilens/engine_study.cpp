@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/check_output.h"
-#include "base/error.h"
-#include "base/files.h"
-#include "base/format.h"
-#include "base/stopwatch.h"
-#include "render/engine.h"
+#include "base/files/check_output.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "base/util/stopwatch.h"
+#include "render/engines/engine.h"
 #include "report/plot.h"
-#include "sweep/own_files.h"
+#include "sweep/store/own_files.h"
 #include "trilens/render.h"
 
 namespace trilens {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "projector/classic_params.h"
+#include "projector/classic/classic_params.h"
 #include "trilens/scene.h"
 #include "trilens/sweep.h"
 

@@ -1,8 +1,9 @@
 // What the library throws, how it says what it does, and how it is stopped.
 //
 // Every function of the public headers throws trilens::Error, or std::bad_alloc, and nothing else; none ends
-// the program over a caller's data. An index that a member takes is one that exists, as with a vector's [] (a face
-// of a Surface, a facet of a RayMesh's own members). "No answer" is no error: it is an empty optional or an empty list.
+// the program over a caller's data. An index that a member takes is one that exists, as with a vector's [] (a
+// face of a Surface, a facet of a RayMesh's own members). "No answer" is no error: it is an empty optional or
+// an empty list.
 //
 //     #include <trilens/scene.h>
 //     try {
@@ -12,5 +13,5 @@
 //     }
 #pragma once
 
-#include "base/error.h"
-#include "base/progress.h"
+#include "base/util/error.h"
+#include "base/util/progress.h"

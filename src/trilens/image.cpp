@@ -3,8 +3,8 @@
 #include <set>
 #include <utility>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "image/image_io.h"
 
 namespace trilens {

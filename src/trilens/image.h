@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/image.h"
+#include "base/image/image.h"
 #include "image/tone.h"
 
 namespace trilens {

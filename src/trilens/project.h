@@ -8,6 +8,6 @@
 //         std::printf("%s at %g, %g\n", trilens::path_name(image.path), image.pixel.x, image.pixel.y);
 #pragma once
 
-#include "render/project.h"
-#include "scene/points_file.h"
+#include "render/project/project.h"
+#include "scene/formats/points_file.h"
 #include "trilens/render.h"

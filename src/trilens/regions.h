@@ -5,4 +5,4 @@
 //     std::printf("%zu shapes\n", trilens::count_regions(image));
 #pragma once
 
-#include "measure/regions.h"
+#include "measure/pixel/regions.h"

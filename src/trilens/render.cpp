@@ -4,15 +4,15 @@
 #include <mutex>
 #include <optional>
 
-#include "base/error.h"
-#include "base/format.h"
-#include "base/new_file.h"
+#include "base/files/new_file.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
 #include "image/exr_strips.h"
-#include "render/check_frame.h"
-#include "render/frame.h"
-#include "render/picture.h"
-#include "scene/check_scene.h"
-#include "scene/scene_digest.h"
+#include "render/frame/check_frame.h"
+#include "render/frame/frame.h"
+#include "render/picture/picture.h"
+#include "scene/data/check_scene.h"
+#include "scene/data/scene_digest.h"
 #include "vector/drawing.h"
 
 namespace trilens {

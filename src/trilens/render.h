@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "render/explain.h"
-#include "render/kept_parts.h"
-#include "render/project.h"
-#include "render/request.h"
-#include "scene/scene.h"
+#include "base/util/progress.h"
+#include "render/frame/request.h"
+#include "render/picture/explain.h"
+#include "render/project/project.h"
+#include "render/world/kept_parts.h"
+#include "scene/data/scene.h"
 #include "vector/caustic.h"
 #include "vector/fold_curves.h"
 #include "vector/line_choice.h"

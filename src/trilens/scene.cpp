@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include "base/error.h"
-#include "base/nearest.h"
+#include "base/util/error.h"
+#include "base/util/nearest.h"
 #include "image/image_io.h"
-#include "scene/named_files.h"
+#include "scene/read/named_files.h"
 #include "trilens/animation.h"
 
 namespace trilens {

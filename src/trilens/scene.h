@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "scene/check_scene.h"
-#include "scene/examples.h"
+#include "scene/data/check_scene.h"
+#include "scene/data/scene.h"
+#include "scene/examples/examples.h"
 #include "scene/info.h"
 #include "scene/load.h"
-#include "scene/scene.h"
-#include "scene/set_resolution.h"
+#include "scene/read/set_resolution.h"
 
 namespace trilens {
 

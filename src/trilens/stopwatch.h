@@ -4,4 +4,4 @@
 //     std::printf("%g s\n", watch.seconds());
 #pragma once
 
-#include "base/stopwatch.h"
+#include "base/util/stopwatch.h"

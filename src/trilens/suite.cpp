@@ -6,9 +6,9 @@
 #include <system_error>
 #include <utility>
 
-#include "base/check_output.h"
-#include "base/error.h"
-#include "base/parallel.h"
+#include "base/files/check_output.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "suite/suite.h"
 #include "trilens/compare_inputs.h"
 #include "trilens/render.h"

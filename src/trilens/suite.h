@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/util/progress.h"
 #include "suite/find_tests.h"
 #include "suite/results.h"
 

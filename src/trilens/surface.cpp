@@ -1,7 +1,7 @@
 #include "trilens/surface.h"
 
-#include "base/error.h"
-#include "base/format.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {

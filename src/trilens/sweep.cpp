@@ -8,11 +8,11 @@
 #include <mutex>
 #include <system_error>
 
-#include "base/error.h"
-#include "base/format.h"
-#include "sweep/code_digest.h"
-#include "sweep/sweep.h"
-#include "sweep/sweep_file.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "sweep/plan/sweep_file.h"
+#include "sweep/run/sweep.h"
+#include "sweep/store/code_digest.h"
 #include "trilens/sweep_scenes.h"
 #include "trilens/sweep_subjects.h"
 #include "trilens/version.h"

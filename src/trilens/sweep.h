@@ -19,13 +19,13 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "sweep/axis.h"
-#include "sweep/farm_scripts.h"
-#include "sweep/gallery.h"
-#include "sweep/merge.h"
-#include "sweep/results.h"
-#include "sweep/summary_schema.h"
+#include "base/util/progress.h"
+#include "sweep/report/gallery.h"
+#include "sweep/run/farm_scripts.h"
+#include "sweep/run/merge.h"
+#include "sweep/store/axis.h"
+#include "sweep/store/results.h"
+#include "sweep/store/summary_schema.h"
 #include "trilens/scene.h"
 #include "trilens/sweep_axes.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "base/error.h"
-#include "base/nearest.h"
+#include "base/util/error.h"
+#include "base/util/nearest.h"
 
 namespace trilens {
 namespace {

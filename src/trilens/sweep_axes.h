@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "render/request.h"
-#include "sweep/axis.h"
+#include "render/frame/request.h"
+#include "sweep/store/axis.h"
 #include "trilens/scene.h"
 
 namespace trilens {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "base/error.h"
+#include "base/util/error.h"
 
 namespace trilens {
 namespace {

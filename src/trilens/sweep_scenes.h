@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sweep/results.h"
+#include "sweep/store/results.h"
 #include "trilens/sweep_subjects.h"
 
 namespace trilens {

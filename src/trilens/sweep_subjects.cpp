@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <set>
 
-#include "base/error.h"
-#include "base/hash.h"
-#include "base/stopwatch.h"
-#include "scene/scene_digest.h"
+#include "base/util/error.h"
+#include "base/util/hash.h"
+#include "base/util/stopwatch.h"
+#include "scene/data/scene_digest.h"
 
 namespace trilens {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sweep/results.h"
+#include "sweep/store/results.h"
 #include "trilens/render.h"
 #include "trilens/sweep_axes.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "image/image_io.h"
 #include "intersect/tracer.h"
 #include "surfaces/surfaces.h"

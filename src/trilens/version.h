@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/version.h"
+#include "base/util/version.h"
 
 namespace trilens {
 

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/facet_samples.h"
-#include "base/ray_mesh.h"
-#include "base/sample_grid.h"
+#include "base/raymesh/facet_samples.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
 #include "bench/measure.h"
 
 namespace trilens {

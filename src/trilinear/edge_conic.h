@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 

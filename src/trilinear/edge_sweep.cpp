@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/roots.h"
+#include "base/math/roots.h"
 #include "trilinear/coplanarity.h"
 #include "trilinear/scene_edge.h"
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "base/ray.h"
+#include "base/raymesh/ray.h"
 
 namespace trilens {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstddef>
 
-#include "base/ray.h"
-#include "base/ray_mesh.h"
+#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 
 namespace trilens {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/box.h"
-#include "base/check_data.h"
-#include "base/error.h"
-#include "base/parallel.h"
+#include "base/math/box.h"
+#include "base/raymesh/check_data.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 
 namespace trilens {
 namespace {

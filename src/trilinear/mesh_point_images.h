@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "base/ids.h"
-#include "base/ray_mesh.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/util/ids.h"
 #include "trilinear/beam.h"
 #include "trilinear/point_images.h"
 
@@ -39,7 +39,7 @@ class MeshPointImages {
     /// All images of a world point with t >= 0 inside their facet (borders: see point_images). An image on an
     /// edge or corner that facets share is listed once, with the smallest facet. Images behind the camera
     /// (screen w <= 0) are left out. Throws InputError for a point that is not finite or beyond
-    /// kLargestNumber (base/check_data.h).
+    /// kLargestNumber (base/raymesh/check_data.h).
     std::vector<MeshPointImage> images(const Vec3& point) const;
 
     /// The same for many points, in parallel.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/roots.h"
+#include "base/math/roots.h"
 
 namespace trilens {
 namespace {

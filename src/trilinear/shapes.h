@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "base/roots.h"
+#include "base/math/roots.h"
 #include "trilinear/scene_edge.h"
 
 namespace trilens {

@@ -1,7 +1,7 @@
 // Scene triangle tessellation (Vallance 2005, section 4.3).
 #include "trilinear/tessellate.h"
 
-#include "base/check.h"
+#include "base/util/check.h"
 
 namespace trilens {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "base/check_data.h"
-#include "base/error.h"
-#include "camera/ray_spread.h"
+#include "base/raymesh/check_data.h"
+#include "base/util/error.h"
+#include "camera/model/ray_spread.h"
 #include "vector/ray_slopes.h"
 
 namespace trilens {

@@ -4,14 +4,14 @@
 #include <array>
 #include <vector>
 
-#include "base/ray_mesh.h"
+#include "base/raymesh/ray_mesh.h"
 
 namespace trilens {
 
 /// One sheet of the caustic of a RayMesh's rays, world frame. Each ray touches the caustic at up to two
-/// places, the roots of the characteristic equation of the rays around it (camera/ray_spread.h); the first
-/// sheet is the one that follows the ray's start when its roots are counted on through infinity: it has the
-/// larger 1 / t.
+/// places, the roots of the characteristic equation of the rays around it (camera/model/ray_spread.h); the
+/// first sheet is the one that follows the ray's start when its roots are counted on through infinity: it has
+/// the larger 1 / t.
 struct CausticSheet {
     int sheet = 0;            // 0 or 1
     bool is_virtual = false;  // behind the rays' starts (t < 0): where their lines meet, not they themselves

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 
-#include "base/box.h"
-#include "base/facet_scene.h"
-#include "base/format.h"
-#include "base/rasterize.h"
+#include "base/math/box.h"
+#include "base/raymesh/facet_scene.h"
+#include "base/raymesh/rasterize.h"
+#include "base/util/format.h"
 #include "projector/projector.h"
-#include "render/facet_engine.h"
-#include "render/geometry.h"
+#include "render/engines/facet_engine.h"
+#include "render/world/geometry.h"
 
 namespace trilens {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/frame.h"
+#include "render/frame/frame.h"
 #include "vector/caustic.h"
 #include "vector/fold_curves.h"
 #include "vector/line_choice.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "base/triangle_scene.h"
+#include "base/raymesh/triangle_scene.h"
 
 namespace trilens {
 

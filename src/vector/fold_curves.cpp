@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "base/check_data.h"
-#include "base/error.h"
-#include "base/parallel.h"
+#include "base/raymesh/check_data.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "vector/ray_slopes.h"
 #include "vector/sample_lattice.h"
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "base/ray_mesh.h"
-#include "base/sample_grid.h"
-#include "base/triangle_scene.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
+#include "base/raymesh/triangle_scene.h"
 
 namespace trilens {
 

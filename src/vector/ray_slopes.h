@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/ray_mesh.h"
+#include "base/raymesh/ray_mesh.h"
 
 namespace trilens {
 

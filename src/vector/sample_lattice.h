@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "base/sample_grid.h"
+#include "base/raymesh/sample_grid.h"
 
 namespace trilens {
 

@@ -5,9 +5,9 @@
 #include <functional>
 #include <optional>
 
-#include "base/facet_samples.h"
-#include "base/facets_around.h"
-#include "base/parallel.h"
+#include "base/raymesh/facet_samples.h"
+#include "base/raymesh/facets_around.h"
+#include "base/util/parallel.h"
 #include "trilinear/clip.h"
 #include "trilinear/conic_arc.h"
 #include "trilinear/outline.h"

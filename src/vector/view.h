@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "base/ray_mesh.h"
-#include "base/sample_grid.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
 #include "vector/edges.h"
 
 namespace trilens {

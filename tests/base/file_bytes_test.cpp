@@ -1,5 +1,5 @@
 // Files that are written beside their name: what another process left there is in nobody's way.
-#include "base/file_bytes.h"
+#include "base/files/file_bytes.h"
 
 #include <unistd.h>
 
@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/new_file.h"
+#include "base/files/files.h"
+#include "base/files/new_file.h"
+#include "base/util/error.h"
 #include "support/test.h"
 
 using namespace trilens;

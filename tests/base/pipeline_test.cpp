@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <array>
 
-#include "base/rasterize.h"
-#include "base/row_cover.h"
-#include "base/side_of_edge.h"
+#include "base/math/side_of_edge.h"
+#include "base/raymesh/rasterize.h"
+#include "base/raymesh/row_cover.h"
 #include "projector/random_cases.h"
 #include "support/test.h"
 

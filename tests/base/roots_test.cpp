@@ -1,5 +1,5 @@
 // Laws of the real roots: none missed, none invented, residuals small, multiple roots counted.
-#include "base/roots.h"
+#include "base/math/roots.h"
 
 #include <algorithm>
 #include <cmath>

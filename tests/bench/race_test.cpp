@@ -1,8 +1,8 @@
 // A race gives times, ratios that fit them, and names what the two sides see differently.
 #include <algorithm>
 
-#include "base/error.h"
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
+#include "base/util/error.h"
 #include "bench/measure.h"
 #include "support/test.h"
 

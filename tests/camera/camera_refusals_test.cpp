@@ -2,7 +2,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "camera/camera.h"
 #include "support/test.h"
 

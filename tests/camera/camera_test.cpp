@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "camera/film_mesh.h"
-#include "camera/ray_spread.h"
-#include "support/draw.h"
+#include "camera/model/film_mesh.h"
+#include "camera/model/ray_spread.h"
 #include "every_camera.h"
+#include "support/draw.h"
 #include "support/test.h"
 
 using namespace trilens;

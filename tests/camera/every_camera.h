@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/camera_description.h"
+#include "base/description/camera_description.h"
 
 namespace trilens_test {
 

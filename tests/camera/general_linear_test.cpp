@@ -1,13 +1,13 @@
 // The kinds of general linear cameras: rays built as each kind is defined, and the criterion of Yu and
 // McMillan in their own coordinates as a second answer.
-#include "camera/general_linear.h"
+#include "camera/model/general_linear.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "camera/facet_kinds.h"
-#include "support/draw.h"
 #include "every_camera.h"
+#include "support/draw.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -1,7 +1,7 @@
 // Laws of linear cameras: projecting a point and following the film's ray back are inverse to one another.
-#include "camera/perspective.h"
+#include "camera/linear/perspective.h"
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "support/draw.h"
 #include "support/test.h"
 

@@ -1,12 +1,12 @@
 // Linear views in the standard terms against the textbook's canonical volumes, and clipping against division.
-#include "camera/view_volume.h"
+#include "camera/linear/view_volume.h"
 
 #include <array>
 #include <string>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "camera/camera.h"
-#include "camera/perspective.h"
+#include "camera/linear/perspective.h"
 #include "support/draw.h"
 #include "support/test.h"
 

@@ -5,7 +5,7 @@
 
 #include "camera/camera.h"
 #include "camera/facet_kinds.h"
-#include "camera/view_volume.h"
+#include "camera/linear/view_volume.h"
 #include "core/ray_mesh.h"
 #include "support/test.h"
 #include "trilinear/beam.h"

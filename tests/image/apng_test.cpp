@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "image/image_io.h"
 #include "support/test.h"
 

@@ -13,10 +13,10 @@
 #include <limits>
 #include <random>
 
-#include "base/error.h"
-#include "base/file_bytes.h"
-#include "base/files.h"
-#include "base/parallel.h"
+#include "base/files/file_bytes.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "image/exr_strips.h"
 #include "image/image_io.h"
 #include "support/test.h"

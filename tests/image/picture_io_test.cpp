@@ -6,7 +6,7 @@
 #include <iterator>
 #include <limits>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "image/image_io.h"
 #include "support/test.h"
 

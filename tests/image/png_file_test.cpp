@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "image/image_io.h"
 #include "image/picture_library.h"
 #include "support/test.h"

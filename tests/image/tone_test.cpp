@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "intersect/tracer.h"
 #include "random_scene.h"
 #include "support/test.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "random_scene.h"
 #include "support/test.h"
 #include "test_surfaces.h"

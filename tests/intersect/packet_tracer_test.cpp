@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "intersect/tracer.h"
 #include "random_scene.h"
 #include "support/test.h"
@@ -118,9 +118,10 @@ TEST_CASE("hits left in the packets' order are those written per sample") {
                 if (packets[p].sample[k] == kNone) continue;
                 const FloatHit& hit = hits[packets[p].sample[k]];
                 seen += hit.triangle != kNone;
-                different += hit.triangle != in_order[p].triangle[k] ||
-                             (hit.triangle != kNone && (hit.t != in_order[p].t[k] || hit.u != in_order[p].u[k] ||
-                                                        hit.v != in_order[p].v[k]));
+                different +=
+                    hit.triangle != in_order[p].triangle[k] ||
+                    (hit.triangle != kNone &&
+                     (hit.t != in_order[p].t[k] || hit.u != in_order[p].u[k] || hit.v != in_order[p].v[k]));
             }
         }
         CHECK(seen > 4000);

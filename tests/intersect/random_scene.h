@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <random>
 
-#include "base/ray.h"
-#include "base/triangle_scene.h"
+#include "base/raymesh/ray.h"
+#include "base/raymesh/triangle_scene.h"
 
 namespace trilens_test {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/check.h"
+#include "base/util/check.h"
 #include "intersect/limit_tracer.h"
 #include "intersect/local_segments.h"
 #include "intersect/tracer.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens_test {
 

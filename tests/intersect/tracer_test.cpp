@@ -7,7 +7,7 @@
 #include <limits>
 #include <memory>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "random_scene.h"
 #include "support/test.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/facet_engine.h"
+#include "render/engines/facet_engine.h"
 
 using namespace trilens;
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "render/world.h"
+#include "render/world/world.h"
 
 namespace trilens_test {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "support/test.h"
 #include "trilens/image.h"
 #include "trilens/render.h"

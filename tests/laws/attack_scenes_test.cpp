@@ -5,9 +5,9 @@
 
 #include "laws/hunt.h"
 #include "laws/worlds.h"
-#include "render/explain.h"
-#include "render/picture.h"
-#include "render/project.h"
+#include "render/picture/explain.h"
+#include "render/picture/picture.h"
+#include "render/project/project.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -8,10 +8,10 @@
 
 #include "camera/camera.h"
 #include "laws/worlds.h"
-#include "measure/displacement.h"
-#include "render/engine.h"
-#include "render/picture.h"
-#include "render/project.h"
+#include "measure/displacement/displacement.h"
+#include "render/engines/engine.h"
+#include "render/picture/picture.h"
+#include "render/project/project.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -216,7 +216,8 @@ TEST_CASE("an error that is asked for is kept before every camera, and most is p
         ++asked;
         CHECK(kept.p99 <= 0.25);
         CHECK(kept.p99 < 0.9 * loose.p99);
-        // Outlines are decided by the surface; in "several" the film folds where views fade into each other too.
+        // Outlines are decided by the surface; in "several" the film folds where views fade into each other
+        // too.
         CHECK(adaptive.traced_pixels < adaptive.optic_pixels / 3);
     }
     CHECK(asked >= 8);

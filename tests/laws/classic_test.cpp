@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "laws/worlds.h"
-#include "render/engine.h"
+#include "render/engines/engine.h"
 #include "support/test.h"
 
 using namespace trilens;

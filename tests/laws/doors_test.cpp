@@ -1,4 +1,5 @@
 // The shape of the program: every library has one door, and rooms see only what CMakeLists.txt says they see.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -44,6 +45,7 @@ std::vector<Include> includes_under(const std::string& folder) {
 
 struct Room {
     std::string folder;
+    std::vector<std::string> folders;  // inside of it, each of which may see those before
     std::set<std::string> sees;
 };
 
@@ -62,8 +64,10 @@ std::map<std::string, Room> rooms() {
         std::stringstream words((*it)[3].str());
         std::string word, section;
         while (words >> word) {
-            if (word == "SEES" || word == "DOORS")
+            if (word == "FOLDERS" || word == "SEES" || word == "DOORS")
                 section = word;
+            else if (section == "FOLDERS")
+                room.folders.push_back(word);
             else if (section == "SEES")
                 room.sees.insert(word);
         }
@@ -92,17 +96,19 @@ std::string room_of_include(const std::map<std::string, Room>& all, const std::s
 
 /// Prefix of an outside header -> the files that may include it.
 const std::map<std::string, std::set<std::string>> kDoors{
-    {"glm/", {"src/base/vec.h"}},
-    {"tbb/", {"src/base/parallel.cpp"}},
+    {"glm/", {"src/base/math/vec.h"}},
+    {"tbb/", {"src/base/util/parallel.cpp"}},
     {"hwy/",
-     {"src/base/double_lanes-inl.h", "src/projector/kernel", "src/measure/patch_batch.cpp",
-      "src/measure/weighted_sums.cpp", "src/measure/cell_descent.cpp", "src/specular/simd_bounds.cpp",
-      "src/specular/sphere_images.cpp", "src/shade/shade_batch.cpp", "src/intersect/local_segments.cpp"}},
+     {"src/base/math/double_lanes-inl.h", "src/projector/kernel", "src/measure/displacement/patch_batch.cpp",
+      "src/measure/common/weighted_sums.cpp", "src/measure/displacement/cell_descent.cpp",
+      "src/specular/simd_bounds.cpp", "src/specular/sphere_images.cpp", "src/shade/shade_batch.cpp",
+      "src/intersect/local_segments.cpp"}},
     {"oneapi/", {}},
     {"opensubdiv/", {"surfaces/"}},
     {"tiny_obj_loader.h", {}},
-    {"tiny_gltf.h", {"src/scene/gltf"}},
-    {"nlohmann/", {"src/scene/json.h", "src/suite/json.h", "src/sweep/json.h", "src/terminal/json.h"}},
+    {"tiny_gltf.h", {"src/scene/formats/gltf"}},
+    {"nlohmann/",
+     {"src/scene/json/json.h", "src/suite/json.h", "src/sweep/store/json.h", "src/terminal/json.h"}},
     {"OpenImageIO/", {"src/pictures/"}},
     {"OpenEXR/", {"src/image/exr_"}},
     {"Imf", {"src/image/exr_"}},
@@ -111,7 +117,7 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"png.h", {"src/image/png_file.cpp"}},
     {"embree", {"src/intersect/"}},
     {"CLI/", {"src/terminal/parse.cpp"}},
-    {"fmt/", {"src/base/format.h", "src/terminal/format.h"}},
+    {"fmt/", {"src/base/util/format.h", "src/terminal/format.h"}},
     {"Imath/", {"src/image/"}},
 };
 
@@ -147,14 +153,14 @@ TEST_CASE("every outside library is included through its one door", "[laws]") {
 
 TEST_CASE("no header of ours brings an outside library with it, but for the vocabulary", "[laws]") {
     const std::set<std::string> vocabulary{
-        "src/base/vec.h",
-        "src/projector/kernel_lanes-inl.h",  // parts of the .cpp files that include them
-        "src/base/double_lanes-inl.h",
-        "src/base/format.h",
+        "src/base/math/vec.h",
+        "src/projector/kernel/kernel_lanes-inl.h",  // parts of the .cpp files that include them
+        "src/base/math/double_lanes-inl.h",
+        "src/base/util/format.h",
         "src/terminal/format.h",
-        "src/scene/json.h",
+        "src/scene/json/json.h",
         "src/suite/json.h",
-        "src/sweep/json.h",
+        "src/sweep/store/json.h",
         "src/terminal/json.h",
         "src/intersect/embree_device.h"};  // the last is the door's own, for that room's .cpp files
     for (const std::string& folder : kFolders) {
@@ -178,6 +184,33 @@ TEST_CASE("rooms include only rooms that they may see", "[laws]") {
             if (include.angled || room_of(all, include.file) != name) continue;
             INFO(include.file << " includes " << include.target);
             CHECK(room.sees.count(room_of_include(all, include.target)) == 1);
+            ++checked;
+        }
+    }
+    CHECK(checked > 100);
+}
+
+TEST_CASE("folders of a room include only those below them", "[laws]") {
+    const std::map<std::string, Room> all = rooms();
+    std::size_t checked = 0;
+    for (const auto& [name, room] : all) {
+        // How high a file of the room stands: its folder's number, or above all of them.
+        const auto height = [&, &room = room](const std::string& file) {
+            const std::string inside = file.substr(room.folder.size() + 1);
+            const std::size_t slash = inside.find('/');
+            if (slash == std::string::npos) return room.folders.size();
+            const auto found = std::find(room.folders.begin(), room.folders.end(), inside.substr(0, slash));
+            INFO(file << " lies in no folder that CMakeLists.txt names");
+            CHECK(found != room.folders.end());
+            return static_cast<std::size_t>(found - room.folders.begin());
+        };
+        for (const Include& include : includes_under(room.folder)) {
+            if (include.angled || room_of(all, include.file) != name) continue;
+            if (room_of_include(all, include.target) != name) continue;
+            const bool from_source =
+                fs::exists(fs::path(trilens_test::source_dir()) / "src" / include.target);
+            INFO(include.file << " includes " << include.target);
+            CHECK(height((from_source ? "src/" : "") + include.target) <= height(include.file));
             ++checked;
         }
     }

@@ -1,5 +1,5 @@
 // The bins of a grid's facets against a look at every facet.
-#include "render/facet_lookup.h"
+#include "render/frame/facet_lookup.h"
 
 #include <algorithm>
 #include <random>

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "laws/worlds.h"
-#include "render/picture.h"
+#include "render/picture/picture.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "laws/worlds.h"
-#include "measure/displacement.h"
-#include "render/frame.h"
-#include "render/picture.h"
+#include "measure/displacement/displacement.h"
+#include "render/frame/frame.h"
+#include "render/picture/picture.h"
 #include "support/test.h"
 
 using namespace trilens;

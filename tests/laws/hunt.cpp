@@ -9,8 +9,8 @@
 #include <map>
 #include <set>
 
-#include "render/engine.h"
-#include "render/world.h"
+#include "render/engines/engine.h"
+#include "render/world/world.h"
 #include "scene/load.h"
 
 using namespace trilens;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "render/request.h"
-#include "render/world.h"
+#include "render/frame/request.h"
+#include "render/world/world.h"
 
 namespace trilens_test {
 
@@ -25,8 +25,8 @@ struct Bag {
     std::size_t pixels = 0;            // of the film
     std::vector<std::string> missing;  // optics that the truth shows in kFew pixels or more, over any path,
                                        // and the projection in none
-    std::size_t tiny = 0;   // optics that the truth shows in fewer, and the projection in none
-    std::size_t other = 0;  // pixels of either whose path no pixel of the other within 1.5 has
+    std::size_t tiny = 0;              // optics that the truth shows in fewer, and the projection in none
+    std::size_t other = 0;             // pixels of either whose path no pixel of the other within 1.5 has
     std::size_t traced = 0, divided = 0;
     double seconds = 0, truth_seconds = 0;
 };

@@ -2,10 +2,10 @@
 #include <algorithm>
 
 #include "laws/worlds.h"
-#include "render/explain.h"
-#include "render/project.h"
-#include "render/sample_colour.h"
-#include "render/surroundings.h"
+#include "render/frame/surroundings.h"
+#include "render/picture/explain.h"
+#include "render/picture/sample_colour.h"
+#include "render/project/project.h"
 #include "scene/load.h"
 #include "shade/shade.h"
 #include "support/test.h"

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "measure/displacement.h"
+#include "measure/displacement/displacement.h"
 #include "measure/synthetic.h"
-#include "projector/kernel.h"
-#include "render/picture.h"
+#include "projector/kernel/kernel.h"
+#include "render/picture/picture.h"
 #include "specular/specular_search.h"
 #include "support/test.h"
 #include "surfaces/surfaces.h"

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <cstdio>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "laws/agreement.h"
 #include "laws/worlds.h"
-#include "paths/history_image.h"
-#include "render/facet_engine.h"
-#include "render/geometry.h"
-#include "render/path_images.h"
-#include "render/picture.h"
+#include "paths/trace/history_image.h"
+#include "render/engines/facet_engine.h"
+#include "render/picture/picture.h"
+#include "render/project/path_images.h"
+#include "render/world/geometry.h"
 #include "support/test.h"
 
 using namespace trilens;

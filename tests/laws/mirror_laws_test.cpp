@@ -5,12 +5,12 @@
 #include <random>
 #include <sstream>
 
-#include "camera/perspective.h"
+#include "camera/linear/perspective.h"
 #include "cli/command_line.h"
 #include "intersect/tracer.h"
 #include "laws/worlds.h"
-#include "render/engine.h"
-#include "render/project.h"
+#include "render/engines/engine.h"
+#include "render/project/project.h"
 #include "support/test.h"
 
 using namespace trilens;

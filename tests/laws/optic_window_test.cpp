@@ -1,9 +1,9 @@
 // Optics are drawn where on the film they can be seen and nowhere else: nothing of them is lost.
-#include "render/optic_window.h"
+#include "render/frame/optic_window.h"
 
 #include <cstring>
 
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
 #include "laws/worlds.h"
 #include "projector/projector.h"
 #include "support/test.h"

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "laws/worlds.h"
-#include "measure/displacement.h"
-#include "measure/folds.h"
-#include "render/picture.h"
+#include "measure/displacement/displacement.h"
+#include "measure/displacement/folds.h"
+#include "render/picture/picture.h"
 #include "support/test.h"
 
 using namespace trilens;

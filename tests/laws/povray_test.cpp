@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "laws/worlds.h"
-#include "render/limit_engine.h"
-#include "render/sample_colour.h"
+#include "render/engines/limit_engine.h"
+#include "render/picture/sample_colour.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -212,8 +212,7 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
             continue;
         }
         const double left_out = of_worst_colour(cut.faint) + of_worst_colour(cut.too_deep);
-        const double off =
-            std::max(0.0, apart(beauty(*world, views, p), other[p]) - left_out);
+        const double off = std::max(0.0, apart(beauty(*world, views, p), other[p]) - left_out);
         if (off <= same) {
             result.worst = std::max(result.worst, off);
             continue;
@@ -225,8 +224,8 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
             const double far = reach * (k / 8 + 1) / 3.0;
             const Vec2 by(far * std::cos(k * M_PI / 4), far * std::sin(k * M_PI / 4));
             SampleViews one;
-            make_limit_viewer(*world, shifted_rays(make_camera_rays(world->scene, 0), by))({x, y, x + 1, y + 1, 1},
-                                                                                      one);
+            make_limit_viewer(*world, shifted_rays(make_camera_rays(world->scene, 0), by))(
+                {x, y, x + 1, y + 1, 1}, one);
             explained = apart(beauty(*world, one, 0), other[p]) <= same + left_out;
         }
         if (explained) continue;

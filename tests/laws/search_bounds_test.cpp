@@ -3,9 +3,9 @@
 
 #include "image/image_io.h"
 #include "laws/worlds.h"
-#include "render/camera_rays.h"
-#include "render/facet_images.h"
-#include "render/project.h"
+#include "render/frame/camera_rays.h"
+#include "render/project/facet_images.h"
+#include "render/project/project.h"
 #include "scene/load.h"
 #include "specular/batch_search.h"
 #include "specular/cell_bvh.h"

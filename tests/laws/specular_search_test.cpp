@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "base/parallel.h"
-#include "camera/perspective.h"
+#include "base/util/parallel.h"
+#include "camera/linear/perspective.h"
 #include "laws/worlds.h"
 #include "support/test.h"
 #include "surfaces/surfaces.h"

@@ -4,9 +4,9 @@
 
 #include "laws/agreement.h"
 #include "laws/worlds.h"
-#include "render/engine.h"
-#include "render/project.h"
-#include "render/sample_colour.h"
+#include "render/engines/engine.h"
+#include "render/picture/sample_colour.h"
+#include "render/project/project.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -3,7 +3,7 @@
 
 #include "laws/agreement.h"
 #include "laws/worlds.h"
-#include "render/engine.h"
+#include "render/engines/engine.h"
 #include "support/test.h"
 
 using namespace trilens;

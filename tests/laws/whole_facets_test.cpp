@@ -5,7 +5,7 @@
 
 #include "laws/hunt.h"
 #include "laws/worlds.h"
-#include "render/picture.h"
+#include "render/picture/picture.h"
 #include "scene/load.h"
 #include "support/test.h"
 

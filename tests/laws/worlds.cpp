@@ -6,8 +6,8 @@
 #include <regex>
 #include <sstream>
 
-#include "base/box.h"
-#include "base/error.h"
+#include "base/math/box.h"
+#include "base/util/error.h"
 #include "image/image_io.h"
 #include "support/test.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/world.h"
+#include "render/world/world.h"
 #include "scene/load.h"
 
 namespace trilens_test {

@@ -1,5 +1,5 @@
 // The way down the pyramid for many points against a look at every cell.
-#include "measure/cell_descent.h"
+#include "measure/displacement/cell_descent.h"
 
 #include <algorithm>
 #include <cmath>

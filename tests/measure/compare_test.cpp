@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "measure/pictures.h"
 #include "support/test.h"
 

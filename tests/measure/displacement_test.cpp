@@ -1,5 +1,5 @@
 // Displacements of fields that are known exactly.
-#include "measure/displacement.h"
+#include "measure/displacement/displacement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
 

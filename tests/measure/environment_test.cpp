@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "measure/displacement.h"
+#include "measure/displacement/displacement.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
 

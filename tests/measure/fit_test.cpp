@@ -1,5 +1,5 @@
 // Power laws are found again.
-#include "measure/fit.h"
+#include "measure/common/fit.h"
 
 #include <cmath>
 #include <limits>
@@ -87,9 +87,10 @@ TEST_CASE("a plateau is left out where that is asked for", "[measure][fit]") {
     CHECK(fit_power_law(whole, options)->used == std::vector<bool>(4, true));
 }
 
-TEST_CASE("fit: Student's t is that of the tables, and the interval of an order covers it as often as it says") {
+TEST_CASE(
+    "fit: Student's t is that of the tables, and the interval of an order covers it as often as it says") {
     // Abramowitz and Stegun, table 26.10: 95 % and 99 %, both sides.
-    const std::vector<std::pair<int, double>> table = {{1, 12.706}, {2, 4.303}, {3, 3.182}, {4, 2.776},
+    const std::vector<std::pair<int, double>> table = {{1, 12.706}, {2, 4.303},  {3, 3.182},  {4, 2.776},
                                                        {5, 2.571},  {10, 2.228}, {30, 2.042}, {120, 1.980}};
     for (const auto& [degrees, t] : table) CHECK(student_t(degrees, 0.95) == Approx(t).margin(0.0006));
     CHECK(student_t(7, 0.99) == Approx(3.499).margin(0.0006));

@@ -1,6 +1,6 @@
 // FLIP in closed form where pictures are even, and its properties elsewhere; the Python tests hold a second
 // implementation against it.
-#include "measure/flip.h"
+#include "measure/pixel/flip.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "support/test.h"
 
 using namespace trilens;

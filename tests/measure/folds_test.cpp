@@ -1,11 +1,11 @@
 // Folds are found where a field turns over and nowhere else; off them a mean displacement falls with the
 // error's order.
-#include "measure/folds.h"
+#include "measure/displacement/folds.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "measure/displacement.h"
+#include "measure/displacement/displacement.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
 

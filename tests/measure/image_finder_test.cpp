@@ -1,15 +1,15 @@
 // The search against one that tries everything.
-#include "measure/image_finder.h"
+#include "measure/displacement/image_finder.h"
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
 
-#include "measure/likely_place.h"
+#include "measure/displacement/likely_place.h"
+#include "measure/displacement/sliver.h"
 #include "measure/plain_inversion.h"
 #include "measure/plain_patch.h"
-#include "measure/sliver.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <random>
 
-#include "measure/displacement.h"
+#include "measure/displacement/displacement.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
 

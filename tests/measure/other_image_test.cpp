@@ -1,5 +1,5 @@
 // A jump in a displacement field is another image of the point; a steep field is not.
-#include "measure/other_image.h"
+#include "measure/displacement/other_image.h"
 
 #include <cmath>
 

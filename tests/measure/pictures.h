@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/image.h"
+#include "base/image/image.h"
 #include "measure/compare.h"
 
 namespace trilens_test {

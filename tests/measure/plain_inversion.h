@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "measure/patch.h"
-#include "measure/patch_rules.h"
+#include "measure/displacement/patch.h"
+#include "measure/displacement/patch_rules.h"
 
 namespace trilens_test {
 

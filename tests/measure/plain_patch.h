@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "measure/patch.h"
+#include "measure/displacement/patch.h"
 
 namespace trilens_test::plain {
 

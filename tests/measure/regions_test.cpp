@@ -1,5 +1,5 @@
 // Regions of a picture against drawn shapes, and against labels that spread until nothing changes.
-#include "measure/regions.h"
+#include "measure/pixel/regions.h"
 
 #include <algorithm>
 #include <map>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -1,5 +1,5 @@
 // What is seen, and the difference to look at.
-#include "measure/seen.h"
+#include "measure/displacement/seen.h"
 
 #include <cmath>
 #include <string>

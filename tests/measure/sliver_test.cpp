@@ -1,11 +1,11 @@
 // Pieces one pixel wide: measured along the axis they have, else lost; never another image of the point.
-#include "measure/sliver.h"
+#include "measure/displacement/sliver.h"
 
 #include <cmath>
 #include <random>
 
-#include "measure/displacement.h"
-#include "measure/slope.h"
+#include "measure/displacement/displacement.h"
+#include "measure/displacement/slope.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
 

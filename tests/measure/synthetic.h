@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "base/image.h"
-#include "base/vec.h"
+#include "base/image/image.h"
+#include "base/math/vec.h"
 
 namespace trilens_test {
 

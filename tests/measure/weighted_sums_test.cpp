@@ -1,5 +1,5 @@
 // The sums of lanes against plain ones.
-#include "measure/weighted_sums.h"
+#include "measure/common/weighted_sums.h"
 
 #include <cmath>
 #include <cstring>

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "intersect/random_scene.h"
-#include "paths/beam.h"
+#include "paths/facets/beam.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -1,6 +1,6 @@
 // Rays that start inside of bodies: which bodies those are, and where the rays go, against concentric
 // spheres.
-#include "paths/bodies_around.h"
+#include "paths/trace/bodies_around.h"
 #include "intersect/random_scene.h"
 #include "paths/bodies.h"
 #include "paths/stage.h"

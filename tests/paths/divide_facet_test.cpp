@@ -1,11 +1,11 @@
 // A facet's parts: which paths are followed while it is divided, held against all of them.
-#include "paths/divide_facet.h"
+#include "paths/facets/divide_facet.h"
 
 #include <algorithm>
 #include <optional>
 
 #include "intersect/random_scene.h"
-#include "paths/same_histories.h"
+#include "paths/probe/same_histories.h"
 #include "paths/stage.h"
 #include "support/test.h"
 

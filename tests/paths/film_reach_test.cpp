@@ -1,5 +1,5 @@
 // Triangles that may reach the film, against all of their points.
-#include "paths/film_reach.h"
+#include "paths/facets/film_reach.h"
 #include "intersect/random_scene.h"
 #include "support/test.h"
 

@@ -1,6 +1,6 @@
 // Images over mirrors: against Alhazen's circle by bisection, against mirrored points, and derivatives
 // against differences.
-#include "paths/mirror_chain.h"
+#include "paths/nested/mirror_chain.h"
 
 #include <cmath>
 

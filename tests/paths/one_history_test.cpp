@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "intersect/random_scene.h"
-#include "paths/divide_facet.h"
-#include "paths/same_histories.h"
+#include "paths/facets/divide_facet.h"
+#include "paths/probe/same_histories.h"
 #include "paths/stage.h"
 #include "support/test.h"
 

@@ -1,5 +1,5 @@
 // Which layer is seen: the nearest over the chain that covers a place; and what is seen in that one.
-#include "paths/seen_layers.h"
+#include "paths/nested/seen_layers.h"
 
 #include "paths/stage.h"
 #include "support/test.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "intersect/test_surfaces.h"
-#include "paths/follow.h"
+#include "paths/trace/follow.h"
 #include "shade/optic_weights.h"
 #include "surfaces/surfaces.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "base/ray_mesh.h"
-#include "base/triangle_scene.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/triangle_scene.h"
 
 namespace trilens_test {
 

@@ -1,6 +1,6 @@
 // The projector sees what long double sees, triangle by triangle.
 #include "brute_force.h"
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
 #include "projector/projector.h"
 #include "random_cases.h"
 #include "support/test.h"

@@ -1,10 +1,10 @@
 // The tree holds every item once, below boxes that hold it, and is the same for any number of threads.
-#include "projector/bvh.h"
+#include "projector/scene/bvh.h"
 
 #include <limits>
 #include <random>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
 #include "projector/projector.h"
 #include "random_cases.h"
 #include "support/test.h"

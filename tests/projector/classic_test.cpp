@@ -1,13 +1,13 @@
 // Laws of the classic engine: the exact engine's picture within its tolerance, no gaps, no order of work.
-#include "projector/classic.h"
-#include "base/rasterize.h"
+#include "projector/classic/classic.h"
+#include "base/raymesh/rasterize.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "film_mesh.h"
-#include "projector/classic_fill.h"
+#include "projector/classic/classic_fill.h"
 #include "random_cases.h"
 #include "support/test.h"
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/parallel.h"
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
+#include "base/util/parallel.h"
 #include "film_mesh.h"
 #include "projector/draw_options.h"
 #include "projector/projector.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
 #include "film_mesh.h"
 #include "projector/draw_options.h"
 #include "projector/projector.h"

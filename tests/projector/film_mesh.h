@@ -1,8 +1,8 @@
 // Meshes of quads over a whole film.
 #pragma once
 
-#include "base/ray_mesh.h"
-#include "base/sample_grid.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
 
 namespace trilens_test {
 

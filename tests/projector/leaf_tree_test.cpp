@@ -1,10 +1,10 @@
 // The wide tree: every triangle in one leaf, inside every box above it; a leaf's floats are its corners.
-#include "projector/leaf_tree.h"
+#include "projector/scene/leaf_tree.h"
 
 #include <memory>
 
-#include "base/parallel.h"
-#include "projector/prepared_scene.h"
+#include "base/util/parallel.h"
+#include "projector/scene/prepared_data.h"
 #include "random_cases.h"
 #include "support/test.h"
 

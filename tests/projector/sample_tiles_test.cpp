@@ -1,10 +1,10 @@
 // Tiles, vectors and groups: every owned sample once, where the tables say it is.
-#include "projector/sample_tiles.h"
+#include "projector/tiles/sample_tiles.h"
 
 #include <algorithm>
 #include <map>
 
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
 #include "film_mesh.h"
 #include "random_cases.h"
 #include "support/test.h"

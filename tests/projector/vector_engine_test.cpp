@@ -2,12 +2,12 @@
 // in vectors of mixed facets, and with every instruction set.
 #include <algorithm>
 
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
 #include "engines_compared.h"
 #include "projector/draw_options.h"
-#include "projector/kernel.h"
-#include "projector/prepared_scene.h"
+#include "projector/kernel/kernel.h"
 #include "projector/projector.h"
+#include "projector/scene/prepared_data.h"
 #include "random_cases.h"
 #include "support/test.h"
 

@@ -1,8 +1,8 @@
 // No ray slips between triangles that share an edge or a corner.
 #include <array>
 
-#include "base/parallel.h"
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
+#include "base/util/parallel.h"
 #include "brute_force.h"
 #include "projector/draw_options.h"
 #include "projector/projector.h"

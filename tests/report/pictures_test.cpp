@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "image/image_io.h"
 #include "support/test.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/hash.h"
+#include "base/util/hash.h"
 #include "report/xml.h"
 #include "support/test.h"
 

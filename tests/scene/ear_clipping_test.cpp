@@ -5,8 +5,8 @@
 #include <random>
 #include <set>
 
-#include "scene/ear_clipping.h"
-#include "scene/polygons.h"
+#include "scene/data/ear_clipping.h"
+#include "scene/data/polygons.h"
 #include "scene_text.h"
 
 using namespace trilens;

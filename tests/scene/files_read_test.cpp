@@ -6,7 +6,7 @@
 #include <fstream>
 #include <map>
 
-#include "base/hash.h"
+#include "base/util/hash.h"
 #include "scene_text.h"
 
 using namespace trilens;

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "scene/examples.h"
+#include "scene/examples/examples.h"
 #include "scene_text.h"
 
 using namespace trilens;

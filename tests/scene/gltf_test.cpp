@@ -6,7 +6,7 @@
 #include <map>
 #include <random>
 
-#include "scene/gltf.h"
+#include "scene/formats/gltf.h"
 #include "scene_text.h"
 
 using namespace trilens;

@@ -8,7 +8,7 @@
 #endif
 #include <tiny_obj_loader.h>
 
-#include "scene/obj.h"
+#include "scene/formats/obj.h"
 #include "scene_text.h"
 
 using namespace trilens;

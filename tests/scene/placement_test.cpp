@@ -1,9 +1,9 @@
 // Transforms: what they do to points, normals, fronts and primitives.
 #include <random>
 
+#include "scene/data/polygons.h"
+#include "scene/data/transform.h"
 #include "scene/info.h"
-#include "scene/polygons.h"
-#include "scene/transform.h"
 #include "scene_text.h"
 
 using namespace trilens;

@@ -1,12 +1,12 @@
 // Points written as text.
-#include "scene/points_file.h"
+#include "scene/formats/points_file.h"
 
 #include <random>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "base/files.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
 #include "support/test.h"
 
 using namespace trilens;

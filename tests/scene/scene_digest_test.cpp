@@ -1,5 +1,5 @@
 // The digest of a scene changes with whatever a picture could depend on, and with nothing else.
-#include "scene/scene_digest.h"
+#include "scene/data/scene_digest.h"
 
 #include <functional>
 #include <set>

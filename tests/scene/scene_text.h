@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "scene/load.h"
 #include "support/test.h"
 

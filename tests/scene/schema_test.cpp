@@ -1,7 +1,7 @@
 // The printed schema and the loader agree, as an independent validator (valijson, draft 7) sees it.
 #include <random>
 
-#include "scene/examples.h"
+#include "scene/examples/examples.h"
 #include "scene_text.h"
 
 #if __has_include(<valijson/validator.hpp>)

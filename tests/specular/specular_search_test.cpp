@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "base/parallel.h"
-#include "camera/perspective.h"
+#include "base/util/parallel.h"
+#include "camera/linear/perspective.h"
 #include "support/closed_forms.h"
 #include "support/draw.h"
 #include "support/test.h"

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/error.h"
-#include "base/files.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
 #include "image/image_io.h"
 #include "suite/find_tests.h"
 #include "suite/junit.h"

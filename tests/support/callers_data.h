@@ -7,7 +7,7 @@
 #include <new>
 #include <string>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "support/test.h"
 
 namespace trilens_test {

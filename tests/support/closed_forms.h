@@ -5,7 +5,7 @@
 #include <complex>
 #include <vector>
 
-#include "camera/perspective.h"
+#include "camera/linear/perspective.h"
 #include "support/test_surfaces.h"
 
 namespace trilens_test {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "base/vec.h"
+#include "base/math/vec.h"
 
 namespace trilens_test {
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "base/surface.h"
+#include "base/raymesh/surface.h"
 
 namespace trilens_test {
 

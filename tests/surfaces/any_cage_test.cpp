@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "support/test.h"
 #include "surfaces/surfaces.h"
 #include "test_cages.h"

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <random>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "reference_subdivision.h"
 #include "support/test.h"
 #include "surfaces/surfaces.h"

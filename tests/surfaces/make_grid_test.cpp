@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "support/test.h"
 #include "surfaces/surfaces.h"
 #include "test_cages.h"

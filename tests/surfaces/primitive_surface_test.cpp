@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "support/test.h"
 #include "surfaces/surfaces.h"
 

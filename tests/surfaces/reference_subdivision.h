@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/cage.h"
+#include "base/description/cage.h"
 
 namespace trilens_test {
 

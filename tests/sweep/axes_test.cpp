@@ -9,19 +9,19 @@
 #include <string>
 #include <thread>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/hash.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
+#include "base/util/hash.h"
 #include "report/xml.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/fit_runs.h"
-#include "sweep/json.h"
-#include "sweep/machine.h"
-#include "sweep/memory_gate.h"
-#include "sweep/plot_groups.h"
-#include "sweep/sweep.h"
-#include "sweep/sweep_plots.h"
+#include "sweep/report/fit_runs.h"
+#include "sweep/report/plot_groups.h"
+#include "sweep/report/sweep_plots.h"
+#include "sweep/run/memory_gate.h"
+#include "sweep/run/sweep.h"
+#include "sweep/store/json.h"
+#include "sweep/store/machine.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;

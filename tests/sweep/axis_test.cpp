@@ -1,12 +1,12 @@
 // Axes: what --over means is read, all else is refused with its reason; the points that axes span.
-#include "sweep/axis.h"
+#include "sweep/store/axis.h"
 
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "support/test.h"
-#include "sweep/plan.h"
+#include "sweep/plan/plan.h"
 
 using namespace trilens;
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "base/image.h"
-#include "sweep/sweep.h"
+#include "base/image/image.h"
+#include "sweep/run/sweep.h"
 
 namespace trilens_test {
 

@@ -5,15 +5,15 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
-#include "base/files.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/farm_scripts.h"
-#include "sweep/json.h"
-#include "sweep/merge.h"
-#include "sweep/sweep.h"
-#include "sweep/sweep_file.h"
+#include "sweep/plan/sweep_file.h"
+#include "sweep/run/farm_scripts.h"
+#include "sweep/run/merge.h"
+#include "sweep/run/sweep.h"
+#include "sweep/store/json.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;

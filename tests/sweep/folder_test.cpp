@@ -17,14 +17,14 @@
 #include <thread>
 #include <vector>
 
-#include "base/error.h"
-#include "base/files.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/file_lock.h"
-#include "sweep/gallery.h"
-#include "sweep/sweep.h"
-#include "sweep/sweep_folder.h"
+#include "sweep/report/gallery.h"
+#include "sweep/run/sweep.h"
+#include "sweep/store/file_lock.h"
+#include "sweep/store/sweep_folder.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;

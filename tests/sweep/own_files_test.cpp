@@ -1,18 +1,18 @@
 // A sweep's folder may hold the files of others: they stay, whatever the sweep does.
-#include "sweep/own_files.h"
+#include "sweep/store/own_files.h"
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "base/files.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
 #include "report/html.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/report_runs.h"
-#include "sweep/sweep.h"
-#include "sweep/sweep_folder.h"
+#include "sweep/report/report_runs.h"
+#include "sweep/run/sweep.h"
+#include "sweep/store/sweep_folder.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;

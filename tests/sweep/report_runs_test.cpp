@@ -1,10 +1,10 @@
 // Pictures of a report that would make its page too large.
-#include "sweep/report_runs.h"
+#include "sweep/report/report_runs.h"
 
 #include <filesystem>
 
-#include "base/error.h"
-#include "base/files.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
 #include "fake_scene.h"
 #include "report/html.h"
 #include "support/test.h"

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "base/files.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/sweep.h"
+#include "sweep/run/sweep.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;

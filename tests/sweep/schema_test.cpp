@@ -1,12 +1,12 @@
 // summary.json is what its schema says, as an independent validator (valijson, draft 7) sees it.
 #include <string>
 
-#include "base/error.h"
-#include "base/files.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/summary_schema.h"
-#include "sweep/sweep.h"
+#include "sweep/run/sweep.h"
+#include "sweep/store/summary_schema.h"
 
 #if __has_include(<valijson/validator.hpp>)
 #include <nlohmann/json.hpp>

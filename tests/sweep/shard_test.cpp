@@ -1,11 +1,11 @@
 // --shard: what is meant is read, all else is refused; shards cover the plan.
-#include "sweep/shard.h"
+#include "sweep/plan/shard.h"
 
 #include <map>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "base/util/error.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -1,5 +1,5 @@
 // Sweeps find the order that was put in, write what the interface names, and fail run by run.
-#include "sweep/sweep.h"
+#include "sweep/run/sweep.h"
 
 #include <algorithm>
 #include <atomic>
@@ -11,17 +11,17 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "base/files.h"
-#include "base/hash.h"
+#include "base/files/files.h"
+#include "base/util/error.h"
+#include "base/util/hash.h"
 #include "image/image_io.h"
 #include "report/pictures.h"
 #include "report/text.h"
 #include "report/xml.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/fit_runs.h"
-#include "sweep/json.h"
+#include "sweep/report/fit_runs.h"
+#include "sweep/store/json.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/rasterize.h"
+#include "base/raymesh/rasterize.h"
 #include "core/ray_mesh.h"
 #include "support/test.h"
 #include "trilens/bench.h"

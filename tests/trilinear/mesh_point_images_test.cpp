@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/util/parallel.h"
 #include "random_facets.h"
 #include "support/test.h"
 

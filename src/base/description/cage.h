@@ -1,0 +1,46 @@
+// A control mesh, in the words of UsdGeomMesh, and the analytic primitives that may stand in its place.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/math/vec.h"
+#include "base/util/ids.h"
+
+namespace trilens {
+
+enum class SubdivisionScheme { kCatmullClark, kLoop, kBilinear };
+enum class InterpolateBoundary { kNothing, kEdgeOnly, kEdgeAndCorner };
+
+/// A polygon mesh with subdivision tags. As an object it is drawn as its polygons; as an optic it stands for
+/// its limit surface. Field names and meaning: UsdGeomMesh; a sharpness >= 10 is infinite.
+struct Cage {
+    std::vector<Vec3> points;
+    std::vector<int> face_vertex_counts;
+    std::vector<int> face_vertex_indices;
+    SubdivisionScheme scheme = SubdivisionScheme::kCatmullClark;
+    InterpolateBoundary interpolate_boundary = InterpolateBoundary::kEdgeAndCorner;
+    std::vector<int> crease_indices;         // chains of vertices, one after the other
+    std::vector<int> crease_lengths;         // vertices per chain
+    std::vector<double> crease_sharpnesses;  // one per chain, or one per edge of all chains
+    std::vector<int> corner_indices;
+    std::vector<double> corner_sharpnesses;
+    std::vector<int> hole_indices;  // faces that are not drawn
+};
+
+/// An optic given by a formula instead of a cage; world frame.
+struct Primitive {
+    enum class Type { kSphere, kParaboloid, kCylinder, kPlane };
+    Type type = Type::kSphere;
+    Vec3 center{0};  // sphere: centre; paraboloid: apex; cylinder and plane: middle
+    Vec3 axis{0, 1,
+              0};  // unit. paraboloid: from the apex towards the focus; cylinder: along it; plane: its normal
+    Vec3 tangent{
+        1, 0, 0};  // unit, at right angles to axis: where u begins (paraboloid, cylinder), the u side (plane)
+    double radius = 1;        // sphere, cylinder; paraboloid: radius of its rim
+    double focal_length = 1;  // paraboloid: apex to focus
+    double height = 2;        // cylinder: length along the axis
+    Vec2 size{2, 2};          // plane: lengths of its sides along tangent and axis x tangent
+};
+
+}  // namespace trilens

@@ -1,0 +1,130 @@
+// Gives each sample to the facet that covers it, by exact signs of homogeneous edge functions: asked for only
+// where rounding could matter.
+// Based on: Olano and Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, 1997.
+#include "base/raymesh/rasterize.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/math/side_of_edge.h"
+#include "base/raymesh/row_cover.h"
+#include "base/util/parallel.h"
+
+namespace trilens {
+namespace {
+
+/// Lines of samples [x0, x1) x [y0, y1) that a facet can cover, counted in samples from the window's corner.
+struct SampleWindow {
+    std::size_t x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+};
+
+/// The facet's bounding rectangle in samples, one sample wider on each side against rounding.
+SampleWindow window_of(const std::array<Vec3, 3>& corner, const SampleGrid& grid) {
+    const std::size_t columns = static_cast<std::size_t>(grid.width() * grid.side);
+    const std::size_t rows = static_cast<std::size_t>(grid.height() * grid.side);
+    Vec2 lo(INFINITY), hi(-INFINITY);
+    for (const Vec3& c : corner) {
+        if (!(c.z > 0)) return {0, columns, 0, rows};
+        lo = glm::min(lo, Vec2(c.x / c.z, c.y / c.z));
+        hi = glm::max(hi, Vec2(c.x / c.z, c.y / c.z));
+    }
+    const auto line = [&](double at, int start, std::size_t end) {
+        const double position = std::floor((at - start) * grid.side);
+        return static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(end)));
+    };
+    return {line(lo.x - 1.0 / grid.side, grid.x0, columns), line(hi.x + 2.0 / grid.side, grid.x0, columns),
+            line(lo.y - 1.0 / grid.side, grid.y0, rows), line(hi.y + 2.0 / grid.side, grid.y0, rows)};
+}
+
+struct ScreenFacet {
+    Id facet = 0;
+    std::array<Vec3, 3> corner{};
+    SampleWindow window;
+    int orientation = 0;  // sign of the determinant of the corners; 0: any, since all are in front
+    FacetEdges edges;
+};
+
+/// Whether the facet covers the sample: the edge functions have one sign, and the surface is in front there.
+bool covers(const ScreenFacet& facet, const Vec2& sample) {
+    std::array<Vec3, 3> local;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& c = facet.corner[k];
+        local[k] = {c.x - sample.x * c.z, c.y - sample.y * c.z, c.z};
+    }
+    const int first = side_of_edge(local[0], local[1]);
+    if (first == 0 || (facet.orientation != 0 && first != facet.orientation)) return false;
+    return side_of_edge(local[1], local[2]) == first && side_of_edge(local[2], local[0]) == first;
+}
+
+std::vector<ScreenFacet> facets_on_screen(const RayMesh& mesh, const SampleGrid& grid) {
+    std::vector<ScreenFacet> facets;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        if (!mesh.has_rays(f) || facet_weights(mesh, f).edge_on) continue;
+        std::array<Vec3, 3> corner;
+        bool all_in_front = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            corner[k] = mesh.screen[mesh.facets[f][k]];
+            all_in_front = all_in_front && corner[k].z > 0;
+        }
+        const SampleWindow window = window_of(corner, grid);
+        if (window.x0 >= window.x1 || window.y0 >= window.y1) continue;
+        // Where a corner lies behind the camera, the corners' determinant tells front from behind: it is the
+        // sum of the edge functions times the corners' depths.
+        const int orientation = all_in_front ? 0 : triple(corner[0], corner[1], corner[2]) > 0 ? 1 : -1;
+        facets.push_back(
+            {static_cast<Id>(f), corner, window, orientation, FacetEdges(corner, orientation, grid)});
+    }
+    return facets;
+}
+
+/// A row of samples: where each column's sample stands.
+struct SampleRow {
+    std::size_t side = 1, first = 0;
+
+    SampleRow(const SampleGrid& grid, std::size_t row) : side(static_cast<std::size_t>(grid.side)) {
+        first = (row / side * static_cast<std::size_t>(grid.width()) * side + row % side) * side;
+    }
+    std::size_t sample(std::size_t column) const {
+        return side == 1 ? first + column : first + column / side * side * side + column % side;
+    }
+};
+
+/// Rasterises rows of samples; facets ascend, so the first to claim a sample has the smallest index.
+void fill_rows(const std::vector<ScreenFacet>& facets, const SampleGrid& grid, std::vector<Id>& owner,
+               std::size_t first, std::size_t last) {
+    for (const ScreenFacet& facet : facets) {
+        const std::size_t end = std::min(last, facet.window.y1);
+        for (std::size_t row = std::max(first, facet.window.y0); row < end; ++row) {
+            const SampleRow samples(grid, row);
+            const RowCover cover = facet.edges.cover(row, facet.window.x0, facet.window.x1);
+            const auto ask = [&](std::size_t begin, std::size_t finish) {
+                for (std::size_t column = begin; column < finish; ++column) {
+                    const std::size_t sample = samples.sample(column);
+                    if (owner[sample] == kNone && covers(facet, grid.position(sample)))
+                        owner[sample] = facet.facet;
+                }
+            };
+            ask(cover.begin, cover.sure_begin);
+            for (std::size_t column = cover.sure_begin; column < cover.sure_end; ++column) {
+                Id& own = owner[samples.sample(column)];
+                if (own == kNone) own = facet.facet;
+            }
+            ask(cover.sure_end, cover.end);
+        }
+    }
+}
+
+}  // namespace
+
+FacetSamples rasterize_facets(const RayMesh& mesh, const SampleGrid& grid) {
+    std::vector<Id> owner(grid.size(), kNone);
+    const std::vector<ScreenFacet> facets = facets_on_screen(mesh, grid);
+    constexpr std::size_t kRowsTogether = 16;
+    parallel_for(static_cast<std::size_t>(grid.height() * grid.side), kRowsTogether,
+                 [&](std::size_t first, std::size_t last) { fill_rows(facets, grid, owner, first, last); });
+    return group_by_facet(owner, mesh.facets.size());
+}
+
+}  // namespace trilens

@@ -1,0 +1,56 @@
+// RayMesh: a triangle mesh on the screen whose corners carry rays. Everything that looks at the scene is one.
+#pragma once
+
+#include <vector>
+
+#include "base/raymesh/ray.h"
+#include "base/util/ids.h"
+
+namespace trilens {
+
+/// Facets with shared corners (Vallance 2005, chapter 2). `rays` and `screen` have one entry per corner.
+struct RayMesh {
+    std::vector<Ray> rays;     // world frame; directions are not unit
+    std::vector<Vec3> screen;  // homogeneous screen position (x w, y w, w), x and y in pixels from the film's
+                               // top left, w the depth along the view axis (1 for affine screens)
+    std::vector<IdTriple>
+        facets;  // corners; {kNone, kNone, kNone}: this facet has no rays (total internal reflection)
+
+    bool has_rays(std::size_t facet) const { return facets[facet][0] != kNone; }
+};
+
+/// The unnormalised weights e of one facet as functions of the screen: e(x, y) = weights_from_screen * (x, y,
+/// 1). The weights of the facet's corners are e / (e0 + e1 + e2); perspective-correct by construction
+/// (homogeneous rasterisation: Olano and Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates,
+/// 1997).
+struct FacetWeights {
+    Mat3 weights_from_screen{0};
+    bool edge_on = true;  // the facet has no area on the screen: no pixel sees it, the matrix is zero
+
+    Vec3 unnormalised(double x, double y) const { return weights_from_screen * Vec3(x, y, 1); }
+};
+
+/// Inverts the facet's screen matrix. The result is scaled so that e sums to a positive number of order 1
+/// in front of the camera. Works for corners behind the camera (w <= 0) too.
+FacetWeights facet_weights(const RayMesh& mesh, std::size_t facet);
+
+/// The facet's ray for weights that sum to 1: origin and direction interpolated linearly.
+inline Ray interpolated_ray(const RayMesh& mesh, std::size_t facet, const Vec3& weights) {
+    const IdTriple& corner = mesh.facets[facet];
+    Ray ray;
+    for (int k = 0; k < 3; ++k) {
+        const Ray& at_corner = mesh.rays[corner[static_cast<std::size_t>(k)]];
+        ray.origin += weights[k] * at_corner.origin;
+        ray.direction += weights[k] * at_corner.direction;
+    }
+    return ray;
+}
+
+/// The facet's ray through the screen position `at` (pixels from the film's top left). `weights`: the facet's
+/// own, not edge-on.
+inline Ray sample_ray(const RayMesh& mesh, std::size_t facet, const FacetWeights& weights, const Vec2& at) {
+    const Vec3 e = weights.unnormalised(at.x, at.y);
+    return interpolated_ray(mesh, facet, e / (e.x + e.y + e.z));
+}
+
+}  // namespace trilens

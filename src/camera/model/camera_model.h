@@ -1,0 +1,75 @@
+// A camera by its exact rays: which ray each place on the film has, and where a world point appears.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/raymesh/ray.h"
+
+namespace trilens {
+
+/// One image of a world point on a film.
+struct FilmImage {
+    Vec2 pixel{0};   // from the film's top left; may lie off the film
+    double t = 0;    // point = origin + t * direction of the exact ray there; negative: behind it
+    Vec3 origin{0};  // of that ray
+};
+
+/// A film in pixels.
+struct FilmSize {
+    double width = 1, height = 1;
+};
+
+/// A camera whose rays are not linear over the film. Thread-safe to read.
+///
+/// The film may show the world by several branches, each a one-to-one map from world points to film places
+/// that goes on smoothly beyond the part of the film that it owns (the views of a picture with several; the
+/// near and the far side of a sphere seen from all around). Most cameras have one.
+class CameraModel {
+  public:
+    virtual ~CameraModel() = default;
+
+    /// The exact ray of a place on the film, world frame, in pixels from its top left; the direction's
+    /// length is the unit of t (unit, or of unit depth along the view axis where there is one). None where
+    /// the camera has no ray. Defined a little beyond the film too, where the formula goes on.
+    virtual std::optional<Ray> ray(const Vec2& at) const = 0;
+
+    virtual std::size_t branch_count() const { return 1; }
+    /// Where the branch shows the point, or would, were the film larger. None where its formula has no place
+    /// for it (behind a pinhole).
+    virtual std::optional<FilmImage> place(const Vec3& point, std::size_t branch) const = 0;
+    /// All places at which the branch, or its smooth continuation, shows the point: several where its image
+    /// folds.
+    virtual std::vector<FilmImage> places(const Vec3& point, std::size_t branch) const {
+        const std::optional<FilmImage> one = place(point, branch);
+        return one ? std::vector<FilmImage>{*one} : std::vector<FilmImage>{};
+    }
+    /// Whether the branch is the one (or one of those) that the film shows there.
+    virtual bool shows(std::size_t /*branch*/, const Vec2& /*at*/) const { return true; }
+
+    /// Pixels in x after which the film shows the same again (a full turn of a panorama); 0: it does not.
+    virtual double period() const { return 0; }
+
+    /// The point through which all rays go, where there is one.
+    virtual std::optional<Vec3> eye() const { return std::nullopt; }
+
+    /// Places x, or y, in pixels inside the film where the rays or their derivatives jump: facets end there.
+    virtual std::vector<double> breaks_x() const { return {}; }
+    virtual std::vector<double> breaks_y() const { return {}; }
+
+    /// How many pixels in x one pixel's worth of angle fills there, where a whole row shows one direction
+    /// (the poles of a panorama); 1 elsewhere. Errors along x are counted in pixels' worth.
+    virtual double stretch(const Vec2& /*at*/) const { return 1; }
+
+    /// The nearest place that has a ray, for places outside of a film's part that has rays.
+    virtual Vec2 nearest_with_ray(const Vec2& at) const { return at; }
+
+    /// Where along its rays a camera's users look, in units of t; the film's error is judged there.
+    virtual double focus() const = 0;
+};
+
+/// All images of the point with t >= 0: those that the film of this size shows, by branch, and for a camera
+/// of one branch, where none is on the film, the one beyond it.
+std::vector<FilmImage> film_images(const CameraModel& model, const FilmSize& film, const Vec3& point);
+
+}  // namespace trilens

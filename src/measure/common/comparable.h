@@ -1,0 +1,39 @@
+// When two images may be compared at all, and which of their pixels are.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/image/image.h"
+#include "base/util/ids.h"
+
+namespace trilens {
+
+/// Throws InputError that names the first difference where the images differ in size, data window, channel
+/// names or channel types (float, id). The order of channels is free, and an older name (see seen_channel) is
+/// the same channel as the newer one. Also where a channel has not one value per pixel of the data window.
+void require_comparable(const Image& reference, const Image& test);
+
+/// Per pixel of the data window 1 where it takes part, else 0. Without `mask_object` all do; with it those
+/// whose optic.object is that id in either image, so that a silhouette that moved is not masked away. Throws
+/// InputError where there is no optic.object, or no such pixel: a comparison of nothing must not pass.
+std::vector<std::uint8_t> compared_pixels(const Image& reference, const Image& test,
+                                          std::optional<Id> mask_object);
+
+/// The channel `name`, which must hold floats (ids). Throws InputError.
+const std::vector<float>& float_channel(const Image& image, std::string_view name);
+const std::vector<Id>& id_channel(const Image& image, std::string_view name);
+
+/// "R" of layer "" is the beauty's R, of layer "reflect" it is "reflect.R".
+std::string channel_of(const std::string& layer, const std::string& name);
+
+/// What a layer's channel `name` of what is seen ("object", "primitive", "X", "Y", "Z", "length") is called
+/// in `image`: ids and places stand in layers of their own, "reflectID.object" and "reflectP.X"; where the
+/// image has no channel of that name, the older "reflect.object" and "reflect.X". Whether the image has the
+/// channel is the caller's question.
+std::string seen_channel(const Image& image, const std::string& layer, const std::string& name);
+
+}  // namespace trilens

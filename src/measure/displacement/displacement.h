@@ -1,0 +1,71 @@
+// Displacement: how many pixels a seen point lies from where the reference shows it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/image/image.h"
+#include "base/util/ids.h"
+#include "measure/common/statistics.h"
+
+namespace trilens {
+
+class ReferenceLayers;
+
+struct DisplacementOptions {
+    double radius = 64;             // pixels; what is seen farther away counts as lost
+    std::optional<Id> mask_object;  // as in CompareOptions
+};
+
+enum class Shift : std::uint8_t {
+    kNothing,  // the test sees nothing here, or the pixel is masked
+    kFound,
+    kLost,  // the reference does not show the point within the radius, or only another image of it, or only
+            // where it cannot say where (pieces too small to have a slope)
+};
+
+/// Statistics over the pixels that are kFound, and the vectors themselves, per pixel of the data window. What
+/// could not be measured is in no mean, so every mean is to be read with its losses, which are counted in
+/// both directions. At folds of the reference (folds.h) displacements fall more slowly than elsewhere: the
+/// mean off the folds shows the order of the surface alone.
+struct Displacement {
+    std::optional<Summary> summary;  // of the shifts' lengths, pixels; none where no pixel was found
+    std::size_t pixels = 0;          // found
+    std::size_t lost = 0;            // pixels of the test whose point the reference does not show
+    std::size_t beyond_radius = 0;   // those lost that the reference shows farther away than the radius
+    std::size_t missing = 0;         // pixels of the reference whose point the test does not show: what would
+                                     // be lost with the two images exchanged
+    std::optional<double> coverage;  // found pixels over the pixels that show the layer in either image,
+                                     // 0..1; none where neither shows it
+    std::optional<double> mean_off_folds;  // over the found pixels that are not near a fold of the reference
+    std::size_t near_folds = 0;            // found pixels that are
+    std::vector<Shift> state;
+    std::vector<float> shift_x, shift_y;  // from the test's pixel to the place in the reference, x right and
+                                          // y down; zero where not found
+};
+
+/// For every pixel of `test` that sees, in `layer` ("reflect", "refract"), a point q of an object: the vector
+/// to the nearest place where `reference` shows q, on the same object and through the same optic (of two
+/// places within a quarter of a pixel either may be taken). Where a pixel sees the environment, q is a
+/// direction, and the place is one where the reference sees the environment in that direction. Between the
+/// reference's pixel centres positions are interpolated: cubically where 4 x 4 neighbours are smooth, on q's
+/// own triangle where the images name triangles. Beyond a border of what the reference sees they are
+/// continued by up to one pixel, guided by the test where that sees on. Where what the reference sees at the
+/// pixel is one pixel wide, the shift is measured along that line alone. Exactly zero where both images agree
+/// to the last bit. For small displacements of smooth fields the error is a small share of the displacement,
+/// plus the rounding of float positions over their change from pixel to pixel; where a pixel holds much of
+/// the scene (the rim of a sphere) and the displacement is not small, it may reach some pixels. Nothing where
+/// the images have no such layer with places. Throws InputError where they cannot be compared.
+std::optional<Displacement> measure_displacement(const Image& reference, const Image& test,
+                                                 const std::string& layer,
+                                                 const DisplacementOptions& options = {});
+
+/// The same, for many tests of one reference.
+std::optional<Displacement> measure_displacement(const ReferenceLayers& reference, const Image& test,
+                                                 const std::string& layer,
+                                                 const DisplacementOptions& options = {});
+
+}  // namespace trilens

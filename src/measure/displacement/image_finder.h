@@ -1,0 +1,45 @@
+// Finds where a reference image shows what the pixels of another see, each nearest to its pixel.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/math/vec.h"
+#include "measure/displacement/cell_reach.h"
+#include "measure/displacement/field_index.h"
+#include "measure/displacement/seen_field.h"
+
+namespace trilens {
+
+/// Two fields of one size, each with its index, which must outlive it. Its search may be called by many
+/// threads.
+class ImageFinder {
+  public:
+    /// `test`: the field that points are looked for from; it guides the reference beyond its borders. `kept`:
+    /// where given, bounds that depend on the reference alone, one for each of its cells, for many finders.
+    ImageFinder(const FieldIndex& reference, const FieldIndex& test, LazyValues<CellReach>* kept = nullptr)
+        : reference_(reference), test_(test), kept_(kept), reaches_(reference.cell_count()) {}
+
+    /// For each point that `test` sees, the screen vector from its pixel to the nearest place where the
+    /// reference shows it; nothing where there is none. A place more than `reach` pixels away need not be
+    /// found. Pixels of the point's own triangle are preferred to others of its object. Where the reference
+    /// shows nearly the point at the pixel or next to it, but cannot say where, a place farther away than the
+    /// slopes there allow is another image of the point (a curved mirror may show it several times) and no
+    /// answer. Points of neighbouring pixels are found fastest together; an answer does not depend on which.
+    std::vector<std::optional<Vec2>> find(std::span<const SeenPoint> wanted, double reach) const;
+
+    /// The bounds of a cell of the reference, made when it is first asked for.
+    const CellReach& reach_of(int column, int row) const;
+
+    const FieldIndex& reference() const { return reference_; }
+    const FieldIndex& test() const { return test_; }
+
+  private:
+    const FieldIndex &reference_, &test_;
+    LazyValues<CellReach>* kept_;
+    mutable LazyValues<CellReach> reaches_;
+};
+
+}  // namespace trilens

@@ -1,0 +1,47 @@
+// Windows of colour pictures: where two differ, and a copy of what lies there.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "measure/pixel/flip.h"
+
+namespace trilens {
+
+/// Whether all three values of pixel i are finite.
+inline bool is_number(const ColourPicture& picture, std::size_t i) {
+    return std::isfinite(picture.r[i]) && std::isfinite(picture.g[i]) && std::isfinite(picture.b[i]);
+}
+
+/// Pixels x0 .. x1 - 1, y0 .. y1 - 1.
+struct PictureWindow {
+    int x0 = std::numeric_limits<int>::max(), y0 = x0, x1 = 0, y1 = 0;
+
+    bool is_empty() const { return x0 >= x1; }
+    bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+    /// By so many pixels to each side, as far as the picture reaches.
+    PictureWindow grown(int by, const ColourPicture& inside) const {
+        return {std::max(0, x0 - by), std::max(0, y0 - by), std::min(inside.width, x1 + by),
+                std::min(inside.height, y1 + by)};
+    }
+};
+
+/// The smallest window about all pixels in which two pictures of one size differ or are not finite.
+PictureWindow differing_window(const ColourPicture& one, const ColourPicture& other);
+
+/// A copy of a window of a picture.
+class CroppedPicture {
+  public:
+    CroppedPicture(const ColourPicture& whole, const PictureWindow& window);
+    ColourPicture picture() const { return {width_, height_, channels_[0], channels_[1], channels_[2]}; }
+
+  private:
+    int width_, height_;
+    std::array<std::vector<float>, 3> channels_;
+};
+
+}  // namespace trilens

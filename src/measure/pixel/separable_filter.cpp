@@ -1,0 +1,73 @@
+#include "measure/pixel/separable_filter.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+
+#include "base/util/check.h"
+#include "base/util/parallel.h"
+#include "measure/common/weighted_sums.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::size_t kRowsPerTask = 16;
+
+Plane same_size(const Plane& plane) {
+    return {plane.width, plane.height, std::vector<double>(plane.values.size(), 0.0)};
+}
+
+/// Calls body(y) for every row, on any thread.
+void for_rows(const Plane& plane, const std::function<void(int y)>& body) {
+    parallel_for(static_cast<std::size_t>(plane.height), kRowsPerTask,
+                 [&](std::size_t first, std::size_t last) {
+                     for (std::size_t y = first; y < last; ++y) body(static_cast<int>(y));
+                 });
+}
+
+const double* row_of(const Plane& plane, int y) {
+    return plane.values.data() + static_cast<std::ptrdiff_t>(y) * plane.width;
+}
+double* row_of(Plane& plane, int y) {
+    return plane.values.data() + static_cast<std::ptrdiff_t>(y) * plane.width;
+}
+
+std::size_t columns_of(const Plane& plane) {
+    return static_cast<std::size_t>(plane.width);
+}
+
+Plane filter_rows(const Plane& plane, const Kernel& kernel) {
+    const int reach = static_cast<int>(kernel.size() / 2);
+    Plane out = same_size(plane);
+    for_rows(plane, [&](int y) {
+        const double* row = row_of(plane, y);
+        std::vector<double> padded(static_cast<std::size_t>(plane.width + 2 * reach));
+        for (int x = -reach; x < plane.width + reach; ++x)
+            padded[static_cast<std::size_t>(x + reach)] = row[std::clamp(x, 0, plane.width - 1)];
+        std::vector<const double*> moved(kernel.size());
+        for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = padded.data() + k;
+        weighted_sums(kernel, moved, {row_of(out, y), columns_of(out)});
+    });
+    return out;
+}
+
+Plane filter_columns(const Plane& plane, const Kernel& kernel) {
+    const int reach = static_cast<int>(kernel.size() / 2);
+    Plane out = same_size(plane);
+    for_rows(plane, [&](int y) {
+        std::vector<const double*> rows(kernel.size());
+        for (int j = -reach; j <= reach; ++j)
+            rows[static_cast<std::size_t>(j + reach)] = row_of(plane, std::clamp(y + j, 0, plane.height - 1));
+        weighted_sums(kernel, rows, {row_of(out, y), columns_of(out)});
+    });
+    return out;
+}
+
+}  // namespace
+
+Plane filter_plane(const Plane& plane, const Kernel& along_rows, const Kernel& along_columns) {
+    TRILENS_CHECK(along_rows.size() % 2 == 1 && along_columns.size() % 2 == 1, "a kernel has a middle");
+    return filter_columns(filter_rows(plane, along_rows), along_columns);
+}
+
+}  // namespace trilens

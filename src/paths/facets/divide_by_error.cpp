@@ -1,0 +1,139 @@
+// Leaves divided until what they show is predicted to lie where the exact paths show it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <optional>
+
+#include "base/util/parallel.h"
+#include "paths/facets/facet_paths.h"
+#include "paths/facets/fit_nodes.h"
+#include "paths/facets/predict.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::size_t kLeavesPerTask = 16;
+constexpr double kSure = 4;  // an estimate this many times below the limit will do
+
+double largest(const Vec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+/// One point of a leaf, seen along one of its histories.
+struct LeafPoint {
+    const Looking& looking;
+    const PathNode& node;
+    Id facet = kNone;  // of the node's mesh
+    const Look& look;
+    std::optional<Look>& closer;  // the look with those beside it, once some history wanted them
+    std::size_t segment = 0;
+    const DivideParams& params;
+
+    double displacement(const Vec3& weights, const Ray& ray, const Hit& hit) const {
+        if (!params.estimates) return predicted_displacement({looking, look, segment, ray, hit});
+        const double estimate =
+            estimated_displacement({node.mesh, facet, weights, look.segments[segment].ray, hit});
+        if (estimate <= params.max_error / kSure) return estimate;
+        if (!closer) {
+            closer = look;  // others may look at the same
+            set_beside(looking, *closer);
+        }
+        return predicted_displacement({looking, *closer, segment, ray, hit});
+    }
+
+    double predicted(const Vec3& weights) const {
+        const PathSegment& exact = look.segments[segment];
+        const IdTriple& corner = node.mesh.facets[facet];
+        const Ray ray = interpolated_ray(node.mesh, facet, weights);
+        const Hit hit = params.objects->first_hit(ray);
+        if (!node.ends[facet]) {
+            double next = 0;
+            for (int k = 0; k < 3; ++k) next += weights[k] * node.next[corner[static_cast<std::size_t>(k)]];
+            if (!(hit.seen() && hit.t <= next)) return 0;
+        }
+        // What little light a side path carries counts for little.
+        const double light = exact.principal ? 1 : std::min(1.0, largest(exact.weight));
+        return light * displacement(weights, ray, hit);
+    }
+};
+
+}  // namespace
+
+/// The most at any point; some number above the limit where one is above it.
+double OpticPaths::predicted(const FittedLeaf& open) const {
+    const FacetPart& part = *open.part;
+    double most = 0;
+    std::array<std::optional<Look>, kInsideWeights.size()> closer_inside;
+    std::array<std::optional<Look>, 3> closer_corner;
+    for (std::size_t h = 0; h < part.histories.size() && !(most > params_.max_error); ++h) {
+        const PathNode& node = nodes_[part.node[h]];
+        const Id facet = part.node_facet[h];
+        const IdTriple& corners = node.mesh.facets[facet];
+        const auto look_at_point = [&](const Look& look, std::optional<Look>& closer,
+                                       const std::vector<std::size_t>& segment, Vec3 weights) {
+            if (segment.empty()) return;
+            for (std::size_t k = 0; k < 3; ++k)
+                weights[static_cast<int>(k)] *=
+                    part.corners[k].look->screen.z / node.mesh.screen[corners[k]].z;
+            const LeafPoint point{looking_, node, facet, look, closer, segment[h], params_};
+            most = std::max(most, point.predicted(weights / (weights.x + weights.y + weights.z)));
+        };
+        for (std::size_t i = 0; i < part.inside.size(); ++i)
+            look_at_point(*part.inside[i].at.look, closer_inside[i], part.inside[i].segment,
+                          kInsideWeights[i]);
+        if (!params_.fit) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+            Vec3 weights(0);
+            weights[static_cast<int>(k)] = 1;
+            look_at_point(*part.corners[k].look, closer_corner[k], part.segment[k], weights);
+        }
+    }
+    return most;
+}
+
+/// So many at a time, so that what was looked at for their parts takes little room.
+void OpticPaths::divide_by_error(std::span<const FittedLeaf> open) {
+    constexpr std::size_t kBatch = 1024;
+    if (std::isinf(params_.max_error)) return;
+    for (std::size_t first = 0; first < open.size(); first += kBatch) {
+        const auto batch = open.subspan(first, std::min(kBatch, open.size() - first));
+        divide_batch_by_error({batch.begin(), batch.end()});
+    }
+}
+
+void OpticPaths::divide_batch_by_error(std::vector<FittedLeaf> open) {
+    std::deque<std::vector<DividedFacet>> levels;  // what later parts point into
+    while (!open.empty()) {
+        std::vector<double> error(open.size());
+        std::vector<DividedFacet>& divided = levels.emplace_back(open.size());
+        parallel_for(open.size(), kLeavesPerTask, [&](std::size_t from, std::size_t to) {
+            for (std::size_t i = from; i < to; ++i) {
+                error[i] = predicted(open[i]);
+                if (error[i] > params_.max_error) divided[i] = divide_part(looking_, *open[i].part, params_);
+            }
+        });
+        set_kappas(divided);
+        std::vector<FittedLeaf> next;
+        for (std::size_t i = 0; i < open.size(); ++i) {
+            const FittedLeaf& leaf = open[i];
+            if (!(error[i] > params_.max_error)) {
+                if (!params_.estimates) leaves_[leaf.leaf].predicted = error[i];
+                continue;
+            }
+            for (std::size_t h = 0; h < leaf.part->node.size(); ++h)
+                nodes_[leaf.part->node[h]].mesh.facets[leaf.part->node_facet[h]] = {kNone, kNone, kNone};
+            --projected_count_;
+            const Id first_leaf = static_cast<Id>(leaves_.size());
+            append(leaves_[leaf.leaf].facet, leaf_cell_[leaf.leaf], divided[i]);
+            for (std::size_t p = 0; p < divided[i].parts.size(); ++p) {
+                if (divided[i].parts[p].method != LeafMethod::kProjected) continue;
+                next.push_back({static_cast<Id>(first_leaf + p), &divided[i].parts[p]});
+                if (params_.fit) fit_alone(next.back(), nodes_);
+            }
+        }
+        open = std::move(next);
+    }
+}
+
+}  // namespace trilens

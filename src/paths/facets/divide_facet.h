@@ -1,0 +1,94 @@
+// A facet divided until the rays at its corners tell the truth about those between them.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "paths/facets/facet_paths.h"
+
+namespace trilens {
+
+/// A corner of a part of a facet.
+struct PartCorner {
+    Id shared = kNone;  // a number that the facet's neighbours know it by; kNone: this facet's alone
+    Look* look = nullptr;
+    Vec3 chord{0};  // the point on the facet's plane, world
+};
+
+/// A point between the corners of a part that was looked at.
+struct PartInside {
+    PartCorner at;                     // never shared
+    std::vector<std::size_t> segment;  // per history: of the look's; empty where it is not seen
+};
+
+/// A leaf before it has a number.
+struct FacetPart {
+    std::uint8_t level = 0;
+    LeafMethod method = LeafMethod::kProjected;
+    bool layered = false;                // see PathLeaf
+    Vec3 centre{0};                      // of kTraced: homogeneous screen position
+    std::vector<PathSegment> histories;  // of kProjected: parents before children; empty: no rays
+    std::vector<Id> node;                // per history: of OpticPaths::nodes, once it has one
+    std::vector<Id> node_facet;          // per history: of the node's mesh
+    std::array<PartCorner, 3> corners;
+    std::array<std::vector<std::size_t>, 3> segment;  // per corner and history: of the corner's look; empty
+                                                      // for a corner that is turned away from the eye
+    LookSide side = LookSide::kFront;                 // the one that the facet shows
+    double reach = 0;  // how far the surface may be from the facet's plane: the facet's longest edge
+    std::vector<PartInside>
+        inside;  // of kProjected: the edges' middles, opposite to the corners, and the centre
+};
+
+/// The weights of FacetPart::inside.
+inline constexpr std::array<Vec3, 4> kInsideWeights{Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(0.5, 0.5, 0),
+                                                    Vec3(1.0 / 3)};
+
+/// A facet's parts as a tree: cells[0] is the facet.
+struct DividedFacet {
+    struct Cell {
+        Id children = kNone;  // the first of four
+        Id part = kNone;
+    };
+    std::vector<Cell> cells;
+    std::vector<FacetPart> parts;
+    std::deque<Look> looks;  // at points that are no corners of the grid
+    CutPaths cut;            // the most at any point
+};
+
+/// A facet to divide.
+struct FacetToDivide {
+    std::array<PartCorner, 3> corners;
+    LookSide side = LookSide::kFront;  // that it shows
+    double reach = 0;  // how far the surface may lie from the facet; 0: as far as the longest edge is long
+};
+
+/// Child k < 3 of a part keeps corner k of it, child 3 has the middles of its edges for corners, opposite to
+/// its corners. Weights of a part's corners become those of the child's.
+inline int child_of(const Vec3& weights) {
+    for (int k = 0; k < 3; ++k)
+        if (weights[k] > 0.5) return k;
+    return 3;
+}
+inline Vec3 child_weights(const Vec3& weights, int child) {
+    if (child == 3) return Vec3(1) - 2.0 * weights;
+    Vec3 of_child = 2.0 * weights;
+    of_child[child] -= 1;
+    return of_child;
+}
+
+/// Paths this much fainter than followed at the centre are followed elsewhere, so that one that is just above
+/// the limit at the centre is found there too.
+inline constexpr double kFainter = 1.0 / 8;
+
+DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, const DivideParams& params);
+
+/// A facet that is traced, no part of it looked at; by its corners' homogeneous screen positions.
+DividedFacet traced_facet(const std::array<Vec3, 3>& screen);
+
+/// A projected part divided in four, and on where their histories differ: cells[0] is the part, and has
+/// children. One that is too small is a traced part instead. What the part's corners point to must live as
+/// long as the result.
+DividedFacet divide_part(const Looking& looking, const FacetPart& part, const DivideParams& params);
+
+}  // namespace trilens

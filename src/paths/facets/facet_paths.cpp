@@ -1,0 +1,173 @@
+#include "paths/facets/facet_paths.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "base/util/parallel.h"
+#include "paths/facets/divide_facet.h"
+#include "paths/facets/film_reach.h"
+#include "paths/facets/fit_nodes.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::size_t kCornersPerTask = 64, kFacetsPerTask = 16;
+
+}  // namespace
+
+bool OpticPaths::shows_front(Id facet) const {
+    return !grid_ || faces_front(*grid_, grid_->facets[facet], incident_[grid_->facets[facet][0]]);
+}
+
+void OpticPaths::look_at_corners(std::span<const Id> facets) {
+    std::vector<Id> wanted;  // corner and side
+    for (const Id f : facets)
+        for (const Id corner : outline_.facets[f]) {
+            const Id key = 2 * corner + (shows_front(f) ? 1 : 0);
+            if (!corner_looks_[key]) wanted.push_back(key);
+        }
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    parallel_for(wanted.size(), kCornersPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const bool front = wanted[i] % 2 == 1;
+            const Id corner = wanted[i] / 2;
+            auto look = std::make_unique<Look>(look_at(looking_, places_[corner],
+                                                       {outline_.screen[corner], incident_[corner]},
+                                                       {.side = front ? LookSide::kFront : LookSide::kBack,
+                                                        .least_weight = kFainter * kLeastWeight}));
+            if (!params_.estimates) set_beside(looking_, *look);
+            corner_looks_[wanted[i]] = std::move(look);
+        }
+    });
+}
+
+/// At the corners of those parts alone that need it: see append_part.
+void OpticPaths::set_kappas(std::span<const DividedFacet> divided) const {
+    const auto is_later = [](const PathSegment& history) {
+        return history.parent != kNone || history.step.event != Event::kReflect;
+    };
+    std::vector<Look*> wanted;
+    for (const DividedFacet& facet : divided)
+        for (const FacetPart& part : facet.parts) {
+            if (std::none_of(part.histories.begin(), part.histories.end(), is_later)) continue;
+            for (const PartCorner& corner : part.corners)
+                if (corner.look->kappa.empty()) wanted.push_back(corner.look);
+        }
+    std::sort(wanted.begin(), wanted.end(), std::less<>());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    parallel_for(wanted.size(), kCornersPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) set_corner_kappa(looking_, *wanted[i]);
+    });
+}
+
+bool OpticPaths::on_film(Id facet) const {
+    const IdTriple& corner = outline_.facets[facet];
+    const std::array<Vec3, 3> screen{outline_.screen[corner[0]], outline_.screen[corner[1]],
+                                     outline_.screen[corner[2]]};
+    const bool has_image = std::all_of(screen.begin(), screen.end(), [](const Vec3& s) { return s.z != 0; });
+    return has_image && may_reach_film(screen, looking_.camera.film);
+}
+
+/// Those of `facets` that are not known, and those that are fitted with them; ascending.
+std::vector<Id> OpticPaths::wanted_facets(std::span<const Id> facets) {
+    std::vector<Id> fresh;
+    std::array<bool, 2> begins{};
+    for (const Id f : facets) {
+        if (prepared_[f]) continue;
+        fresh.push_back(f);
+        begins[shows_front(f) ? 1 : 0] = true;
+    }
+    if (params_.fit)
+        for (std::size_t side = 0; side < 2; ++side) {
+            if (!begins[side] || side_fitted_[side]) continue;
+            side_fitted_[side] = true;
+            for (Id f = 0; f < outline_.facets.size(); ++f)
+                if (shows_front(f) == (side == 1) && on_film(f)) fresh.push_back(f);
+        }
+    std::sort(fresh.begin(), fresh.end());
+    fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
+    return fresh;
+}
+
+/// Which facets' paths there is room for, by what the looks at some corners take: the same whatever is asked
+/// for first. A facet has four looks of its own and half a corner.
+void OpticPaths::keep_room() {
+    constexpr std::size_t kFew = 2048, kSample = 64;
+    if (!has_room_.empty()) return;
+    has_room_.assign(outline_.facets.size(), 1);
+    std::vector<Id> shown, sample;
+    for (Id f = 0; f < outline_.facets.size(); ++f)
+        if (on_film(f)) shown.push_back(f);
+    if (shown.size() <= kFew && params_.most_bytes >= DivideParams().most_bytes) return;
+    for (std::size_t i = 0; i < shown.size(); i += std::max<std::size_t>(1, shown.size() / kSample))
+        sample.push_back(shown[i]);
+    look_at_corners(sample);
+    double bytes = 0, looks = 0;
+    for (const Id f : sample)
+        for (const Id corner : outline_.facets[f]) {
+            const Look& look = *corner_looks_[2 * corner + (shows_front(f) ? 1 : 0)];
+            bytes += static_cast<double>(sizeof(Look) + look.segments.size() * sizeof(PathSegment));
+            looks += 1;
+        }
+    const double room = static_cast<double>(params_.most_bytes) * looks / std::max(1.0, 4.5 * bytes);
+    for (std::size_t i = 0; i < shown.size(); ++i) has_room_[shown[i]] = static_cast<double>(i) < room;
+    crowded_out_ = static_cast<std::size_t>(std::count(has_room_.begin(), has_room_.end(), 0));
+}
+
+void OpticPaths::prepare(std::span<const Id> facets) {
+    if (ends_first_) {
+        for (const Id f : facets) {
+            projected_count_ += !prepared_[f];
+            prepared_[f] = 1;
+        }
+        return;
+    }
+    keep_room();
+    const std::vector<Id> fresh = wanted_facets(facets);
+    std::vector<Id> projected;
+    std::copy_if(fresh.begin(), fresh.end(), std::back_inserter(projected),
+                 [&](Id f) { return has_room_[f]; });
+    look_at_corners(projected);
+
+    std::vector<DividedFacet> divided(fresh.size());
+    parallel_for(fresh.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            FacetToDivide facet;
+            const IdTriple& corners = outline_.facets[fresh[i]];
+            if (!has_room_[fresh[i]]) {
+                divided[i] = traced_facet(
+                    {outline_.screen[corners[0]], outline_.screen[corners[1]], outline_.screen[corners[2]]});
+                continue;
+            }
+            const bool front = shows_front(fresh[i]);
+            facet.side = !grid_ ? LookSide::kNearest : front ? LookSide::kFront : LookSide::kBack;
+            facet.reach = grid_ ? 0 : 2 * window_.reach;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Id key = 2 * corners[k] + (front ? 1 : 0);
+                facet.corners[k] = {key, corner_looks_[key].get(), places_[corners[k]].point};
+            }
+            divided[i] = divide_facet(looking_, facet, params_);
+        }
+    });
+    set_kappas(divided);
+    std::vector<FittedLeaf> whole, open;
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        prepared_[fresh[i]] = 1;
+        const Id first_leaf = static_cast<Id>(leaves_.size());
+        append(fresh[i], fresh[i], divided[i]);
+        for (std::size_t p = 0; p < divided[i].parts.size(); ++p) {
+            const FittedLeaf leaf{static_cast<Id>(first_leaf + p), &divided[i].parts[p]};
+            if (leaf.part->method != LeafMethod::kProjected) continue;
+            open.push_back(leaf);
+            if (leaf.part->level == 0)
+                whole.push_back(leaf);
+            else if (params_.fit)
+                fit_alone(leaf, nodes_);
+        }
+    }
+    if (params_.fit) fit_nodes(whole, nodes_);
+    divide_by_error(open);
+}
+
+}  // namespace trilens

@@ -1,0 +1,28 @@
+// A corner of a RayMesh as one history has it, made of what the camera's ray there comes to.
+#pragma once
+
+#include <limits>
+
+#include "paths/probe/look.h"
+
+namespace trilens {
+
+struct NodeCorner {
+    Ray ray;                                                // not unit
+    Vec3 screen{0};                                         // homogeneous
+    double next = std::numeric_limits<double>::infinity();  // t of the next optic; infinity: none
+    Vec3 weight{1};                                         // see PathSegment::weight
+};
+
+/// The first reflection: the mirrored ray as long as the eye ray, which keeps a flat mirror exact. Beyond the
+/// silhouette, where there is no segment (null), the mirror law goes on.
+NodeCorner first_reflection(const Look& look, const PathSegment* segment);
+
+/// How much farther the chord lies whose weights hold: after reflections alone the one seen in the mirrors,
+/// farther away by the way between them, so that flat mirrors stay exact; else 1.
+double farther(const Look& look, const PathSegment& segment, bool unfolds);
+
+/// A later segment's ray, as long as the eye ray times kappa and what `farther` says.
+NodeCorner later_corner(const Look& look, const PathSegment& segment, double kappa, bool unfolds);
+
+}  // namespace trilens

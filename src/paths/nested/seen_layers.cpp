@@ -1,0 +1,214 @@
+#include "paths/nested/seen_layers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "paths/nested/layer_images.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kLeastFacet = 0.25;  // pixels: images of smaller facets are left to tracing
+constexpr double kLeastArea = 64;     // square pixels of an image's bounds
+constexpr double kPlainArea = 2;      // square pixels: see DivideParams
+/// How far, in parts of a facet's size, an outline of chords may lie from the exact one.
+constexpr double kOutlineShare = 1.0 / 8;
+constexpr double kLeastOutline = 0.02;  // pixels
+
+Vec2 film_pixel(const Vec3& screen) {
+    return Vec2(screen.x, screen.y) / screen.z;
+}
+
+}  // namespace
+
+MirrorChain mirror_chain(const LayerStage& stage, std::span<const Id> chain) {
+    MirrorChain mirrors{stage.eye, {}};
+    for (const Id optic : chain)
+        mirrors.mirrors.push_back(
+            {stage.world.optics[optic].tracer, stage.optics[optic].surface, stage.optics[optic].own_normals});
+    return mirrors;
+}
+
+SeenLayers::SeenLayers(const LayerStage& stage, std::vector<Id> chain, std::vector<Vec3> towards)
+    : stage_(stage), chain_(std::move(chain)), towards_(std::move(towards)) {}
+
+SeenLayers::~SeenLayers() = default;
+
+void SeenLayers::build() {
+    if (built_) return;
+    built_ = true;
+    const MirrorChain mirrors = mirror_chain(stage_, chain_);
+    if (std::none_of(stage_.optics.begin(), stage_.optics.end(), [&](const LayerOptic& one) {
+            return static_cast<double>(one.grid->points.size()) <= room_;
+        }))
+        return;
+    const std::vector<ChainRay> starts = rays_over(mirrors, towards_);
+    for (Id optic = 0; optic < stage_.optics.size(); ++optic) {
+        const SurfaceGrid& grid = *stage_.optics[optic].grid;
+        if (optic == chain_.back() || static_cast<double>(grid.points.size()) > room_) continue;
+        auto images = grid_images(mirrors, starts, grid);
+        if (std::none_of(images.begin(), images.end(), [](const auto& one) { return one.has_value(); }))
+            continue;
+        auto layer = std::make_unique<SeenLayer>(stage_, chain_, optic, std::move(images));
+        if (layer->cover().area() < kLeastArea || layer->cover().facet_size() < kLeastFacet) continue;
+        layers_.push_back(std::move(layer));
+    }
+}
+
+std::optional<LayerThere> SeenLayers::at(const Vec2& pixel) const {
+    std::optional<LayerThere> best;
+    for (std::size_t l = 0; l < layers_.size(); ++l) {
+        const std::optional<CoveringFacet> facet = layers_[l]->cover().at(pixel);
+        if (facet && (!best || facet->depth < best->facet.depth)) best = {l, *facet};
+    }
+    return best;
+}
+
+bool SeenLayers::agree(const Vec2& pixel, Id next) const {
+    const auto shown = [&](const Vec2& at_pixel) {
+        const std::optional<LayerThere> there = at(at_pixel);
+        return there ? layers_[there->layer]->optic() : kNone;
+    };
+    const Id here = shown(pixel);
+    if (here == next) return true;
+    double reach = kLeastOutline;
+    for (const std::unique_ptr<SeenLayer>& layer : layers_)
+        if (layer->optic() == here || layer->optic() == next)
+            reach = std::max(reach, kOutlineShare * layer->cover().facet_size());
+    const double aslant = reach * 0.70710678;
+    for (const Vec2& by :
+         {Vec2(reach, 0), Vec2(-reach, 0), Vec2(0, reach), Vec2(0, -reach), Vec2(aslant, aslant),
+          Vec2(-aslant, aslant), Vec2(aslant, -aslant), Vec2(-aslant, -aslant)})
+        if (shown(pixel + by) == next) return true;
+    return false;
+}
+
+bool SeenLayers::may_cover(Id optic, const Vec2& low, const Vec2& high) const {
+    return std::any_of(layers_.begin(), layers_.end(), [&](const std::unique_ptr<SeenLayer>& layer) {
+        return layer->optic() == optic && layer->cover().may_cover(low, high);
+    });
+}
+
+SeenLayer::SeenLayer(const LayerStage& stage, std::vector<Id> chain, Id optic,
+                     std::vector<std::optional<ChainRay>> images)
+    : stage_(stage),
+      chain_(std::move(chain)),
+      optic_(optic),
+      mirrors_(mirror_chain(stage, chain_)),
+      world_(stage.world),
+      images_(std::move(images)) {
+    world_.max_depth -= static_cast<int>(chain_.size());
+    world_.reflect = world_.refract = true;
+    const SurfaceGrid& own = grid();
+    for (const Id p : own.corner_point)
+        views_.push_back(images_[p] ? view_of(*images_[p], own.points[p]) : CornerView{Vec3(0), Vec3(0)});
+
+    DivideParams divide = stage.divide;
+    divide.fit = stage.optics[optic].fit;
+    divide.plain_area = divide.fit ? 0 : kPlainArea;  // a fit looks inside all facets
+    if (world_.optics[optic].mirror && world_.max_depth > 0) {
+        std::vector<Id> longer = chain_;
+        longer.push_back(optic);
+        std::vector<Vec3> towards;
+        for (const std::optional<ChainRay>& image : images_)
+            if (image) towards.push_back(image->eye_direction);
+        deeper_ = std::make_unique<SeenLayers>(stage, std::move(longer), std::move(towards));
+        divide.layers_agree = [layers = deeper_.get()](const Vec2& pixel, Id next) {
+            return layers->agree(pixel, next);
+        };
+        divide.layer_covers = [layers = deeper_.get()](Id seen, const Vec2& low, const Vec2& high) {
+            return layers->may_cover(seen, low, high);
+        };
+    }
+    paths_ = std::make_unique<OpticPaths>(Looking{&world_, optic, stage.optics[optic].surface, make_camera()},
+                                          own, views_, divide);
+    cover_ = LayerCover(paths_->outline(), unfolded_facets());
+    if (deeper_) deeper_->set_room(cover_.area());
+}
+
+SeenLayer::~SeenLayer() = default;
+
+/// As long as the unfolded way times kappa; the depth that of the point seen in flat mirrors.
+CornerView SeenLayer::view_of(const ChainRay& ray, const Vec3& point) const {
+    const double whole = ray.way + dot(point - ray.ray.origin, ray.ray.direction);
+    return {(whole / ray.first_way) * stage_.camera.screen(ray.first),
+            whole * ray.kappa() * ray.ray.direction};
+}
+
+/// Facets whose image is turned as an odd or even number of mirrors turns it: no fold lies between.
+std::vector<char> SeenLayer::unfolded_facets() const {
+    const Vec3 origin = stage_.camera.screen(stage_.eye);
+    const double turned = triple(stage_.camera.screen(stage_.eye + Vec3(1, 0, 0)) - origin,
+                                 stage_.camera.screen(stage_.eye + Vec3(0, 1, 0)) - origin,
+                                 stage_.camera.screen(stage_.eye + Vec3(0, 0, 1)) - origin);
+    const SurfaceGrid& own = grid();
+    std::vector<char> unfolded(own.facets.size(), 0);
+    for (std::size_t f = 0; f < unfolded.size(); ++f) {
+        const IdTriple& corner = own.facets[f];
+        Vec3 incident(0);
+        for (const Id c : corner) incident += normalize_or_zero(views_[c].incident);
+        const double mirrored = chain_.size() % 2 == 1 ? -1 : 1;
+        const double facing = faces_front(own, corner, incident) ? -1 : 1;
+        unfolded[f] =
+            mirrored * facing * turned *
+                triple(views_[corner[0]].screen, views_[corner[1]].screen, views_[corner[2]].screen) >
+            0;
+    }
+    return unfolded;
+}
+
+const ChainRay* SeenLayer::nearest_image(const Vec3& point) const {
+    const ChainRay* nearest = nullptr;
+    double least = 0;
+    for (std::size_t p = 0; p < images_.size(); ++p) {
+        if (!images_[p]) continue;
+        const Vec3 off = grid().points[p] - point;
+        if (nearest && dot(off, off) >= least) continue;
+        nearest = &*images_[p];
+        least = dot(off, off);
+    }
+    return nearest;
+}
+
+PathCamera SeenLayer::make_camera() const {
+    PathCamera camera;
+    camera.film = stage_.camera.film;
+    camera.screen = [this](const Vec3& point) {
+        const ChainRay* near = nearest_image(point);
+        const auto image = near ? image_over(mirrors_, point, near->eye_direction) : std::nullopt;
+        return image ? view_of(*image, point).screen : Vec3(0);
+    };
+    camera.ray = [this](const Vec3& screen, const Vec3& chord) {
+        if (!(screen.z > 0)) return Ray{};
+        const Vec3 at = stage_.camera.point(Vec3(film_pixel(screen), 1));
+        const std::optional<ChainRay> over = chain_ray(mirrors_, at - stage_.eye);
+        if (!over) return Ray{};
+        const double far = dot(chord - over->ray.origin, over->ray.direction);
+        const double size = (over->way + far) * over->kappa();
+        return Ray{over->ray.origin + (far - size) * over->ray.direction, size * over->ray.direction};
+    };
+    return camera;
+}
+
+Incidence SeenLayer::arrival(const CoveringFacet& at) const {
+    const IdTriple& corner = grid().facets[at.facet];
+    Vec3 incident(0), normal(0);
+    for (int k = 0; k < 3; ++k) {
+        const Id c = corner[static_cast<std::size_t>(k)];
+        incident += at.weights[k] * views_[c].incident;
+        normal += at.weights[k] * grid().corner_normal[c];
+    }
+    const bool front = faces_front(grid(), corner, incident);
+    const Vec3 unit = normalize_or_zero(normal) * (front ? 1.0 : -1.0);
+    return {std::clamp(-dot(normalize_or_zero(incident), unit), 0.0, 1.0), front};
+}
+
+Vec3 SeenLayer::point(const CoveringFacet& at) const {
+    Vec3 sum(0);
+    for (int k = 0; k < 3; ++k)
+        sum += at.weights[k] *
+               grid().points[grid().corner_point[grid().facets[at.facet][static_cast<std::size_t>(k)]]];
+    return sum;
+}
+
+}  // namespace trilens

@@ -1,0 +1,124 @@
+// Optics seen in mirrors as layers by history: each one's own grid, imaged over the mirrors before it.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "paths/facets/facet_paths.h"
+#include "paths/nested/layer_cover.h"
+#include "paths/nested/mirror_chain.h"
+#include "shade/optic_weights.h"
+
+namespace trilens {
+
+/// An optic as a layer shows it; what is pointed to must live longer.
+struct LayerOptic {
+    const Surface* surface = nullptr;
+    const SurfaceGrid* grid = nullptr;
+    bool fit = false;         // its corner rays are fitted
+    bool own_normals = true;  // see ChainMirror
+};
+
+/// What all layers of one camera have in common.
+struct LayerStage {
+    PathWorld world;                 // whole
+    std::vector<LayerOptic> optics;  // as PathWorld::optics
+    PathCamera camera;               // perspective, in air
+    Vec3 eye{0};                     // its centre, world
+    DivideParams divide;             // of facets that a layer's corners do not tell the truth about
+};
+
+class SeenLayer;
+
+/// A layer at a place of the film.
+struct LayerThere {
+    std::size_t layer = 0;  // of SeenLayers::all
+    CoveringFacet facet;
+};
+
+/// The optics that are seen in the last mirror of a chain. A place of the film shows the one that covers it
+/// nearest, by the way over the chain.
+class SeenLayers {
+  public:
+    /// `chain`: the optics met, mirrors all. `towards`: directions of the eye that lead over it, to begin the
+    /// search for images from.
+    SeenLayers(const LayerStage& stage, std::vector<Id> chain, std::vector<Vec3> towards);
+    ~SeenLayers();
+
+    /// Works out which optics are layers; once. An optic is none where it has no image over the chain, or a
+    /// very small one.
+    void build();
+    /// How many pixels there are for them, before they are worked out: an optic whose grid has more points is
+    /// no layer, since to follow the pixels' own rays is less work.
+    void set_room(double pixels) { room_ = pixels; }
+
+    std::optional<LayerThere> at(const Vec2& pixel) const;
+
+    /// Whether a place where the exact path goes on to `next` (kNone: to no optic) shows that optic's layer,
+    /// but for how far the outlines of facets lie from the exact ones.
+    bool agree(const Vec2& pixel, Id next) const;
+
+    /// Whether an optic is a layer that covers something near this part of the film, in pixels.
+    bool may_cover(Id optic, const Vec2& low, const Vec2& high) const;
+
+    const std::vector<std::unique_ptr<SeenLayer>>& all() const { return layers_; }
+
+  private:
+    const LayerStage& stage_;
+    std::vector<Id> chain_;
+    std::vector<Vec3> towards_;
+    double room_ = std::numeric_limits<double>::infinity();
+    bool built_ = false;
+    std::vector<std::unique_ptr<SeenLayer>> layers_;
+};
+
+/// One optic seen over a chain of mirrors: the RayMeshes that leave it, as OpticPaths has them for an optic
+/// that the camera sees itself.
+class SeenLayer {
+  public:
+    /// `images`: per point of the optic's grid the eye's ray over the chain to it, where there is one.
+    SeenLayer(const LayerStage& stage, std::vector<Id> chain, Id optic,
+              std::vector<std::optional<ChainRay>> images);
+    ~SeenLayer();
+    SeenLayer(const SeenLayer&) = delete;
+    SeenLayer& operator=(const SeenLayer&) = delete;
+
+    Id optic() const { return optic_; }
+    const std::vector<Id>& chain() const { return chain_; }
+    const LayerCover& cover() const { return cover_; }
+    OpticPaths& paths() { return *paths_; }
+    /// What is seen in it; null where nothing is looked for: it is glass, or paths end there.
+    SeenLayers* deeper() { return deeper_.get(); }
+    const SurfaceGrid& grid() const { return *stage_.optics[optic_].grid; }
+    bool is_mirror() const { return stage_.world.optics[optic_].mirror; }
+    /// How the eye's ray arrives at a point of a facet: the side is the facet's own; the angle that of the
+    /// interpolated normal, grazing where it turned away.
+    Incidence arrival(const CoveringFacet& at) const;
+    /// The point of the facet, world.
+    Vec3 point(const CoveringFacet& at) const;
+
+  private:
+    PathCamera make_camera() const;
+    std::vector<char> unfolded_facets() const;
+    CornerView view_of(const ChainRay& ray, const Vec3& point) const;
+    const ChainRay* nearest_image(const Vec3& point) const;
+
+    const LayerStage& stage_;
+    std::vector<Id> chain_;
+    Id optic_ = kNone;
+    MirrorChain mirrors_;
+    PathWorld world_;  // paths from here on
+    std::vector<std::optional<ChainRay>> images_;
+    std::vector<CornerView> views_;  // per corner; w = 0: no image
+    std::unique_ptr<SeenLayers> deeper_;
+    std::unique_ptr<OpticPaths> paths_;
+    LayerCover cover_;
+};
+
+/// The chain's mirrors as rays meet them.
+MirrorChain mirror_chain(const LayerStage& stage, std::span<const Id> chain);
+
+}  // namespace trilens

@@ -1,0 +1,125 @@
+// What a camera's ray through one point of a facet comes to: the exact paths from there.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "base/raymesh/corner_view.h"
+#include "paths/trace/follow.h"
+
+namespace trilens {
+
+/// A camera as facets ask it.
+struct PathCamera {
+    bool parallel = false;  // its directions are unit, whatever they lead to
+    bool affine = false;    // it is not linear: screen positions are (x, y, 1), and `screen` is not asked
+    /// Homogeneous screen position of a world point, as RayMesh::screen.
+    std::function<Vec3(const Vec3& point)> screen;
+    /// The world point of a homogeneous screen position (w the depth): screen's inverse.
+    std::function<Vec3(const Vec3& screen)> point;
+    /// The camera's ray through a homogeneous screen position whose point on the facet is `chord`; unless
+    /// parallel, origin + direction lies at the chord's point or, for a camera that is not linear, near it.
+    std::function<Ray(const Vec3& screen, const Vec3& chord)> ray;
+    Vec2 film{0};  // its size in pixels; nothing off it is seen
+    /// Where its rays or their derivatives jump, in x and in y, in pixels: no facet stands for both sides.
+    std::array<std::vector<double>, 2> breaks = {};
+    /// The bodies that the camera's ray through a homogeneous screen position starts in. Unset: none, any.
+    std::function<Media(const Vec3& screen)> around = {};
+
+    Media media(const Vec3& at) const { return around ? around(at) : Media(); }
+};
+
+/// Who looks at which optic of what world; what is pointed to must live longer.
+struct Looking {
+    const PathWorld* world = nullptr;
+    Id optic = kNone;  // index into PathWorld::optics
+    const Surface* surface = nullptr;
+    PathCamera camera;
+};
+
+/// A place on a surface, with the normal that is taken there.
+struct Place {
+    Id face = kNone;
+    Vec2 uv{0};
+    Vec3 point{0};
+    Vec3 normal{0};  // unit
+};
+
+/// kSeen: there are paths. kTurned: the surface is turned away from the ray (a facet's corner behind the
+/// silhouette). kMissed: the camera's ray meets no surface there.
+enum class LookState : std::uint8_t { kSeen, kTurned, kMissed };
+
+/// The paths of a look once more, from a place a small step away on the surface; none where they have another
+/// history there.
+struct Beside {
+    Place place;
+    Vec3 incident{
+        0};        // the camera's ray there, as Look has it; where it is not linear, from the look's origin
+    Vec2 step{0};  // from the look's place on the film, pixels
+    std::vector<std::optional<PathSegment>> segments;
+};
+
+struct Look {
+    LookState state = LookState::kMissed;
+    Vec3 screen{0};     // homogeneous
+    Vec3 incident{0};   // the camera's ray to the point, not unit: the eye-to-point length
+    bool front = true;  // it looks at the surface's front
+    Media around;       // what the camera's ray starts in
+    Place place;
+    std::vector<PathSegment> segments;  // of kSeen
+    bool principal_only = false;        // of its paths none but the principal ones were followed
+    CutPaths cut;                       // of those that were
+    std::vector<Beside>
+        beside;  // two, where set_beside was asked: along u and along v, or where the camera is
+                 // not linear along the film's x and y; fewer where the surface ends; else none
+    std::vector<double> kappa;  // per segment; see set_kappa; 0: unknown
+};
+
+/// Which side of the surface is looked at. kNearest: the one that the ray meets first.
+enum class LookSide : std::uint8_t { kFront, kBack, kNearest };
+
+/// As a least weight: the principal paths alone are followed. follow_all() may follow the others later.
+inline constexpr double kPrincipalOnly = std::numeric_limits<double>::infinity();
+
+/// A side to look at, and how faint paths are followed.
+struct LookParams {
+    LookSide side = LookSide::kFront;
+    double least_weight = kLeastWeight;
+};
+
+/// The paths from a place that is known to lie on the surface, and which the camera sees so. Not for
+/// kNearest.
+Look look_at(const Looking& looking, const Place& place, const CornerView& view, const LookParams& params);
+/// The same where the camera is to be asked how it sees the place.
+Look look_at(const Looking& looking, const Place& place, const LookParams& params);
+
+/// The paths of the camera's ray through a facet's point `chord` (world) on the screen at `screen`: where it
+/// meets the surface within `reach` of that point (world units), on that side; kMissed where it does not.
+struct Chord {
+    Vec3 screen{0};
+    Vec3 point{0};
+    double reach = 0;
+};
+Look look_through(const Looking& looking, const Chord& chord, const LookParams& params);
+
+/// Follows all paths of a look of which the principal ones alone were followed, down to `least_weight`.
+void follow_all(const Looking& looking, Look& look, double least_weight);
+
+/// Follows the paths of a look once more from two places beside it.
+void set_beside(const Looking& looking, Look& look);
+
+/// Sets kappa of each segment: the cube root of the solid angle that a bundle of the camera's rays has before
+/// the first optic over that which it has on the segment, by differences of exact rays on the surface;
+/// solid angles near zero, of grazing bundles and of those that the optics make parallel, are softened by
+/// 0.15 (mathematics, section 6, softens the first alone). A corner ray is the better for being the eye
+/// length times kappa long: the directions' second derivatives then have no part along the direction.
+void set_kappa(const Looking& looking, Look& look);
+
+/// The same for a corner of the grid, whose kappa is 1 where nothing follows a first reflection: that needs
+/// none.
+void set_corner_kappa(const Looking& looking, Look& look);
+
+}  // namespace trilens

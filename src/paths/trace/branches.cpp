@@ -1,0 +1,135 @@
+// Snell and Fresnel between the media on both sides of an interface.
+#include <algorithm>
+#include <cmath>
+
+#include "paths/trace/path_world.h"
+#include "reflect/mirror.h"
+#include "refract/snell.h"
+#include "shade/fresnel.h"
+#include "shade/optic_weights.h"
+#include "shade/shade.h"
+
+namespace trilens {
+namespace {
+
+/// The part of `weight` in these colours.
+Vec3 masked(const Vec3& weight, Colours colours) {
+    if (colours == kAllColours) return weight;
+    Vec3 one(0);
+    one[colours] = weight[colours];
+    return one;
+}
+
+/// An interface with the media on its sides, for one ray that arrives.
+struct Interface {
+    const PathWorld& world;
+    const Meeting& at;
+    Media before, after;
+    Vec3 normal;  // on the ray's side
+
+    /// Two bodies of one material that touch or overlap have none.
+    GlassInterface glass() const {
+        return {felt_glass(world, before), felt_glass(world, after),
+                world.optics[at.optic].material->base_color_factor};
+    }
+    double eta(Colours colours) const { return eta_of(glass(), colours); }
+    bool disperses() const {
+        const auto [from, to, tint] = glass();
+        return (from && from->dispersion > 0) || (to && to->dispersion > 0);
+    }
+};
+
+/// How one colour parts at an interface.
+struct Parted {
+    double reflectance = 0;
+    double sine2 = 0;               // squared, of the angle of refraction
+    std::optional<Vec3> refracted;  // unit direction; none on total internal reflection
+};
+
+Parted part(const Interface& interface, Colours colours) {
+    const double eta = interface.eta(colours);
+    Parted parted;
+    parted.refracted = refracted(interface.at.incoming, interface.normal, eta);
+    const double cosine = -dot(interface.at.incoming, interface.normal);
+    parted.sine2 = eta * eta * std::max(0.0, 1 - cosine * cosine);
+    if (!parted.refracted)
+        parted.reflectance = 1;
+    else if (interface.world.fresnel)
+        parted.reflectance = fresnel_reflectance(std::clamp(cosine, 0.0, 1.0), eta);
+    return parted;
+}
+
+std::vector<Branch> glass_branches(const Interface& interface, Colours colours) {
+    const Meeting& at = interface.at;
+    const Vec3 tint = interface.world.optics[at.optic].material->base_color_factor;
+    std::vector<Branch> ways;
+    Vec3 reflectance(0), sine2(0);
+    const auto transmit = [&](const Parted& parted, Colours of) {
+        if (!parted.refracted) return;
+        ways.push_back({{at.optic, Event::kTransmit},
+                        *parted.refracted,
+                        masked((1 - parted.reflectance) * tint, of),
+                        interface.after,
+                        of,
+                        ways.empty(),
+                        Vec3(parted.sine2)});
+    };
+    if (colours == kAllColours && interface.disperses()) {
+        for (const Colours of : {Colours{1}, Colours{0}, Colours{2}}) {  // green leads
+            const Parted parted = part(interface, of);
+            reflectance[of] = parted.reflectance;
+            sine2[of] = parted.sine2;
+            transmit(parted, of);
+        }
+    } else {
+        const Parted parted = part(interface, colours);
+        reflectance = masked(Vec3(parted.reflectance), colours);
+        sine2 = Vec3(parted.sine2);
+        transmit(parted, colours);
+    }
+    if (reflectance != Vec3(0))
+        ways.push_back({{at.optic, Event::kReflect},
+                        mirrored(at.incoming, interface.normal),
+                        reflectance,
+                        interface.before,
+                        colours,
+                        ways.empty(),
+                        sine2});
+    return ways;
+}
+
+}  // namespace
+
+Vec3 body_transmittance(const PathWorld& world, Id body, double way) {
+    return body == kNone ? Vec3(1) : volume_transmittance(*world.optics[body].material, way);
+}
+
+std::vector<Branch> branches(const PathWorld& world, const Meeting& at, const Media& media, Colours colours) {
+    const PathOptic& optic = world.optics[at.optic];
+    const Vec3 normal = at.front ? at.normal : -at.normal;
+    if (optic.mirror) {
+        const double cosine = std::clamp(-dot(at.incoming, normal), 0.0, 1.0);
+        const Vec3 weight = optic_weights(*optic.material, {cosine, at.front}, world.fresnel).reflect;
+        return {{{at.optic, Event::kReflect},
+                 mirrored(at.incoming, normal),
+                 masked(weight, colours),
+                 media,
+                 colours,
+                 true}};
+    }
+
+    const std::optional<MediaSides> sides = sides_of(media, at.optic, at.front);
+    if (!sides) return {};
+    const Interface interface { world, at, sides->before, sides->after, normal };
+    const GlassInterface glass = interface.glass();
+    if (glass.before == glass.after)
+        return {{{at.optic, Event::kPass},
+                 at.incoming,
+                 masked(Vec3(1), colours),
+                 interface.after,
+                 colours,
+                 true}};
+    return glass_branches(interface, colours);
+}
+
+}  // namespace trilens

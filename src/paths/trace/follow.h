@@ -1,0 +1,116 @@
+// All paths of one ray over the exact optics: a tree of segments.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "paths/trace/path_world.h"
+
+namespace trilens {
+
+/// One straight stretch of a path: from an optic to what comes next.
+struct PathSegment {
+    Id parent = kNone;           // the segment before it; kNone: it leaves the first optic
+    Step step;                   // what happened where it starts
+    Path path = Path::kReflect;  // what happened at the first optic
+    bool principal = true;       // see PathEnd
+    Colours colours = kAllColours;
+    std::uint16_t depth = 0;  // optic hits after the first, its own start among them; passing through a
+                              // surface without an interface is none
+    Id medium = kNone;        // the optic in whose glass it runs; kNone: in air
+    Ray ray;                  // unit direction, from where it starts
+    double way = 0;           // length of the path from the eye to where it starts
+    Vec3 weight{1};           // of the light for all that happened behind the first optic up to its start
+    double next = std::numeric_limits<double>::infinity();  // distance to the next optic, or infinity
+    // Distance to an optic that lies on an object where it is met, or infinity; the object is what is seen
+    // there.
+    double rest = std::numeric_limits<double>::infinity();
+    bool front = true;   // its start was met from the front
+    Vec3 refraction{0};  // see Branch, at its start
+    double turned = 1;   // cosine of the angle between the ray that arrived at its start and the surface
+    Hit hit;             // where objects are asked for: the first before the next optic, t a distance
+    bool ends = true;    // it meets an object, or no other optic: nothing goes on from it
+};
+
+/// What follow_paths leaves out of each colour, as shares of its light, summed over paths: a path of one
+/// colour takes from that colour alone, so no share of one ray is above 1.
+struct CutPaths {
+    Vec3 faint{0};     // paths that carry less than FollowParams::least_weight
+    Vec3 too_deep{0};  // paths that would meet an optic after the last that is followed: they see past it
+    Vec3 lost{0};      // paths inside of more bodies at once than can be told
+    // The faint ones as a share of what leaves the first optic, of the first event where that is most.
+    Vec3 faint_behind{0};
+};
+
+/// The share of the colour that loses most.
+inline double of_worst_colour(const Vec3& share) {
+    return std::max({share.x, share.y, share.z});
+}
+
+/// Of each share the larger one, colour by colour.
+inline CutPaths most_cut(const CutPaths& a, const CutPaths& b) {
+    return {glm::max(a.faint, b.faint), glm::max(a.too_deep, b.too_deep), glm::max(a.lost, b.lost),
+            glm::max(a.faint_behind, b.faint_behind)};
+}
+
+/// Less of a sample's light than this is not followed: half a step of 8 bits.
+inline constexpr double kLeastWeight = 1.0 / 512;
+
+struct FollowParams {
+    const Tracer* objects = nullptr;     // what blocks the way; null: nothing does
+    double least_weight = kLeastWeight;  // the principal paths are followed whatever they carry
+};
+
+struct FollowedPaths {
+    std::vector<PathSegment> segments;  // parents before children
+    CutPaths cut;
+};
+
+/// Where paths begin.
+struct PathStart {
+    Meeting first;      // with an optic
+    double way = 0;     // from the eye to there
+    Media around = {};  // the bodies that the ray is inside of before it
+};
+
+/// Follows a ray from its first meeting with an optic. Segments of depth world.max_depth meet no further
+/// optic. Where an optic lies on one of world.objects, to NextOptic::touch, nothing goes on if objects are
+/// asked for; else, for what would follow tells rays apart, paths go on at two such places and end at the
+/// third.
+FollowedPaths follow_paths(const PathWorld& world, const PathStart& start, const FollowParams& params = {});
+
+/// The segments of `like` once more from another start nearby: ray, way, weight, medium, next, turned and
+/// refraction of each are set again; none where the path from there has another history. Nothing is cut and
+/// nothing blocks.
+std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, const PathStart& start,
+                                                     const std::vector<PathSegment>& like);
+
+/// What a ray meets first among the optics, from a place that may lie on one of them.
+struct NextOptic {
+    Meeting meeting;
+    double distance = 0;
+    double touch = 0;  // what is met this much farther away is met at the same place
+    SurfaceHit hit;
+};
+
+/// A ray that leaves an optic.
+struct LeavingRay {
+    Ray ray;          // unit direction
+    Id from = kNone;  // the optic, whose own start is left out; kNone: none
+    Media media{};    // where it runs
+};
+
+/// Among optics that are met at the same place the one with the least comes first: mirrors, then bodies that
+/// the ray comes into by their front, then those that it leaves.
+constexpr int turn_at_place(bool mirror, bool front) {
+    return mirror ? 0 : front ? 1 : 2;
+}
+
+/// Optics that touch, to 1e-9 of their sizes, are met one after the other, at no distance: mirrors first,
+/// then bodies that the ray comes into, then those that it leaves. So bodies that touch have no air between
+/// them, and light that comes through a body to a mirror on it is mirrored in the body.
+std::optional<NextOptic> next_optic(const PathWorld& world, const LeavingRay& leaving);
+
+}  // namespace trilens

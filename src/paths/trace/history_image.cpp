@@ -1,0 +1,148 @@
+// The ray's distance from the point, as a map from two film coordinates to two; its Jacobian by central
+// differences of exact rays.
+#include "paths/trace/history_image.h"
+
+#include <cmath>
+
+namespace trilens {
+namespace {
+
+constexpr double kPixelStep = 1e-3;     // pixels, for differences
+constexpr double kFarthest = 64;        // pixels that one step may go
+constexpr double kPixelsDone = 1e-10;   // pixels: a step below this ends the search
+constexpr double kMostResidual = 1e-7;  // of the distance to the point: more is no image
+constexpr int kMostWalks = 40, kMostShorter = 12;
+
+/// The path from one film position.
+struct Exit {
+    Ray ray;  // unit, after the last optic
+    std::vector<Vec3> corners;
+    double first_way = 0;
+    Vec3 weight{1};     // of light from where the last ray starts to the eye
+    Id medium = kNone;  // the body in whose glass the last ray runs; kNone: air
+};
+
+/// Of the light that leaves the first optic along a history's first step, the way to the eye included.
+Vec3 first_weight(const HistoryQuery& query, const PathStart& start) {
+    const PathSegment& begin = query.history[0];
+    for (const Branch& branch : branches(*query.world, start.first, start.around, kAllColours))
+        if (branch.step == begin.step && branch.colours == begin.colours)
+            return branch.weight *
+                   body_transmittance(*query.world, felt_body(*query.world, start.around), start.way);
+    return Vec3(0);
+}
+
+std::optional<Exit> exit_at(const HistoryQuery& query, const Vec2& pixel) {
+    const Ray ray = query.camera_ray(pixel);
+    const Id optic = query.history[0].step.optic;
+    const std::optional<SurfaceHit> hit = query.world->optics[optic].tracer->first_hit(ray);
+    if (!hit) return std::nullopt;
+    Exit exit;
+    exit.first_way = hit->t * length(ray.direction);
+    const Vec3 incoming = normalize_or_zero(ray.direction);
+    const Meeting first{optic, incoming, hit->point.position, hit->point.normal,
+                        dot(incoming, hit->point.normal) <= 0};
+    const PathStart start{first, exit.first_way, query.around ? query.around(ray) : Media()};
+    for (const auto& segment : repeat_paths(*query.world, start, query.history)) {
+        if (!segment) return std::nullopt;
+        exit.ray = segment->ray;
+        exit.weight = segment->weight;
+        exit.medium = segment->medium;
+        exit.corners.push_back(segment->ray.origin);
+    }
+    exit.weight *= first_weight(query, start);
+    return exit;
+}
+
+/// What the ray misses the point by, at right angles to the ray.
+Vec3 miss(const Exit& exit, const Vec3& point) {
+    const Vec3 to = point - exit.ray.origin;
+    return to - dot(to, exit.ray.direction) * exit.ray.direction;
+}
+
+/// The miss in two axes at right angles to one ray, and how it changes with the pixel.
+struct Linear {
+    Vec3 axis[2];
+    double jacobian[2][2];  // of the miss: [axis][film coordinate]
+
+    double determinant() const { return jacobian[0][0] * jacobian[1][1] - jacobian[0][1] * jacobian[1][0]; }
+    /// The change of the pixel that changes the miss by -(a, b).
+    Vec2 against(double a, double b) const {
+        const double d = determinant();
+        return {-(jacobian[1][1] * a - jacobian[0][1] * b) / d,
+                -(jacobian[0][0] * b - jacobian[1][0] * a) / d};
+    }
+};
+
+std::optional<Linear> linearised(const HistoryQuery& query, const Vec2& pixel, const Exit& exit) {
+    Linear linear;
+    const Vec3& u = exit.ray.direction;
+    const Vec3 side = std::fabs(u.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+    linear.axis[0] = normalize(cross(u, side));
+    linear.axis[1] = cross(u, linear.axis[0]);
+    for (int k = 0; k < 2; ++k) {
+        Vec2 step(0);
+        step[k] = kPixelStep;
+        const std::optional<Exit> after = exit_at(query, pixel + step), before = exit_at(query, pixel - step);
+        if (!after && !before) return std::nullopt;
+        const Vec3 change = after && before
+                                ? (miss(*after, query.point) - miss(*before, query.point)) / (2 * kPixelStep)
+                            : after ? (miss(*after, query.point) - miss(exit, query.point)) / kPixelStep
+                                    : (miss(exit, query.point) - miss(*before, query.point)) / kPixelStep;
+        for (int axis = 0; axis < 2; ++axis) linear.jacobian[axis][k] = dot(linear.axis[axis], change);
+    }
+    if (!(std::fabs(linear.determinant()) > 0)) return std::nullopt;
+    return linear;
+}
+
+}  // namespace
+
+std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, const Vec2& start) {
+    Vec2 pixel = start;
+    std::optional<Exit> exit = exit_at(query, pixel);
+    if (!exit) return std::nullopt;
+    double size = length(miss(*exit, query.point));
+    for (int i = 0; i < kMostWalks; ++i) {
+        const std::optional<Linear> linear = linearised(query, pixel, *exit);
+        if (!linear) return std::nullopt;
+        const Vec3 by = miss(*exit, query.point);
+        Vec2 step = linear->against(dot(linear->axis[0], by), dot(linear->axis[1], by));
+        const double far = length(step);
+        if (!(far < 1e12)) return std::nullopt;
+        if (far > kFarthest) step *= kFarthest / far;
+
+        // Halved until the ray comes nearer to the point.
+        bool nearer = false;
+        for (int h = 0; h < kMostShorter && !nearer; ++h, step *= 0.5) {
+            const std::optional<Exit> next = exit_at(query, pixel + step);
+            if (!next) continue;
+            const double next_size = length(miss(*next, query.point));
+            if (!(next_size < size)) continue;
+            pixel += step;
+            exit = next;
+            size = next_size;
+            nearer = true;
+        }
+        if (!nearer || length(step) < kPixelsDone) break;
+    }
+
+    HistoryImage image;
+    image.pixel = pixel;
+    image.corners = exit->corners;
+    image.first_way = exit->first_way;
+    image.distance = dot(query.point - exit->ray.origin, exit->ray.direction);
+    image.weight = exit->weight * body_transmittance(*query.world, exit->medium, image.distance);
+    image.residual = size;
+    if (!(image.distance > 0) || size > kMostResidual * (image.distance + image.first_way))
+        return std::nullopt;
+    const std::optional<Linear> linear = linearised(query, pixel, *exit);
+    if (!linear) return std::nullopt;
+    for (int k = 0; k < 3; ++k) {
+        const Vec2 moved = linear->against(linear->axis[0][k], linear->axis[1][k]);
+        image.derivative[0][k] = moved.x;
+        image.derivative[1][k] = moved.y;
+    }
+    return image;
+}
+
+}  // namespace trilens

@@ -1,0 +1,224 @@
+// The classic engine: every facet projects the triangles it may image, and fills their outlines into its own
+// samples.
+#include "projector/classic/classic.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/util/check.h"
+#include "base/util/parallel.h"
+#include "projector/blocks/beam.h"
+#include "projector/classic/classic_fill.h"
+#include "projector/exact/first_hits.h"
+#include "projector/scene/prepared_data.h"
+#include "trilinear/outline.h"
+
+namespace trilens {
+namespace {
+
+/// Outlines reach this far, in weights, over the facet's border, so that no sample on it is lost to rounding.
+/// It is harmless: the facet draws into its own samples only.
+constexpr double kOverhang = 1e-8;
+
+/// Arcs are never drawn finer than this, in weights.
+constexpr double kFinestTolerance = 1e-9;
+
+/// A triangle at a sample.
+struct Candidate {
+    std::size_t place = 0;
+    LineHit hit;
+    Id index = 0;  // into PreparedScene::Data
+};
+
+/// The facet's rays over its weights, as a block that holds the facet: weight 1 is (1 + u) / 2, weight 2 is
+/// (1 + v) / 2.
+BlockRays rays_over_weights(const TrilinearFacet& facet) {
+    BlockRays block;
+    block.centre = facet.corner[0].origin;
+    const std::array<Ray, 3>& c = facet.corner;
+    const Vec3 o1 = (c[1].origin - block.centre) * 0.5, o2 = (c[2].origin - block.centre) * 0.5;
+    const Vec3 d1 = (c[1].direction - c[0].direction) * 0.5, d2 = (c[2].direction - c[0].direction) * 0.5;
+    block.rays.origin = {o1 + o2, o1, o2};
+    block.rays.direction = {c[0].direction + d1 + d2, d1, d2};
+    block.rays.weight = {1, 0, 0};
+    block.weight_least = 1;
+    return block;
+}
+
+/// The smallest singular value of the weights' derivative by the screen's x and y: how little they change per
+/// pixel.
+double least_change(const FacetWeights& weights, const Vec3& e) {
+    const double sum = e.x + e.y + e.z;
+    const auto derivative = [&](const Vec3& column) {
+        return (column - (column.x + column.y + column.z) / sum * e) / sum;
+    };
+    const Vec3 by_x = derivative(weights.weights_from_screen[0]);
+    const Vec3 by_y = derivative(weights.weights_from_screen[1]);
+    const double xx = dot(by_x, by_x), yy = dot(by_y, by_y), xy = dot(by_x, by_y);
+    return std::sqrt(std::max(0.0, (xx + yy - std::hypot(xx - yy, 2 * xy)) / 2));
+}
+
+/// The ray's hit of the triangle's plane. Beside the triangle, where coarse outlines reach, or behind the
+/// ray's origin: the triangle's point with the nearest barycentrics, at the depth of its foot on the ray.
+LineHit hit_on_triangle(const TrilinearFacet& facet, const SceneTriangle& triangle, const Vec3& weights) {
+    const std::optional<ImageVertex> hit = plane_hit(facet, triangle, weights);
+    const bool beside =
+        !hit || !(std::min({hit->barycentric.x, hit->barycentric.y, hit->barycentric.z}) >= 0);
+    if (!beside && hit->t >= 0) return {hit->t, {hit->barycentric.y, hit->barycentric.z}};
+    Vec3 share = hit ? glm::max(hit->barycentric, Vec3(0)) : Vec3(1);
+    share /= share.x + share.y + share.z;
+    if (!std::isfinite(share.x + share.y + share.z)) share = Vec3(1.0 / 3);
+    const Vec3 direction = facet.direction(weights);
+    const double t =
+        dot(triangle.point(share) - facet.origin(weights), direction) / dot(direction, direction);
+    return {t > 0 ? t : 0, {share.y, share.z}};
+}
+
+/// A border vertex, moved a little out of the facet.
+Vec3 with_overhang(Vec3 weights) {
+    for (int k = 0; k < 3; ++k) {
+        if (weights[k] == 0) weights[k] = -kOverhang;
+    }
+    return weights / (weights.x + weights.y + weights.z);
+}
+
+class FacetDrawing {
+  public:
+    FacetDrawing(const PreparedScene::Data& scene, const RayMesh& mesh, std::size_t facet,
+                 const SampleRows& rows, const ClassicParams& params);
+
+    void draw();
+    /// The first triangle at each place.
+    std::vector<Hit> hits() const;
+
+  private:
+    static double least_depth(const std::vector<Vec3>& weights, const std::array<Vec3, 3>& screen);
+    void draw_triangle(Id index);
+    void keep_inside(const SceneTriangle& triangle, Id index);
+
+    const PreparedScene::Data& scene_;
+    const SampleRows& rows_;
+    TrilinearFacet facet_;
+    std::array<Vec3, 3> screen_{};
+    std::vector<Vec3> weights_;  // of each place
+    ShapeParams shape_;
+    std::optional<PolygonFiller> filler_;
+    std::vector<Candidate> candidate_;
+};
+
+FacetDrawing::FacetDrawing(const PreparedScene::Data& scene, const RayMesh& mesh, std::size_t facet,
+                           const SampleRows& rows, const ClassicParams& params)
+    : scene_(scene), rows_(rows), facet_(trilinear_facet(mesh, facet)) {
+    for (std::size_t k = 0; k < 3; ++k) screen_[k] = mesh.screen[mesh.facets[facet][k]];
+
+    // Weights of the samples; how far a pixel is in weights where that is least.
+    const FacetWeights on_screen = facet_weights(mesh, facet);
+    double change = std::numeric_limits<double>::infinity();
+    weights_.reserve(rows.size());
+    for (const SampleRows::Row& row : rows.row) {
+        for (std::size_t place = row.first; place < row.end; ++place) {
+            const Vec3 e = on_screen.unnormalised(rows.x[place], row.y);
+            weights_.push_back(e / (e.x + e.y + e.z));
+            change = std::min(change, least_change(on_screen, e));
+        }
+    }
+    shape_ = {params.curves, params.clip, params.pieces,
+              std::max(kFinestTolerance, params.tolerance * change)};
+    filler_.emplace(rows, least_depth(weights_, screen_));
+}
+
+/// Half the smallest depth at a sample in front of the camera.
+double FacetDrawing::least_depth(const std::vector<Vec3>& weights, const std::array<Vec3, 3>& screen) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& w : weights) {
+        const double depth = w.x * screen[0].z + w.y * screen[1].z + w.z * screen[2].z;
+        if (depth > 0) least = std::min(least, depth);
+    }
+    return least / 2;
+}
+
+void FacetDrawing::draw() {
+    if (shape_.clip == Clip::kUnclipped) {
+        for (std::size_t i = 0; i < scene_.size(); ++i) draw_triangle(static_cast<Id>(i));
+        return;
+    }
+    const BlockRays block = rays_over_weights(facet_);
+    const Beam beam(block);
+    std::vector<Id> waiting;
+    const Bvh& bvh = scene_.bvh();
+    if (!bvh.nodes.empty()) waiting.push_back(0);
+    while (!waiting.empty()) {
+        const BvhNode& node = bvh.nodes[waiting.back()];
+        waiting.pop_back();
+        if (beam.misses({node.box.low - block.centre, node.box.high - block.centre})) continue;
+        for (Id i = node.first; i < node.first + node.count; ++i) draw_triangle(bvh.order[i]);
+        if (node.count == 0) waiting.insert(waiting.end(), {node.first, node.first + 1});
+    }
+}
+
+void FacetDrawing::draw_triangle(Id index) {
+    SceneTriangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) triangle.corner[k] = scene_.corner(k, index, Vec3(0));
+    ScreenPolygon polygon;
+    for (const Outline& outline : project_triangle(facet_, triangle, shape_)) {
+        polygon.clear();
+        for (const ImageVertex& vertex : outline.vertex) {
+            const Vec3 w = shape_.clip == Clip::kUnclipped ? vertex.weights : with_overhang(vertex.weights);
+            polygon.push_back(w.x * screen_[0] + w.y * screen_[1] + w.z * screen_[2]);
+        }
+        filler_->add(polygon);
+        // The pieces of a tessellated triangle may overlap once their sides are straight.
+        if (shape_.curves == Curves::kTessellate) keep_inside(triangle, index);
+    }
+    keep_inside(triangle, index);
+}
+
+void FacetDrawing::keep_inside(const SceneTriangle& triangle, Id index) {
+    filler_->fill([&](std::size_t first, std::size_t end) {
+        for (std::size_t place = first; place < end; ++place)
+            candidate_.push_back({place, hit_on_triangle(facet_, triangle, weights_[place]), index});
+    });
+}
+
+std::vector<Hit> FacetDrawing::hits() const {
+    std::vector<double> nearest(rows_.size(), std::numeric_limits<double>::infinity());
+    for (const Candidate& c : candidate_) nearest[c.place] = std::min(nearest[c.place], c.hit.t);
+    std::vector<const Candidate*> first(rows_.size(), nullptr);
+    for (const Candidate& c : candidate_) {
+        if (!(c.hit.t <= nearest[c.place] * (1 + kDepthTie))) continue;
+        const Candidate*& best = first[c.place];
+        if (!best || scene_.rank(c.index) < scene_.rank(best->index)) best = &c;
+    }
+    std::vector<Hit> hits(rows_.size());
+    for (std::size_t place = 0; place < hits.size(); ++place) {
+        if (first[place]) hits[place] = scene_hit(scene_, first[place]->index, first[place]->hit);
+    }
+    return hits;
+}
+
+}  // namespace
+
+void draw_classic(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                  const SampleGrid& grid, std::span<Hit> hits, const ClassicParams& params) {
+    TRILENS_CHECK(hits.size() == grid.size(), "one hit per sample of the grid");
+    TRILENS_CHECK(owned.first.size() == mesh.facets.size() + 1,
+                  "the samples must be grouped by the mesh's facets");
+    TRILENS_CHECK(params.pieces >= 1 && params.tolerance > 0, "outlines need a piece and a tolerance");
+    parallel_for(mesh.facets.size(), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t f = from; f < to; ++f) {
+            if (!mesh.has_rays(f) || owned.of(f).empty() || facet_weights(mesh, f).edge_on) continue;
+            const SampleRows rows = make_sample_rows(owned.of(f), grid);
+            FacetDrawing drawing(scene.data(), mesh, f, rows, params);
+            drawing.draw();
+            const std::vector<Hit> found = drawing.hits();
+            for (std::size_t place = 0; place < rows.size(); ++place) hits[rows.sample[place]] = found[place];
+        }
+    });
+}
+
+}  // namespace trilens

@@ -1,0 +1,205 @@
+// The vector engine's stages put together, once per instruction set, and the choice between those.
+#include "projector/kernel/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+// Sets of AVX-512 beyond its first bring this code nothing (the last two are later versions' names for bits).
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | (1LL << 6) | (1LL << 4))
+#endif
+// Processors without SSE4.2 are left to the plain engine.
+#if defined(__x86_64__) && !defined(HWY_BASELINE_TARGETS) && !defined(HWY_COMPILE_ONLY_STATIC)
+#define HWY_BASELINE_TARGETS HWY_SSE4
+#endif
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "projector/kernel/kernel.cpp"
+#include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "projector/kernel/kernel_mixed-inl.h"
+#include "projector/kernel/kernel_visible-inl.h"
+#include "projector/kernel/kernel_walk-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace trilens {
+namespace HWY_NAMESPACE {
+
+/// Of the vectors that `state` names, but for those of untouched tiles: nothing is seen yet.
+HWY_INLINE void begin_vectors(const KernelScene& scene, std::size_t samples, KernelState& state) {
+    state.group_farthest = kNever;
+    store(set(kNever), state.farthest);
+    state.doubts.clear();
+    state.beams_made = false;
+    state.most_doubts = 4096 + 64 * samples;
+    if (state.nearest.size() < state.vectors) state.nearest.resize(state.vectors);
+    const SampleVector* vector = &scene.tiles->vectors[state.first_vector];
+    const bool wait = state.untouched != 0;
+    for (std::uint32_t i = 0; i < state.vectors; ++i) {
+        if (!wait) clear_nearest(state.nearest[i]);
+        hwy::Prefetch(vector[i].u);
+        hwy::Prefetch(vector[i].v);
+        if (!scene.hits.empty()) hwy::Prefetch(&scene.tiles->samples[state.first_vector + i]);
+    }
+}
+
+HWY_INLINE void begin_group(const KernelScene& scene, const TileGroup& group, KernelState& state) {
+    const SampleTile* tile = &scene.tiles->tiles[group.first];
+    state.first_lane = group.first - state.first_tile;
+    state.tiles = group.count;
+    state.first_vector = tile[0].first_vector;
+    std::size_t samples = 0;
+    for (std::uint32_t i = 0; i < group.count; ++i) {
+        samples += tile[i].samples;
+        state.tile_vectors[i] = tile[i].first_vector - state.first_vector;
+        state.vectors = state.tile_vectors[i + 1] = state.tile_vectors[i] + tile[i].vectors;
+    }
+    const SampleTile& last = tile[group.count - 1];
+    state.limits.resize(last.first_boxes + (last.vectors + kLanes - 1) / kLanes - tile[0].first_boxes);
+    for (VectorLimits& limits : state.limits) store(set(kNever), limits.farthest);
+    state.covered = 0;
+    state.untouched = first_lanes(group.count) << state.first_lane;
+    begin_vectors(scene, samples, state);
+}
+
+/// The facets' rays of a batch: their misses wait together, not one after the other.
+HWY_INLINE void prefetch_rays(const KernelScene& scene, std::uint32_t tiles, std::uint32_t first_tile) {
+    for (std::uint32_t j = 0; j < tiles; ++j) {
+        const char* from =
+            reinterpret_cast<const char*>(&scene.tiles->rays[scene.tiles->tiles[first_tile + j].rays]);
+        for (std::size_t at = 0; at < sizeof(FacetRays); at += 64) hwy::Prefetch(from + at);
+        hwy::Prefetch(&scene.mesh->facets[scene.tiles->tiles[first_tile + j].facet]);
+    }
+}
+
+/// Whether what is drawn goes past the caches.
+HWY_INLINE bool streams(const KernelScene& scene) {
+    return !scene.vector_hits.empty() || !scene.vector_visible.empty();
+}
+
+std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const KernelOptions& options,
+                              KernelState& state) {
+    const TileGroup groups = scene.tiles->batches[batch];
+    const TileGroup* group = &scene.tiles->groups[groups.first];
+    std::uint32_t tiles = 0;
+    for (std::uint32_t g = 0; g < groups.count; ++g) tiles += group[g].count;
+    state.first_tile = group[0].first;
+    state.cache.rays = kNone;
+    prefetch_rays(scene, tiles, state.first_tile);
+    set_up_batch(scene, &scene.tiles->tiles[state.first_tile], tiles, state.lanes);
+
+    std::uint32_t left = state.lanes.broken & first_lanes(tiles);
+    for (std::uint32_t g = 0; g < groups.count; ++g) {
+        const std::uint32_t lanes = first_lanes(group[g].count) << (group[g].first - state.first_tile);
+        if (left & lanes) {
+            left |= lanes;
+            continue;
+        }
+        begin_group(scene, group[g], state);
+        state.beam.planes = 0;
+        if (has_nodes(*scene.tree)) make_group_beam(scene, state, state.beam);
+        const std::uint32_t middle = state.first_lane + state.tiles / 2;
+        measure_pitch(state.lanes, middle, scene.tiles->tiles[state.first_tile + middle], state.beam.pitch);
+        walk_group(scene, options.leaf_mode, state);
+        if (state.doubts.size() > state.most_doubts) {
+            left |= lanes;
+            continue;
+        }
+        if (wants_visible(scene))
+            write_visible_group(scene, state);
+        else
+            resolve_group(scene, state);
+    }
+    if (streams(scene)) hwy::FlushStream();
+    return left;
+}
+
+/// Some vectors of a mixed group. False: they have no bounds, or too many doubts.
+HWY_INLINE bool draw_mixed_vectors(const KernelScene& scene, const MixedGroup& group, std::uint32_t first,
+                                   std::uint32_t count, KernelState& state) {
+    state.first_lane = 0;
+    state.tiles = 1;
+    state.first_vector = group.first_vector + first;
+    state.vectors = count;
+    state.tile_vectors[0] = 0;
+    state.tile_vectors[1] = count;
+    state.untouched = state.covered = 0;
+    state.limits.clear();
+    begin_vectors(scene, count * kLanes, state);
+    if (!set_up_mixed(scene, group, state)) return false;
+    walk_group(scene, LeafMode::kRays, state);
+    if (state.doubts.size() > state.most_doubts) return false;
+    if (wants_visible(scene))
+        write_visible_mixed(scene, group, state);
+    else
+        resolve_mixed(scene, group, state);
+    return true;
+}
+
+std::uint32_t draw_mixed_here(const KernelScene& scene, std::size_t number, KernelState& state) {
+    const MixedGroup& group = scene.tiles->mixed[number];
+    std::uint32_t left = 0;
+    if (!draw_mixed_vectors(scene, group, 0, group.vectors, state)) {
+        for (std::uint32_t v = 0; v < group.vectors; ++v)
+            left |= draw_mixed_vectors(scene, group, v, 1, state) ? 0 : 1u << v;
+    }
+    if (streams(scene)) hwy::FlushStream();
+    return left;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace trilens
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace trilens {
+namespace {
+
+HWY_EXPORT(draw_batch_here);
+HWY_EXPORT(draw_mixed_here);
+
+struct NamedTarget {
+    const char* name;
+    std::int64_t target;
+};
+constexpr NamedTarget kTargets[] = {
+    {"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4.2", HWY_SSE4}, {"neon", HWY_NEON}};
+
+}  // namespace
+
+std::uint32_t draw_batch(const KernelScene& scene, std::size_t batch, const KernelOptions& options,
+                         KernelState& state) {
+    return HWY_DYNAMIC_DISPATCH(draw_batch_here)(scene, batch, options, state);
+}
+
+std::uint32_t draw_mixed(const KernelScene& scene, std::size_t group, KernelState& state) {
+    return HWY_DYNAMIC_DISPATCH(draw_mixed_here)(scene, group, state);
+}
+
+std::vector<std::string> kernel_instruction_sets() {
+    std::vector<std::string> names;
+    for (const NamedTarget& t : kTargets) {
+        if (hwy::SupportedTargets() & HWY_TARGETS & t.target) names.push_back(t.name);
+    }
+    return names;
+}
+
+bool use_instruction_set(const std::string& name) {
+    hwy::SetSupportedTargetsForTest(0);
+    if (name.empty()) {
+        hwy::GetChosenTarget().DeInit();
+        return true;
+    }
+    for (const NamedTarget& t : kTargets) {
+        if (name != t.name || !(hwy::SupportedTargets() & HWY_TARGETS & t.target)) continue;
+        hwy::SetSupportedTargetsForTest(t.target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        return true;
+    }
+    return false;
+}
+
+}  // namespace trilens
+#endif

@@ -1,0 +1,11 @@
+// Views of the exact surfaces: the limit truth.
+#pragma once
+
+#include "render/engines/engine.h"
+
+namespace trilens {
+
+/// A viewer that follows every sample's camera ray to the exact surface and on into the scene.
+Viewer make_limit_viewer(const World& world, CameraRays camera);
+
+}  // namespace trilens

@@ -1,0 +1,68 @@
+#include "render/engines/trace_samples.h"
+
+#include "base/util/parallel.h"
+#include "render/engines/follow_sample.h"
+#include "render/world/geometry.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::size_t kTracedPerTask = 256;
+
+/// The camera's ray where it passes the exact surface by, at the rim of a facet: it goes straight on.
+void pass_by(const World& world, const SampleView& view, OpticEnds& out) {
+    PathEnd end;
+    end.path = Path::kReflect;
+    end.first_step = out.steps.size();
+    end.step_count = 1;
+    out.steps.push_back({view.optic, Event::kReflect});
+    end.ray = {view.ray.origin + view.depth * view.ray.direction, view.depth * view.ray.direction};
+    end.hit = object_tracer(world).first_hit(end.ray);
+    out.ends.push_back(end);
+}
+
+/// The ray of a sample that is traced: of a camera that is not linear its exact one, not its facets'.
+Ray traced_ray(const PathCamera& camera, const Vec2& pixel, const Ray& of_facets) {
+    if (!camera.affine) return of_facets;
+    const Ray exact = camera.ray({pixel, 1}, of_facets.origin + of_facets.direction);
+    return exact.direction == Vec3(0) ? of_facets : exact;
+}
+
+}  // namespace
+
+void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samples, SampleViews& views,
+                   OpticEnds& out) {
+    const PathWorld& world = path_world(params.world);
+    std::vector<OpticEnds> found((samples.size() + kTracedPerTask - 1) / kTracedPerTask);
+    parallel_for(found.size(), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t task = from; task < to; ++task) {
+            OpticEnds& own = found[task];
+            const std::size_t last = std::min(samples.size(), (task + 1) * kTracedPerTask);
+            for (std::size_t i = task * kTracedPerTask; i < last; ++i) {
+                SampleView& view = views.samples[samples[i]];
+                OpticView& on_optic = views.on_optic(view);
+                view.traced = true;
+                const Ray of_facets = view.ray;
+                view.ray = traced_ray(params.camera, params.grid.position(samples[i]), of_facets);
+                const auto hit = world.optics[params.optic].tracer->first_hit(view.ray);
+                if (hit)
+                    follow_sample(params.world, {*hit, views.around_of(view)}, view,
+                                  {on_optic, own.ends, own.steps});
+                view.ray = of_facets;
+                if (!hit) {
+                    pass_by(params.world, view, own);
+                    on_optic.incidence.cosine = 0;
+                }
+                own.sample.resize(own.ends.size(), samples[i]);
+            }
+        }
+    });
+    for (OpticEnds& own : found) {
+        for (PathEnd& end : own.ends) end.first_step += out.steps.size();
+        out.ends.insert(out.ends.end(), own.ends.begin(), own.ends.end());
+        out.sample.insert(out.sample.end(), own.sample.begin(), own.sample.end());
+        out.steps.insert(out.steps.end(), own.steps.begin(), own.steps.end());
+    }
+}
+
+}  // namespace trilens

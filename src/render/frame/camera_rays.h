@@ -1,0 +1,45 @@
+// A scene's camera, and the rays of samples.
+#pragma once
+
+#include <span>
+
+#include "base/raymesh/facet_samples.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
+#include "base/util/parallel.h"
+#include "camera/camera.h"
+#include "render/frame/views.h"
+#include "scene/data/scene.h"
+
+namespace trilens {
+
+/// A scene's camera: its exact rays, its linear map where it has one, and its RayMesh.
+using CameraRays = Camera;
+
+/// The camera `index` of the scene; an explicit RayMesh has a model (ray_mesh_model.h) where the scene has
+/// optics, whose grids then lie on its film. Throws InputError with its place where it is none.
+CameraRays make_camera_rays(const Scene& scene, std::size_t index);
+
+/// Calls use(sample, ray) with the camera's ray of every sample that `owned` gives to a facet, from several
+/// threads.
+template <typename Use>
+void for_each_camera_ray(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid, Use&& use) {
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        if (!mesh.has_rays(f)) continue;
+        const FacetWeights weights = facet_weights(mesh, f);
+        const std::span<const Id> samples = owned.of(f);
+        parallel_for(samples.size(), 1024, [&](std::size_t from, std::size_t to) {
+            for (const Id s : samples.subspan(from, to - from))
+                use(s, sample_ray(mesh, f, weights, grid.position(s)));
+        });
+    }
+}
+
+/// Sets the exact ray of every sample of a camera that is not linear, and returns the samples that have one
+/// (those of facet 0), ascending. For the limit truth.
+FacetSamples set_exact_rays(const CameraModel& model, const SampleGrid& grid, std::span<SampleView> views);
+
+/// Adds the depth at which the camera's rays begin to the depths of what is seen.
+void count_from_eye(const CameraRays& camera, std::span<SampleView> views);
+
+}  // namespace trilens

@@ -1,0 +1,113 @@
+// What a picture is asked to be, and what is known of it once it is drawn.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/description/corner_rays.h"
+#include "base/description/grid_kind.h"
+#include "base/image/image.h"
+#include "projector/classic/classic_params.h"
+
+namespace trilens {
+
+/// FrameParams::max_error where no facet is divided for what it is predicted to be off by.
+inline constexpr double kAnyError = std::numeric_limits<double>::infinity();
+
+/// What a picture's rays depend on.
+struct FrameParams {
+    std::size_t camera = 0;                          // index into Scene::cameras
+    int resolution = 0;                              // of every optic's grid, 1..1024; 0: each optic's own
+    std::optional<GridKind> grid = std::nullopt;     // of every optic; none: each optic's own
+    std::optional<CornerRays> rays = std::nullopt;   // of every optic; none: each optic's own
+    std::optional<double> max_error = std::nullopt;  // RenderSettings::max_error; none: the scene's
+    std::optional<bool> layered = std::nullopt;  // of every optic, as Mesh::layered; none: each optic's own
+};
+
+/// kExact: the projector. kClassic: the thesis' engine. kFacetsTruth: Embree on the rays of the same facets.
+/// kLimitTruth: Embree on the exact surfaces. The usual approximations, for comparison: kEnvironment: the
+/// projector on the facets' rays moved to the optic's centre, as an environment map made there has them;
+/// kPlanar: the projector on flat facets. Both end paths after the first optic.
+enum class Engine { kExact, kClassic, kFacetsTruth, kLimitTruth, kEnvironment, kPlanar };
+
+/// Whether an engine makes its picture by projection; else it traces rays.
+inline bool projects(Engine engine) {
+    return engine != Engine::kFacetsTruth && engine != Engine::kLimitTruth;
+}
+
+/// Whether an engine follows paths from optic to optic.
+inline bool follows_paths(Engine engine) {
+    return engine != Engine::kEnvironment && engine != Engine::kPlanar;
+}
+
+/// An engine with its settings.
+struct EngineChoice {
+    Engine engine = Engine::kExact;
+    ClassicParams classic;  // of kClassic
+
+    EngineChoice() = default;
+    EngineChoice(Engine chosen) : engine(chosen) {}
+    EngineChoice(const ClassicParams& params) : engine(Engine::kClassic), classic(params) {}
+};
+
+/// "exact", "classic", "facets", "limit", "envmap", "planar".
+std::string engine_name(Engine engine);
+
+/// The names of all engines.
+const std::vector<std::string>& engine_names();
+
+/// The engine of that name. Throws UsageError, with the nearest name, where there is none.
+Engine find_engine(const std::string& name);
+
+/// How the classic engine draws: "arcs", "slices 4, clip screen".
+std::string classic_name(const ClassicParams& params);
+
+/// The window of the film that is drawn, in pixels [x0, x1) x [y0, y1), and its layers.
+struct LayerRequest {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
+    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat", "magnification" and
+    // "position".
+    std::vector<std::string> layers;
+};
+
+struct PictureRequest {
+    FrameParams frame;
+    EngineChoice engine;
+    LayerRequest layers;
+};
+
+/// Counts of what the user would want to know.
+struct LayerStatistics {
+    std::size_t optic_pixels = 0;
+    std::size_t pixels_without_ray = 0;  // pixels on an optic that lack a ray a path asked for
+    std::size_t subdivided_pixels = 0;   // of the optics' pixels, those of a part of a facet
+    std::size_t traced_pixels = 0;       // and those whose own rays were followed
+    std::size_t layered_pixels = 0;      // and those that show an optic in an optic as a layer
+    std::size_t crowded_out = 0;         // facets whose paths need more memory than is kept for them: traced
+    std::size_t projected_facets = 0;    // facets and parts of facets that were drawn through
+    double predicted_error = 0;  // pixels: the most that was left of those seen; 0 where none was asked for
+    double outline_pixels = 0;   // predicted: that lie between the outlines of optics and of their facets
+    // The most that was left out of any pixel, as a share of its light: paths that carry too little, and
+    // paths that would go on to another optic after the last that is followed.
+    double faint_light = 0, deep_light = 0;
+};
+
+struct Picture {
+    // With the header fields of the interface. A is 1 where a mesh is seen, an optic included whatever it
+    // shows, and 0 where the camera itself sees the environment; Z is the depth of the first surface, the
+    // optic's where one is first, and 1e30 in the environment. Where a path ends in the environment its
+    // object is 4294967295 and its position the unit direction.
+    Image image;
+    LayerStatistics statistics;
+    double prepare_seconds = 0, draw_seconds = 0;
+};
+
+/// The layers that may be asked for beside R G B A: "Z", "optic", "direct", the paths' names, "path",
+/// "stat", "magnification" (which goes with a path's own layer) and "position" (directID and directP: what
+/// the camera sees itself, where no optic is first).
+const std::vector<std::string>& layer_names();
+
+}  // namespace trilens

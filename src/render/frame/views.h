@@ -1,0 +1,95 @@
+// What every sample shows, found by projection or by ray tracing: one record for all engines.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "paths/trace/follow.h"
+#include "shade/optic_weights.h"
+
+namespace trilens {
+
+/// What one sample shows first, and where the ends of its paths over optics are.
+struct SampleView {
+    Ray ray;              // the camera's
+    Hit hit;              // of World::objects; unset where an optic is nearer
+    double depth = 1e30;  // t along `ray` of whatever is first; distance along the view axis
+
+    Id optic = kNone;   // index into World::optics; then SampleViews::on_optic has more
+    Id facet = kNone;   // of the optic's grid; limit truth: face of the surface
+    Id around = kNone;  // what `ray` starts in, of SampleViews::around; kNone: air
+
+    Id leaf = kNone;          // of its optic's OpticPaths; limit truth: none
+    bool traced = false;      // its own paths were followed, those of no facet
+    bool unsure = false;      // the exact surfaces may come in another order than the facets
+    std::uint8_t level = 0;   // how often its facet was divided
+    std::uint8_t layers = 0;  // layers of optics seen in optics that lie over its facet
+};
+
+/// More of a sample that shows an optic.
+struct OpticView {
+    Vec2 uv{0};            // in the facet's face
+    Incidence incidence;   // of the camera's ray at the optic
+    double way = 0;        // of a ray that does not start in air: its length to the optic, scene units
+    double predicted = 0;  // displacement that its facet may have, pixels, where an error was asked for
+
+    CutPaths cut;  // what was not followed
+
+    std::size_t first_end = 0;  // of SampleViews::ends
+    std::size_t end_count = 0;  // 0: no path from there has a ray
+};
+
+/// Colours of one sample, linear Rec.709; the three parts add up to the beauty.
+struct SampleColour {
+    Vec3 direct{0}, reflect{0}, refract{0};
+    double coverage = 0;  // 1 where a mesh is seen, 0 on the background
+};
+
+/// What the samples of a grid show.
+struct SampleViews {
+    std::vector<SampleView> samples;   // one per sample
+    std::vector<OpticView> of_optics;  // one per sample; where it shows no optic it holds anything
+    std::vector<PathEnd> ends;         // of all samples, those of one side by side
+    std::vector<Step> steps;           // of all ends; ends with one history may share theirs
+    std::vector<Media> around;         // that rays of the camera start in
+    std::size_t projected_facets = 0;  // facets and parts of facets that the optics have by now
+    std::size_t crowded_out = 0;       // facets that are traced for want of room
+    double outline_pixels =
+        0;  // pixels that lie between optics' outlines and those of their facets, predicted
+    double outline_error = 0;  // pixels: how far these may be off, where an error was asked for
+
+    // `sample`: an element of samples.
+    /// What it shows on its optic; not to be read where it shows none.
+    OpticView& on_optic(const SampleView& sample) {
+        return of_optics[static_cast<std::size_t>(&sample - samples.data())];
+    }
+    const OpticView& on_optic(const SampleView& sample) const {
+        return of_optics[static_cast<std::size_t>(&sample - samples.data())];
+    }
+    std::span<const PathEnd> ends_of(const SampleView& sample) const {
+        if (sample.optic == kNone) return {};
+        const OpticView& shown = on_optic(sample);
+        return {ends.data() + shown.first_end, shown.end_count};
+    }
+    std::span<const Step> steps_of(const PathEnd& end) const {
+        return {steps.data() + end.first_step, end.step_count};
+    }
+    Media around_of(const SampleView& sample) const {
+        return sample.around == kNone ? Media() : around[sample.around];
+    }
+    /// The sample's principal end on this path; null where it has none.
+    const PathEnd* find(const SampleView& sample, Path path) const;
+
+    /// What that end sees; an unset hit where there is no such end.
+    Hit hit(const SampleView& sample, Path path) const {
+        const PathEnd* end = find(sample, path);
+        return end ? end->hit : Hit();
+    }
+
+    /// `count` samples that show nothing.
+    void reset(std::size_t count);
+    /// The same but for the samples themselves, which hold anything until they are set.
+    void restart(std::size_t count);
+};
+
+}  // namespace trilens

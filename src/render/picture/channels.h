@@ -1,0 +1,53 @@
+// The channels of a picture: which layers it has, and what a pixel writes into each.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/image/image.h"
+#include "render/frame/request.h"
+#include "render/picture/sample_colour.h"
+
+namespace trilens {
+
+/// An image under work, with its channels by what they hold. Names: interface, "Images".
+class Canvas {
+  public:
+    /// `image`: with its windows set, without channels. `layers`: as LayerRequest has them.
+    Canvas(Image image, const std::vector<std::string>& layers);
+
+    /// Throws ComputationError where the colour is not finite.
+    void put_colours(std::span<const SampleColour> means, std::size_t first);
+    /// What the pixel's centre shows.
+    void put_centre(const World& world, const SampleViews& views, const SampleView& view, std::size_t pixel);
+
+    const Image& image() const { return image_; }
+    /// The image without its values.
+    Image layout() const;
+    Image take() { return std::move(image_); }
+
+  private:
+    /// Indices into the image's channels; kNone: not asked for.
+    struct EndChannels {
+        Path path = Path::kReflect;
+        std::size_t object = kNone, primitive = kNone, x = kNone, y = kNone, z = kNone, length = kNone;
+        std::size_t area = kNone;
+    };
+
+    std::size_t add_floats(const std::string& name);
+    std::size_t add_ids(const std::string& name);
+    std::vector<float>& floats(std::size_t channel) { return image_.channels[channel].floats(); }
+    std::vector<Id>& ids(std::size_t channel) { return image_.channels[channel].ids(); }
+    void put_end(const World& world, const PathEnd* end, const EndChannels& channels, std::size_t pixel);
+
+    Image image_;
+    std::array<std::size_t, 4> rgba_{};
+    std::array<std::array<std::size_t, 3>, 3> parts_{};  // direct, reflect, refract
+    std::size_t depth_ = kNone;
+    std::size_t optic_object_ = kNone, optic_facet_ = kNone, optic_u_ = kNone, optic_v_ = kNone;
+    std::size_t path_count_ = kNone, method_ = kNone, level_ = kNone;
+    std::vector<EndChannels> ends_;
+};
+
+}  // namespace trilens

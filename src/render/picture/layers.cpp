@@ -1,0 +1,257 @@
+#include "render/picture/layers.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <mutex>
+
+#include "base/util/error.h"
+#include "base/util/parallel.h"
+#include "render/frame/surroundings.h"
+#include "render/picture/channels.h"
+#include "render/picture/pixel_filter.h"
+
+namespace trilens {
+namespace {
+
+// Samples that are held at once: what stays in cache (measured), and what bounds the memory of a frame.
+constexpr std::size_t kBandSamples = 1u << 15, kMostBandSamples = 1u << 17;
+constexpr std::size_t kBandsAtOnce = 3;  // on their way: seen, shaded, taken
+constexpr std::size_t kPixelsPerTask = 256;
+constexpr std::size_t kBlockRows = 16;  // of a block of the file, one thread's work
+
+/// Whether a path that the scene asks for has no ray at this sample, and not because all light is reflected.
+bool lacks_ray(const World& world, const SampleViews& views, const SampleView& view) {
+    if (view.optic == kNone) return false;
+    const Optic& optic = world.optics[view.optic];
+    const RenderSettings& settings = world.scene.render;
+    const Incidence& incidence = views.on_optic(view).incidence;
+    if (optic.mirror) return settings.reflect && !views.find(view, Path::kReflect);
+    return settings.refract && !views.find(view, Path::kRefract) && !view.traced &&
+           !reflects_totally(interface_of(world, view.optic, views.around_of(view), incidence.front),
+                             incidence.cosine);
+}
+
+void add(SampleColour& sum, double weight, const SampleColour& one) {
+    sum.direct += weight * one.direct;
+    sum.reflect += weight * one.reflect;
+    sum.refract += weight * one.refract;
+    sum.coverage += weight * one.coverage;
+}
+
+SampleColour mean_colour(std::span<const SampleColour> samples) {
+    SampleColour sum, mean;
+    for (const SampleColour& sample : samples) add(sum, 1, sample);
+    add(mean, 1.0 / static_cast<double>(samples.size()), sum);
+    return mean;
+}
+
+/// The samples of a window and of the pixels around it that a filter reaches, with their colours.
+class FilteredSamples {
+  public:
+    FilteredSamples(const World& world, const Viewer& viewer, const SampleGrid& window,
+                    const PixelFilter& filter)
+        : filter_(filter), grid_(window) {
+        const Film& film = world.scene.film;
+        grid_.x0 = std::max(0, window.x0 - filter.reach);
+        grid_.y0 = std::max(0, window.y0 - filter.reach);
+        grid_.x1 = std::min(film.width, window.x1 + filter.reach);
+        grid_.y1 = std::min(film.height, window.y1 + filter.reach);
+        SampleViews views;
+        viewer(grid_, views);
+        colours_.resize(grid_.size());
+        parallel_for(colours_.size(), 1024, [&](std::size_t from, std::size_t to) {
+            sample_colours(world, views, from, std::span(colours_).subspan(from, to - from));
+        });
+    }
+
+    /// Pixels beyond the film have no samples: the weights of those that there are count as one.
+    SampleColour colour(int x, int y) const {
+        SampleColour sum, mean;
+        double total = 0;
+        for (int py = std::max(grid_.y0, y - filter_.reach); py <= std::min(grid_.y1 - 1, y + filter_.reach);
+             ++py)
+            for (int px = std::max(grid_.x0, x - filter_.reach);
+                 px <= std::min(grid_.x1 - 1, x + filter_.reach); ++px) {
+                std::size_t sample = grid_.first_sample(px, py);
+                for (int j = 0; j < grid_.side; ++j)
+                    for (int i = 0; i < grid_.side; ++i) {
+                        const double weight = weight_at(px - x, i) * weight_at(py - y, j);
+                        add(sum, weight, colours_[sample++]);
+                        total += weight;
+                    }
+            }
+        add(mean, 1 / total, sum);
+        mean.coverage = std::clamp(mean.coverage, 0.0, 1.0);
+        return mean;
+    }
+
+  private:
+    double weight_at(int pixel, int sample) const {
+        return filter_.weights[static_cast<std::size_t>((pixel + filter_.reach) * grid_.side + sample)];
+    }
+
+    const PixelFilter& filter_;
+    SampleGrid grid_;
+    std::vector<SampleColour> colours_;
+};
+
+/// How many rows of pixels are drawn together: whole blocks where they are many, one for every two threads at
+/// least, since several bands are on their way.
+int band_rows(std::size_t samples_per_row) {
+    const std::size_t wanted = std::max(kBandSamples / samples_per_row,
+                                        kBlockRows * ((static_cast<std::size_t>(thread_count()) + 1) / 2));
+    const std::size_t rows = std::max<std::size_t>(1, std::min(wanted, kMostBandSamples / samples_per_row));
+    return static_cast<int>(rows > kBlockRows ? rows / kBlockRows * kBlockRows : rows);
+}
+
+Image empty_image(const World& world, const LayerRequest& request) {
+    Image image;
+    image.width = world.scene.film.width;
+    image.height = world.scene.film.height;
+    image.x0 = request.x0;
+    image.y0 = request.y0;
+    image.data_width = request.x1 - request.x0;
+    image.data_height = request.y1 - request.y0;
+    return image;
+}
+
+/// A band of rows on its way from what its samples see to the pixels of the image.
+struct Band {
+    SampleGrid grid{};
+    SampleViews views, centres;  // centres: only where a pixel has several samples
+    std::unique_ptr<FilteredSamples> filtered;
+    LayerStatistics counts;
+
+    /// What the pixels' centres see: with one sample a pixel that sample, otherwise looked at once more.
+    const SampleViews& middle() const { return grid.side > 1 ? centres : views; }
+};
+
+void view_band(const World& world, const Viewer& viewer, const PixelFilter& filter, Band& band) {
+    const SampleGrid& grid = band.grid;
+    band.filtered.reset();
+    if (filter.reach > 0) band.filtered = std::make_unique<FilteredSamples>(world, viewer, grid, filter);
+    if (!band.filtered || grid.side == 1) viewer(grid, band.views);
+    if (grid.side > 1) viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
+}
+
+/// Colours of the pixels of a band from `first` on, as many as there is room for.
+void find_colours(const World& world, const Band& band, std::size_t first, std::span<SampleColour> colours) {
+    const SampleGrid& grid = band.grid;
+    if (band.filtered) {
+        const std::size_t width = static_cast<std::size_t>(grid.width());
+        for (std::size_t i = 0; i < colours.size(); ++i)
+            colours[i] = band.filtered->colour(grid.x0 + static_cast<int>((first + i) % width),
+                                               grid.y0 + static_cast<int>((first + i) / width));
+        return;
+    }
+    const std::size_t per_pixel = static_cast<std::size_t>(grid.side * grid.side);
+    if (per_pixel == 1) return sample_colours(world, band.views, first, colours);
+    std::vector<SampleColour> samples(colours.size() * per_pixel);
+    sample_colours(world, band.views, first * per_pixel, samples);
+    for (std::size_t i = 0; i < colours.size(); ++i)
+        colours[i] = mean_colour(std::span(samples).subspan(i * per_pixel, per_pixel));
+}
+
+void count(const World& world, const SampleViews& middle, const SampleView& view, LayerStatistics& counts) {
+    if (view.optic == kNone) return;
+    const OpticView& on_optic = middle.on_optic(view);
+    ++counts.optic_pixels;
+    counts.pixels_without_ray += lacks_ray(world, middle, view);
+    counts.traced_pixels += view.traced;
+    counts.layered_pixels += !view.traced && view.layers > 0;
+    counts.subdivided_pixels += !view.traced && view.level > 0;
+    counts.faint_light = std::max(counts.faint_light, of_worst_colour(on_optic.cut.faint));
+    counts.predicted_error = std::max(counts.predicted_error, on_optic.predicted);
+    counts.deep_light = std::max(counts.deep_light, of_worst_colour(on_optic.cut.too_deep));
+}
+
+void merge(const LayerStatistics& from, LayerStatistics& to) {
+    to.optic_pixels += from.optic_pixels;
+    to.pixels_without_ray += from.pixels_without_ray;
+    to.traced_pixels += from.traced_pixels;
+    to.layered_pixels += from.layered_pixels;
+    to.subdivided_pixels += from.subdivided_pixels;
+    to.faint_light = std::max(to.faint_light, from.faint_light);
+    to.predicted_error = std::max(to.predicted_error, from.predicted_error);
+    to.outline_pixels += from.outline_pixels;
+    to.deep_light = std::max(to.deep_light, from.deep_light);
+    to.projected_facets = std::max(to.projected_facets, from.projected_facets);
+    to.crowded_out = std::max(to.crowded_out, from.crowded_out);
+}
+
+/// Its pixels, from that `first` of the canvas on.
+LayerStatistics put_band(const World& world, const Band& band, std::size_t first, Canvas& canvas) {
+    const SampleViews& middle = band.middle();
+    LayerStatistics counts;
+    counts.projected_facets = middle.projected_facets;
+    counts.crowded_out = middle.crowded_out;
+    counts.outline_pixels = middle.outline_pixels;
+    counts.predicted_error = middle.outline_error;
+    std::mutex mutex;
+    parallel_for(band.grid.pixels(), kPixelsPerTask, [&](std::size_t from, std::size_t to) {
+        LayerStatistics own;
+        std::array<SampleColour, kPixelsPerTask> colours;
+        for (std::size_t start = from; start < to; start += kPixelsPerTask) {
+            const std::size_t end = std::min(to, start + kPixelsPerTask);
+            const std::span<SampleColour> here = std::span(colours).first(end - start);
+            find_colours(world, band, start, here);
+            canvas.put_colours(here, first + start);
+            for (std::size_t p = start; p < end; ++p) {
+                canvas.put_centre(world, middle, middle.samples[p], first + p);
+                count(world, middle, middle.samples[p], own);
+            }
+        }
+        const std::lock_guard lock(mutex);
+        merge(own, counts);
+    });
+    return counts;
+}
+
+}  // namespace
+
+Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& request,
+                  const Progress& progress, LayerStatistics* statistics, const StripSink* sink) {
+    const int side = world.scene.film.spp, width = request.x1 - request.x0, height = request.y1 - request.y0;
+    const int rows = band_rows(static_cast<std::size_t>(width * side * side));
+    const std::size_t bands = static_cast<std::size_t>((height + rows - 1) / rows);
+    const std::size_t slots = std::min(bands, kBandsAtOnce);
+
+    // Where pixels go to a sink each band on its way has a canvas of its own, otherwise all share the
+    // image's.
+    Image image = empty_image(world, request);
+    if (sink) image.data_height = std::min(height, rows);
+    std::vector<Canvas> canvases;
+    for (std::size_t i = 0; i < (sink ? slots : 1); ++i) canvases.emplace_back(image, request.layers);
+    if (sink) {
+        Image layout = canvases[0].layout();
+        layout.data_height = height;
+        sink->begin(layout);
+    }
+
+    LayerStatistics counts;
+    const PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
+    std::vector<Band> band(slots);
+    PipelineStages stages;
+    stages.begin = [&](std::size_t item, std::size_t slot) {
+        if (progress.cancelled()) throw Interrupted();
+        const int y = request.y0 + static_cast<int>(item) * rows;
+        band[slot].grid = {request.x0, y, request.x1, std::min(y + rows, request.y1), side};
+        view_band(world, viewer, filter, band[slot]);
+    };
+    stages.work = [&](std::size_t item, std::size_t slot) {
+        const std::size_t above = sink ? 0 : item * static_cast<std::size_t>(rows);
+        band[slot].counts =
+            put_band(world, band[slot], above * static_cast<std::size_t>(width), canvases[sink ? slot : 0]);
+    };
+    stages.end = [&](std::size_t, std::size_t slot) {
+        merge(band[slot].counts, counts);
+        if (sink) sink->add(canvases[slot].image().channels, band[slot].grid.height());
+        progress(static_cast<double>(band[slot].grid.y1 - request.y0) / height);
+    };
+    run_pipeline(bands, slots, stages);
+    if (statistics) *statistics = counts;
+    return sink ? empty_image(world, request) : canvases[0].take();
+}
+
+}  // namespace trilens

@@ -1,0 +1,21 @@
+// From views to an image, band by band: shading, the filter, and the channels.
+#pragma once
+
+#include "base/image/image.h"
+#include "base/image/strip_sink.h"
+#include "base/util/progress.h"
+#include "render/engines/engine.h"
+#include "render/frame/request.h"
+
+namespace trilens {
+
+/// Draws the window, which lies on the film and is not empty, band by band. Colours are the mean over the
+/// samples of a pixel, or as the film's filter weights those around; ids, positions and depths are those of
+/// the pixel's centre, whatever the number of samples. Throws Interrupted, and ComputationError when a pixel
+/// is not finite. `sink`: takes the pixels band by band where it is given; then the image that comes back has
+/// no channels.
+Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& request,
+                  const Progress& progress, LayerStatistics* statistics = nullptr,
+                  const StripSink* sink = nullptr);
+
+}  // namespace trilens

@@ -1,0 +1,167 @@
+#include "render/picture/picture.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "base/util/nearest.h"
+#include "base/util/stopwatch.h"
+#include "base/util/version.h"
+#include "paths/trace/follow.h"
+#include "render/engines/engine.h"
+#include "render/picture/layers.h"
+#include "scene/read/named_files.h"
+
+namespace trilens {
+namespace {
+
+std::string resolution_text(const World& world, int asked) {
+    std::string text;
+    for (const Optic& optic : world.optics)
+        text += (text.empty() ? "" : ",") + std::to_string(grid_resolution(optic, asked));
+    return text;
+}
+
+std::string rays_text(const World& world, const FrameParams& frame) {
+    std::string text;
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        text += (text.empty() ? "" : ",") + std::string(corner_rays_name(optic_rays(world, i, frame)));
+    return text;
+}
+
+void tell(const World& world, const LayerRequest& window, const LayerStatistics& statistics,
+          const Warn& warn) {
+    const Film& film = world.scene.film;
+    if (window.x1 - window.x0 == film.width && window.y1 - window.y0 == film.height) {
+        if (world.optics.empty())
+            warn("the scene has no optic: only the direct view is drawn");
+        else if (statistics.optic_pixels == 0)
+            warn("no pixel sees an optic: they are off screen, behind the camera, or hidden");
+        if (world.objects.size() == 0) warn("the scene has no objects: rays see only the background");
+    }
+    if (statistics.pixels_without_ray > 0)
+        warn(
+            fmt::format("{} pixels see a facet without rays (total internal reflection at a corner, or no "
+                        "normal); that path is black there",
+                        statistics.pixels_without_ray));
+}
+
+/// What is drawn by another way than was asked for.
+void tell_crowded_out(const LayerStatistics& statistics, const Warn& warn) {
+    if (statistics.crowded_out > 0)
+        warn(fmt::format(
+            "{} facets are traced, not projected: the paths over all would take more than {} MiB; "
+            "fewer facets or a smaller maxDepth need less",
+            statistics.crowded_out, DivideParams().most_bytes >> 20));
+}
+
+/// What a picture leaves out of the scene.
+void tell_omissions(const World& world, Engine engine, const LayerStatistics& statistics, const Warn& warn) {
+    const RenderSettings& settings = world.scene.render;
+    const std::string why =
+        follows_paths(engine) ? "maxDepth is 0" : "engine " + engine_name(engine) + " knows no others";
+    if (settings.max_depth > 0 && follows_paths(engine)) {
+        // Less than half a step of 8 bits is nobody's concern.
+        if (statistics.deep_light > kLeastWeight)
+            warn(fmt::format(
+                "paths end after {} optics (maxDepth {}): up to {:.1f} % of a pixel's light would go "
+                "on to another; light that runs along a hollow mirror, or inside a wall of glass, meets them "
+                "many times",
+                settings.max_depth + 1, settings.max_depth, 100 * statistics.deep_light));
+        return;
+    }
+    if (world.optics.size() > 1 && (settings.reflect || settings.refract))
+        warn("optics do not see each other: a path ends after its first optic (" + why + ")");
+    for (const Optic& optic : world.optics)
+        if (!optic.mirror && settings.refract)
+            warn(world.names[optic.mesh] +
+                 ": glass bends light once, at the surface that is seen: maxDepth is 0, so where light "
+                 "leaves a "
+                 "body is not followed");
+}
+
+/// The window as it is drawn: the whole film where none is asked for.
+LayerRequest checked_layers(const World& world, LayerRequest asked) {
+    const Film& film = world.scene.film;
+    if (asked.x0 == 0 && asked.y0 == 0 && asked.x1 == 0 && asked.y1 == 0)
+        asked.x1 = film.width, asked.y1 = film.height;
+    if (asked.x0 < 0 || asked.y0 < 0 || asked.x1 > film.width || asked.y1 > film.height ||
+        asked.x0 >= asked.x1 || asked.y0 >= asked.y1)
+        throw UsageError(fmt::format("{},{},{},{} is not a window of the {} x {} film", asked.x0, asked.y0,
+                                     asked.x1, asked.y1, film.width, film.height));
+    for (const std::string& layer : asked.layers)
+        if (std::find(layer_names().begin(), layer_names().end(), layer) == layer_names().end())
+            throw UsageError("there is no layer \"" + layer + "\"" + suggestion(layer, layer_names()));
+    return asked;
+}
+
+/// Refuses a film whose layers alone would fill the machine's memory: the system would end the program
+/// without a word.
+void check_film_fits(const World& world, const LayerRequest& window, bool in_strips) {
+    // Up to 34 channels, once more while they are encoded; in strips only the encoded ones are held.
+    const double bytes_per_pixel = (in_strips ? 1 : 2) * 34 * 4;
+    const double needed = bytes_per_pixel * (window.x1 - window.x0) * (window.y1 - window.y0);
+    const double memory =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed < memory) return;
+    throw InputError(
+        scene_title(world.scene), "/film",
+        fmt::format("an image of {} x {} pixels needs about {:.0f} GiB; this machine has {:.0f}",
+                    window.x1 - window.x0, window.y1 - window.y0, needed / (1 << 30), memory / (1 << 30)));
+}
+
+void describe(const World& world, const PictureRequest& request, Image& image) {
+    const Engine engine = request.engine.engine;
+    auto& header = image.metadata;
+    header["trilens:version"] = kVersion;
+    header["trilens:command"] = projects(engine) ? "render" : "trace";
+    header["trilens:engine"] = engine_name(engine);
+    if (engine == Engine::kClassic) header["trilens:classic"] = classic_name(request.engine.classic);
+    header["trilens:camera"] = world.scene.cameras[request.frame.camera].name;
+    header["trilens:resolution"] = resolution_text(world, request.frame.resolution);
+    if (engine != Engine::kLimitTruth) {
+        header["trilens:rays"] = rays_text(world, request.frame);
+        const double max_error = request.frame.max_error.value_or(world.scene.render.max_error);
+        if (max_error > 0) header["trilens:max_error"] = fmt::format("{}", max_error);
+    }
+    header["trilens:facets"] = std::to_string(facet_count(world, request.frame.resolution));
+    header["trilens:scene"] = world.scene.resolved;
+    header["trilens:folder"] = world.scene.folder;
+    header["trilens:files"] = named_files_text(world.scene);
+}
+
+}  // namespace
+
+Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
+                     const Warn& warn, const StripSink* sink) {
+    const LayerRequest layers = checked_layers(world, request.layers);
+    check_film_fits(world, layers, sink != nullptr);
+    Picture picture;
+    const Stopwatch preparing;
+    const Viewer viewer = make_viewer(world, request.frame, request.engine, warn);
+    picture.prepare_seconds = preparing.seconds();
+
+    StripSink described;
+    if (sink) {
+        described.begin = [&](Image layout) {
+            describe(world, request, layout);
+            sink->begin(layout);
+        };
+        described.add = sink->add;
+    }
+    const Stopwatch drawing;
+    picture.image =
+        draw_layers(world, viewer, layers, progress, &picture.statistics, sink ? &described : nullptr);
+    picture.draw_seconds = drawing.seconds();
+    describe(world, request, picture.image);
+    if (warn) {
+        tell(world, layers, picture.statistics, warn);
+        tell_omissions(world, request.engine.engine, picture.statistics, warn);
+        tell_crowded_out(picture.statistics, warn);
+    }
+    return picture;
+}
+
+}  // namespace trilens

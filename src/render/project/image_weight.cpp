@@ -1,0 +1,51 @@
+#include "render/project/image_weight.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/frame/surroundings.h"
+#include "shade/optic_weights.h"
+#include "shade/shade.h"
+
+namespace trilens {
+namespace {
+
+Vec3 transmittance(const Material* glass, double way) {
+    return glass ? volume_transmittance(*glass, way) : Vec3(1);
+}
+
+/// Cosine of the angle of incidence of light that goes along `in` to the optic and along `out` from it.
+double incidence_cosine(Path path, const Vec3& in, const Vec3& out, double eta) {
+    if (path == Path::kReflect) return std::sqrt(std::clamp((1 - dot(in, out)) / 2, 0.0, 1.0));
+    const Vec3 normal = normalize_or_zero(eta * in - out);  // Snell: n1 in - n2 out is along the normal
+    return std::clamp(std::fabs(dot(in, normal)), 0.0, 1.0);
+}
+
+}  // namespace
+
+Vec3 weight_over_one(const World& world, const Frame& frame, const OneEventWay& way) {
+    const Optic& optic = world.optics[way.optic];
+    const Media around = frame.surroundings.none() ? Media() : frame.surroundings.of(way.view);
+    const Vec3 to_optic = way.from - way.view.origin, on = way.point - way.from;
+    const Vec3 in = normalize_or_zero(way.view.direction), out = normalize_or_zero(on);
+    const Material* before = glass_around(world, around);
+    const Vec3 arriving = transmittance(before, length(to_optic));
+    if (optic.mirror) {
+        const double cosine = incidence_cosine(Path::kReflect, in, out, 1);
+        const Material& metal = world.scene.materials[optic.material];
+        return arriving * optic_weights(metal, {cosine, way.front}, world.scene.render.fresnel).reflect *
+               transmittance(before, length(on));
+    }
+    const GlassInterface glass = interface_of(world, way.optic, around, way.front);
+    const double cosine = incidence_cosine(way.path, in, out, eta_of(glass, -1));
+    const OpticWeights weights = interface_weights(glass, cosine, world.scene.render.fresnel);
+    return way.path == Path::kReflect ? arriving * weights.reflect * transmittance(glass.before, length(on))
+                                      : arriving * weights.refract * transmittance(glass.after, length(on));
+}
+
+Vec3 weight_of_direct(const World& world, const Frame& frame, const Ray& view, double way) {
+    if (frame.surroundings.none()) return Vec3(1);
+    return transmittance(glass_around(world, frame.surroundings.of(view)), way);
+}
+
+}  // namespace trilens

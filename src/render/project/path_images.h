@@ -1,0 +1,89 @@
+// Where a point appears over several optics: seeds from the facets' RayMeshes, then exact.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "paths/facets/facet_paths.h"
+#include "paths/trace/history_image.h"
+#include "render/frame/frame.h"
+#include "trilinear/mesh_point_images.h"
+
+namespace trilens {
+
+/// An image of a point over two steps or more.
+struct SeveralOpticsImage {
+    Path path = Path::kReflect;
+    Id optic = kNone;  // the first
+    Id facet = kNone;  // of its grid
+    std::vector<Step> steps;
+    HistoryImage exact;
+};
+
+/// Looks through all facets of one optic that lie on the film; where facets are traced, from the exact rays
+/// that pass nearest to the point. World and frame must outlive it. Thread-safe
+/// to read.
+class SeveralOpticsImages {
+  public:
+    SeveralOpticsImages(const World& world, const Frame& frame, std::size_t optic);
+
+    /// Every image that a facet leads to, each once. Images that something hides are among them.
+    std::vector<SeveralOpticsImage> images(const Vec3& point) const;
+
+    /// Whether there may be images that no facet leads to: some history has several steps, or some facet is
+    /// not drawn by its corner rays.
+    bool may_miss() const { return may_miss_; }
+
+  private:
+    /// A film position in a part of a facet that has no corner rays, and where its path leaves the optics.
+    struct LoneRay {
+        Vec2 pixel{0};
+        Id facet = kNone;
+        Ray exit;  // unit
+    };
+    struct History {
+        Path path = Path::kReflect;
+        std::vector<Step> steps;
+        std::vector<PathSegment> chain;
+        std::unique_ptr<MeshPointImages> seeds;  // null: no facet has it
+        std::vector<Id> grid_facet;              // per facet of the seeds' mesh
+        std::vector<LoneRay> lone;
+    };
+
+    /// Histories told apart: a step after a place, kNone the beginning, is a place too.
+    using StepFrom = std::tuple<Id, Id, Event>;
+    using HistoryEnd = std::pair<Id, Colours>;  // its last place
+
+    /// A place where Newton's method begins, and where it ends.
+    struct Search {
+        const History* history = nullptr;
+        Vec2 start{0};
+        Id facet = kNone;
+        std::optional<HistoryImage> exact;
+    };
+
+    void add_nodes();
+    void add_lone_rays();
+    void add_lone_rays(const PathLeaf& leaf, const std::vector<PathSegment>& followed);
+    std::vector<PathSegment> followed_from(const Vec2& pixel) const;
+    History& history_of(const std::vector<PathSegment>& segments, Id last);
+    std::vector<std::pair<Vec2, Id>> starts(const History& history, const Vec3& point) const;
+
+    const World& world_;
+    const Frame& frame_;
+    std::unique_ptr<OpticPaths> paths_;
+    std::vector<History> histories_;
+    std::map<StepFrom, Id> places_;
+    std::map<HistoryEnd, std::size_t> history_at_;
+    bool may_miss_ = false;
+};
+
+/// The exact image over one history, from a first guess; see refine_history_image.
+HistoryQuery history_query(const World& world, const Frame& frame, const std::vector<Step>& steps,
+                           const Vec3& point);
+
+}  // namespace trilens

@@ -1,0 +1,302 @@
+#include "render/project/point_projector.h"
+
+#include <algorithm>
+
+#include "reflect/mirror.h"
+#include "render/project/image_weight.h"
+
+namespace trilens {
+namespace {
+
+/// A point nearer to the eye's plane than this share of the coordinates has no direct image: rounding put it
+/// there.
+constexpr double kLeastDepth = 1e-12;
+
+/// An image through the facets this near to an exact one, in pixels, is taken for the same.
+constexpr double kSameImage = 3;
+
+/// An exact image farther from the facets' than this, in pixels, is another one.
+constexpr double kFilmReach = 16;
+
+/// The cosine of the angle by which an image that only facets have may miss its point, on the exact surface.
+constexpr double kLeastCosine = 0.866;
+
+/// A camera for the law of reflection alone: all rays leave the eye, and every point is in front of it.
+LinearCamera law_of_eye(const Vec3& eye) {
+    LinearCamera camera;
+    camera.eye = eye;
+    camera.screen_x = {1, 0, 0, 0};
+    camera.screen_y = {0, 1, 0, 0};
+    camera.screen_w = {0, 0, 0, 1};
+    return camera;
+}
+
+/// Exact images need facets as places to start from alone: those that are seen, with the rays at their
+/// corners.
+FrameParams frame_of_seeds(const ProjectRequest& request) {
+    FrameParams frame = request.frame;
+    if (request.refine && !frame.rays) frame.rays = CornerRays::kInterpolated;
+    return frame;
+}
+
+}  // namespace
+
+PointProjector::PointProjector(const World& world, const ProjectRequest& request)
+    : world_(world),
+      request_(request),
+      frame_(make_frame(world, frame_of_seeds(request), {})),
+      sight_(world, frame_, request.refine) {
+    object_tracer(world);
+    if (!camera_.linear && !camera_.model) {
+        camera_mesh_ = std::make_unique<MeshPointImages>(camera_.mesh);
+        return;
+    }
+    for (std::size_t i = 0; i < frame_.optics.size(); ++i) add_optic(i);
+}
+
+void PointProjector::add_optic(std::size_t index) {
+    const OpticFacets& facets = *frame_.optics[index].facets;
+    facets.tracer();
+    if (searches_surfaces()) {
+        limit_tracer(world_, index);
+        searcher_.push_back(std::make_unique<SpecularSearcher>(*world_.optics[index].surface));
+        facets_at_.emplace_back(facets.grid(), world_.optics[index].surface->face_count());
+    }
+    for (const PathMesh& path : frame_.optics[index].paths)
+        if (!path.mesh.facets.empty())
+            paths_.push_back({path.path, static_cast<Id>(index),
+                              std::make_unique<FacetImages>(world_, frame_, index, path)});
+    path_world(world_);
+    if (world_.scene.render.max_depth > 0)
+        several_.push_back(std::make_unique<SeveralOpticsImages>(world_, frame_, index));
+}
+
+bool PointProjector::on_film(const Vec2& pixel) const {
+    return pixel.x >= 0 && pixel.y >= 0 && pixel.x <= world_.scene.film.width &&
+           pixel.y <= world_.scene.film.height;
+}
+
+/// By the exact paths around the image.
+void PointProjector::differentiate(WorldImage& image, const Vec3& point) const {
+    const auto exact = refine_history_image(history_query(world_, frame_, image.steps, point), image.pixel);
+    if (!exact || length(exact->pixel - image.pixel) > kSamePixels) return;
+    image.has_derivative = true;
+    image.derivative = exact->derivative;
+}
+
+void PointProjector::add_several(const SeveralOpticsImages& several, const Vec3& point,
+                                 PointProjection& result) const {
+    if (several.may_miss()) result.complete = false;
+    for (const SeveralOpticsImage& found : several.images(point)) {
+        const std::vector<Vec3>& corner = found.exact.corners;
+        const std::optional<Ray> view = exact_ray(camera_, found.exact.pixel);
+        if (!view || !sight_.goes_straight(corner.back(), point)) continue;
+        WorldImage image;
+        image.weight = found.exact.weight;
+        if (image.weight == Vec3(0)) continue;  // no light comes this way
+        image.path = found.path;
+        image.optic = found.optic;
+        image.object = world_.optics[found.optic].mesh;
+        image.facet = found.facet;
+        image.pixel = found.exact.pixel;
+        image.length = found.exact.distance;
+        image.t = found.exact.distance / found.exact.first_way;
+        image.refined = true;
+        image.steps = found.steps;
+        image.has_derivative = true;
+        image.derivative = found.exact.derivative;
+        image.inside = on_film(image.pixel);
+        image.visible = request_.visibility && image.inside &&
+                        sight_.is_free_of_objects(corner.back(), point) &&
+                        sight_.sees(view->origin, corner.front());
+        for (std::size_t i = 0; i + 1 < corner.size() && image.visible; ++i)
+            image.visible = sight_.is_free_of_objects(corner[i], corner[i + 1]);
+        result.images.push_back(std::move(image));
+    }
+}
+
+void PointProjector::add_direct(const Vec3& point, PointProjection& result) const {
+    for (const FilmImage& found : film_positions(camera_, point)) {
+        // The eye itself has no image, which rounding may put in front of it.
+        const double least = kLeastDepth * (length(found.origin) + length(point));
+        if (!(found.t > (camera_.linear && camera_.linear->parallel ? 0 : least))) continue;
+        WorldImage image;
+        image.pixel = found.pixel;
+        image.t = found.t;
+        image.length = length(point - found.origin);
+        image.inside = on_film(image.pixel);
+        image.refined = true;
+        image.weight = weight_of_direct(world_, frame_, {found.origin, point - found.origin}, image.length);
+        image.visible = request_.visibility && image.inside && sight_.sees(found.origin, point);
+        if (camera_.linear) {
+            // d (s / w) = (ds - (s / w) dw) / w.
+            const double depth = screen_from_world(*camera_.linear, point).z;
+            image.has_derivative = true;
+            for (int axis = 0; axis < 2; ++axis) {
+                const Vec4& row = axis == 0 ? camera_.linear->screen_x : camera_.linear->screen_y;
+                image.derivative[static_cast<std::size_t>(axis)] =
+                    (Vec3(row) - image.pixel[axis] * Vec3(camera_.linear->screen_w)) / depth;
+            }
+        }
+        result.images.push_back(image);
+    }
+}
+
+void PointProjector::add_camera_mesh(const Vec3& point, PointProjection& result) const {
+    for (const MeshPointImage& found : camera_mesh_->images(point)) {
+        const Ray ray = interpolated_ray(camera_.mesh, found.facet, found.weights);
+        WorldImage image;
+        image.facet = found.facet;
+        image.pixel = found.screen;
+        image.t = found.t;
+        image.length = found.t * length(ray.direction);
+        image.weight = weight_of_direct(world_, frame_, ray, image.length);
+        image.inside = on_film(image.pixel);
+        image.visible = request_.visibility && image.inside && sight_.is_free_of_objects(ray.origin, point);
+        result.images.push_back(image);
+    }
+}
+
+/// Of a camera with an eye whose film is not linear, the images as points of the surface; their pixels mean
+/// nothing but tell them apart.
+std::vector<SpecularSearch> PointProjector::search(const OpticPath& path,
+                                                   std::span<const Vec3> points) const {
+    if (!searches_surfaces()) return std::vector<SpecularSearch>(points.size());
+    const SpecularQuery query = specular_query(
+        world_, path.optic, path.path, camera_.linear ? *camera_.linear : law_of_eye(*camera_.model->eye()));
+    const SpecularSearcher& searcher = *searcher_[path.optic];
+    return path.path == Path::kRefract ? searcher.find_each_in_body(query, points)
+                                       : searcher.find_each(query, points);
+}
+
+/// Where the film shows what a search found on the surface.
+std::vector<OpticImage> PointProjector::images_on_film(const OpticPath& path,
+                                                       const SpecularSearch& searched) const {
+    std::vector<OpticImage> images;
+    for (const SpecularPoint& exact : searched.images) {
+        const Id facet = facets_at_[path.optic].at(exact.at.face, exact.at.uv);
+        const auto add = [&](const Vec2& pixel) {
+            images.push_back({facet, pixel, exact.t, exact.distance, exact.position, true, exact.front});
+        };
+        if (camera_.linear) add(exact.pixel);
+        if (camera_.model)
+            for (const FilmImage& image : film_positions(camera_, exact.position)) add(image.pixel);
+    }
+    return images;
+}
+
+/// Through a camera without one eye: each image of the facets is moved to where the exact ray passes through
+/// the point; two that come to one place count once.
+void PointProjector::refine_on_film(const OpticPath& path, const Vec3& point,
+                                    std::vector<OpticImage>& images) const {
+    const Event event = path.path == Path::kReflect ? Event::kReflect : Event::kTransmit;
+    const HistoryQuery query = history_query(world_, frame_, {{path.optic, event}}, point);
+    std::vector<OpticImage> kept;
+    for (OpticImage image : images) {
+        const auto exact = refine_history_image(query, image.pixel);
+        if (exact && length(exact->pixel - image.pixel) < kFilmReach)
+            image = {image.facet,     exact->pixel,          exact->distance / exact->first_way,
+                     exact->distance, exact->corners.back(), true,
+                     image.front};
+        const bool known = std::any_of(kept.begin(), kept.end(), [&](const OpticImage& one) {
+            return one.refined && image.refined && length(one.pixel - image.pixel) < kSamePixels;
+        });
+        if (!known) kept.push_back(image);
+    }
+    images = std::move(kept);
+}
+
+std::vector<OpticImage> PointProjector::optic_images(const OpticPath& path, const Vec3& point,
+                                                     const SpecularSearch& searched,
+                                                     PointProjection& result) const {
+    if (!searches_surfaces()) {
+        result.complete = false;
+        std::vector<OpticImage> images =
+            path.facets->images(point, request_.refine && camera_.linear.has_value());
+        if (request_.refine && !camera_.linear) refine_on_film(path, point, images);
+        return images;
+    }
+    std::vector<OpticImage> found = images_on_film(path, searched);
+    if (searched.complete) return found;
+    result.complete = false;
+    const bool refine = camera_.linear.has_value();
+    const std::size_t exact = found.size();
+    for (const OpticImage& more :
+         path.facets->images(point, refine, refine ? searched.images : std::vector<SpecularPoint>())) {
+        const auto is_known = [&](const OpticImage& known) {
+            return !refine && length(known.pixel - more.pixel) < kSameImage;
+        };
+        const auto end = found.begin() + static_cast<std::ptrdiff_t>(exact);
+        if (std::none_of(found.begin(), end, is_known)) found.push_back(more);
+    }
+    return found;
+}
+
+/// Whether the camera's exact ray, mirrored, goes about where the facets' ray goes: where several views blend
+/// facets may be far from it.
+bool PointProjector::leads_towards(const Ray& view, const OpticPath& path, const Vec3& point) const {
+    if (camera_.linear || path.path != Path::kReflect) return true;
+    const std::optional<SurfaceHit> hit = limit_tracer(world_, path.optic).first_hit(view);
+    if (!hit) return true;  // past the silhouette, which facets have elsewhere
+    const Vec3 out = mirrored(view.direction, hit->point.normal);
+    const Vec3 way = point - hit->point.position;
+    return dot(out, way) > kLeastCosine * length(out) * length(way);
+}
+
+void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, const SpecularSearch& searched,
+                                    PointProjection& result) const {
+    for (const OpticImage& one : optic_images(path, point, searched, result)) {
+        const std::optional<Ray> view = exact_ray(camera_, one.pixel);
+        if (!view) continue;
+        const Vec3& eye = view->origin;
+        if (searches_surfaces() && one.refined && !sight_.is_free_of_optic(eye, one.from, path.optic))
+            continue;
+        if (!one.refined && request_.refine && !leads_towards(*view, path, point)) continue;
+        const Id on_facet = one.refined ? kNone : path.optic;
+        if (world_.scene.render.max_depth > 0 && !sight_.goes_straight(one.from, point, on_facet)) continue;
+        const double t =
+            camera_.near_depth + dot(one.from - eye, view->direction) / dot(view->direction, view->direction);
+        WorldImage image;
+        image.weight =
+            weight_over_one(world_, frame_, {path.optic, path.path, *view, one.from, one.front, point});
+        if (image.weight == Vec3(0)) continue;  // no light comes this way
+        image.path = path.path;
+        image.steps = {{path.optic, path.path == Path::kReflect ? Event::kReflect : Event::kTransmit}};
+        image.optic = path.optic;
+        image.object = world_.optics[path.optic].mesh;
+        image.facet = one.facet;
+        image.pixel = one.pixel;
+        image.t = one.t;
+        image.length = one.length;
+        image.refined = one.refined;
+        image.off = one.refined ? 0 : kUnknownOffset;
+        image.inside = on_film(image.pixel);
+        image.visible = request_.visibility && image.inside && is_between_planes(t) &&
+                        sight_.is_free_of_objects(one.from, point) && sight_.sees(eye, one.from, on_facet);
+        if (request_.derivatives && image.refined) differentiate(image, point);
+        result.images.push_back(std::move(image));
+    }
+}
+
+void PointProjector::project(std::span<const Vec3> points, std::span<const std::size_t> some,
+                             std::span<PointProjection> result) const {
+    std::vector<Vec3> of_some;
+    for (const std::size_t p : some) of_some.push_back(points[p]);
+    std::vector<std::vector<SpecularSearch>> searched;
+    for (const OpticPath& path : paths_) searched.push_back(search(path, of_some));
+    for (std::size_t k = 0; k < some.size(); ++k) {
+        const Vec3& point = of_some[k];
+        PointProjection& found = result[some[k]];
+        found.complete = true;
+        std::size_t most = 1;
+        for (const std::vector<SpecularSearch>& on_path : searched) most += on_path[k].images.size();
+        found.images.reserve(most);
+        if (camera_mesh_) add_camera_mesh(point, found);
+        if (!camera_mesh_ && world_.scene.render.direct) add_direct(point, found);
+        for (std::size_t i = 0; i < paths_.size(); ++i)
+            add_optic_path(paths_[i], point, searched[i][k], found);
+        for (const auto& several : several_) add_several(*several, point, found);
+    }
+}
+
+}  // namespace trilens

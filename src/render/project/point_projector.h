@@ -1,0 +1,69 @@
+// The images of points, one after the other: direct, over one optic, over several.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "render/frame/facet_lookup.h"
+#include "render/project/facet_images.h"
+#include "render/project/path_images.h"
+#include "render/project/project.h"
+#include "render/project/sightlines.h"
+#include "specular/specular_search.h"
+
+namespace trilens {
+
+/// One path over one optic, ready to image points.
+struct OpticPath {
+    Path path = Path::kReflect;
+    Id optic = kNone;
+    std::unique_ptr<FacetImages> facets;
+};
+
+/// Projects points of one world into one camera. Thread-safe to read; the world must live longer.
+class PointProjector {
+  public:
+    PointProjector(const World& world, const ProjectRequest& request);
+
+    /// Adds to result[p] the images of points[p], for each p of `some`; points that lie close together take
+    /// less time.
+    void project(std::span<const Vec3> points, std::span<const std::size_t> some,
+                 std::span<PointProjection> result) const;
+
+  private:
+    void add_optic(std::size_t index);
+    void add_direct(const Vec3& point, PointProjection& result) const;
+    void add_camera_mesh(const Vec3& point, PointProjection& result) const;
+    void add_optic_path(const OpticPath& path, const Vec3& point, const SpecularSearch& searched,
+                        PointProjection& result) const;
+    bool leads_towards(const Ray& view, const OpticPath& path, const Vec3& point) const;
+    void add_several(const SeveralOpticsImages& several, const Vec3& point, PointProjection& result) const;
+    void differentiate(WorldImage& image, const Vec3& point) const;
+    std::vector<SpecularSearch> search(const OpticPath& path, std::span<const Vec3> points) const;
+    std::vector<OpticImage> optic_images(const OpticPath& path, const Vec3& point,
+                                         const SpecularSearch& searched, PointProjection& result) const;
+    void refine_on_film(const OpticPath& path, const Vec3& point, std::vector<OpticImage>& images) const;
+    std::vector<OpticImage> images_on_film(const OpticPath& path, const SpecularSearch& searched) const;
+    bool is_between_planes(double t) const { return t >= camera_.near_depth && t <= camera_.far_depth; }
+    bool on_film(const Vec2& pixel) const;
+    /// Whether images are looked for on the exact surfaces: where the camera's law is that of one eye, or of
+    /// parallel rays.
+    bool searches_surfaces() const {
+        return request_.search == ImageSearch::kComplete &&
+               (camera_.linear || (camera_.model && camera_.model->eye()));
+    }
+
+    const World& world_;
+    ProjectRequest request_;
+    Frame frame_;
+    const CameraRays& camera_ = frame_.camera;
+    const Sightlines sight_;
+    std::unique_ptr<MeshPointImages> camera_mesh_;             // of a camera that is not linear
+    std::vector<std::unique_ptr<SpecularSearcher>> searcher_;  // per optic; kComplete
+    std::vector<FacetLookup> facets_at_;                       // per optic; kComplete
+    std::vector<OpticPath> paths_;
+    std::vector<std::unique_ptr<SeveralOpticsImages>> several_;  // per optic, where paths go on
+};
+
+}  // namespace trilens

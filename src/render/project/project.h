@@ -1,0 +1,75 @@
+// Where world points appear: directly, and by every optic on the exact surface.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "base/math/vec.h"
+#include "paths/trace/path.h"
+#include "render/frame/request.h"
+
+namespace trilens {
+
+struct World;
+
+/// WorldImage::off where it is not known.
+inline constexpr double kUnknownOffset = std::numeric_limits<double>::infinity();
+
+/// One place where a point appears.
+struct WorldImage {
+    Path path = Path::kDirect;
+    Id optic = kNone;      // which of the scene's optics, counted in scene order; none for the direct path
+    Id object = kNone;     // its index in Scene::meshes
+    Id facet = kNone;      // of the optic's grid (of the camera's mesh for a rayMesh camera)
+    Vec2 pixel{0};         // from the film's top left; a pixel's centre is at .5
+    double t = 0;          // along the last ray, in units of its direction (direct: depth)
+    double length = 0;     // the same in scene units
+    bool inside = false;   // on the film
+    bool visible = false;  // nothing lies between the eye, the optic and the point
+    bool refined = false;  // on the exact surface; else the facets' image
+    // Pixels that it may lie from the exact image: 0 where refined, else kUnknownOffset: nothing is known.
+    double off = 0;
+    // The share of each colour of the point's light that comes this way, as pictures have it: Fresnel, tint
+    // and absorption along the whole path. Where glass disperses, steps over one optic are those of its
+    // `ior`, and paths over several those of green, the only colour that is then not 0.
+    Vec3 weight{1};
+    std::vector<Step> steps;  // the meetings with optics, the first among them; none for the direct path
+
+    /// How the pixel moves with the point: row 0 for x, row 1 for y, in pixels per scene unit. Set where
+    /// `has_derivative`: images on exact surfaces in a linear camera, but for those on a fold.
+    bool has_derivative = false;
+    std::array<Vec3, 2> derivative{};
+};
+
+/// All images of one point.
+struct PointProjection {
+    std::vector<WorldImage> images;
+    bool complete = false;  // proven: there is no other; never for paths over several optics, so where the
+                            // facets show any such path it is false
+};
+
+/// kComplete: every part of the exact surfaces is searched or excluded. kFacets: images through the facets
+/// are starting points of Newton's method, so that images which no facet has are missed; several times
+/// faster.
+enum class ImageSearch { kComplete, kFacets };
+
+struct ProjectRequest {
+    FrameParams frame;
+    ImageSearch search = ImageSearch::kComplete;
+    bool refine = true;        // kFacets: else images are left as the facets have them
+    bool visibility = true;    // else `visible` stays false
+    bool derivatives = false;  // of images over one optic too; the others have them anyway
+};
+
+/// The images of every point: direct, after one event at each optic and, as far as the scene has paths
+/// followed (maxDepth), after several: those are found from the facets that lie on the film. Images that
+/// another optic cuts off from the point are none, since light goes on there, and neither are those that
+/// carry no light (weight 0). Images that the optic itself hides from the camera (the back of a closed body)
+/// are left out. A list that is not complete (points near a caustic, overridden normals, kFacets) holds what
+/// the facets lead to as well.
+std::vector<PointProjection> project_points(const World& world, const ProjectRequest& request,
+                                            std::span<const Vec3> points);
+
+}  // namespace trilens

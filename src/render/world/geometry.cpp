@@ -1,0 +1,171 @@
+#include "render/world/geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "base/raymesh/facet_scene.h"
+#include "surfaces/surfaces.h"
+
+namespace trilens {
+namespace {
+
+/// Facets of the fine grid that finds the face under a ray; Newton then finds the exact point, so this only
+/// decides how little of a silhouette is missed.
+constexpr std::size_t kFineFacets = 400'000;
+constexpr int kMinFine = 4, kMaxFine = 256;
+/// Cages of so many faces that kMinFine goes beyond this have small faces, which need less: about 1 GB here.
+constexpr std::size_t kMostFineFacets = 2'000'000;
+
+/// Facets of the grid whose patches beams are held against.
+constexpr std::size_t kPatches = 20'000;
+constexpr int kMostPatches = 24;  // along a face
+
+int patch_resolution(const Surface& surface) {
+    const double per_face = static_cast<double>(kPatches) /
+                            (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
+    const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), 1, kMostPatches);
+    return resolution_within(surface, n, kMostFineFacets);
+}
+
+int fine_resolution(const Surface& surface) {
+    const double per_face = static_cast<double>(kFineFacets) /
+                            (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
+    const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFine, kMaxFine);
+    return resolution_within(surface, n, kMostFineFacets);
+}
+
+}  // namespace
+
+/// What is kept of one optic.
+struct OpticGeometry {
+    Lazy<LimitTracer> limit;
+    Lazy<PatchTree> patches;
+    std::mutex mutex;  // of the two below
+    int resolution = 0;
+    std::shared_ptr<const OpticFacets> facets;
+};
+
+/// What is kept of all objects.
+struct ObjectGeometry {
+    Lazy<PreparedScene> prepared;
+    Lazy<Tracer> tracer;
+};
+
+struct WorldGeometry {
+    std::shared_ptr<ObjectGeometry> objects = std::make_shared<ObjectGeometry>();
+    Lazy<PathWorld> paths;
+    std::vector<std::shared_ptr<OpticGeometry>> optic;
+};
+
+World::World() = default;
+World::~World() = default;
+
+void prepare_geometry(World& world) {
+    keep_geometry(world, std::vector<Id>(world.optics.size(), kNone), false);
+}
+
+void keep_geometry(World& world, const std::vector<Id>& kept_optics, bool keeps_objects) {
+    auto geometry = std::make_unique<WorldGeometry>();
+    if (keeps_objects) geometry->objects = world.geometry->objects;
+    for (const Id before : kept_optics)
+        geometry->optic.push_back(before == kNone ? std::make_shared<OpticGeometry>()
+                                                  : world.geometry->optic[before]);
+    world.geometry = std::move(geometry);
+}
+
+TriangleScene OpticFacets::scene() const {
+    TriangleScene scene;
+    append_facets(grid_, object_, scene);
+    return scene;
+}
+
+const PreparedScene& OpticFacets::prepared() const {
+    return prepared_.get([this] { return std::make_unique<PreparedScene>(scene()); });
+}
+
+const Tracer& OpticFacets::tracer() const {
+    return tracer_.get([this] { return std::make_unique<Tracer>(scene()); });
+}
+
+const PreparedScene& prepared_objects(const World& world) {
+    return world.geometry->objects->prepared.get(
+        [&] { return std::make_unique<PreparedScene>(world.objects); });
+}
+
+const Tracer& object_tracer(const World& world) {
+    return world.geometry->objects->tracer.get([&] {
+        // The world's own triangles, which stay in place as long as what is built of them.
+        const std::shared_ptr<const TriangleScene> in_place(std::shared_ptr<void>(), &world.objects);
+        return std::make_unique<Tracer>(in_place);
+    });
+}
+
+const LimitTracer& limit_tracer(const World& world, std::size_t optic) {
+    return world.geometry->optic[optic]->limit.get([&] {
+        const Surface& surface = *world.optics[optic].surface;
+        const SurfaceGrid fine =
+            surface.has_closed_form() ? SurfaceGrid{} : make_grid(surface, fine_resolution(surface));
+        return std::make_unique<LimitTracer>(surface, fine);
+    });
+}
+
+const PathWorld& path_world(const World& world) {
+    return world.geometry->paths.get([&] {
+        const RenderSettings& settings = world.scene.render;
+        auto paths = std::make_unique<PathWorld>();
+        paths->max_depth = settings.max_depth;
+        paths->fresnel = settings.fresnel;
+        paths->reflect = settings.reflect;
+        paths->refract = settings.refract;
+        paths->objects = &object_tracer(world);
+        for (std::size_t i = 0; i < world.optics.size(); ++i) {
+            const Optic& optic = world.optics[i];
+            const Surface* surface = optic.surface.get();
+            const std::shared_ptr<OpticGeometry> kept = world.geometry->optic[i];
+            paths->optics.push_back({&limit_tracer(world, i), &world.scene.materials[optic.material],
+                                     optic.mirror, world.scene.meshes[optic.mesh].priority,
+                                     surface->sphere_curvature() > 0, [surface, kept]() -> const PatchTree& {
+                                         return kept->patches.get([&] {
+                                             return std::make_unique<PatchTree>(
+                                                 *surface, make_grid(*surface, patch_resolution(*surface)));
+                                         });
+                                     }});
+        }
+        return paths;
+    });
+}
+
+bool has_shadows(const World& world) {
+    return std::any_of(world.scene.lights.begin(), world.scene.lights.end(),
+                       [](const Light& light) { return light.shadows; });
+}
+
+Segments::Bits casts_shadow(const World& world, const Segments& segments) {
+    Segments::Bits hidden = object_tracer(world).occluded(segments);
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        if (world.optics[i].mirror)
+            hidden |= limit_tracer(world, i).occluded(segments, segments.all() & ~hidden);
+    return hidden;
+}
+
+void prepare_shadows(const World& world) {
+    if (!has_shadows(world)) return;
+    object_tracer(world);
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        if (world.optics[i].mirror) limit_tracer(world, i);
+}
+
+std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t optic, int n) {
+    OpticGeometry& kept = *world.geometry->optic[optic];
+    const std::lock_guard lock(kept.mutex);
+    if (!kept.facets || kept.resolution != n) {
+        kept.facets.reset();  // the old one goes first, unless a picture still uses it
+        kept.facets = std::make_shared<OpticFacets>(make_grid(*world.optics[optic].surface, n),
+                                                    world.optics[optic].mesh);
+        kept.resolution = n;
+    }
+    return kept.facets;
+}
+
+}  // namespace trilens

@@ -1,0 +1,146 @@
+#include "scene/data/check_scene.h"
+
+#include <cmath>
+#include <string>
+
+#include "base/raymesh/check_data.h"
+#include "base/util/error.h"
+
+namespace trilens {
+static_assert(kLargestCoordinate == kLargestNumber);
+namespace {
+
+bool is_finite(double x) {
+    return std::isfinite(x);
+}
+bool is_finite(const Vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+class SceneCheck {
+  public:
+    explicit SceneCheck(const Scene& scene) : scene_(scene) {}
+
+    void film() const {
+        const Film& film = scene_.film;
+        require(film.width > 0 && film.height > 0, "/film", "has no pixels");
+        require(static_cast<long long>(film.width) * film.height <= kMostPixels, "/film",
+                "has too many pixels");
+        require(film.spp >= 1 && film.spp <= kMaxSpp, "/film/spp", "is not in 1..64");
+    }
+    void cameras() const;
+    void materials() const;
+    void lights() const;
+    void meshes() const;
+
+  private:
+    [[noreturn]] void fail(const std::string& place, const std::string& message) const {
+        throw InputError(scene_title(scene_), place, message);
+    }
+    void require(bool holds, const std::string& place, const std::string& message) const {
+        if (!holds) fail(place, message);
+    }
+    template <typename T>
+    void finite(const std::vector<T>& values, const std::string& place) const {
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (!is_finite(values[i])) fail(place + "/" + std::to_string(i), "is not finite");
+    }
+    void texture(const Texture* texture, const std::string& place) const {
+        if (!texture) return;
+        require(texture->width > 0 && texture->height > 0, place, "has no pixels");
+        require(texture->rgb.size() ==
+                    3 * static_cast<std::size_t>(texture->width) * static_cast<std::size_t>(texture->height),
+                place, "has not three values per pixel");
+    }
+    void object(const Mesh& whole, const std::string& place) const;
+    void optic(const Mesh& mesh, const std::string& place) const;
+
+    const Scene& scene_;
+};
+
+void SceneCheck::cameras() const {
+    require(!scene_.cameras.empty(), "/cameras", "a scene has a camera");
+    require(scene_.own_camera < scene_.cameras.size(), "/cameras", "the scene's own camera is none of them");
+    for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
+        const CameraDescription& camera = scene_.cameras[i];
+        const std::string place = "/cameras/" + std::to_string(i);
+        require(
+            is_finite(camera.eye) && is_finite(camera.at) && is_finite(camera.up) && is_finite(camera.yfov),
+            place, "is not finite");
+    }
+}
+
+void SceneCheck::materials() const {
+    texture(scene_.background.environment.get(), "/background/file");
+    require(is_finite(scene_.background.color), "/background/color", "is not finite");
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+        const Material& m = scene_.materials[i];
+        const std::string place = "/materials/" + std::to_string(i);
+        require(is_finite(m.base_color_factor) && is_finite(m.attenuation_color), place, "is not finite");
+        require(is_finite(m.ior) && m.ior > 0, place + "/ior", "is not positive");
+        require(is_finite(m.attenuation_distance) && m.attenuation_distance >= 0,
+                place + "/volume/attenuationDistance", "is negative");
+        texture(m.base_color_texture.get(), place + "/baseColorTexture");
+    }
+}
+
+void SceneCheck::lights() const {
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+        const Light& light = scene_.lights[i];
+        require(is_finite(light.color) && is_finite(light.intensity) && is_finite(light.direction) &&
+                    is_finite(light.position),
+                "/lights/" + std::to_string(i), "is not finite");
+    }
+}
+
+void SceneCheck::object(const Mesh& whole, const std::string& place) const {
+    require(whole.material == kNone || whole.material < scene_.materials.size(), place + "/material",
+            "is no material of the scene");
+    const ObjectMesh& mesh = whole.object;
+    const std::size_t count = mesh.triangles.size();
+    finite(mesh.points, place + "/points");
+    for (std::size_t t = 0; t < count; ++t)
+        for (const Id corner : mesh.triangles[t])
+            if (corner >= mesh.points.size())
+                fail(place + "/triangles/" + std::to_string(t), "has a corner that is no point");
+    require(mesh.material.size() == count, place + "/material", "needs one material per triangle");
+    for (const Id material : mesh.material)
+        if (material >= scene_.materials.size()) fail(place + "/material", "names no material of the scene");
+    require(mesh.uvs.empty() || mesh.uvs.size() == count, place + "/uvs",
+            "needs one entry per triangle, or none");
+    require(mesh.normals.empty() || mesh.normals.size() == count, place + "/normals",
+            "needs one entry per triangle, or none");
+}
+
+void SceneCheck::optic(const Mesh& mesh, const std::string& place) const {
+    require(mesh.material < scene_.materials.size(), place + "/material", "is no material of the scene");
+    require(mesh.resolution >= 1 && mesh.resolution <= kMaxResolution, place + "/resolution",
+            "is not in 1.." + std::to_string(kMaxResolution));
+    require(mesh.primitive || !mesh.cage.points.empty(), place, "an optic has a primitive or a cage");
+    require(
+        is_finite(mesh.normals.center) && is_finite(mesh.normals.amplitude) && is_finite(mesh.normals.scale),
+        place + "/normals", "is not finite");
+}
+
+void SceneCheck::meshes() const {
+    for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
+        const std::string place = "/meshes/" + std::to_string(m);
+        if (scene_.meshes[m].role == Role::kObject)
+            object(scene_.meshes[m], place);
+        else
+            optic(scene_.meshes[m], place);
+    }
+}
+
+}  // namespace
+
+void check_scene(const Scene& scene) {
+    const SceneCheck check(scene);
+    check.film();
+    check.cameras();
+    check.materials();
+    check.lights();
+    check.meshes();
+}
+
+}  // namespace trilens

@@ -1,0 +1,117 @@
+// The scene as plain data: what a scene file says, resolved, checked, and with nothing left to load.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/description/appearance.h"
+#include "base/description/cage.h"
+#include "base/description/camera_description.h"
+#include "base/description/corner_rays.h"
+#include "base/description/grid_kind.h"
+#include "base/math/vec.h"
+#include "base/raymesh/triangle_scene.h"
+
+namespace trilens {
+
+/// What a scene may ask for at most.
+inline constexpr long long kMostPixels = 1LL << 28;  // of a film
+/// Coordinates beyond this are taken for mistakes: products of four still fit in a double.
+inline constexpr double kLargestCoordinate = 1e30;
+inline constexpr int kMaxSpp = 64;
+inline constexpr int kMaxResolution = 1024;
+inline constexpr double kMostMaxError = 1000;  // pixels
+
+/// How samples make a pixel's colour: see make_pixel_filter.
+enum class FilterKind { kBox, kMitchell, kGaussian };
+
+struct Film {
+    int width = 640, height = 480;
+    int spp = 1;  // S: S x S samples per pixel
+    FilterKind filter = FilterKind::kBox;
+};
+
+enum class Role { kObject, kOptic };
+
+/// How an optic's normals are overridden (thesis chapter 7: planes with perturbed or spherical normals).
+struct NormalOverride {
+    enum class Type { kSmooth, kSphere, kNoise };
+    Type type = Type::kSmooth;
+    Vec3 center{0};  // kSphere: normals point away from it
+    int seed = 0;    // kNoise
+    double amplitude = 0, scale = 1;
+};
+
+/// The triangles of an object, ready to draw: world frame, polygons already cut into triangles, in face
+/// order.
+struct ObjectMesh {
+    std::vector<Vec3> points;
+    std::vector<IdTriple> triangles;
+    // Per triangle and corner; either empty or one entry per triangle.
+    std::vector<std::array<Vec2, 3>>
+        uvs;  // v upward from the picture's bottom, as OBJ; glTF's is turned on reading
+    std::vector<std::array<Vec3, 3>> normals;  // unit
+    std::vector<Id> material;                  // per triangle: index into Scene::materials
+};
+
+/// One entry of the file's `meshes`. Its index is the object id in images.
+struct Mesh {
+    std::string name;
+    Role role = Role::kObject;
+    Id material = kNone;  // index into Scene::materials; kNone where the triangles carry their own
+    int resolution = 8;   // optic: N x N facets per quad face
+    GridKind grid = GridKind::kSurface;     // optic
+    CornerRays rays = CornerRays::kFitted;  // optic
+    bool layered = true;                    // optic: those seen in it are layers by history
+    std::size_t face_count = 0;             // polygons of the file, holes among them; 0 for a primitive
+    NormalOverride normals;                 // optic
+    int priority = 0;  // optic of glass: where bodies overlap the one of higher priority is inside
+
+    // An object has `object`; an optic has either `primitive` or `cage` (world frame, transform applied).
+    ObjectMesh object;
+    std::optional<Primitive> primitive;
+    Cage cage;
+};
+
+struct RenderSettings {
+    int max_depth = 8;  // optic hits after the first
+    bool direct = true, reflect = true, refract = true;
+    bool fresnel = true;
+    double max_error = 0;  // pixels of displacement that facets are divided for; 0: only where they lie
+};
+
+/// A file as it was when it was read.
+struct FileRead {
+    std::string path;  // absolute, otherwise as named: symbolic links and '..' still stand in it
+    std::string hash;  // of its bytes: hash_text
+};
+
+struct Scene {
+    std::string file;      // where it came from; empty: from memory
+    std::string folder;    // absolute: where its relative paths start
+    std::string label;     // what messages call it where it has no file; may be empty
+    std::string resolved;  // the scene as JSON after --set, one line: goes into image headers
+    Film film;
+    std::vector<CameraDescription> cameras;  // at least one
+    std::size_t own_camera = 0;              // used where none is asked for
+    Background background;
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Light> lights;
+    RenderSettings render;
+    std::vector<FileRead> files;  // every file that the scene was made of, each once, in order of reading
+    std::vector<std::string> warnings;
+};
+
+/// What messages call a scene that has neither file nor label.
+inline constexpr const char* kSceneLabel = "scene";
+
+/// What messages call the scene: its file, else its label.
+inline std::string scene_title(const Scene& scene) {
+    return !scene.file.empty() ? scene.file : !scene.label.empty() ? scene.label : kSceneLabel;
+}
+
+}  // namespace trilens

@@ -1,0 +1,116 @@
+#include "scene/data/scene_digest.h"
+
+#include "base/description/digest.h"
+
+namespace trilens {
+namespace {
+
+// Each structure is taken apart by all of its members: one that is added does not compile until it is named
+// here.
+
+void add(const std::shared_ptr<const Texture>& texture, Digest& digest) {
+    digest.add(texture != nullptr);
+    if (!texture) return;
+    const auto& [width, height, rgb] = *texture;
+    digest.add_all(width, height, rgb);
+}
+
+void add(const CameraDescription& camera, Digest& digest) {
+    const auto& [name, type, eye, at, up, yfov, shift, near_depth, far_depth, ymag, angle, scale, volume,
+                 hfov, vfov, mapping, fov, lens, travel, slits, window, placed_rays, detail, context_fov,
+                 views, blend, center, radius, ground_point, ground_normal, bend, facets, tolerance, points,
+                 directions, screen, triangles] = camera;
+    digest.add_all(name, type, eye, at, up, yfov, shift, near_depth, far_depth, ymag, angle, scale, hfov,
+                   vfov, mapping, fov, travel, window, detail, context_fov, blend, center, radius,
+                   ground_point, ground_normal, bend, facets, tolerance, points, directions, screen,
+                   triangles);
+    {
+        const auto& [vrp, vpn, vup, prp, of_window, parallel, front, back] = volume;
+        digest.add_all(vrp, vpn, vup, prp, of_window, parallel, front, back);
+    }
+    const auto& [fisheye, fx, fy, cx, cy, distortion] = lens;
+    digest.add_all(fisheye, fx, fy, cx, cy, distortion);
+    for (const auto& [point, direction] : slits) digest.add_all(point, direction);
+    for (const auto& [point, direction, place] : placed_rays) digest.add_all(point, direction, place);
+    digest.add(views.size());
+    for (const auto& [one, of_film] : views) {
+        add(one, digest);
+        digest.add(of_film);
+    }
+}
+
+void add(const Background& background, Digest& digest) {
+    const auto& [color, environment, rotate_cos, rotate_sin] = background;
+    digest.add_all(color, rotate_cos, rotate_sin);
+    add(environment, digest);
+}
+
+void add(const Material& material, Digest& digest) {
+    const auto& [name, color, texture, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
+                 distance] = material;
+    digest.add_all(name, color, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
+                   distance);
+    add(texture, digest);
+}
+
+void add(const Light& light, Digest& digest) {
+    const auto& [type, color, intensity, direction, position, shadows] = light;
+    digest.add_all(type, color, intensity, direction, position, shadows);
+}
+
+void add(const Primitive& primitive, Digest& digest) {
+    const auto& [type, center, axis, tangent, radius, focal_length, height, size] = primitive;
+    digest.add_all(type, center, axis, tangent, radius, focal_length, height, size);
+}
+
+void add(const Cage& cage, Digest& digest) {
+    const auto& [points, counts, indices, scheme, boundary, crease_indices, crease_lengths, creases,
+                 corner_indices, corners, holes] = cage;
+    digest.add_all(points, counts, indices, scheme, boundary, crease_indices, crease_lengths, creases,
+                   corner_indices, corners, holes);
+}
+
+void add(const Mesh& mesh, Digest& digest) {
+    const auto& [name, role, material, resolution, grid, rays, layered, face_count, normals, priority, object,
+                 primitive, cage] = mesh;
+    digest.add_all(name, role, material, resolution, grid, rays, layered, face_count, priority);
+    const auto& [type, center, seed, amplitude, scale] = normals;
+    digest.add_all(type, center, seed, amplitude, scale);
+    const auto& [points, triangles, uvs, corner_normals, materials] = object;
+    digest.add_all(points, triangles, uvs, corner_normals, materials);
+    digest.add(primitive.has_value());
+    if (primitive) add(*primitive, digest);
+    add(cage, digest);
+}
+
+template <typename T>
+void add(const std::vector<T>& list, Digest& digest) {
+    digest.add(list.size());
+    for (const T& one : list) add(one, digest);
+}
+
+}  // namespace
+
+std::string mesh_digest(const Mesh& mesh) {
+    Digest digest;
+    add(mesh, digest);
+    return digest.digits();
+}
+
+std::string scene_digest(const Scene& scene) {
+    [[maybe_unused]] const auto& [file, folder, label, resolved, film, cameras, own_camera, background,
+                                  materials, meshes, lights, render, files, warnings] = scene;
+    Digest digest;
+    const auto& [width, height, spp, filter] = film;
+    digest.add_all(width, height, spp, filter, own_camera);
+    add(cameras, digest);
+    add(background, digest);
+    add(materials, digest);
+    add(meshes, digest);
+    add(lights, digest);
+    const auto& [max_depth, direct, reflect, refract, fresnel, max_error] = render;
+    digest.add_all(max_depth, direct, reflect, refract, fresnel, max_error);
+    return digest.digits();
+}
+
+}  // namespace trilens

@@ -1,0 +1,47 @@
+// Wavefront OBJ with subdivision tags, read strictly and without loss of topology.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/data/polygons.h"
+
+namespace trilens {
+
+/// An OBJ file. mesh.face_material indexes material_names; mesh.materials is empty.
+struct ObjFile {
+    PolygonMesh mesh;
+    std::vector<std::string> material_libraries;  // mtllib, as written
+    std::vector<std::string> material_names;      // usemtl, in order of first use
+    std::vector<std::string> warnings;
+};
+
+/// Parses an OBJ, UTF-8 with or without its byte order mark: v, vt, vn, f (3..255 corners; negative indices
+/// count back from the last one so far), usemtl, mtllib, and the tags `t crease 2/1/0 a b sharpness`, `t
+/// corner 1/1/0 v sharpness`, `t hole 1/0/0 face` and `t interpolateboundary 1/0/0 k` (0 none, 1 edge and
+/// corner, 2 edge only), whose indices count from 0 over the whole file. A backslash joins lines; lines and
+/// points are skipped; other keywords are ignored. Throws InputError(file, "line n") for numbers, indices,
+/// counts or tags that are malformed or out of range, and InputError(file) for a file without faces.
+ObjFile parse_obj(const std::string& bytes, const std::string& file);
+
+/// What trilens takes from a material of an MTL file.
+struct MtlMaterial {
+    std::string name;
+    Vec3 diffuse{0};      // Kd, taken as linear; 0.6 where map_Kd stands without Kd
+    std::string texture;  // map_Kd, as written; may be empty
+};
+
+/// An MTL file; without a newmtl line it has no materials.
+struct MtlFile {
+    std::vector<MtlMaterial> materials;
+    std::vector<std::string> warnings;
+};
+
+/// Parses an MTL file, UTF-8 with or without its byte order mark: newmtl, Kd with 3 numbers (or one for all
+/// three) and map_Kd. One warning names every other key, and every option of map_Kd, with the line where it
+/// stands first; d 1 and Tr 0 say what is drawn anyway and are not named. Throws InputError(file, "line n")
+/// for a Kd that is no colour and for an option of map_Kd without its value.
+MtlFile parse_mtl(const std::string& bytes, const std::string& file);
+
+}  // namespace trilens

@@ -1,0 +1,132 @@
+#include "scene/formats/points_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <string_view>
+
+#include "base/util/error.h"
+#include "base/util/parallel.h"
+#include "scene/data/scene.h"
+
+namespace trilens {
+namespace {
+
+/// Whether a line that is no point holds only words.
+bool is_header(std::string_view line) {
+    std::string field;
+    for (const char letter : std::string(line) + ",") {
+        if (letter != ',') {
+            if (!std::isspace(static_cast<unsigned char>(letter)) && letter != '"' && letter != '\'')
+                field += letter;
+            continue;
+        }
+        double value = 0;
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+        if (!field.empty() && end == field.data() + field.size()) return false;
+        field.clear();
+    }
+    return true;
+}
+
+std::optional<Vec3> point_of(std::string_view text) {
+    Vec3 point(0);
+    const char *at = text.data(), *end = at + text.size();
+    const auto skip_blanks = [&] {
+        while (at < end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
+    };
+    for (int k = 0; k < 3; ++k) {
+        skip_blanks();
+        if (at < end && *at == '+') ++at;
+        const auto [next, error] = std::from_chars(at, end, point[k]);
+        if (error != std::errc() || !(std::abs(point[k]) <= kLargestCoordinate)) return std::nullopt;
+        at = next;
+        skip_blanks();
+        if (k < 2 && (at >= end || *at++ != ',')) return std::nullopt;
+    }
+    return at == end ? std::optional(point) : std::nullopt;
+}
+
+/// Some lines of a text: their points, as far as the first line that is none.
+struct Piece {
+    std::vector<Vec3> points;
+    std::size_t lines = 0;
+    std::optional<std::string_view> bad;  // the last line that was looked at
+
+    void take(std::string_view line, bool is_first) {
+        ++lines;
+        if (is_first && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);  // a byte order mark
+        if (line.find_first_not_of(" \t\r") == std::string_view::npos || line[0] == '#') return;
+        const std::optional<Vec3> point = point_of(line);
+        if (point)
+            points.push_back(*point);
+        else if (!is_first || !is_header(line))
+            bad = line;
+    }
+    void take_lines(std::string_view text, bool is_first) {
+        while (!text.empty() && !bad) {
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            take(text.substr(0, end), is_first && lines == 0);
+            text.remove_prefix(std::min(end + 1, text.size()));
+        }
+    }
+};
+
+/// Bytes, so many that a piece is worth a thread of its own.
+constexpr std::size_t kPiece = std::size_t{1} << 16;
+
+/// Where the first line begins that begins at `place` or behind it.
+std::size_t line_at(std::string_view text, std::size_t place) {
+    if (place == 0 || place >= text.size()) return std::min(place, text.size());
+    return std::min(text.find('\n', place - 1), text.size() - 1) + 1;
+}
+
+std::string all_of(std::istream& in, const std::string& file) {
+    std::string text;
+    std::size_t filled = 0;
+    while (in) {
+        text.resize(std::max(2 * filled, kPiece));
+        in.read(text.data() + filled, static_cast<std::streamsize>(text.size() - filled));
+        filled += static_cast<std::size_t>(in.gcount());
+    }
+    if (in.bad()) throw InputError(file, "", "cannot be read");
+    text.resize(filled);
+    return text;
+}
+
+}  // namespace
+
+std::optional<Vec3> parse_point(const std::string& text) {
+    return point_of(text);
+}
+
+std::vector<Vec3> parse_points(const std::string& text, const std::string& name) {
+    std::vector<Piece> pieces(text.size() / kPiece + 1);
+    parallel_for(pieces.size(), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const std::size_t begin = line_at(text, i * kPiece), end = line_at(text, (i + 1) * kPiece);
+            pieces[i].take_lines(std::string_view(text).substr(begin, end - begin), i == 0);
+        }
+    });
+    std::vector<Vec3> points;
+    std::size_t lines = 0;
+    for (const Piece& piece : pieces) {
+        lines += piece.lines;
+        points.insert(points.end(), piece.points.begin(), piece.points.end());
+        if (piece.bad)
+            throw InputError(name, "line " + std::to_string(lines),
+                             "needs x,y,z within 1e30, not \"" + std::string(*piece.bad) + "\"");
+    }
+    if (points.empty()) throw InputError(name, "", "holds no points");
+    return points;
+}
+
+std::vector<Vec3> read_points(const std::string& file) {
+    std::ifstream in(file);
+    if (!in) throw InputError(file, "", "cannot be read");
+    return parse_points(all_of(in, file), file);
+}
+
+}  // namespace trilens

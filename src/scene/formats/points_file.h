@@ -1,0 +1,24 @@
+// Points written as text: x,y,z, one per line of a file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/math/vec.h"
+
+namespace trilens {
+
+/// Three numbers within kLargestCoordinate, separated by commas and blanks; none where the text is anything
+/// else.
+std::optional<Vec3> parse_point(const std::string& text);
+
+/// The points of a text as read_points reads it; messages call it `name`.
+std::vector<Vec3> parse_points(const std::string& text, const std::string& name);
+
+/// The points of a text file, one x,y,z per line; empty lines, lines that begin with # and a first line of
+/// words (a header) are passed over. Throws InputError with the file and the line of the first that is no
+/// point, or where there is none.
+std::vector<Vec3> read_points(const std::string& file);
+
+}  // namespace trilens

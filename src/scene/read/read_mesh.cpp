@@ -1,0 +1,166 @@
+// One entry of `meshes`: its material, its shape as optic or object, and what is doubtful about it.
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/util/nearest.h"
+#include "scene/data/far_point.h"
+#include "scene/read/reading.h"
+
+namespace trilens {
+namespace {
+
+bool inherits(const Node& node) {
+    const std::string material = string_or(node, "material", node.has("file") ? "inherit" : "");
+    if (material != "inherit") return false;
+    if (!node.has("file")) node["material"].fail("only a mesh with a file has materials to inherit");
+    return true;
+}
+
+/// Index into the scene's materials; kNone where the mesh names none, or inherits.
+Id find_material(const Node& node, const Reading& reading) {
+    if (!node.has("material") || node.json.at("material") == "inherit") return kNone;
+    const std::string name = node["material"].json.get<std::string>();
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < reading.named_materials; ++i)
+        known.push_back(reading.scene.materials[i].name);
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+        node["material"].fail("unknown material '" + name + "'" + suggestion(name, known));
+    return static_cast<Id>(found - known.begin());
+}
+
+void check_optic_material(const Node& node, Id index, Reading& reading) {
+    if (index == kNone)
+        node["material"].fail("an optic cannot inherit: name a mirror or a glass of 'materials'");
+    const Material& material = reading.scene.materials[index];
+    const bool mirror = material.metallic_factor == 1, glass = material.transmission_factor == 1;
+    const std::string optic = "the material '" + material.name + "' of an optic ";
+    if (!mirror && !glass)
+        node["material"].fail(optic + "must be a mirror (metallicFactor 1) or glass (transmissionFactor 1)");
+    if (mirror && glass) node["material"].fail(optic + "cannot be mirror and glass at once");
+    if (material.roughness_factor != 0) node["material"].fail(optic + "must have roughnessFactor 0");
+    if (material.base_color_texture) reading.warn(node["material"].place, "a texture on an optic is ignored");
+}
+
+NormalOverride read_normals(const Node& node) {
+    NormalOverride normals;
+    if (!node.has("normals")) return normals;
+    const Node in = node["normals"];
+    const std::string type = in["type"].json.get<std::string>();
+    normals.type = type == "smooth"   ? NormalOverride::Type::kSmooth
+                   : type == "sphere" ? NormalOverride::Type::kSphere
+                                      : NormalOverride::Type::kNoise;
+    normals.center = vec3_or(in, "center", normals.center);
+    normals.seed = int_or(in, "seed", normals.seed);
+    normals.amplitude = number_or(in, "amplitude", normals.amplitude);
+    normals.scale = number_or(in, "scale", normals.scale);
+    return normals;
+}
+
+void place_or_fail(PolygonMesh& polygons, const Node& node) {
+    if (!place(polygons, read_transform(node)))
+        node.fail("its transform carries points beyond coordinates of 1e30");
+}
+
+void warn_count(std::size_t count, const std::string& what, const std::string& place, Reading& reading) {
+    if (count > 0) reading.warn(place, std::to_string(count) + " " + what);
+}
+
+void check_far_points(const Node& node, const Cage& cage) {
+    const std::optional<std::size_t> far = find_far_point(cage);
+    if (!far) return;
+    const std::string message = "lies more than " + describe(kFarthestPoint) +
+                                " times as far from the middle of the cage as half of its points do";
+    if (node.has("points")) node["points"][*far].fail(message);
+    node["file"].fail("point " + std::to_string(*far + 1) + " of the file " + message);
+}
+
+void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
+    check_optic_material(node, mesh.material, reading);
+    if (node.has("primitive")) {
+        mesh.primitive = read_primitive(node["primitive"], read_transform(node), node);
+        return;
+    }
+    PolygonMesh polygons =
+        node.has("file") ? read_mesh_file(node, false, reading) : read_inline_polygons(node);
+    read_subdivision(node, polygons.cage);
+    check_scheme(node, polygons.cage);
+    place_or_fail(polygons, node);
+    check_far_points(node, polygons.cage);
+    mesh.cage = std::move(polygons.cage);
+    mesh.face_count = mesh.cage.face_vertex_counts.size();
+
+    const CageDoubts doubts = find_doubts(mesh.cage);
+    const bool glass = reading.scene.materials[mesh.material].transmission_factor == 1;
+    warn_count(doubts.non_manifold_edges,
+               "edges are not manifold: more than two faces meet there, or their windings disagree",
+               node.place, reading);
+    if (glass)
+        warn_count(doubts.boundary_edges,
+                   "edges have one face only: this glass is one interface, or a body with holes", node.place,
+                   reading);
+    warn_count(doubts.repeated_corners, "faces visit a point twice", node.place, reading);
+    warn_count(doubts.unknown_creases, "creases lie where there is no edge", node.place, reading);
+    warn_count(doubts.flat_faces, "faces have no area", node.place, reading);
+}
+
+/// Moves a file's own materials into the scene, and gives every triangle a material of the scene.
+void settle_materials(PolygonMesh& polygons, Mesh& mesh, Scene& scene) {
+    const auto first = static_cast<Id>(scene.materials.size());
+    for (Material& material : polygons.materials) {
+        material.name = mesh.name + "/" + material.name;
+        scene.materials.push_back(std::move(material));
+    }
+    std::vector<Id>& materials = mesh.object.material;
+    if (mesh.material == kNone && std::find(materials.begin(), materials.end(), kNone) != materials.end()) {
+        scene.materials.emplace_back();
+        scene.materials.back().name = mesh.name + "/default";
+    }
+    const Id fallback = mesh.material != kNone ? mesh.material : static_cast<Id>(scene.materials.size() - 1);
+    for (Id& material : materials)
+        material = mesh.material != kNone || material == kNone ? fallback : first + material;
+}
+
+void read_object(const Node& node, Mesh& mesh, Reading& reading) {
+    if (mesh.material != kNone) {
+        const Material& material = reading.scene.materials[mesh.material];
+        if (material.metallic_factor == 1 || material.transmission_factor == 1)
+            reading.warn(
+                node["material"].place,
+                "a mirror or glass on an object is drawn as a plain surface: an optic reflects and refracts");
+    }
+    PolygonMesh polygons =
+        node.has("file") ? read_mesh_file(node, inherits(node), reading) : read_inline_polygons(node);
+    read_subdivision(node, polygons.cage);
+    place_or_fail(polygons, node);
+    mesh.face_count = polygons.cage.face_vertex_counts.size();
+    TriangulatedMesh triangulated = triangulate(polygons);
+    mesh.object = std::move(triangulated.object);
+    settle_materials(polygons, mesh, reading.scene);
+    warn_count(triangulated.uncovered_faces,
+               "faces cross themselves: they are drawn as fans from their first corners", node.place,
+               reading);
+    warn_count(count_without_area(mesh.object), "triangles have no area", node.place, reading);
+}
+
+}  // namespace
+
+Mesh read_mesh(const Node& node, std::size_t index, Reading& reading) {
+    Mesh mesh;
+    mesh.name = string_or(node, "name", "mesh" + std::to_string(index));
+    mesh.role = node["role"].json == "optic" ? Role::kOptic : Role::kObject;
+    inherits(node);
+    mesh.material = find_material(node, reading);
+    mesh.resolution = int_or(node, "resolution", mesh.resolution);
+    if (string_or(node, "rays", "fitted") == "interpolated") mesh.rays = CornerRays::kInterpolated;
+    mesh.grid = string_or(node, "grid", "surface") == "screen" ? GridKind::kScreen : GridKind::kSurface;
+    mesh.layered = string_or(node, "seenOptics", "layers") == "layers";
+    mesh.priority = int_or(node, "priority", mesh.priority);
+    mesh.normals = read_normals(node);
+    mesh.role == Role::kOptic ? read_optic(node, mesh, reading) : read_object(node, mesh, reading);
+    return mesh;
+}
+
+}  // namespace trilens

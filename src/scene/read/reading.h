@@ -1,0 +1,77 @@
+// What the readers of a scene file's parts share.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "scene/data/polygons.h"
+#include "scene/data/texture_reader.h"
+#include "scene/json/json.h"
+
+namespace trilens {
+
+FileRead make_file_read(const std::string& path, std::string_view bytes);
+
+/// One scene being read.
+struct Reading {
+    Reading(const std::string& named, const std::string& paths_start_here, const TextureReader& pictures);
+    Reading(const Reading&) = delete;  // its texture reader holds its address
+    Reading& operator=(const Reading&) = delete;
+
+    const std::string& file;
+    const std::string& folder;  // where its relative paths start
+    TextureReader textures;     // the caller's; files that it reads are noted
+    Scene scene;
+    std::map<std::string, std::shared_ptr<const Texture>> texture_of_path;
+    std::size_t named_materials =
+        0;  // the scene file's own come first in scene.materials; those of files follow
+
+    /// A path as the scene file writes it, relative to that file.
+    std::string resolve(const std::string& path) const {
+        return (std::filesystem::path(folder) / path).string();
+    }
+
+    /// The bytes of a file, which stands in scene.files from then on. Throws what read_required_file throws.
+    std::string read_file(const std::string& path);
+    /// Notes a file that someone else reads.
+    void note_file(const std::string& path) { read_file(path); }
+
+    void warn(const std::string& place, const std::string& message) {
+        scene.warnings.push_back(file + ": " + one_line((place.empty() ? "" : place + ": ") + message));
+    }
+};
+
+/// Reads each picture once. Throws what the texture reader throws.
+std::shared_ptr<const Texture> read_picture(Reading& reading, const std::string& path);
+
+/// The picture that a JSON string names. Throws InputError with the string's place.
+std::shared_ptr<const Texture> read_picture(Reading& reading, const Node& path);
+
+/// A direction of any length but 0, made unit.
+Vec3 read_direction(const Node& direction);
+
+// Parts of a scene, all of a checked document.
+CameraDescription read_camera(const Node& camera, std::size_t index, Reading& reading);
+Film read_film(const Node& scene);
+Background read_background(const Node& scene, Reading& reading);
+Light read_light(const Node& light);
+RenderSettings read_render(const Node& scene);
+Material read_material(const Node& material, Reading& reading);
+Mesh read_mesh(const Node& mesh, std::size_t index, Reading& reading);
+Primitive read_primitive(const Node& primitive, const Transform& transform, const Node& mesh);
+Transform read_transform(const Node& mesh);
+
+/// Inline points, faces and uvs of a mesh.
+PolygonMesh read_inline_polygons(const Node& mesh);
+/// Polygons of the file that a mesh names; with `inherit`, the file's materials are read too.
+PolygonMesh read_mesh_file(const Node& mesh, bool inherit, Reading& reading);
+/// Scheme, boundary, creases, corners and holes that the JSON gives; they replace those of a file.
+void read_subdivision(const Node& mesh, Cage& cage);
+/// Throws InputError where an optic's scheme does not fit its faces.
+void check_scheme(const Node& mesh, const Cage& cage);
+
+}  // namespace trilens

@@ -1,0 +1,213 @@
+// The plots of a sweep: error along its axes, and what accuracy costs.
+#include "sweep/report/sweep_plots.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "report/plot.h"
+#include "report/text.h"
+#include "sweep/report/fit_runs.h"
+#include "sweep/report/plot_groups.h"
+#include "sweep/report/sweep_heat_maps.h"
+
+namespace trilens {
+namespace {
+
+constexpr const char* kAll = "all";
+constexpr double kMostByOthers = 0.1;  // share of the machine that other work may take of a measured time
+
+bool can_show(const SweepFit& fit) {
+    return std::any_of(fit.points.begin(), fit.points.end(),
+                       [](const SweepPoint& point) { return std::isfinite(point.value) && point.value > 0; });
+}
+
+/// What the plots of one sweep have in common.
+struct Plots {
+    const SweepSummary& summary;
+    const Axis* along;  // null: no axis of numbers
+    std::vector<PlotGroups> pages;
+    std::vector<NamedPlot> plots = {};
+
+    bool has_one_group() const { return pages.size() == 1 && pages[0].groups.size() == 1; }
+
+    PlotParams params(const std::string& title, const std::string& y_label, const PlotGroups& page) const {
+        PlotParams params;
+        params.title = title;
+        params.subtitle = page.title;
+        params.x_label = along->kind.label;
+        params.y_label = y_label;
+        params.ticks_at_points = true;
+        params.is_linear = !along->kind.is_scale;
+        return params;
+    }
+    void add(const std::string& name, const PlotParams& params, const std::vector<PlotSeries>& series) {
+        if (!series.empty())
+            plots.push_back({name, draw_plot(params, series), vega_lite_plot(params, series)});
+    }
+};
+
+/// One line per optic; "all" only where it says more than the one optic does.
+std::vector<PlotSeries> optic_lines(const SweepSummary& summary, const std::string& layer,
+                                    const std::string& metric) {
+    const bool is_mean = metric == "disp_mean_px";
+    std::vector<const SweepFit*> fits;
+    for (const SweepFit& fit : summary.fits)
+        if (fit.layer == layer && fit.metric == metric) fits.push_back(&fit);
+    std::vector<PlotSeries> series;
+    for (const SweepFit* fit : fits)
+        if (can_show(*fit) && (fits.size() != 2 || fit->optic != kAll)) {
+            series.push_back(plot_series(*fit, fit->optic));
+            const SweepFit* const off =
+                is_mean ? find_fit_off_folds(summary.fits, layer, fit->optic) : nullptr;
+            if (off) series.push_back(plot_series(*off, fit->optic + ", off folds"));
+        }
+    return series;
+}
+
+std::vector<PlotSeries> group_lines(const SweepSummary& summary, const PlotGroups& page,
+                                    const std::string& layer, const std::string& metric) {
+    std::vector<PlotSeries> series;
+    for (const PlotGroup& group : page.groups) {
+        const SweepFit* const fit = find_fit(summary.fits, layer, kAll, metric, &group.at);
+        if (fit && can_show(*fit)) series.push_back(plot_series(*fit, group.name));
+    }
+    return series;
+}
+
+void add_displacement(Plots& plots, const std::string& layer, const std::string& metric) {
+    const bool is_mean = metric == "disp_mean_px";
+    for (const PlotGroups& page : plots.pages) {
+        PlotParams params = plots.params(
+            std::string(is_mean ? "Mean" : "95 %") + " displacement of " + what_layer_shows(layer),
+            is_mean ? "mean displacement [px]" : "95 % of pixels within [px]", page);
+        params.subtitle =
+            (page.title.empty() ? "of the pixels that were measured: " : page.title + "; measured: ") +
+            measured_range(plots.summary, layer);
+        params.levels = {{1, "1 px"}, {0.5, "0.5 px"}};
+        plots.add(layer + "_" + metric + page.file, params,
+                  plots.has_one_group() ? optic_lines(plots.summary, layer, metric)
+                                        : group_lines(plots.summary, page, layer, metric));
+    }
+}
+
+void add_colour(Plots& plots) {
+    for (const PlotGroups& page : plots.pages) {
+        std::vector<PlotSeries> series = group_lines(plots.summary, page, "", "rgb_rmse");
+        if (plots.has_one_group() && !series.empty()) series[0].name = "RGB";
+        plots.add("rgb_rmse" + page.file,
+                  plots.params("Colour error of the whole picture", "RMSE of RGB [linear Rec.709]", page),
+                  series);
+    }
+}
+
+/// Error over time of the runs whose time may be believed; of all where none may, which the plot says.
+void add_time(Plots& plots, const std::string& layer, bool is_only_layer) {
+    const auto is_measured = [](const RunRecord& run) {
+        return run.state == RunState::kDone && is_timed_alone(run);
+    };
+    const bool has_measured = std::ranges::any_of(plots.summary.runs, is_measured);
+    std::size_t left_out = 0;
+    for (const PlotGroups& page : plots.pages) {
+        std::vector<PlotSeries> series;
+        for (const PlotGroup& group : page.groups) {
+            PlotSeries one{plots.has_one_group() ? layer : group.name, {}, std::nullopt};
+            for (const RunRecord* run : group.runs) {
+                const MetricValues* const all = find_displacement(*run, layer, kAll);
+                const auto seconds = find_value(run->metrics, "t_total_s"),
+                           error = all ? find_value(*all, "disp_mean_px") : std::nullopt;
+                if (!seconds || !error || !(*error > 0)) continue;
+                if (has_measured && !is_measured(*run)) ++left_out;
+                if (!has_measured || is_measured(*run)) one.points.push_back({*seconds, *error});
+            }
+            if (!one.points.empty()) series.push_back(one);
+        }
+        PlotParams params;
+        params.title = page.title.empty() ? "What accuracy costs" : "Cost: " + page.title;
+        params.subtitle = !has_measured  ? "no measurement: the machine was shared"
+                          : left_out > 0 ? std::to_string(left_out) + " runs left out: the machine was shared"
+                                         : "displacement of the pixels that were measured";
+        params.x_label = "time per picture [s]";
+        params.y_label = "mean displacement [px]";
+        params.reference_orders = false;
+        params.levels = {{1, "1 px"}, {0.5, "0.5 px"}};
+        plots.add((is_only_layer ? "time" : "time_" + layer) + page.file, params, series);
+    }
+}
+
+}  // namespace
+
+bool is_timed_alone(const RunRecord& run) {
+    return find_value(run.metrics, "jobs").value_or(1) <= 1 &&
+           find_value(run.metrics, "machine_used_by_others").value_or(0) <= kMostByOthers;
+}
+
+std::vector<std::string> layers_of(const SweepSummary& summary) {
+    std::vector<std::string> layers;
+    for (const RunRecord& run : summary.runs)
+        for (const OpticDisplacement& one : run.displacement)
+            if (std::find(layers.begin(), layers.end(), one.layer) == layers.end())
+                layers.push_back(one.layer);
+    return layers;
+}
+
+std::string percent_text(double share) {
+    const double percent = 100 * share;
+    const bool is_rounded_up = share < 1 && percent >= 99.95, is_rounded_down = share > 0 && percent < 0.05;
+    return is_rounded_up ? "> 99.9 %" : is_rounded_down ? "< 0.1 %" : rounded_text(percent, 3) + " %";
+}
+
+std::string measured_range(const SweepSummary& summary, const std::string& layer) {
+    std::optional<double> least, most;
+    for (const RunRecord& run : summary.runs)
+        for (const OpticDisplacement& one : run.displacement) {
+            const std::optional<double> share = find_value(one.metrics, "disp_coverage");
+            if (one.layer != layer || one.optic != kAll || !share) continue;
+            least = std::min(least.value_or(1), *share);
+            most = std::max(most.value_or(0), *share);
+        }
+    if (!least) return "nothing";
+    const std::string low = percent_text(*least), high = percent_text(*most);
+    return low == high ? low : low + " to " + high;
+}
+
+std::string measured_text(const MetricValues& metrics) {
+    const std::optional<double> share = find_value(metrics, "disp_coverage");
+    if (!share) return "not known";
+    return percent_text(*share) + ", " + fixed_text(find_value(metrics, "disp_lost").value_or(0), 0) +
+           " px lost, " + fixed_text(find_value(metrics, "disp_missing").value_or(0), 0) + " px missing";
+}
+
+bool is_exact(const SweepFit& fit) {
+    return !fit.points.empty() && std::all_of(fit.points.begin(), fit.points.end(),
+                                              [](const SweepPoint& p) { return p.value == 0; });
+}
+
+std::string what_layer_shows(const std::string& layer) {
+    return layer == "reflect" ? "what mirrors show" : layer == "refract" ? "what glass shows" : layer;
+}
+
+std::vector<NamedPlot> make_plots(const SweepSummary& summary) {
+    const SweepAxes& axes = summary.manifest.axes;
+    Plots plots{summary, ordering_axis(axes), plot_groups(group_runs(axes, summary.runs))};
+    if (plots.pages.size() > kMostPlotsOfAKind) plots.pages.resize(kMostPlotsOfAKind);
+    const std::vector<std::string> layers = layers_of(summary);
+    // Where there are many plots, the maps are the view of all.
+    const auto add_maps = [&] {
+        for (const std::string& layer : layers)
+            for (NamedPlot& map : make_heat_maps(summary, layer)) plots.plots.push_back(std::move(map));
+    };
+    const bool has_many = plots.pages.size() > 4;
+    if (has_many) add_maps();
+    if (plots.along) {
+        for (const std::string& layer : layers)
+            for (const char* metric : {"disp_mean_px", "disp_p95_px"}) add_displacement(plots, layer, metric);
+        add_colour(plots);
+    }
+    for (const std::string& layer : layers) add_time(plots, layer, layers.size() == 1);
+    if (!has_many) add_maps();
+    return std::move(plots.plots);
+}
+
+}  // namespace trilens

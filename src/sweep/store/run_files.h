@@ -1,0 +1,40 @@
+// The files of one run: what makes it finished, and what it then says.
+#pragma once
+
+#include <string>
+
+#include "sweep/store/measure_run.h"
+#include "sweep/store/results.h"
+
+namespace trilens {
+
+/// The file whose lock (file_lock.h) a process holds while it does or judges the run. Throws OutputError.
+std::string run_lock(const std::string& folder, const PlannedRun& plan);
+
+/// Tells apart the failures that the folder keeps of this run, one after the other; empty where it keeps
+/// none.
+std::string failure_stamp(const std::string& folder, const PlannedRun& plan);
+
+/// What the folder says of this run. Finished only where DONE holds plan.hash and the hashes of files that
+/// are as they were written; any damage makes it missing.
+RunRecord load_run(const std::string& folder, const PlannedRun& plan);
+
+/// Makes the run unfinished, before it is done again. A failure stays told until the new attempt has ended,
+/// so that who sums up meanwhile does not miss the run. Throws OutputError.
+void clear_run(const std::string& folder, const PlannedRun& plan);
+
+/// Writes the run's picture and returns the seconds that took. The run is not finished by it. Throws
+/// OutputError.
+double store_image(const std::string& folder, const PlannedRun& plan, const Image& image);
+
+/// The hash of the picture that store_image wrote. Throws OutputError where it cannot be read back.
+std::string hash_of_image(const std::string& folder, const PlannedRun& plan);
+
+/// Writes the difference, metrics.json and last DONE, then forgets an earlier failure. `run.image_hash` is
+/// hash_of_image. Throws OutputError.
+void store_run(const std::string& folder, const RunRecord& run, const Image& diff);
+
+/// Writes error.json. Throws OutputError.
+void store_failure(const std::string& folder, const RunRecord& run);
+
+}  // namespace trilens
