@@ -8,6 +8,7 @@
 #include "base/util/parallel.h"
 #include "film_mesh.h"
 #include "projector/classic/classic_fill.h"
+#include "projector/projector.h"
 #include "random_cases.h"
 #include "support/test.h"
 

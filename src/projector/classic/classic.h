@@ -2,6 +2,11 @@
 // (Vallance 2005, chapters 3 to 5).
 #pragma once
 
+#include <span>
+
+#include "base/raymesh/facet_samples.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
 #include "projector/classic/classic_params.h"
 #include "projector/scene/prepared_scene.h"
 
