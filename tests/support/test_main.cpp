@@ -1,10 +1,15 @@
-// The tests' main: runs them, then says how many assertions were made and how many tests were skipped.
+// The tests' main: runs them, then says how many assertions were made and how many tests were skipped. With
+// --write-ctest FILE it writes each test case, with its labels, as CTest reads them.
 #define CATCH_CONFIG_RUNNER
 #include "support/test.h"
 
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <map>
+#include <set>
+#include <vector>
 
 namespace {
 
@@ -59,11 +64,67 @@ struct CountListener : ListenerBase {
     }
 };
 
+struct Case {
+    std::string name;
+    std::vector<std::string> tags;
+};
+
+std::vector<Case> all_cases() {
+    std::vector<Case> cases;
+    const auto& registry = Catch::getRegistryHub().getTestCaseRegistry();
+#if __has_include(<catch2/catch_all.hpp>)
+    for (const Catch::TestCaseInfo* info : registry.getAllInfos()) {
+        cases.push_back({info->name, {}});
+        for (const Catch::Tag& tag : info->tags) cases.back().tags.emplace_back(tag.original);
+    }
+#else
+    for (const Catch::TestCase& info : registry.getAllTests()) cases.push_back({info.name, info.tags});
+#endif
+    return cases;
+}
+
+/// The name as a test spec that only it matches.
+std::string as_spec(const std::string& name) {
+    std::string spec;
+    for (const char c : name) {
+        if (std::strchr("\\,[]\"", c)) spec += '\\';
+        spec += c;
+    }
+    return spec;
+}
+
+/// A test's labels are its tags. What is hidden for another reason than its length (a test's helper) is no test
+/// of CTest's. Names are written as bracket arguments, which CMake does not look into.
+int write_ctest(const char* program, const char* file) {
+    std::ofstream out(file);
+    std::set<std::string> names;
+    for (const auto& [name, tags] : all_cases()) {
+        const std::set<std::string> labels(tags.begin(), tags.end());
+        if (labels.count(".") && !labels.count("long")) continue;
+        if (!names.insert(name).second) {
+            std::fprintf(stderr, "two tests have the name \"%s\"\n", name.c_str());
+            return 1;
+        }
+        out << "add_test([==[" << name << "]==] [==[" << program << "]==] [==[" << as_spec(name) << "]==])\n"
+            << "set_tests_properties([==[" << name << "]==] PROPERTIES LABELS \"";
+        const char* separator = "";
+        for (const std::string& label : labels) {
+            if (label == ".") continue;
+            out << separator << label;
+            separator = ";";
+        }
+        out << "\")\n";
+    }
+    return out.flush() ? 0 : 1;
+}
+
 }  // namespace
 
 CATCH_REGISTER_LISTENER(CountListener)
 
 int main(int argc, char** argv) {
+    if (argc == 3 && std::strcmp(argv[1], "--write-ctest") == 0)
+        return write_ctest(std::filesystem::canonical(argv[0]).c_str(), argv[2]);
     const int result = Catch::Session().run(argc, argv);
     for (const auto& [test, why] : skips()) std::printf("skipped: %s: %s\n", test.c_str(), why.c_str());
     const std::size_t skipped = skips().size(), failed = totals().failed;
