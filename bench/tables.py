@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what bench_race measured: python3 bench/tables.py FILE.csv... FOLDER
+"""Draws what bench_race_workloads measured: python3 bench/tables.py FILE.csv... FOLDER
 
 Writes FOLDER/table.md (today beside the aim), plots of the ratio over triangles, over n, over the film, over the
 samples of a facet and over the layers of the scene, one line per combination of the others, and where the engine
@@ -15,7 +15,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-# triangles -> (aim at n = 16, at least at n = 16, at least at n = 64), hits left in packet order
+# triangles -> (aim at n = 16, at least at n = 16, at least at n = 64), hits written per sample
 AIMS = {12: (6, 3.5, 2), 972: (4, 2.4, 1.4), 10092: (3.5, 2.4, 1.1), 99372: (2.5, 1.8, 1), 1002252: (2, 1.4, 1)}
 
 
@@ -27,16 +27,16 @@ def aim(row):
 
 
 def table(rows):
-    head = ["workload", "triangles", "n", "film", "threads", "isa", "visible ms", "draw ms", "Embree ms", "visible", "draw",
-            "low..high", "aim", "at least", "written", "with build", "whole", "samples per facet", "shared", "layers", "doubtful", "mismatches", "unexplained"]
+    head = ["workload", "triangles", "n", "film", "threads", "isa", "visible ms", "written ms", "Embree ms", "visible", "written",
+            "low..high", "aim", "at least", "with build", "whole", "samples per facet", "shared", "layers", "doubtful", "mismatches", "unexplained"]
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     for r in rows:
         best, least = aim(r)
         cells = [r["workload"], r["triangles"], r["n"], r["film"], r["threads"], r["isa"],
-                 f'{float(r["visible_ms"]):.2f}', f'{float(r["draw_ms"]):.2f}', f'{float(r["trace_ms"]):.2f}',
-                 f'{float(r["ratio_visible"]):.2f}', f'{float(r["ratio_draw"]):.2f}',
+                 f'{float(r["visible_ms"]):.2f}', f'{float(r["written_ms"]):.2f}', f'{float(r["trace_written_ms"]):.2f}',
+                 f'{float(r["ratio_visible"]):.2f}', f'{float(r["ratio_written"]):.2f}',
                  f'{float(r["lowest"]):.2f}..{float(r["highest"]):.2f}', str(best), str(least),
-                 f'{float(r["ratio_written"]):.2f}', f'{float(r["ratio_with_build"]):.2f}',
+                 f'{float(r["ratio_with_build"]):.2f}',
                  f'{float(r["ratio_whole"]):.2f}', f"{number(r, 'samples'):.0f}", f'{float(r["shared"]):.1%}',
                  f'{float(r["depth_complexity"]):.1f}', f'{float(r["doubtful"]):.2%}', r["mismatches"], r["unexplained"]]
         lines.append("| " + " | ".join(cells) + " |")
@@ -99,8 +99,7 @@ def plot(rows, axis, column, file):
 
 
 TITLES = {"ratio_visible": "Triangles seen left in order, t within bounds; rays and samples made beforehand",
-          "ratio_draw": "Hits left in order, rays and samples made beforehand",
-          "ratio_written": "Hits written per sample", "ratio_whole": "With trees, rays and samples",
+          "ratio_written": "Hits written per sample, rays and samples made beforehand", "ratio_whole": "With trees, rays and samples",
           "shared": "Samples in vectors that facets share: rays of their own, not one facet's functions",
           "doubtful": "Samples that floats left in doubt, decided exactly"}
 SHARES = {"shared", "doubtful"}

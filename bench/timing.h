@@ -6,15 +6,15 @@
 #include <utility>
 #include <vector>
 
-#include "bench/times.h"
+#include "bench/race/times.h"
 
 namespace trilens_bench {
 
 /// The median of `repeats` runs of `work`, milliseconds of wall time.
 inline double median_ms(int repeats, const std::function<void()>& work) {
     std::vector<double> times;
-    for (int i = 0; i < repeats; ++i) times.push_back(trilens::milliseconds(work));
-    return trilens::median(std::move(times));
+    for (int i = 0; i < repeats; ++i) times.push_back(milliseconds(work));
+    return median(std::move(times));
 }
 
 /// Reproducible uniform numbers, the same with every compiler.

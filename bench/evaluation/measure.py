@@ -49,9 +49,12 @@ def timed(method, scene, out, *options, repeats=5):
 
 
 def packets(scene, *options, repeats=5):
-    """Embree's packets and the projector on the same rays in the same run, milliseconds."""
-    answer = run(["bench", scene, *options, "--repeat", repeats, "--threads", 1])
-    return answer["embree"]["build_ms"] + answer["embree"]["trace_ms"], answer["projector"]["prepare_ms"] + answer["projector"]["draw_ms"]
+    """Embree's packets and the projector on the same rays in the same run, hits per sample, milliseconds."""
+    race = pathlib.Path(TRILENS).parent / "bench" / "bench_race"
+    words = [str(word) for word in (race, scene, *options, "--repeat", repeats, "--threads", 1, "--json")]
+    answer = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
+    embree, projector = answer["embree"], answer["projector"]
+    return embree["build_ms"] + embree["written_ms"], projector["prepare_ms"] + projector["written_ms"]
 
 
 def mask_difference(reference, picture):

@@ -79,7 +79,7 @@ Command sweep_command() {
     planned.body = [options](Console& console) { return plan(*options, console); };
     Command sweep{.name = "sweep",
                   .summary = "render, trace and compare over resolutions, engines or any setting",
-                  .commands = {std::move(all), std::move(planned), sweep_engines_command()}};
+                  .commands = {std::move(all), std::move(planned)}};
     for (Command& command : sweep_folder_commands()) sweep.commands.push_back(std::move(command));
     sweep.commands.push_back(sweep_submit_command());
     return sweep;

@@ -11,12 +11,10 @@ namespace trilens {
 std::vector<Command> render_commands();  // render and trace
 Command compare_command();
 Command sweep_command();
-Command sweep_engines_command();
 Command sweep_submit_command();
 std::vector<Command> sweep_folder_commands();  // status, report, merge, schema
 Command report_command();
 Command project_command();
-Command bench_command();
 Command test_command();
 Command scene_command();
 Command info_command();

@@ -19,7 +19,6 @@ namespace {
 void put_hit(const KernelScene& scene, std::uint32_t vector, std::size_t k, const Hit& seen) {
     const Id sample = scene.tiles->samples[vector].sample[k];
     if (!scene.hits.empty()) scene.hits[sample] = seen;
-    if (!scene.vector_hits.empty()) set_lane(scene.vector_hits[vector], k, seen);
     if (!scene.visible.empty()) scene.visible[sample] = visible_of(seen);
     if (!scene.vector_visible.empty()) set_lane(scene.vector_visible[vector], k, visible_of(seen));
 }

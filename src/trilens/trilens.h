@@ -5,10 +5,8 @@
 #pragma once
 
 #include <trilens/animation.h>
-#include <trilens/bench.h>
 #include <trilens/camera.h>
 #include <trilens/compare.h>
-#include <trilens/engine_study.h>
 #include <trilens/error.h>
 #include <trilens/files.h>
 #include <trilens/image.h>

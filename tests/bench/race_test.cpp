@@ -3,10 +3,11 @@
 
 #include "base/raymesh/rasterize.h"
 #include "base/util/error.h"
-#include "bench/measure.h"
+#include "bench/race/race.h"
 #include "support/test.h"
 
 using namespace trilens;
+using namespace trilens_bench;
 
 namespace {
 

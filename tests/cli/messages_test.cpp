@@ -94,24 +94,6 @@ TEST_CASE("scenes of one name, and standard input, are refused by what reads or 
     }
 }
 
-TEST_CASE("a study of engines leaves the plots of others as they are", "[cli][messages]") {
-    const std::string folder = scratch_dir("cli_messages_study");
-    const std::string scene = write_file(folder, "room.json", small_scene());
-    fs::create_directories(folder + "/study/plots");
-    const std::string theirs = write_file(folder + "/study/plots", "room.svg", "mine");
-    const std::string command =
-        "sweep engines " + quoted_word(scene) + " -q -o " + quoted_word(folder + "/study");
-    const CommandRun refused = run_trilens(command);
-    INFO(refused.err);
-    CHECK(refused.exit_code == 4);
-    CHECK(has(refused.err, theirs + ": is there already"));
-    CHECK(bytes_of(theirs) == "mine");
-    CHECK_FALSE(fs::exists(folder + "/study/engines.csv"));
-    fs::remove(theirs);
-    for (int times = 0; times < 2; ++times) CHECK(run_trilens(command).exit_code == 0);
-    CHECK(fs::exists(folder + "/study/plots/room.svg"));
-}
-
 TEST_CASE("points may come from standard input, where the scene does not", "[cli][messages]") {
     const std::string folder = scratch_dir("cli_messages_points");
     const std::string scene = write_file(folder, "room.json", small_scene());

@@ -17,7 +17,6 @@ namespace {
 
 /// What an example has to leave behind.
 const std::map<std::string, std::vector<std::string>> kWritten{
-    {"engine_study", {"results/engines/engines.csv", "results/engines/clipping.csv"}},
     {"files", {"out.json"}},
     {"image", {"picture.png"}},
     {"render", {"projected.exr", "truth.exr"}},

@@ -53,8 +53,6 @@ def test_errors_are_those_that_are_said(sphere, image):
         sphere.at_frame(float("nan"), turntable=8)
     with pytest.raises(trilens.UsageError):
         sphere.at_frame(0, turntable=-1)
-    with pytest.raises(trilens.UsageError):
-        trilens.bench(sphere, resolution=-3, repeat=1)
 
 
 CAMERA = trilens.make_perspective(width=64, height=48)

@@ -26,7 +26,7 @@ inline std::string data_dir() {
 }
 /// Whether data_dir()/`relative` is missing.
 bool data_missing(const std::string& relative);
-/// A folder under the build tree for this test's files, made empty.
+/// A folder under the build tree for this test's files, made empty; no other test has it.
 std::string scratch_dir(const std::string& name);
 
 }  // namespace trilens_test

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <set>
 #include <vector>
@@ -31,7 +32,12 @@ bool data_missing(const std::string& relative) {
 }
 
 std::string scratch_dir(const std::string& name) {
-    const std::filesystem::path folder = std::filesystem::path(TRILENS_BUILD_DIR) / "scratch" / name;
+    // Tests run side by side, each in a process of its own.
+    const std::size_t test = std::hash<std::string>()(Catch::getResultCapture().getCurrentTestName());
+    char number[2 * sizeof(test) + 1];
+    std::snprintf(number, sizeof(number), "%zx", test);
+    const std::filesystem::path folder =
+        std::filesystem::path(TRILENS_BUILD_DIR) / "scratch" / number / name;
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     return folder.string();

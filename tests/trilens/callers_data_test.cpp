@@ -194,10 +194,6 @@ TEST_CASE("a renderer refuses requests that are none", "[trilens]") {
         if (n <= 1 || n > 1024)
             only_errors("classic", [&] { renderer.draw(picture_of({0, 2}, classic), {}, quiet); });
         only_errors("classic_name", [&] { classic_name(classic); });
-        BenchRequest bench;
-        bench.frame.resolution = n > 4 ? -n : n;
-        bench.race.repeats = n > 4 ? 0 : n;
-        only_errors("run_bench", [&] { run_bench(callers_scene(), bench, quiet); });
     }
     for (const double x : kOddNumbers) {
         FrameParams frame{0, 2};
@@ -211,9 +207,6 @@ TEST_CASE("a renderer refuses requests that are none", "[trilens]") {
     CHECK_THROWS_AS(renderer.draw(picture_of(nobody)), UsageError);
     CHECK_THROWS_AS(renderer.explain(picture_of(nobody), 1, 1), UsageError);
     CHECK_THROWS_AS(renderer.draw_lines(nobody), UsageError);
-    BenchRequest bench;
-    bench.frame = nobody;
-    CHECK_THROWS_AS(run_bench(callers_scene(), bench), UsageError);
     CHECK_THROWS_AS(renderer.change(Scene()), InputError);
     CHECK(renderer.scene().film.width == 16);
 }
@@ -313,12 +306,6 @@ TEST_CASE("sweeps and suites refuse requests that are none", "[trilens]") {
         run_suite(request);
     });
     only_errors("run_suite", [] { run_suite(SuiteRequest()); });
-    only_errors("study_engines", [&] { study_engines({{}, "", folder + "/study"}); });
-    only_errors("study_engines", [&] {
-        SceneRequest none;
-        none.file = "none.json";
-        study_engines({{none}, "nobody", folder + "/study"});
-    });
 }
 
 TEST_CASE("what looks through meshes by itself refuses what does not fit together", "[trilens]") {

@@ -76,7 +76,7 @@ HWY_INLINE void prefetch_rays(const KernelScene& scene, std::uint32_t tiles, std
 
 /// Whether what is drawn goes past the caches.
 HWY_INLINE bool streams(const KernelScene& scene) {
-    return !scene.vector_hits.empty() || !scene.vector_visible.empty();
+    return !scene.vector_visible.empty();
 }
 
 std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const KernelOptions& options,

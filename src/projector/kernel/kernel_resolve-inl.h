@@ -10,7 +10,7 @@
 #include <algorithm>
 
 #include "base/util/check.h"
-#include "projector/kernel/kernel_rounded-inl.h"
+#include "projector/kernel/kernel_placed-inl.h"
 #include "projector/kernel/kernel_whole-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -127,11 +127,11 @@ HWY_INLINE void finish_vector(const KernelScene& scene, const KernelState& state
     const PlacedFloats floats = narrow(placed);
     const std::uint32_t bad = kAllLanes & ~bits(sound(floats) | same(floats.triangle, set_word(kNone)));
     if (HWY_LIKELY(bad == 0 && !is_doubtful(state, next, in_group)))
-        return write_hits(scene, state.first_vector + in_group, placed, floats);
+        return write_samples(scene, state.first_vector + in_group, placed);
     decide_lanes(scene, state, in_group, bad, facet_of, placed);
     resolve_doubts(scene, state, in_group, facet_of, next,
                    [&](std::size_t lane, const Hit& hit) HWY_ATTR { set_lane(placed, lane, hit); });
-    write_hits(scene, state.first_vector + in_group, placed, narrow(placed));
+    write_samples(scene, state.first_vector + in_group, placed);
 }
 
 inline constexpr std::uint32_t kPlacedAhead = 3;  // vectors whose triangles are fetched meanwhile
@@ -150,8 +150,8 @@ HWY_INLINE bool write_one(const TilePlacing& tile, const TileVector& at, Id tria
     const PlacedVector one = place_all(tile, scene.tiles->vectors[at.vector], cached);
     const PlacedFloats floats = narrow(one, cached.triangle);
     const bool sure = bits(sound(floats)) == kAllLanes && !is_doubtful(state, next, at.in_group);
-    if (HWY_UNLIKELY(!sure || !scene.hits.empty())) store_placed(one, cached.triangle, placed);
-    if (HWY_LIKELY(sure)) write_hits(scene, at.vector, placed, floats);
+    store_placed(one, cached.triangle, placed);
+    if (HWY_LIKELY(sure)) write_samples(scene, at.vector, placed);
     return sure;
 }
 
@@ -181,24 +181,10 @@ HWY_INLINE void resolve_vector(const TilePlacing& placing, const TileVector& at,
         [&](std::size_t) HWY_ATTR -> const FacetRays& { return placing.facet; }, next, placed);
 }
 
-/// The vectors that round_tile() left, of the tile of lane j.
-HWY_NOINLINE void resolve_left(const TilePlacing& placing, std::size_t j, KernelState& state,
-                               std::size_t& next) {
-    for (const std::uint32_t vector : state.quotients.left) {
-        const TileVector at{vector, vector - state.first_vector};
-        if (state.covered >> j & 1)
-            resolve_covered(placing, at, j, state, next);
-        else
-            resolve_vector(placing, at, state, next);
-    }
-}
-
 /// The tile of lane j, whose vectors from `known` on are not set.
 HWY_INLINE void resolve_tile(const TilePlacing& placing, const SampleTile& tile, std::size_t j,
                              std::uint32_t known, KernelState& state, std::size_t& next) {
     const bool covered = state.covered >> j & 1;
-    if (round_tile(placing, tile, covered ? state.whole[j].triangle : kNone, next, state))
-        return resolve_left(placing, j, state, next);
     const std::uint32_t first = tile.first_vector - state.first_vector;
     for (std::uint32_t i = first; i < first + tile.vectors; ++i) {
         const TileVector at{state.first_vector + i, i};

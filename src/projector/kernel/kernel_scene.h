@@ -16,19 +16,6 @@ namespace trilens {
 /// How leaves are drawn: by what is cheapest, or always in one way (to test each).
 enum class LeafMode { kCheapest, kTriangles, kFacets, kRays };
 
-/// The hits of a vector's samples, as a consumer in the same order wants them.
-struct alignas(64) VectorHits {
-    Id triangle[kLanes];  // index into the scene, or kNone
-    float t[kLanes], u[kLanes], v[kLanes];
-};
-
-inline void set_lane(VectorHits& hits, std::size_t lane, const Hit& hit) {
-    hits.triangle[lane] = hit.triangle;
-    hits.t[lane] = static_cast<float>(hit.t);
-    hits.u[lane] = static_cast<float>(hit.barycentric.x);
-    hits.v[lane] = static_cast<float>(hit.barycentric.y);
-}
-
 /// What a vector's samples see, not yet placed.
 struct alignas(64) VectorVisible {
     Id triangle[kLanes];  // index into the scene, or kNone
@@ -55,9 +42,8 @@ struct KernelScene {
     const RayMesh* mesh = nullptr;
     const SampleGrid* grid = nullptr;
     const SampleTiles* tiles = nullptr;
-    // What is asked for: one of the first two or both, or else one of the last two or both.
+    // What is asked for: hits, or else what is visible, in one order or both.
     std::span<Hit> hits{};                      // by sample
-    std::span<VectorHits> vector_hits{};        // by vector
     std::span<Visible> visible{};               // by sample
     std::span<VectorVisible> vector_visible{};  // by vector
 };

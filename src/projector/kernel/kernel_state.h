@@ -150,35 +150,6 @@ struct FrameCache {
     std::array<CachedFrame, kCachedFrames> frame;
 };
 
-/// The products of two parts that make the monomials 1, x, y, x^2, xy, y^2: lanes are monomials, then
-/// nothing.
-inline constexpr std::size_t kMonomials = 8;
-
-/// A facet's rays over a tile's lines of samples, by the parts of monomials, and their bounds there.
-struct alignas(64) RayParts {
-    double origin[2][3][kMonomials], direction[2][3][kMonomials], weight[2][kMonomials];
-    double middle[2];                                             // of the tile, in lines
-    double origin_size = 0, direction_size = 0, weight_size = 0;  // of a component: its terms' absolute sum
-    double least_weight = 0;                                      // or less
-};
-
-/// A triangle over a tile as quotients: t = above weight / (weight along), the weights of the scene's second
-/// and third corner the others' over that too. Coefficients by monomials.
-struct alignas(64) Quotient {
-    double second[kMonomials], third[kMonomials], above[kMonomials], along[kMonomials];
-    double time_doubt = 0, weight_doubt = 0;
-    Id triangle = kNone;  // index into the scene
-    bool holds = false;   // else nothing else is set
-};
-
-/// The quotients of some triangles that one tile sees, as in FrameCache.
-struct QuotientCache {
-    RayParts parts;
-    std::array<Id, kCachedFrames> triangle{};
-    std::array<Quotient, kCachedFrames> quotient;
-    std::vector<std::uint32_t> left;  // vectors that they do not decide
-};
-
 /// By vector of a tile, like VectorBoxes: no farther hit can matter.
 struct alignas(64) VectorLimits {
     float farthest[kLanes];
@@ -212,7 +183,6 @@ struct KernelState {
     std::size_t most_doubts = 0;
     std::size_t doubtful = 0;  // samples of all groups so far
     FrameCache cache;
-    QuotientCache quotients;
 };
 
 }  // namespace trilens

@@ -1,4 +1,4 @@
-// What vectors' samples see leaves the engine: as floats in the vectors' order, or as hits by sample.
+// Writes results: one hit per sample, two samples of a vector at a time.
 // Included once per instruction set.
 #if defined(TRILENS_KERNEL_WRITE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRILENS_KERNEL_WRITE_INL_H
@@ -74,7 +74,7 @@ HWY_NOINLINE void write_samples(const KernelScene& scene, std::uint32_t vector, 
     if (k < count) write_sample(placed, k, hits[samples.sample[k]]);
 }
 
-/// What float consumers get of a vector.
+/// A vector as floats: enough to tell which lanes are trusted.
 struct PlacedFloats {
     Floats t, second, third;
     Words triangle;
@@ -91,21 +91,6 @@ HWY_INLINE Mask sound(const PlacedFloats& placed) {
     const Floats least_weight =
         least(least(placed.second, placed.third), set(1.0f) - placed.second - placed.third);
     return (least_weight > set(kInside)) & (absolute(placed.t) < set(kNever));
-}
-
-/// Past the caches: nobody here reads it again.
-HWY_INLINE void stream_hits(const PlacedFloats& floats, VectorHits& out) {
-    stream_words(floats.triangle, out.triangle);
-    stream(floats.t, out.t);
-    stream(floats.second, out.u);
-    stream(floats.third, out.v);
-}
-
-/// `floats`: of `placed`.
-HWY_INLINE void write_hits(const KernelScene& scene, std::uint32_t vector, const Placed& placed,
-                           const PlacedFloats& floats) {
-    if (!scene.vector_hits.empty()) stream_hits(floats, scene.vector_hits[vector]);
-    if (!scene.hits.empty()) write_samples(scene, vector, placed);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -9,7 +9,9 @@
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"
 
-namespace trilens {
+namespace trilens_bench {
+
+using namespace trilens;
 
 struct RaceParams {
     int repeats = 9;
@@ -29,8 +31,8 @@ struct Mismatches {
 /// where the projector is faster.
 struct RaceResult {
     std::size_t pixels = 0, facets = 0, triangles = 0, seen = 0;
-    // Projector: its tree; facets' rays and samples in vectors; hits left in vectors' order; hits by sample.
-    double prepare_ms = 0, samples_ms = 0, draw_ms = 0, written_ms = 0;
+    // Projector: its tree; facets' rays and samples in vectors; hits by sample.
+    double prepare_ms = 0, samples_ms = 0, written_ms = 0;
     // What is seen, left in vectors' order: the same exact triangles, but t within bounds, and no place on
     // them.
     double visible_ms = 0;
@@ -39,9 +41,9 @@ struct RaceResult {
     // Embree: its tree; a ray per sample in packets; hits left in packets' order; hits by sample.
     double build_ms = 0, rays_ms = 0, trace_ms = 0, trace_written_ms = 0;
     struct Ratios {
-        double visible = 0, draw = 0, written = 0, with_build = 0, whole = 0;
+        double visible = 0, written = 0, with_build = 0, whole = 0;
     } ratio;
-    double slowest_ratio = 0, fastest_ratio = 0;  // of `draw` over the rounds
+    double slowest_ratio = 0, fastest_ratio = 0;  // of `written` over the rounds
     Mismatches mismatches;
     // How the projector draws the samples: in vectors that facets share; decided exactly, where floats left
     // doubt; without bounds, one facet at a time. Shares of `pixels`.
@@ -68,4 +70,4 @@ struct RaceCourse {
 /// together.
 RaceResult race(const RaceCourse& course, const RaceParams& params);
 
-}  // namespace trilens
+}  // namespace trilens_bench

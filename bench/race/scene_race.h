@@ -1,20 +1,16 @@
 // How fast the projector draws a scene's rays, against Embree's packets on the same rays in the same run.
-//
-//     #include <trilens/scene.h>
-//     trilens::BenchRequest request;
-//     request.race.repeats = 9;
-//     const trilens::BenchResult result = trilens::run_bench(trilens::load_scene({"scene.json"}), request);
-//     std::printf("%.2f times Embree\n", result.race.ratio.draw);
 #pragma once
 
 #include <string>
 
 #include "base/util/progress.h"
-#include "bench/measure.h"
+#include "bench/race/race.h"
 #include "render/frame/request.h"
 #include "scene/data/scene.h"
 
-namespace trilens {
+namespace trilens_bench {
+
+using namespace trilens;
 
 struct BenchRequest {
     FrameParams frame;
@@ -37,4 +33,4 @@ struct BenchResult {
 /// for less than one repeat.
 BenchResult run_bench(Scene scene, const BenchRequest& request, const Warn& warn = {});
 
-}  // namespace trilens
+}  // namespace trilens_bench

@@ -7,7 +7,9 @@
 
 #include "base/util/stopwatch.h"
 
-namespace trilens {
+namespace trilens_bench {
+
+using namespace trilens;
 
 /// How long work() takes, in milliseconds.
 template <typename Work>
@@ -24,4 +26,4 @@ inline double median(std::vector<double> values) {
     return *middle;
 }
 
-}  // namespace trilens
+}  // namespace trilens_bench

@@ -1,4 +1,4 @@
-#include "trilens/bench.h"
+#include "bench/race/scene_race.h"
 
 #include <algorithm>
 
@@ -6,16 +6,18 @@
 #include "base/raymesh/rasterize.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "bench/times.h"
+#include "bench/race/times.h"
 #include "render/engines/facet_engine.h"
 #include "render/frame/check_frame.h"
 #include "render/frame/frame.h"
 #include "render/picture/sample_colour.h"
 #include "render/world/world.h"
 #include "scene/data/check_scene.h"
-#include "trilens/view_collector.h"
+#include "bench/race/view_collector.h"
 
-namespace trilens {
+namespace trilens_bench {
+
+using namespace trilens;
 namespace {
 
 constexpr std::size_t kBandSamples = 1u << 15;
@@ -93,4 +95,4 @@ BenchResult run_bench(Scene scene, const BenchRequest& request, const Warn& warn
     return result;
 }
 
-}  // namespace trilens
+}  // namespace trilens_bench

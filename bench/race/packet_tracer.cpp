@@ -1,5 +1,5 @@
 // The second door to Embree: its own triangles, its own intersection, nothing of ours between.
-#include "intersect/packet_tracer.h"
+#include "bench/race/packet_tracer.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -11,7 +11,9 @@
 #include "base/util/parallel.h"
 #include "intersect/embree_device.h"
 
-namespace trilens {
+namespace trilens_bench {
+
+using namespace trilens;
 namespace {
 
 constexpr std::size_t kPacketsPerTask = 64;
@@ -181,4 +183,4 @@ std::string PacketTracer::configuration() const {
     return data_->configuration;
 }
 
-}  // namespace trilens
+}  // namespace trilens_bench

@@ -1,5 +1,5 @@
 // Embree's own triangles in float against the truth in double: two answers that share no intersection code.
-#include "intersect/packet_tracer.h"
+#include "bench/race/packet_tracer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include "support/test.h"
 
 using namespace trilens;
+using namespace trilens_bench;
 using namespace trilens_test;
 
 namespace {

@@ -13,7 +13,9 @@
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"
 
-namespace trilens {
+namespace trilens_bench {
+
+using namespace trilens;
 
 /// Sixteen rays that travel together, component by component as Embree wants them.
 struct alignas(64) RayPacket {
@@ -74,4 +76,4 @@ class PacketTracer {
     std::unique_ptr<Data> data_;
 };
 
-}  // namespace trilens
+}  // namespace trilens_bench

@@ -1,20 +1,38 @@
-#include "trilens/engine_study.h"
+// How the classic engine's picture comes near the exact one over K, and what its ways to clip leave uncovered.
+// Use: bench_engine_study SCENE... -o FOLDER [-n N] [--camera NAME]; writes engines.csv, clipping.csv and plots/*.svg.
 
 #include <algorithm>
 #include <filesystem>
 
-#include "base/files/check_output.h"
+#include <CLI/CLI.hpp>
+
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "base/util/stopwatch.h"
 #include "render/engines/engine.h"
 #include "report/plot.h"
-#include "sweep/store/own_files.h"
 #include "trilens/render.h"
+#include "trilens/scene.h"
 
-namespace trilens {
 namespace {
+
+using namespace trilens;
+
+/// One way to draw one scene, compared with the exact engine pixel by pixel.
+struct StudyRow {
+    std::string scene;
+    std::string resolution;  // of each optic, separated by blanks
+    ClassicParams params;
+    std::size_t pixels = 0, optic_pixels = 0;
+    std::size_t differing = 0, direct = 0, reflect = 0, refract = 0;  // pixels
+    std::size_t uncovered = 0;  // where the exact engine sees something that the classic one sees nothing for
+    double exact_seconds = 0, classic_seconds = 0;
+
+    double share() const {
+        return pixels > 0 ? static_cast<double>(differing) / static_cast<double>(pixels) : 0;
+    }
+};
 
 constexpr int kPieces[] = {1, 2, 4, 8, 16, 32};
 constexpr int kResolutions[] = {1, 2, 5, 16};
@@ -131,34 +149,29 @@ struct Subject {
     std::string name;
     const World& world;
     FrameParams frame;
-    const SweepTalk& talk;
 
     bool is_too_large(const ClassicParams& params) const {
         if (params.curves != Curves::kTessellate) return false;
         const double pieces = params.pieces;
         const double triangles = pieces * pieces * static_cast<double>(world.objects.size());
         if (triangles <= kMostTriangles) return false;
-        if (talk.warn)
-            talk.warn(fmt::format("{}, {}: left out, it would cut the scene into {:.0f} million triangles",
-                                  name, classic_name(params), 1e-6 * triangles));
+        fmt::print(stderr, "{}, {}: left out, it would cut the scene into {:.0f} million triangles\n", name,
+                   classic_name(params), 1e-6 * triangles);
         return true;
     }
 
     std::vector<StudyRow> rows(const std::vector<ClassicParams>& ways) const {
         const std::string resolution = resolution_text(world, frame.resolution);
         const SeenPicture exact = look(world, frame, Engine::kExact);
-        Progress progress;
-        if (talk.progress) progress = talk.progress(name + " at n = " + resolution);
+        fmt::print(stderr, "{} at n = {}\n", name, resolution);
         std::vector<StudyRow> rows;
         for (const ClassicParams& params : ways) {
-            if (progress.cancelled()) throw Interrupted();
             if (is_too_large(params)) continue;
             StudyRow row = compare(exact, look(world, frame, params));
             row.scene = name;
             row.resolution = resolution;
             row.params = params;
             rows.push_back(row);
-            progress(static_cast<double>(rows.size()) / static_cast<double>(ways.size()));
         }
         return rows;
     }
@@ -179,38 +192,42 @@ std::vector<ClassicParams> ways_to_clip() {
     return ways;
 }
 
-/// Refuses a folder in which a file of somebody's would be lost: a plot of this name that no study wrote, or
-/// an input.
-void claim_folder(const std::string& folder, const std::vector<std::string>& scenes) {
-    make_folder(folder);
-    for (const char* name : {"engines.csv", "clipping.csv"}) check_writable(folder + "/" + name, scenes);
-    std::vector<std::string> plots{"engines.svg"};
-    for (const std::string& scene : scenes)
-        plots.push_back(std::filesystem::path(scene).stem().string() + ".svg");
-    if (!std::filesystem::exists(folder + "/engines.csv")) begin_report_list(folder, "plots");
-    OwnReportFiles(folder, "plots").will_write(plots);
+std::string table_text(const std::vector<StudyRow>& rows) {
+    std::string text = fmt::format("{:<14} {:>4}  {:<27} {:>8} {:>9} {:>10} {:>9} {:>9}\n", "scene", "n",
+                                   "classic", "pixels", "differing", "share", "uncovered", "seconds");
+    for (const StudyRow& row : rows)
+        text += fmt::format("{:<14} {:>4}  {:<27} {:>8} {:>9} {:>9.4f}% {:>9} {:>9.3f}\n", row.scene,
+                            row.resolution, classic_name(row.params), row.pixels, row.differing,
+                            100 * row.share(), row.uncovered, row.classic_seconds);
+    return text;
 }
 
-}  // namespace
+struct StudyRequest {
+    std::vector<std::string> scenes;
+    std::string camera;  // empty: each scene's own
+    std::string folder;
+    int resolution = 2;  // while K varies
+};
 
-EngineStudy study_engines(const StudyRequest& request, const SweepTalk& talk) {
-    std::vector<std::string> files;
-    for (const SceneRequest& scene : request.scenes) files.push_back(scene.file);
-    require_distinct_names(files);
-    EngineStudy study;
+/// Draws every scene in every way, and writes the tables and plots after each, so that an interrupted study keeps
+/// what it has.
+void study_engines(const StudyRequest& request) {
+    std::vector<StudyRow> curves, clipping;
     std::vector<StudyRow> complete;  // of the scenes that could be drawn in every way
     int complete_scenes = 0;
-    claim_folder(request.folder, files);
-    for (const SceneRequest& file : request.scenes) {
-        Scene scene = load_scene(file);
-        if (talk.warn)
-            for (const std::string& warning : scene.warnings) talk.warn(warning);
+    make_folder(request.folder + "/plots");
+    const auto warn = [](const std::string& warning) { fmt::print(stderr, "warning: {}\n", warning); };
+    for (const std::string& file : request.scenes) {
+        SceneRequest asked;
+        asked.file = file;
+        asked.resolution = request.resolution;
+        Scene scene = load_scene(asked);
+        for (const std::string& warning : scene.warnings) warn(warning);
         const std::size_t camera = find_camera(scene, request.camera);
-        const Renderer renderer(std::move(scene), talk.warn);
-        Subject subject{
-            std::filesystem::path(file.file).stem().string(), renderer.world(), {camera, 0}, talk};
+        const Renderer renderer(std::move(scene), warn);
+        Subject subject{std::filesystem::path(file).stem().string(), renderer.world(), {camera, 0}};
         const std::vector<StudyRow> rows = subject.rows(ways_to_draw_curves());
-        study.curves.insert(study.curves.end(), rows.begin(), rows.end());
+        curves.insert(curves.end(), rows.begin(), rows.end());
         if (rows.size() == ways_to_draw_curves().size()) {
             complete.insert(complete.end(), rows.begin(), rows.end());
             ++complete_scenes;
@@ -218,20 +235,33 @@ EngineStudy study_engines(const StudyRequest& request, const SweepTalk& talk) {
         replace_text_file(request.folder + "/plots/" + subject.name + ".svg", share_plot(subject.name, rows));
         for (const int n : kResolutions) {
             subject.frame.resolution = n;
-            for (const StudyRow& row : subject.rows(ways_to_clip())) study.clipping.push_back(row);
+            for (const StudyRow& row : subject.rows(ways_to_clip())) clipping.push_back(row);
         }
-        // After every scene, so that an interrupted study keeps what it has.
-        replace_text_file(request.folder + "/engines.csv", table_csv(study.curves));
-        replace_text_file(request.folder + "/clipping.csv", table_csv(study.clipping));
+        replace_text_file(request.folder + "/engines.csv", table_csv(curves));
+        replace_text_file(request.folder + "/clipping.csv", table_csv(clipping));
     }
-    for (const char* name : {"engines.csv", "clipping.csv"})
-        study.files.push_back(request.folder + "/" + name);
-    if (!complete.empty()) {
-        study.files.push_back(request.folder + "/plots/engines.svg");
-        replace_text_file(study.files.back(),
+    if (!complete.empty())
+        replace_text_file(request.folder + "/plots/engines.svg",
                           share_plot(std::to_string(complete_scenes) + " scenes", complete));
-    }
-    return study;
+    fmt::print("{}\n{}", table_text(curves), table_text(clipping));
 }
 
-}  // namespace trilens
+}  // namespace
+
+int main(int count, char** words) {
+    StudyRequest request;
+    CLI::App app{"The classic engine against the exact one: curves and clipping."};
+    app.add_option("SCENES", request.scenes, "scene files")->required();
+    app.add_option("-o,--output", request.folder, "folder for the tables and plots")->required();
+    app.add_option("-n,--resolution", request.resolution, "resolution of the optics while K varies; default: 2")
+        ->check(CLI::Range(1, 1024));
+    app.add_option("--camera", request.camera, "a camera by name; default: each scene's own");
+    CLI11_PARSE(app, count, words);
+    try {
+        study_engines(request);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "bench_engine_study: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}

@@ -1,16 +1,17 @@
 // Rays that are collected band by band are those of the whole picture; a race of a scene counts them.
-#include "trilens/view_collector.h"
+#include "bench/race/view_collector.h"
 
 #include <algorithm>
 
 #include "base/raymesh/rasterize.h"
 #include "core/ray_mesh.h"
 #include "support/test.h"
-#include "trilens/bench.h"
+#include "bench/race/scene_race.h"
 #include "trilens/render.h"
 #include "trilens/scene.h"
 
 using namespace trilens;
+using namespace trilens_bench;
 
 namespace {
 

@@ -1,6 +1,6 @@
 // The projector against Embree's packets over workloads, numbers of triangles and facets, films, threads and
 // instruction sets: one line each, and all of them as CSV.
-// Use: bench_race [KEY=VALUE,VALUE...]... with the keys of kKeys below (isa=all: every instruction set of
+// Use: bench_race_workloads [KEY=VALUE,VALUE...]... with the keys of kKeys below (isa=all: every instruction set of
 // this machine; plain=yes: every cell is drawn once more by the plain engine, and its hits compared to the
 // last bit); bench/tables.py draws the CSV.
 #include <bit>
@@ -14,7 +14,7 @@
 
 #include "base/raymesh/rasterize.h"
 #include "base/util/parallel.h"
-#include "bench/measure.h"
+#include "bench/race/race.h"
 #include "intersect/tracer.h"
 #include "projector/draw_options.h"
 #include "workloads.h"
@@ -22,6 +22,7 @@
 namespace {
 
 using namespace trilens;
+using namespace trilens_bench;
 using Values = std::vector<std::string>;
 
 const std::map<std::string, Values> kKeys{
@@ -60,21 +61,21 @@ struct Cell {
 void print(const Cell& c, std::FILE* csv) {
     const RaceResult& r = c.result;
     std::printf(
-        "%-5s %8zu %3d %9s %2d %7s %7zu | %8.2f %8.2f %8.2f %8.1f %8.1f | %8.2f %8.2f %8.1f %8.1f | %5.2f "
-        "%5.2f %5.2f %5.2f %5.2f | %zu = %zu + %zu + %zu\n",
+        "%-5s %8zu %3d %9s %2d %7s %7zu | %8.2f %8.2f %8.1f %8.1f | %8.2f %8.2f %8.1f %8.1f | %5.2f "
+        "%5.2f %5.2f %5.2f | %zu = %zu + %zu + %zu\n",
         c.workload.c_str(), r.triangles, c.n, c.film.c_str(), r.threads, r.projector_isa.c_str(), r.pixels,
-        r.visible_ms, r.draw_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms, r.trace_written_ms,
-        r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.draw, r.ratio.written, r.ratio.with_build,
+        r.visible_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms, r.trace_written_ms,
+        r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.written, r.ratio.with_build,
         r.ratio.whole, r.mismatches.pixels, r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);
     std::fflush(stdout);
     if (!csv) return;
     std::fprintf(
         csv,
-        "%s,%zu,%d,%s,%d,%s,%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%."
-        "4f,%.4f,%zu,%zu,%zu,%zu,%.6f,%.6f,%.6f,%.4f\n",
+        "%s,%zu,%d,%s,%d,%s,%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,"
+        "%zu,%zu,%zu,%zu,%.6f,%.6f,%.6f,%.4f\n",
         c.workload.c_str(), r.triangles, c.n, c.film.c_str(), r.threads, r.projector_isa.c_str(), r.pixels,
-        r.facets, r.visible_ms, r.draw_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms,
-        r.trace_written_ms, r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.draw, r.ratio.written,
+        r.facets, r.visible_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms,
+        r.trace_written_ms, r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.written,
         r.ratio.with_build, r.ratio.whole, r.slowest_ratio, r.fastest_ratio, r.mismatches.pixels,
         r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained, r.shared, r.doubtful, r.unbounded,
         r.depth_complexity);
@@ -82,7 +83,7 @@ void print(const Cell& c, std::FILE* csv) {
 }
 
 /// Samples whose hits differ, in any bit, from those of the plain engine; `isa`: of the vector engine.
-std::size_t unlike_plain(const TriangleScene& scene, const trilens_bench::MirrorSphere& mirror,
+std::size_t unlike_plain(const TriangleScene& scene, const MirrorSphere& mirror,
                          const FacetSamples& owned, const std::string& isa) {
     const PreparedScene prepared(scene);
     std::vector<Hit> hits(mirror.grid.size()), plain(mirror.grid.size());
@@ -110,15 +111,15 @@ int run(const std::map<std::string, Values>& chosen) {
     if (csv)
         std::fprintf(
             csv,
-            "workload,triangles,n,film,threads,isa,pixels,facets,visible_ms,draw_ms,written_ms,samples_ms,"
+            "workload,triangles,n,film,threads,isa,pixels,facets,visible_ms,written_ms,samples_ms,"
             "prepare_ms,trace_ms,"
-            "trace_written_ms,rays_ms,build_ms,ratio_visible,ratio_draw,ratio_written,ratio_with_build,ratio_"
+            "trace_written_ms,rays_ms,build_ms,ratio_visible,ratio_written,ratio_with_build,ratio_"
             "whole,lowest,highest,"
             "mismatches,edge,depth,unexplained,shared,doubtful,unbounded,depth_complexity\n");
     std::printf(
-        "milliseconds, medians; projector: visible in order, hits in order, hits by sample, samples, "
+        "milliseconds, medians; projector: visible in order, hits by sample, samples, "
         "tree | Embree: hits in order, by sample, rays, tree | "
-        "Embree / projector: visible, draw, written, with build, whole | mismatches = at an edge + at one "
+        "Embree / projector: visible, written, with build, whole | mismatches = at an edge + at one "
         "depth + "
         "others\n");
     std::size_t unexplained = 0, unlike = 0;
@@ -128,11 +129,11 @@ int run(const std::map<std::string, Values>& chosen) {
         set_tracer_threads(std::atoi(threads.c_str()));
         for (const std::string& name : chosen.at("workload")) {
             for (const std::string& triangles : chosen.at("triangles")) {
-                const TriangleScene scene = trilens_bench::workload(name, std::atof(triangles.c_str()));
+                const TriangleScene scene = workload(name, std::atof(triangles.c_str()));
                 for (const std::string& film : chosen.at("film")) {
                     const Values size = split(film, 'x');
                     for (const std::string& n : chosen.at("n")) {
-                        const trilens_bench::MirrorSphere mirror = trilens_bench::mirror_sphere(
+                        const MirrorSphere mirror = mirror_sphere(
                             std::atoi(n.c_str()), std::atoi(size[0].c_str()), std::atoi(size.back().c_str()));
                         const FacetSamples owned = rasterize_facets(mirror.mesh, mirror.grid);
                         for (const std::string& isa : sets) {
@@ -160,7 +161,7 @@ int main(int count, char** words) {
     try {
         return run(read(count, words));
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "bench_race: %s\n", error.what());
+        std::fprintf(stderr, "bench_race_workloads: %s\n", error.what());
         return 2;
     }
 }

@@ -1,8 +1,10 @@
-#include "trilens/view_collector.h"
+#include "bench/race/view_collector.h"
 
 #include <algorithm>
 
-namespace trilens {
+namespace trilens_bench {
+
+using namespace trilens;
 namespace {
 
 bool same(const Ray& a, const Ray& b) {
@@ -47,4 +49,4 @@ CollectedViews ViewCollector::take() {
     return views;
 }
 
-}  // namespace trilens
+}  // namespace trilens_bench

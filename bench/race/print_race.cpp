@@ -1,11 +1,15 @@
-#include "cli/print/race.h"
+#include "bench/race/print_race.h"
 
-#include "terminal/format.h"
+#include <nlohmann/json.hpp>
 
-namespace trilens {
+#include "base/util/format.h"
+
+namespace trilens_bench {
+
+using namespace trilens;
 namespace {
 
-Json fields(const BenchResult& bench) {
+nlohmann::ordered_json fields(const BenchResult& bench) {
     const RaceResult& r = bench.race;
     return {{"pixels", r.pixels},
             {"facets", r.facets},
@@ -21,7 +25,6 @@ Json fields(const BenchResult& bench) {
              {{"prepare_ms", r.prepare_ms},
               {"samples_ms", r.samples_ms},
               {"visible_ms", r.visible_ms},
-              {"draw_ms", r.draw_ms},
               {"written_ms", r.written_ms},
               {"whole_ms", r.whole_ms},
               {"shared", r.shared},
@@ -36,10 +39,9 @@ Json fields(const BenchResult& bench) {
               {"rays_at_once", r.rays_at_once}}},
             {"ratio",
              {{"visible", r.ratio.visible},
-              {"draw", r.ratio.draw},
-              {"draw_low", r.slowest_ratio},
-              {"draw_high", r.fastest_ratio},
               {"written", r.ratio.written},
+              {"written_low", r.slowest_ratio},
+              {"written_high", r.fastest_ratio},
               {"with_build", r.ratio.with_build},
               {"whole", r.ratio.whole}}},
             {"mismatch_pixels", r.mismatches.pixels},
@@ -66,10 +68,8 @@ std::string text(const BenchResult& bench) {
     text += line("tree", r.prepare_ms, r.build_ms);
     text += line("samples in vectors, rays in packets", r.samples_ms, r.rays_ms);
     text += line("triangles seen, t within bounds", r.visible_ms, r.trace_ms);
-    text +=
-        fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>7.2f}  ({:.2f} to {:.2f})\n", "hits left in that order",
-                    r.draw_ms, r.trace_ms, r.ratio.draw, r.slowest_ratio, r.fastest_ratio);
-    text += line("hits written per sample", r.written_ms, r.trace_written_ms);
+    text += fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>7.2f}  ({:.2f} to {:.2f})\n", "hits written per sample",
+                        r.written_ms, r.trace_written_ms, r.ratio.written, r.slowest_ratio, r.fastest_ratio);
     text += line("samples, rays and hits per sample", r.whole_ms, r.rays_ms + r.trace_written_ms);
     text += fmt::format("with both trees {:.2f}, with samples, rays and trees {:.2f} times Embree's speed\n",
                         r.ratio.with_build, r.ratio.whole);
@@ -85,11 +85,14 @@ std::string text(const BenchResult& bench) {
 
 }  // namespace
 
-Answer race_answer(const BenchResult& bench) {
-    Answer answer;
-    answer.fields = fields(bench);
-    answer.text = text(bench);
-    return answer;
+std::string race_json(const BenchResult& bench) {
+    nlohmann::ordered_json json = fields(bench);
+    json["schema"] = "trilens.bench/1";
+    return json.dump(2) + "\n";
 }
 
-}  // namespace trilens
+std::string race_text(const BenchResult& bench) {
+    return text(bench) + "\n";
+}
+
+}  // namespace trilens_bench

@@ -1,5 +1,5 @@
 // From hit to hit along a share of the rays.
-#include "bench/depth_complexity.h"
+#include "bench/race/depth_complexity.h"
 
 #include <atomic>
 #include <cmath>
@@ -7,7 +7,9 @@
 #include "base/util/parallel.h"
 #include "intersect/tracer.h"
 
-namespace trilens {
+namespace trilens_bench {
+
+using namespace trilens;
 namespace {
 
 constexpr std::size_t kEvery = 64;
@@ -44,4 +46,4 @@ double depth_complexity(const RaceCourse& course) {
     return rays == 0 ? 0 : static_cast<double>(depths) / static_cast<double>(rays);
 }
 
-}  // namespace trilens
+}  // namespace trilens_bench

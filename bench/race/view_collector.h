@@ -8,9 +8,11 @@
 #include "base/raymesh/facet_samples.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
-#include "bench/measure.h"
+#include "bench/race/race.h"
 
-namespace trilens {
+namespace trilens_bench {
+
+using namespace trilens;
 
 /// Meshes with the samples of one grid that they are drawn at.
 struct CollectedViews {
@@ -52,4 +54,4 @@ class ViewCollector {
     std::deque<Part> parts_;
 };
 
-}  // namespace trilens
+}  // namespace trilens_bench

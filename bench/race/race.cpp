@@ -1,5 +1,5 @@
 // Times both sides by turns, so that what else the machine does meets both alike.
-#include "bench/measure.h"
+#include "bench/race/race.h"
 
 #include <algorithm>
 #include <array>
@@ -10,15 +10,17 @@
 #include "base/util/check.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "bench/depth_complexity.h"
-#include "bench/times.h"
-#include "intersect/packet_tracer.h"
+#include "bench/race/depth_complexity.h"
+#include "bench/race/times.h"
+#include "bench/race/packet_tracer.h"
 #include "projector/draw_options.h"
 #include "projector/projector.h"
 #include "projector/scene/prepared_data.h"
 #include "projector/tiles/sample_tiles.h"
 
-namespace trilens {
+namespace trilens_bench {
+
+using namespace trilens;
 namespace {
 
 /// Holds the projector to an instruction set while it lives.
@@ -71,7 +73,6 @@ struct View {
     const FacetSamples& owned;
     SampleTiles tiles;
     std::vector<RayPacket> packets;
-    std::vector<VectorHits> vector_hits;
     std::vector<VectorVisible> vector_visible;
     std::vector<PacketHits> packet_hits;
 };
@@ -124,9 +125,7 @@ View make_view(const RaceView& view, const SampleGrid& grid, std::size_t triangl
               make_sample_tiles(*view.mesh, *view.owned, grid, tile_params(triangles)),
               make_ray_packets(*view.mesh, *view.owned, grid),
               {},
-              {},
               {}};
-    made.vector_hits.resize(made.tiles.vectors.size());
     made.vector_visible.resize(made.tiles.vectors.size());
     made.packet_hits.resize(made.packets.size());
     return made;
@@ -141,8 +140,7 @@ struct Sides {
 };
 
 struct Times {
-    std::vector<double> visible, draw, written, whole, trace, trace_written, ratio_visible, ratio,
-        ratio_written;
+    std::vector<double> visible, written, whole, trace, trace_written, ratio_visible, ratio_written;
 };
 
 void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
@@ -157,14 +155,11 @@ void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
     const auto visible = [&] {
         draw_all([](View& v, KernelScene& scene) { scene.vector_visible = v.vector_visible; });
     };
-    const auto draw = [&] {
-        draw_all([](View& v, KernelScene& scene) { scene.vector_hits = v.vector_hits; });
-    };
     const auto draw_written = [&] {
         draw_all([&](View&, KernelScene& scene) { scene.hits = sides.hits.ours; });
     };
     const auto draw_whole = [&] {
-        for (View& v : sides.views) trilens::draw(sides.prepared, v.mesh, v.owned, grid, sides.hits.ours);
+        for (View& v : sides.views) draw(sides.prepared, v.mesh, v.owned, grid, sides.hits.ours);
     };
     const auto trace = [&] {
         for (View& v : sides.views) sides.tracer.trace_in_order(v.packets, v.packet_hits);
@@ -173,18 +168,16 @@ void run_round(const SampleGrid& grid, Sides& sides, Times& times) {
         for (View& v : sides.views) sides.tracer.trace(v.packets, sides.hits.theirs);
     };
     // There and back, so that a slow change of the machine's speed cancels.
-    const double s1 = milliseconds(visible), t1 = milliseconds(trace), d1 = milliseconds(draw),
-                 d2 = milliseconds(draw), t2 = milliseconds(trace), s2 = milliseconds(visible);
+    const double s1 = milliseconds(visible), t1 = milliseconds(trace), t2 = milliseconds(trace),
+                 s2 = milliseconds(visible);
     const double v1 = milliseconds(trace_written), w1 = milliseconds(draw_written),
                  w2 = milliseconds(draw_written), v2 = milliseconds(trace_written);
     times.whole.push_back(milliseconds(draw_whole));
     times.trace.insert(times.trace.end(), {t1, t2});
-    times.draw.insert(times.draw.end(), {d1, d2});
     times.trace_written.insert(times.trace_written.end(), {v1, v2});
     times.written.insert(times.written.end(), {w1, w2});
     times.visible.insert(times.visible.end(), {s1, s2});
     times.ratio_visible.push_back((t1 + t2) / (s1 + s2));
-    times.ratio.push_back((t1 + t2) / (d1 + d2));
     times.ratio_written.push_back((v1 + v2) / (w1 + w2));
 }
 
@@ -257,23 +250,22 @@ RaceResult race(const RaceCourse& course, const RaceParams& params) {
     run_round(course.grid, sides, warm_up);
     for (int i = 0; i < params.repeats; ++i) run_round(course.grid, sides, times);
     result.visible_ms = median(times.visible);
-    result.draw_ms = median(times.draw);
     result.written_ms = median(times.written);
     result.whole_ms = median(times.whole);
     result.trace_ms = median(times.trace);
     result.trace_written_ms = median(times.trace_written);
     result.ratio.visible = median(times.ratio_visible);
-    result.ratio.draw = median(times.ratio);
     result.ratio.written = median(times.ratio_written);
-    result.ratio.with_build = (result.trace_ms + result.build_ms) / (result.draw_ms + result.prepare_ms);
+    result.ratio.with_build = 
+        (result.trace_written_ms + result.build_ms) / (result.written_ms + result.prepare_ms);
     result.ratio.whole =
         (result.trace_written_ms + result.build_ms + result.rays_ms) / (result.whole_ms + result.prepare_ms);
-    result.slowest_ratio = *std::min_element(times.ratio.begin(), times.ratio.end());
-    result.fastest_ratio = *std::max_element(times.ratio.begin(), times.ratio.end());
+    result.slowest_ratio = *std::min_element(times.ratio_written.begin(), times.ratio_written.end());
+    result.fastest_ratio = *std::max_element(times.ratio_written.begin(), times.ratio_written.end());
     count_samples(course.grid, sides, result);
     result.depth_complexity = depth_complexity(course);
     for (View& view : sides.views) {
-        trilens::draw(sides.prepared, view.mesh, view.owned, course.grid, sides.hits.ours);
+        draw(sides.prepared, view.mesh, view.owned, course.grid, sides.hits.ours);
         check_visible(view, sides.hits.ours);
         sides.tracer.trace(view.packets, sides.hits.theirs);
         for (const Id s : view.owned.sample) result.seen += sides.hits.ours[s].seen();
@@ -282,4 +274,4 @@ RaceResult race(const RaceCourse& course, const RaceParams& params) {
     return result;
 }
 
-}  // namespace trilens
+}  // namespace trilens_bench
