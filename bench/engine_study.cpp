@@ -1,5 +1,6 @@
-// How the classic engine's picture comes near the exact one over K, and what its ways to clip leave uncovered.
-// Use: bench_engine_study SCENE... -o FOLDER [-n N] [--camera NAME]; writes engines.csv, clipping.csv and plots/*.svg.
+// How the classic engine's picture comes near the exact one over K, and what its ways to clip leave
+// uncovered. Use: bench_engine_study SCENE... -o FOLDER [-n N] [--camera NAME]; writes engines.csv,
+// clipping.csv and plots/*.svg.
 
 #include <algorithm>
 #include <filesystem>
@@ -209,8 +210,8 @@ struct StudyRequest {
     int resolution = 2;  // while K varies
 };
 
-/// Draws every scene in every way, and writes the tables and plots after each, so that an interrupted study keeps
-/// what it has.
+/// Draws every scene in every way, and writes the tables and plots after each, so that an interrupted study
+/// keeps what it has.
 void study_engines(const StudyRequest& request) {
     std::vector<StudyRow> curves, clipping;
     std::vector<StudyRow> complete;  // of the scenes that could be drawn in every way
@@ -253,7 +254,8 @@ int main(int count, char** words) {
     CLI::App app{"The classic engine against the exact one: curves and clipping."};
     app.add_option("SCENES", request.scenes, "scene files")->required();
     app.add_option("-o,--output", request.folder, "folder for the tables and plots")->required();
-    app.add_option("-n,--resolution", request.resolution, "resolution of the optics while K varies; default: 2")
+    app.add_option("-n,--resolution", request.resolution,
+                   "resolution of the optics while K varies; default: 2")
         ->check(CLI::Range(1, 1024));
     app.add_option("--camera", request.camera, "a camera by name; default: each scene's own");
     CLI11_PARSE(app, count, words);

@@ -25,7 +25,8 @@ int main(int count, char** words) {
     app.add_option("--camera", camera, "a camera by name; default: the scene's own");
     app.add_option("--repeat", request.race.repeats, "rounds; each draws and traces twice, there and back")
         ->check(CLI::Range(1, 1000));
-    app.add_option("--isa", request.race.isa, "instruction set of both sides; default: the best of this machine")
+    app.add_option("--isa", request.race.isa,
+                   "instruction set of both sides; default: the best of this machine")
         ->check(CLI::IsMember({"avx512", "avx2", "sse4.2"}));
     app.add_option("--threads", threads, "at most; default: all")->check(CLI::Range(1, 1024));
     app.add_flag("--json", json, "one JSON object");
@@ -40,7 +41,9 @@ int main(int count, char** words) {
         }
         const Scene loaded = load_scene(scene);
         request.frame.camera = find_camera(loaded, camera);
-        const auto warn = [](const std::string& warning) { std::fprintf(stderr, "warning: %s\n", warning.c_str()); };
+        const auto warn = [](const std::string& warning) {
+            std::fprintf(stderr, "warning: %s\n", warning.c_str());
+        };
         const BenchResult result = run_bench(loaded, request, warn);
         std::fputs((json ? race_json(result) : race_text(result)).c_str(), stdout);
         return result.race.mismatches.unexplained > 0;

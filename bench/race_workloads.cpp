@@ -1,8 +1,8 @@
 // The projector against Embree's packets over workloads, numbers of triangles and facets, films, threads and
 // instruction sets: one line each, and all of them as CSV.
-// Use: bench_race_workloads [KEY=VALUE,VALUE...]... with the keys of kKeys below (isa=all: every instruction set of
-// this machine; plain=yes: every cell is drawn once more by the plain engine, and its hits compared to the
-// last bit); bench/tables.py draws the CSV.
+// Use: bench_race_workloads [KEY=VALUE,VALUE...]... with the keys of kKeys below (isa=all: every instruction
+// set of this machine; plain=yes: every cell is drawn once more by the plain engine, and its hits compared to
+// the last bit); bench/tables.py draws the CSV.
 #include <bit>
 #include <cstdint>
 #include <cstdio>
@@ -64,9 +64,9 @@ void print(const Cell& c, std::FILE* csv) {
         "%-5s %8zu %3d %9s %2d %7s %7zu | %8.2f %8.2f %8.1f %8.1f | %8.2f %8.2f %8.1f %8.1f | %5.2f "
         "%5.2f %5.2f %5.2f | %zu = %zu + %zu + %zu\n",
         c.workload.c_str(), r.triangles, c.n, c.film.c_str(), r.threads, r.projector_isa.c_str(), r.pixels,
-        r.visible_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms, r.trace_written_ms,
-        r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.written, r.ratio.with_build,
-        r.ratio.whole, r.mismatches.pixels, r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);
+        r.visible_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms, r.trace_written_ms, r.rays_ms,
+        r.build_ms, r.ratio.visible, r.ratio.written, r.ratio.with_build, r.ratio.whole, r.mismatches.pixels,
+        r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);
     std::fflush(stdout);
     if (!csv) return;
     std::fprintf(
@@ -74,17 +74,16 @@ void print(const Cell& c, std::FILE* csv) {
         "%s,%zu,%d,%s,%d,%s,%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,"
         "%zu,%zu,%zu,%zu,%.6f,%.6f,%.6f,%.4f\n",
         c.workload.c_str(), r.triangles, c.n, c.film.c_str(), r.threads, r.projector_isa.c_str(), r.pixels,
-        r.facets, r.visible_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms,
-        r.trace_written_ms, r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.written,
-        r.ratio.with_build, r.ratio.whole, r.slowest_ratio, r.fastest_ratio, r.mismatches.pixels,
-        r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained, r.shared, r.doubtful, r.unbounded,
-        r.depth_complexity);
+        r.facets, r.visible_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms, r.trace_written_ms,
+        r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.written, r.ratio.with_build, r.ratio.whole,
+        r.slowest_ratio, r.fastest_ratio, r.mismatches.pixels, r.mismatches.edge, r.mismatches.depth,
+        r.mismatches.unexplained, r.shared, r.doubtful, r.unbounded, r.depth_complexity);
     std::fflush(csv);
 }
 
 /// Samples whose hits differ, in any bit, from those of the plain engine; `isa`: of the vector engine.
-std::size_t unlike_plain(const TriangleScene& scene, const MirrorSphere& mirror,
-                         const FacetSamples& owned, const std::string& isa) {
+std::size_t unlike_plain(const TriangleScene& scene, const MirrorSphere& mirror, const FacetSamples& owned,
+                         const std::string& isa) {
     const PreparedScene prepared(scene);
     std::vector<Hit> hits(mirror.grid.size()), plain(mirror.grid.size());
     if (!use_instruction_set(isa)) throw std::invalid_argument("no instruction set '" + isa + "'");
@@ -109,13 +108,12 @@ int run(const std::map<std::string, Values>& chosen) {
     std::FILE* csv = file.empty() ? nullptr : std::fopen(file.c_str(), "w");
     if (!file.empty() && !csv) throw std::runtime_error("cannot write " + file);
     if (csv)
-        std::fprintf(
-            csv,
-            "workload,triangles,n,film,threads,isa,pixels,facets,visible_ms,written_ms,samples_ms,"
-            "prepare_ms,trace_ms,"
-            "trace_written_ms,rays_ms,build_ms,ratio_visible,ratio_written,ratio_with_build,ratio_"
-            "whole,lowest,highest,"
-            "mismatches,edge,depth,unexplained,shared,doubtful,unbounded,depth_complexity\n");
+        std::fprintf(csv,
+                     "workload,triangles,n,film,threads,isa,pixels,facets,visible_ms,written_ms,samples_ms,"
+                     "prepare_ms,trace_ms,"
+                     "trace_written_ms,rays_ms,build_ms,ratio_visible,ratio_written,ratio_with_build,ratio_"
+                     "whole,lowest,highest,"
+                     "mismatches,edge,depth,unexplained,shared,doubtful,unbounded,depth_complexity\n");
     std::printf(
         "milliseconds, medians; projector: visible in order, hits by sample, samples, "
         "tree | Embree: hits in order, by sample, rays, tree | "

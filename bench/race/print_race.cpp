@@ -68,8 +68,9 @@ std::string text(const BenchResult& bench) {
     text += line("tree", r.prepare_ms, r.build_ms);
     text += line("samples in vectors, rays in packets", r.samples_ms, r.rays_ms);
     text += line("triangles seen, t within bounds", r.visible_ms, r.trace_ms);
-    text += fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>7.2f}  ({:.2f} to {:.2f})\n", "hits written per sample",
-                        r.written_ms, r.trace_written_ms, r.ratio.written, r.slowest_ratio, r.fastest_ratio);
+    text +=
+        fmt::format("{:<34} {:>10.3f} {:>10.3f} {:>7.2f}  ({:.2f} to {:.2f})\n", "hits written per sample",
+                    r.written_ms, r.trace_written_ms, r.ratio.written, r.slowest_ratio, r.fastest_ratio);
     text += line("samples, rays and hits per sample", r.whole_ms, r.rays_ms + r.trace_written_ms);
     text += fmt::format("with both trees {:.2f}, with samples, rays and trees {:.2f} times Embree's speed\n",
                         r.ratio.with_build, r.ratio.whole);

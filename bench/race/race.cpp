@@ -11,8 +11,8 @@
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "bench/race/depth_complexity.h"
-#include "bench/race/times.h"
 #include "bench/race/packet_tracer.h"
+#include "bench/race/times.h"
 #include "projector/draw_options.h"
 #include "projector/projector.h"
 #include "projector/scene/prepared_data.h"
@@ -256,7 +256,7 @@ RaceResult race(const RaceCourse& course, const RaceParams& params) {
     result.trace_written_ms = median(times.trace_written);
     result.ratio.visible = median(times.ratio_visible);
     result.ratio.written = median(times.ratio_written);
-    result.ratio.with_build = 
+    result.ratio.with_build =
         (result.trace_written_ms + result.build_ms) / (result.written_ms + result.prepare_ms);
     result.ratio.whole =
         (result.trace_written_ms + result.build_ms + result.rays_ms) / (result.whole_ms + result.prepare_ms);

@@ -7,13 +7,13 @@
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "bench/race/times.h"
+#include "bench/race/view_collector.h"
 #include "render/engines/facet_engine.h"
 #include "render/frame/check_frame.h"
 #include "render/frame/frame.h"
 #include "render/picture/sample_colour.h"
 #include "render/world/world.h"
 #include "scene/data/check_scene.h"
-#include "bench/race/view_collector.h"
 
 namespace trilens_bench {
 

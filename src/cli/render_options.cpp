@@ -78,9 +78,10 @@ std::vector<Option> engine_options(RenderOptions& options) {
     return {
         {.names = "--engine",
          .target = &options.engine,
-         .help = "exact; classic: by the outlines of projected triangles; auto (which is exact for now); for "
-                 "comparison, envmap: an environment map at the optic's centre, planar: flat facets",
-         .choices = {"exact", "classic", "auto", "envmap", "planar"}},
+         .help = "exact; classic: by the outlines of projected triangles; for comparison, envmap: an "
+                 "environment map "
+                 "at the optic's centre, planar: flat facets",
+         .choices = {"exact", "classic", "envmap", "planar"}},
         {.names = "--slices",
          .target = &options.slices,
          .help = "classic: curved edges by K straight pieces between levels of t, not arcs",

@@ -136,11 +136,19 @@ std::shared_ptr<const Texture> exr_texture(ExrFile& in, const std::string& name)
     return texture;
 }
 
+/// The library of all pictures would say on stderr what is wrong with a PNG.
+void require_sound_png(const std::optional<std::string>& fault, const std::string& name) {
+    if (fault) throw InputError(name, "", "is no picture, or is damaged: " + *fault);
+}
+
 }  // namespace
 
 std::shared_ptr<const Texture> read_texture(const std::string& file) {
     if (std::shared_ptr<const Texture> texture = read_ordinary_png(file)) return texture;
-    if (!is_exr_file(file)) return library_to_read(file).read(file);
+    if (!is_exr_file(file)) {
+        require_sound_png(png_fault(file), file);
+        return library_to_read(file).read(file);
+    }
     ExrFile in(file);
     // Luminance and chroma at different rates are the other library's work.
     if (!in.is_deep(0) && !in.is_sampled_everywhere(0)) return library_to_read(file).read(file);
@@ -150,7 +158,10 @@ std::shared_ptr<const Texture> read_texture(const std::string& file) {
 std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> encoded,
                                               const std::string& name) {
     if (std::shared_ptr<const Texture> texture = decode_ordinary_png(encoded)) return texture;
-    if (!is_exr(encoded)) return library_to_read(name).decode(encoded, name);
+    if (!is_exr(encoded)) {
+        require_sound_png(png_fault(encoded), name);
+        return library_to_read(name).decode(encoded, name);
+    }
     ExrFile in(encoded, name);
     if (!in.is_deep(0) && !in.is_sampled_everywhere(0)) return library_to_read(name).decode(encoded, name);
     return exr_texture(in, name);

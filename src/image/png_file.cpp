@@ -27,16 +27,37 @@ constexpr std::size_t kMostInChunk = 0x7fffffff;
 /// 1 / 2.2 as a gAMA chunk says it, which files of sRGB hold (11.3.2).
 constexpr std::uint32_t kGamma = 45455;
 
+constexpr std::size_t kHeader = 8 + 8 + 13 + 4;  // signature and first chunk
+
+bool is_png(std::span<const unsigned char> bytes) {
+    return bytes.size() >= kPngSignature.size() &&
+           std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin());
+}
+
+/// All of a PNG file; nothing of another one.
+std::vector<unsigned char> png_bytes(const std::string& file) {
+    const std::size_t size = readable_size(file);
+    std::ifstream in(file, std::ios::binary);
+    std::vector<unsigned char> bytes(kPngSignature.size());
+    in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (!in || !is_png(bytes)) return {};
+    bytes.resize(size);
+    in.seekg(0);
+    in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+    return in ? bytes : std::vector<unsigned char>();
+}
+
+/// Whether the header, which is there, claims more pixels than the file's bytes can hold.
+bool claims_too_much(std::span<const unsigned char> png) {
+    const std::uint64_t width = read32(png.subspan(16)), height = read32(png.subspan(20)), depth = png[24];
+    return width > 1u << 24 || height > 1u << 24 || width * height * depth / 8 > kMostInflated * png.size();
+}
+
 /// Whether the chunks before the pixels (PNG, Third Edition, W3C, 5.2 and 11) are those of an ordinary file.
 bool is_ordinary(std::span<const unsigned char> png) {
-    constexpr std::size_t kHeader = 8 + 8 + 13 + 4;
-    if (png.size() < kHeader || !std::equal(kPngSignature.begin(), kPngSignature.end(), png.begin()))
-        return false;
-    const std::uint64_t width = read32(png.subspan(16)), height = read32(png.subspan(20));
+    if (!is_png(png) || png.size() < kHeader) return false;
     const unsigned char depth = png[24], interlaced = png[28];
-    if (depth > 8 || interlaced) return false;
-    if (width > 1u << 24 || height > 1u << 24 || width * height * depth / 8 > kMostInflated * png.size())
-        return false;
+    if (depth > 8 || interlaced || claims_too_much(png)) return false;
     for (std::size_t at = kHeader; png.size() - at >= 12;) {
         const std::size_t size = read32(png.subspan(at));
         const std::string_view type(reinterpret_cast<const char*>(png.data()) + at + 4, 4);
@@ -92,16 +113,25 @@ std::shared_ptr<const Texture> decode_ordinary_png(std::span<const unsigned char
     }
 }
 
+std::optional<std::string> png_fault(std::span<const unsigned char> encoded) {
+    if (!is_png(encoded)) return std::nullopt;
+    if (encoded.size() < kHeader) return "ends in its header";
+    if (claims_too_much(encoded)) return "claims more pixels than it can hold";
+    PngImage png;
+    if (!png_image_begin_read_from_memory(&png.image, encoded.data(), encoded.size()))
+        return png.image.message;
+    png.image.format = PNG_FORMAT_RGBA;
+    std::vector<unsigned char> stored(PNG_IMAGE_SIZE(png.image));
+    if (!png_image_finish_read(&png.image, nullptr, stored.data(), 0, nullptr)) return png.image.message;
+    return std::nullopt;
+}
+
+std::optional<std::string> png_fault(const std::string& file) {
+    return png_fault(png_bytes(file));
+}
+
 std::shared_ptr<const Texture> read_ordinary_png(const std::string& file) {
-    const std::size_t size = readable_size(file);
-    std::ifstream in(file, std::ios::binary);
-    std::array<unsigned char, kPngSignature.size()> start{};
-    in.read(reinterpret_cast<char*>(start.data()), start.size());
-    if (!in || start != kPngSignature) return nullptr;
-    std::vector<unsigned char> bytes(size);
-    in.seekg(0);
-    in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-    return in ? decode_ordinary_png(bytes) : nullptr;
+    return decode_ordinary_png(png_bytes(file));
 }
 
 std::vector<unsigned char> encode_stored_png(const std::string& name, int width, int height,

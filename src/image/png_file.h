@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,13 @@ std::shared_ptr<const Texture> decode_ordinary_png(std::span<const unsigned char
 
 /// The same of a file. Throws InputError where it cannot be read.
 std::shared_ptr<const Texture> read_ordinary_png(const std::string& file);
+
+/// What libpng finds wrong with a PNG file in memory, so that it cannot be read; none where it reads it, and
+/// for bytes that are no PNG. Says nothing on stderr, as libraries that read a damaged file do.
+std::optional<std::string> png_fault(std::span<const unsigned char> encoded);
+
+/// The same of a file. Throws InputError where it cannot be read.
+std::optional<std::string> png_fault(const std::string& file);
 
 /// An 8-bit sRGB PNG of the values as they are stored, three per pixel, rows from the top. `name`: for
 /// messages. Throws OutputError.

@@ -16,7 +16,6 @@
 #include "base/util/error.h"
 #include "base/util/version.h"
 #include "image/library_reason.h"
-#include "image/library_talk.h"
 #include "image/picture_library.h"
 #include "image/srgb.h"
 
@@ -125,18 +124,9 @@ std::string name_for_format(std::span<const unsigned char> encoded) {
     return "";
 }
 
-bool is_png_file(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    unsigned char start[8] = {};
-    in.read(reinterpret_cast<char*>(start), sizeof start);
-    return in && name_for_format(start) == "memory.png";
-}
-
 std::shared_ptr<const Texture> read(const std::string& file) {
     const std::size_t size = readable_size(file);
     const OIIO::ImageSpec hints = reading_hints();
-    std::optional<LibraryTalk> talk;
-    if (is_png_file(file)) talk.emplace();
     const auto in = OIIO::ImageInput::open(file, &hints);
     if (!in) throw InputError(file, "", "is no picture, or is damaged: " + library_reason(OIIO::geterror()));
     return read_open(*in, file, size);
@@ -150,8 +140,6 @@ std::shared_ptr<const Texture> decode(std::span<const unsigned char> encoded, co
     // The proxy goes in as a hint: open() of OpenImageIO 2.4 forgets a proxy argument where there are hints.
     OIIO::ImageSpec hints = reading_hints();
     hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    std::optional<LibraryTalk> talk;
-    if (format == "memory.png") talk.emplace();
     const auto in = OIIO::ImageInput::open(format, &hints);
     if (!in) throw InputError(name, "", "is damaged: " + library_reason(OIIO::geterror()));
     return read_open(*in, name, encoded.size());

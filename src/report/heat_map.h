@@ -22,7 +22,4 @@ struct HeatMapParams {
 /// below.
 PlotDrawing draw_heat_map(const HeatMapParams& params);
 
-/// The same as a Vega-Lite specification (version 5).
-std::string vega_lite_heat_map(const HeatMapParams& params);
-
 }  // namespace trilens

@@ -42,10 +42,6 @@ struct PlotParams {
 /// The plot as shapes: log_log_plot or linear_plot, by `is_linear`.
 PlotDrawing draw_plot(const PlotParams& params, std::span<const PlotSeries> series);
 
-/// The plot's data and encoding as a Vega-Lite specification (version 5): the measurements with their series,
-/// and the fitted lines.
-std::string vega_lite_plot(const PlotParams& params, std::span<const PlotSeries> series);
-
 /// An SVG document with both axes logarithmic. Points that are not finite or not positive are left out, and a
 /// note in the picture says how many. No word covers another word or a measurement: those without room are
 /// left out, but for titles and the legend, which are cut short. Eight series differ in colour and marker;

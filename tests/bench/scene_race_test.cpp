@@ -51,7 +51,8 @@ TEST_CASE("both sides of a race draw the rays of the scene's optics", "[bench][o
     CHECK(race.slowest_ratio <= race.ratio.written);
     CHECK(race.ratio.written <= race.fastest_ratio);
     const std::string json = race_json(bench);
-    for (const char* name : {"\"schema\": \"trilens.bench/1\"", "\"visible_ms\"", "\"written\"", "\"with_build\"", "\"whole\""})
+    for (const char* name :
+         {"\"schema\": \"trilens.bench/1\"", "\"visible_ms\"", "\"written\"", "\"with_build\"", "\"whole\""})
         CHECK(json.find(name) != std::string::npos);
     CHECK(json.find("ignore_config_files=1") != std::string::npos);
     CHECK(race_text(bench).find("hits written per sample") != std::string::npos);

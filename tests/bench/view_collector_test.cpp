@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "base/raymesh/rasterize.h"
+#include "bench/race/scene_race.h"
 #include "core/ray_mesh.h"
 #include "support/test.h"
-#include "bench/race/scene_race.h"
 #include "trilens/render.h"
 #include "trilens/scene.h"
 

@@ -10,7 +10,6 @@
 
 #include "base/util/error.h"
 #include "image/image_io.h"
-#include "image/library_talk.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -68,18 +67,6 @@ TEST_CASE("a PNG with any damaged byte is read or refused without a word on stde
     });
     CHECK(refused > 20);
     CHECK(said.empty());
-}
-
-TEST_CASE("only libpng's lines are kept back", "[image][talk]") {
-    CHECK(without_libpng("libpng error: bad\n").empty());
-    CHECK(without_libpng("one\nlibpng warning: iCCP\ntwo") == "one\ntwo");
-    CHECK(without_libpng("").empty());
-    CHECK(without_libpng("\n\nlibpng x") == "\n\n");
-    const std::string folder = trilens_test::scratch_dir("image_talk_others");
-    CHECK(heard(folder, [] {
-              const LibraryTalk talk;
-              std::fputs("libpng error: bad\nanother thread's line\n", stderr);
-          }) == "another thread's line\n");
 }
 
 TEST_CASE("parts of an OpenEXR file come by name, each with its channels", "[image][talk]") {

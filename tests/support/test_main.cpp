@@ -36,8 +36,7 @@ std::string scratch_dir(const std::string& name) {
     const std::size_t test = std::hash<std::string>()(Catch::getResultCapture().getCurrentTestName());
     char number[2 * sizeof(test) + 1];
     std::snprintf(number, sizeof(number), "%zx", test);
-    const std::filesystem::path folder =
-        std::filesystem::path(TRILENS_BUILD_DIR) / "scratch" / number / name;
+    const std::filesystem::path folder = std::filesystem::path(TRILENS_BUILD_DIR) / "scratch" / number / name;
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     return folder.string();
@@ -99,8 +98,8 @@ std::string as_spec(const std::string& name) {
     return spec;
 }
 
-/// A test's labels are its tags. What is hidden for another reason than its length (a test's helper) is no test
-/// of CTest's. Names are written as bracket arguments, which CMake does not look into.
+/// A test's labels are its tags. What is hidden for another reason than its length (a test's helper) is no
+/// test of CTest's. Names are written as bracket arguments, which CMake does not look into.
 int write_ctest(const char* program, const char* file) {
     std::ofstream out(file);
     std::set<std::string> names;

@@ -73,7 +73,7 @@ TEST_CASE("sweep: each group of runs has its own order, along the axis that orde
     CHECK(csv.find("classic_n0008,") != std::string::npos);
 }
 
-TEST_CASE("sweep: a line per group in one plot, as SVG, PDF and Vega-Lite") {
+TEST_CASE("sweep: a line per group in one plot, as SVG and PDF") {
     FakeEngines fake(trilens_test::scratch_dir("axes_plots"));
     fake.run();
     const std::string plots = fake.params.folder + "/plots/reflect_disp_mean_px";
@@ -82,9 +82,6 @@ TEST_CASE("sweep: a line per group in one plot, as SVG, PDF and Vega-Lite") {
     for (const auto& element : svg)
         if (element.has_class("tp-entry")) entries.insert(element.text);
     CHECK(entries == std::set<std::string>{"exact: order 2.00", "classic: order 1.00"});
-    const Json vega = Json::parse(read_whole_file(plots + ".vl.json").value());
-    CHECK(vega.at("layer")[0].at("data").at("values").size() == 8);
-    CHECK(vega.at("layer")[0].at("encoding").at("x").at("scale").at("type") == "log");
     const std::string pdf = read_whole_file(plots + ".pdf").value();
     CHECK(pdf.rfind("%PDF-1.4", 0) == 0);
     CHECK(pdf.find("(exact: order 2.00)") != std::string::npos);

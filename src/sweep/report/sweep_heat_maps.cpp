@@ -70,7 +70,7 @@ std::vector<NamedPlot> make_heat_maps(const SweepSummary& summary, const std::st
         if (std::ranges::none_of(map.values, [](double value) { return value > 0; })) continue;
         if (plots.size() == kMostPlotsOfAKind) break;
         const std::string number = plots.empty() ? "" : "_" + std::to_string(plots.size() + 1);
-        plots.push_back({layer + "_map" + number, draw_heat_map(map), vega_lite_heat_map(map)});
+        plots.push_back({layer + "_map" + number, draw_heat_map(map)});
     }
     return plots;
 }

@@ -43,8 +43,7 @@ struct Plots {
         return params;
     }
     void add(const std::string& name, const PlotParams& params, const std::vector<PlotSeries>& series) {
-        if (!series.empty())
-            plots.push_back({name, draw_plot(params, series), vega_lite_plot(params, series)});
+        if (!series.empty()) plots.push_back({name, draw_plot(params, series)});
     }
 };
 

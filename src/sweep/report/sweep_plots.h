@@ -12,7 +12,6 @@ namespace trilens {
 struct NamedPlot {
     std::string name;  // of the file, without its end: "reflect_disp_mean_px"
     PlotDrawing drawing;
-    std::string vega_lite;
 };
 
 /// Per layer mean and 95 % displacement, the colour error, and displacement over time; of one group of runs

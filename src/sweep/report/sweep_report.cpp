@@ -69,14 +69,13 @@ void write_plots(const SweepSummary& summary, Report& report) {
     const std::vector<NamedPlot> plots = make_plots(summary);
     std::vector<std::string> names;
     for (const NamedPlot& plot : plots)
-        for (const char* end : {".svg", ".pdf", ".vl.json"}) names.push_back(plot.name + end);
+        for (const char* end : {".svg", ".pdf"}) names.push_back(plot.name + end);
     OwnReportFiles own(summary.folder, "plots");
     own.will_write(names);
     for (const NamedPlot& plot : plots) {
         const std::string svg = plot_svg(plot.drawing);
         replace_text_file(folder + "/" + plot.name + ".svg", svg);
         replace_text_file(folder + "/" + plot.name + ".pdf", plot_pdf(plot.drawing));
-        replace_text_file(folder + "/" + plot.name + ".vl.json", plot.vega_lite);
         report.plots.push_back(svg);
     }
     own.remove_others();
