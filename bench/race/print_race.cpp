@@ -76,7 +76,7 @@ std::string text(const BenchResult& bench) {
                         r.ratio.with_build, r.ratio.whole);
     text += fmt::format(
         "of the pixels {:.1f} % lie in vectors that facets share, {:.2f} % were decided exactly, {:.2f} % "
-        "block by block\n",
+        "one by one\n",
         100 * r.shared, 100 * r.doubtful, 100 * r.unbounded);
     text += fmt::format(
         "{} pixels differ: {} within a thousandth of an edge, {} at one depth to a thousandth, {} otherwise",

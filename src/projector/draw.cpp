@@ -1,4 +1,4 @@
-// The exact engine: the vector engine over tiles of samples, and blocks where it finds no bounds.
+// The exact engine: the vector engine over tiles of samples, and the scalar one where it finds no bounds.
 #include <array>
 #include <atomic>
 #include <bit>
@@ -6,10 +6,9 @@
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
-#include "projector/blocks/draw_blocks.h"
 #include "projector/draw_options.h"
-#include "projector/exact/sample_blocks.h"
 #include "projector/kernel/kernel_state.h"
+#include "projector/scalar/scalar_engine.h"
 #include "projector/scene/prepared_data.h"
 
 namespace trilens {
@@ -23,38 +22,14 @@ void put_hit(const KernelScene& scene, std::uint32_t vector, std::size_t k, cons
     if (!scene.vector_visible.empty()) set_lane(scene.vector_visible[vector], k, visible_of(seen));
 }
 
-void draw_tile_in_blocks(const KernelScene& scene, const SampleTile& tile) {
-    constexpr std::uint32_t kVectors = kBlockSamples / kLanes;
-    for (std::uint32_t first = 0; first < tile.vectors; first += kVectors) {
-        std::array<Id, kBlockSamples> sample{};
-        std::array<Hit, kBlockSamples> hit{};
-        std::size_t count = 0;
-        const std::uint32_t last = std::min(first + kVectors, tile.vectors);
-        for (std::uint32_t v = first; v < last; ++v) {
-            const VectorSamples& own = scene.tiles->samples[tile.first_vector + v];
-            for (std::size_t k = 0; k < kLanes; ++k)
-                if (scene.tiles->valid[tile.first_vector + v] >> k & 1) sample[count++] = own.sample[k];
-        }
-        draw_block(*scene.data, scene.tiles->rays[tile.rays], *scene.grid, std::span(sample).first(count),
-                   std::span(hit).first(count));
-        count = 0;
-        for (std::uint32_t v = first; v < last; ++v) {
-            const std::uint32_t vector = tile.first_vector + v;
-            for (std::size_t k = 0; k < kLanes; ++k)
-                if (scene.tiles->valid[vector] >> k & 1) put_hit(scene, vector, k, hit[count++]);
-        }
-    }
-}
-
-void draw_mixed_in_blocks(const KernelScene& scene, const MixedGroup& group, std::uint32_t number) {
-    const std::uint32_t vector = group.first_vector + number;
-    const VectorSamples& own = scene.tiles->samples[vector];
+/// The samples of one vector that the vector engine has no bounds for. `rays_of`: of a lane.
+template <typename RaysOf>
+void draw_vector_scalar(const KernelScene& scene, std::uint32_t vector, const RaysOf& rays_of) {
     for (std::size_t k = 0; k < kLanes; ++k) {
         if (!(scene.tiles->valid[vector] >> k & 1)) continue;
-        Hit seen;
-        const FacetRays& facet = scene.tiles->rays[scene.tiles->lanes[group.first_lanes + number].rays[k]];
-        draw_block(*scene.data, facet, *scene.grid, std::span(&own.sample[k], 1), std::span(&seen, 1));
-        put_hit(scene, vector, k, seen);
+        const FacetRays& facet = scene.tiles->rays[rays_of(k)];
+        const Vec2 position = scene.grid->position(scene.tiles->samples[vector].sample[k]);
+        put_hit(scene, vector, k, first_hit_of(*scene.data, facet.at(position), facet.centre));
     }
 }
 
@@ -100,7 +75,8 @@ DrawCounts draw_one_batch(const KernelScene& scene, std::size_t batch, const Ker
     for (std::uint32_t j = 0; j < kLanes; ++j) {
         if (!(left >> j & 1)) continue;
         const SampleTile& tile = scene.tiles->tiles[first_tile + j];
-        draw_tile_in_blocks(scene, tile);
+        for (std::uint32_t v = tile.first_vector; v < tile.first_vector + tile.vectors; ++v)
+            draw_vector_scalar(scene, v, [&](std::size_t) { return tile.rays; });
         counts.unbounded += samples_in(*scene.tiles, tile.first_vector, tile.vectors);
     }
     return counts;
@@ -114,7 +90,9 @@ DrawCounts draw_one_mixed(const KernelScene& scene, std::size_t number) {
     const MixedGroup& group = scene.tiles->mixed[number];
     for (std::uint32_t v = 0; v < kLanes; ++v) {
         if (!(left >> v & 1)) continue;
-        draw_mixed_in_blocks(scene, group, v);
+        draw_vector_scalar(scene, group.first_vector + v, [&](std::size_t k) {
+            return scene.tiles->lanes[group.first_lanes + v].rays[k];
+        });
         counts.unbounded += samples_in(*scene.tiles, group.first_vector + v, 1);
     }
     return counts;
@@ -179,7 +157,7 @@ void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& o
     TRILENS_CHECK(hits.size() == grid.size(), "one hit per sample of the grid");
     check_samples(mesh, owned);
     if (!options.vectors || !options.cull)
-        return draw_in_blocks(scene, mesh, owned, grid, hits, options.cull);
+        return draw_scalar(scene, mesh, owned, grid, hits, options.cull);
     KernelScene asked = kernel_scene(scene, mesh, grid);
     asked.hits = hits;
     draw_vectors(asked, owned, options);

@@ -10,8 +10,8 @@
 namespace trilens {
 
 struct DrawOptions {
-    bool vectors = true;  // false: block by block, in double
-    bool cull = true;     // false: every block tests every triangle, slowly
+    bool vectors = true;  // false: one ray at a time, in double
+    bool cull = true;     // false: every ray is offered every triangle, slowly
     KernelOptions kernel{};
     std::optional<TileParams> tiles{};  // none: tile_params() of the scene
 };

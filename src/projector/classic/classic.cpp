@@ -12,9 +12,8 @@
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
-#include "projector/blocks/beam.h"
 #include "projector/classic/classic_fill.h"
-#include "projector/exact/first_hits.h"
+#include "projector/classic/facet_frustum.h"
 #include "projector/scene/prepared_data.h"
 #include "trilinear/outline.h"
 
@@ -34,21 +33,6 @@ struct Candidate {
     LineHit hit;
     Id index = 0;  // into PreparedScene::Data
 };
-
-/// The facet's rays over its weights, as a block that holds the facet: weight 1 is (1 + u) / 2, weight 2 is
-/// (1 + v) / 2.
-BlockRays rays_over_weights(const TrilinearFacet& facet) {
-    BlockRays block;
-    block.centre = facet.corner[0].origin;
-    const std::array<Ray, 3>& c = facet.corner;
-    const Vec3 o1 = (c[1].origin - block.centre) * 0.5, o2 = (c[2].origin - block.centre) * 0.5;
-    const Vec3 d1 = (c[1].direction - c[0].direction) * 0.5, d2 = (c[2].direction - c[0].direction) * 0.5;
-    block.rays.origin = {o1 + o2, o1, o2};
-    block.rays.direction = {c[0].direction + d1 + d2, d1, d2};
-    block.rays.weight = {1, 0, 0};
-    block.weight_least = 1;
-    return block;
-}
 
 /// The smallest singular value of the weights' derivative by the screen's x and y: how little they change per
 /// pixel.
@@ -147,15 +131,14 @@ void FacetDrawing::draw() {
         for (std::size_t i = 0; i < scene_.size(); ++i) draw_triangle(static_cast<Id>(i));
         return;
     }
-    const BlockRays block = rays_over_weights(facet_);
-    const Beam beam(block);
+    const FacetFrustum frustum(facet_);
     std::vector<Id> waiting;
     const Bvh& bvh = scene_.bvh();
     if (!bvh.nodes.empty()) waiting.push_back(0);
     while (!waiting.empty()) {
         const BvhNode& node = bvh.nodes[waiting.back()];
         waiting.pop_back();
-        if (beam.misses({node.box.low - block.centre, node.box.high - block.centre})) continue;
+        if (frustum.misses({node.box.low - frustum.centre(), node.box.high - frustum.centre()})) continue;
         for (Id i = node.first; i < node.first + node.count; ++i) draw_triangle(bvh.order[i]);
         if (node.count == 0) waiting.insert(waiting.end(), {node.first, node.first + 1});
     }

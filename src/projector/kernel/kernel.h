@@ -17,10 +17,10 @@ struct KernelOptions {
 /// Samples that floats alone did not draw.
 struct DrawCounts {
     std::size_t doubtful = 0;   // what they see was decided exactly, among few triangles
-    std::size_t unbounded = 0;  // the vector engine has no bounds for them: they were drawn in blocks
+    std::size_t unbounded = 0;  // the vector engine has no bounds for them: the scalar engine drew them
 };
 
-/// Draws all batches, in parallel, those that the vector engine cannot bound in blocks.
+/// Draws all batches, in parallel, those that the vector engine cannot bound by the scalar one.
 DrawCounts draw_tiles(const KernelScene& scene, const KernelOptions& options);
 
 /// Draws one batch of tiles. `state` is the thread's own; its contents do not matter. Returns the tiles that

@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "base/util/check.h"
+#include "projector/exact/first_hit.h"
 #include "projector/kernel/kernel_placed-inl.h"
 #include "projector/kernel/kernel_whole-inl.h"
 
@@ -30,17 +31,17 @@ HWY_NOINLINE Hit decide_sure(const KernelScene& scene, const FacetRays& facet, I
     return scene_hit(*scene.data, triangle, *hit);
 }
 
-/// One sample among its sure hit, if any, and its doubtful triangles, all decided exactly, by FirstHits'
+/// One sample among its sure hit, if any, and its doubtful triangles, all decided exactly, by FirstHit's
 /// rule.
 HWY_NOINLINE Hit resolve_sample(const KernelScene& scene, const FacetRays& facet, Id sample, Id sure,
                                 std::span<const Doubt> doubts) {
     const SampleRay ray = facet.at(scene.grid->position(sample));
-    FirstHits hits(1);
+    FirstHit first;
     const auto offer_all = [&] {
         Id last = kNone;
         const auto offer = [&](Id triangle) {
             const std::optional<LineHit> hit = decide(ray, corners_of(*scene.data, triangle, facet.centre));
-            if (hit) hits.offer(0, *hit, triangle, scene.data->rank(triangle));
+            if (hit) first.offer(*hit, triangle, scene.data->rank(triangle));
         };
         if (sure != kNone) offer(sure);
         for (const Doubt& doubt : doubts) {
@@ -49,9 +50,8 @@ HWY_NOINLINE Hit resolve_sample(const KernelScene& scene, const FacetRays& facet
         }
     };
     offer_all();
-    if (hits.order_mattered()) hits.begin_second_pass(), offer_all();
-    const Id winner = hits.winner(0);
-    return winner == kNone ? Hit{} : scene_hit(*scene.data, winner, hits.hit(0));
+    if (first.order_mattered()) first.begin_second_pass(), offer_all();
+    return first.winner() == kNone ? Hit{} : scene_hit(*scene.data, first.winner(), first.hit());
 }
 
 /// What place_sure_hits() reads of the scene. Each lane's, without asking which are the same: that would take

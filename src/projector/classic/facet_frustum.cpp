@@ -1,5 +1,4 @@
-// Finds planes that hold a beam of rays, and tests boxes against them.
-#include "projector/blocks/beam.h"
+#include "projector/classic/facet_frustum.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,27 +30,23 @@ double highest(const Box& box, const Vec3& normal) {
            std::max(normal.z * box.low.z, normal.z * box.high.z);
 }
 
-double lowest(const Box& box, const Vec3& normal) {
-    return -highest(box, -normal);
-}
-
 }  // namespace
 
-Beam::Beam(const BlockRays& block) {
-    if (!(block.weight_least > 0)) return;
+FacetFrustum::FacetFrustum(const TrilinearFacet& facet) : centre_(facet.corner[0].origin) {
+    const std::array<Ray, 3>& c = facet.corner;
+    const Vec3 o1 = (c[1].origin - centre_) * 0.5, o2 = (c[2].origin - centre_) * 0.5;
+    const Vec3 d1 = (c[1].direction - c[0].direction) * 0.5, d2 = (c[2].direction - c[0].direction) * 0.5;
     constexpr std::array<Vec2, 4> kCorners{Vec2{-1, -1}, Vec2{1, -1}, Vec2{1, 1}, Vec2{-1, 1}};
     for (std::size_t k = 0; k < 4; ++k) {
         const double u = kCorners[k].x, v = kCorners[k].y;
-        origin_[k] = block.rays.origin_at(u, v) / block.rays.weight_at(u, v);
-        direction_[k] = block.rays.direction_at(u, v) / block.rays.weight_at(u, v);
+        origin_[k] = (o1 + o2) + u * o1 + v * o2;
+        direction_[k] = (c[0].direction + d1 + d2) + u * d1 + v * d2;
         unit_direction_[k] = normalize_or_zero(direction_[k]);
         origin_size_ = std::max(origin_size_, size_of(origin_[k]));
     }
-    // The origins may be small sums of large terms.
-    origin_size_ = std::max(origin_size_, block.origin_size / block.weight_least);
     add_axis();
 
-    // The sides: through adjacent directions where the beam opens or closes, else along the axis.
+    // The sides: through adjacent directions where the frustum opens or closes, else along the axis.
     for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t next = (k + 1) % 4;
         const Vec3 across = cross(direction_[k], direction_[next]);
@@ -63,22 +58,18 @@ Beam::Beam(const BlockRays& block) {
     }
 }
 
-void Beam::add_axis() {
+void FacetFrustum::add_axis() {
     for (const Vec3& d : unit_direction_) axis_ += d;
     axis_ = normalize_or_zero(axis_);
     least_cosine_ = 1;
-    for (std::size_t k = 0; k < 4; ++k) {
-        least_cosine_ = std::min(least_cosine_, dot(axis_, unit_direction_[k]));
-        axis_speed_ = std::max(axis_speed_, dot(axis_, direction_[k]));
-        axis_start_ = k == 0 ? dot(axis_, origin_[k]) : std::max(axis_start_, dot(axis_, origin_[k]));
-    }
-    // How fast the rays go along the axis tells how far t a box is, unless a ray goes nearly across it.
+    for (const Vec3& d : unit_direction_) least_cosine_ = std::min(least_cosine_, dot(axis_, d));
+    // The axis means something unless a ray goes nearly across it.
     constexpr double kSteep = 0.01;
-    if (!(least_cosine_ > kSteep)) axis_speed_ = least_cosine_ = 0;
+    if (!(least_cosine_ > kSteep)) least_cosine_ = 0;
     add_plane(axis_);
 }
 
-void Beam::add_plane(const Vec3& normal) {
+void FacetFrustum::add_plane(const Vec3& normal) {
     Vec3 unit = normalize_or_zero(normal);
     if (unit == Vec3(0)) return;
 
@@ -95,18 +86,12 @@ void Beam::add_plane(const Vec3& normal) {
     plane_[planes_++] = {unit, offset - kSlack * origin_size_};
 }
 
-bool Beam::misses(const Box& box) const {
+bool FacetFrustum::misses(const Box& box) const {
     const double slack = kSlack * reach(box);
     for (std::size_t k = 0; k < planes_; ++k) {
         if (highest(box, plane_[k].normal) + slack < plane_[k].offset) return true;
     }
     return false;
-}
-
-double Beam::nearest(const Box& box) const {
-    if (!(axis_speed_ > 0)) return 0;
-    const double ahead = lowest(box, axis_) - axis_start_ - kSlack * (reach(box) + origin_size_);
-    return std::max(0.0, ahead / axis_speed_ * (1 - kSlack));
 }
 
 }  // namespace trilens

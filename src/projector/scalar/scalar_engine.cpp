@@ -1,0 +1,132 @@
+// The slab test of Kay and Kajiya (Ray Tracing Complex Scenes, 1986), homogeneous: a sample's ray is known times its
+// weight W, so that W x = O + t D is tested against W times the box.
+#include "projector/scalar/scalar_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/util/parallel.h"
+#include "projector/exact/first_hit.h"
+#include "projector/scene/prepared_data.h"
+
+namespace trilens {
+namespace {
+
+// A box is widened by this share of the coordinates involved. Rounding in the boxes, the rays and the decision who is
+// hit stays below 64 units in the last place of them (1.4e-14).
+constexpr double kBoxSlack = 1e-13;
+// A hit's t is off by less than this share of itself: kLeastDeterminant lets 2^30 units in the last place in.
+constexpr double kTimeSlack = 1e-5;
+
+/// The smallest t >= 0 at which the ray is in the box, whose coordinates are the ray's; none where it misses.
+std::optional<double> enter_box(const SampleRay& ray, const Box& box) {
+    const Vec3 a = ray.weight * box.low, b = ray.weight * box.high;
+    const double slack = kBoxSlack * (largest_part(a) + largest_part(b) + largest_part(ray.origin));
+    double first = 0, last = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = std::min(a[axis], b[axis]) - slack - ray.origin[axis],
+                     high = std::max(a[axis], b[axis]) + slack - ray.origin[axis];
+        if (ray.direction[axis] == 0) {
+            if (low > 0 || high < 0) return std::nullopt;
+            continue;
+        }
+        const double t0 = low / ray.direction[axis], t1 = high / ray.direction[axis];
+        first = std::max(first, std::min(t0, t1));
+        last = std::min(last, std::max(t0, t1));
+    }
+    if (first > last) return std::nullopt;
+    return first;
+}
+
+/// A node of the tree that waits, and the smallest t at which the ray is in it.
+struct WaitingNode {
+    Id node = 0;
+    double enters = 0;
+};
+
+/// One ray on its way.
+struct RayWalk {
+    const PreparedScene::Data& scene;
+    const SampleRay& ray;
+    const Vec3& centre;
+    FirstHit first{};
+
+    void offer(Id triangle) {
+        const std::optional<LineHit> hit =
+            decide(ray, {scene.corner(0, triangle, centre), scene.corner(1, triangle, centre),
+                         scene.corner(2, triangle, centre)});
+        if (hit) first.offer(*hit, triangle, scene.rank(triangle));
+    }
+
+    void offer_all() {
+        for (std::size_t i = 0; i < scene.size(); ++i) offer(static_cast<Id>(i));
+    }
+
+    void walk(std::vector<WaitingNode>& stack) {
+        const Bvh& bvh = scene.bvh();
+        const auto push = [&](Id node) {
+            const Box& box = bvh.nodes[node].box;
+            if (const auto enters = enter_box(ray, {box.low - centre, box.high - centre}))
+                stack.push_back({node, *enters});
+        };
+        stack.clear();
+        if (!bvh.nodes.empty()) push(0);
+        while (!stack.empty()) {
+            const WaitingNode next = stack.back();
+            stack.pop_back();
+            if (next.enters * (1 - kTimeSlack) > first.limit()) continue;
+            const BvhNode& node = bvh.nodes[next.node];
+            for (Id i = node.first; i < node.first + node.count; ++i) offer(bvh.order[i]);
+            if (node.count > 0) continue;
+            // The nearer child is put on top, so that what it hides need not be looked at.
+            const std::size_t before = stack.size();
+            push(node.first);
+            push(node.first + 1);
+            if (stack.size() == before + 2 && stack[before].enters < stack[before + 1].enters)
+                std::swap(stack[before], stack[before + 1]);
+        }
+    }
+
+    template <typename Pass>
+    Hit see(const Pass& pass) {
+        pass();
+        if (first.order_mattered()) first.begin_second_pass(), pass();
+        return first.winner() == kNone ? Hit{} : scene_hit(scene, first.winner(), first.hit());
+    }
+};
+
+Hit see_first(RayWalk ray, bool cull, std::vector<WaitingNode>& stack) {
+    return cull ? ray.see([&] { ray.walk(stack); }) : ray.see([&] { ray.offer_all(); });
+}
+
+}  // namespace
+
+Hit first_hit_of(const PreparedScene::Data& scene, const SampleRay& ray, const Vec3& centre) {
+    std::vector<WaitingNode> stack;
+    return see_first({scene, ray, centre}, true, stack);
+}
+
+void draw_scalar(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                 const SampleGrid& grid, std::span<Hit> hits, bool cull) {
+    constexpr std::size_t kSamplesTogether = 512;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        const std::span<const Id> samples = owned.of(f);
+        if (!mesh.has_rays(f) || samples.empty()) continue;
+        const FacetWeights weights = facet_weights(mesh, f);
+        if (weights.edge_on) continue;
+        const FacetRays facet = make_facet_rays({mesh, static_cast<Id>(f), weights});
+        parallel_for(samples.size(), kSamplesTogether, [&](std::size_t from, std::size_t to) {
+            std::vector<WaitingNode> stack;
+            for (std::size_t s = from; s < to; ++s) {
+                const SampleRay ray = facet.at(grid.position(samples[s]));
+                hits[samples[s]] = see_first({scene.data(), ray, facet.centre}, cull, stack);
+            }
+        });
+    }
+}
+
+}  // namespace trilens
