@@ -77,7 +77,7 @@ void print(const Cell& c, std::FILE* csv) {
         r.facets, r.visible_ms, r.written_ms, r.samples_ms, r.prepare_ms, r.trace_ms, r.trace_written_ms,
         r.rays_ms, r.build_ms, r.ratio.visible, r.ratio.written, r.ratio.with_build, r.ratio.whole,
         r.slowest_ratio, r.fastest_ratio, r.mismatches.pixels, r.mismatches.edge, r.mismatches.depth,
-        r.mismatches.unexplained, r.shared, r.doubtful, r.unbounded, r.depth_complexity);
+        r.mismatches.unexplained, r.shared, r.ambiguous, r.unbounded, r.depth_complexity);
     std::fflush(csv);
 }
 
@@ -113,7 +113,7 @@ int run(const std::map<std::string, Values>& chosen) {
                      "prepare_ms,trace_ms,"
                      "trace_written_ms,rays_ms,build_ms,ratio_visible,ratio_written,ratio_with_build,ratio_"
                      "whole,lowest,highest,"
-                     "mismatches,edge,depth,unexplained,shared,doubtful,unbounded,depth_complexity\n");
+                     "mismatches,edge,depth,unexplained,shared,ambiguous,unbounded,depth_complexity\n");
     std::printf(
         "milliseconds, medians; projector: visible in order, hits by sample, samples, "
         "tree | Embree: hits in order, by sample, rays, tree | "

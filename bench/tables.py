@@ -28,7 +28,7 @@ def aim(row):
 
 def table(rows):
     head = ["workload", "triangles", "n", "film", "threads", "isa", "visible ms", "written ms", "Embree ms", "visible", "written",
-            "low..high", "aim", "at least", "with build", "whole", "samples per facet", "shared", "layers", "doubtful", "mismatches", "unexplained"]
+            "low..high", "aim", "at least", "with build", "whole", "samples per facet", "shared", "layers", "ambiguous", "mismatches", "unexplained"]
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     for r in rows:
         best, least = aim(r)
@@ -38,7 +38,7 @@ def table(rows):
                  f'{float(r["lowest"]):.2f}..{float(r["highest"]):.2f}', str(best), str(least),
                  f'{float(r["ratio_with_build"]):.2f}',
                  f'{float(r["ratio_whole"]):.2f}', f"{number(r, 'samples'):.0f}", f'{float(r["shared"]):.1%}',
-                 f'{float(r["depth_complexity"]):.1f}', f'{float(r["doubtful"]):.2%}', r["mismatches"], r["unexplained"]]
+                 f'{float(r["depth_complexity"]):.1f}', f'{float(r["ambiguous"]):.2%}', r["mismatches"], r["unexplained"]]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
@@ -101,8 +101,8 @@ def plot(rows, axis, column, file):
 TITLES = {"ratio_visible": "Triangles seen left in order, t within bounds; rays and samples made beforehand",
           "ratio_written": "Hits written per sample, rays and samples made beforehand", "ratio_whole": "With trees, rays and samples",
           "shared": "Samples in vectors that facets share: rays of their own, not one facet's functions",
-          "doubtful": "Samples that floats left in doubt, decided exactly"}
-SHARES = {"shared", "doubtful"}
+          "ambiguous": "Samples that floats left ambiguous, decided exactly"}
+SHARES = {"shared", "ambiguous"}
 
 
 def main():

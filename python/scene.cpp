@@ -171,7 +171,7 @@ void bind_scene(py::module_& module) {
         .def_property_readonly(
             "bounds", [](const Scene& scene) { return bounds_of(make_scene_info(scene).bounds); },
             "The box around everything, as Mesh.bounds.")
-        .def_readonly("warnings", &Scene::warnings, "What is legal but doubtful.")
+        .def_readonly("warnings", &Scene::warnings, "What is legal but ambiguous.")
         .def_readonly("resolved", &Scene::resolved,
                       "The scene as JSON on one line, after overrides, as image headers carry it.")
         .def(

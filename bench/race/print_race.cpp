@@ -28,7 +28,7 @@ nlohmann::ordered_json fields(const BenchResult& bench) {
               {"written_ms", r.written_ms},
               {"whole_ms", r.whole_ms},
               {"shared", r.shared},
-              {"doubtful", r.doubtful},
+              {"ambiguous", r.ambiguous},
               {"unbounded", r.unbounded}}},
             {"embree",
              {{"build_ms", r.build_ms},
@@ -77,7 +77,7 @@ std::string text(const BenchResult& bench) {
     text += fmt::format(
         "of the pixels {:.1f} % lie in vectors that facets share, {:.2f} % were decided exactly, {:.2f} % "
         "one by one\n",
-        100 * r.shared, 100 * r.doubtful, 100 * r.unbounded);
+        100 * r.shared, 100 * r.ambiguous, 100 * r.unbounded);
     text += fmt::format(
         "{} pixels differ: {} within a thousandth of an edge, {} at one depth to a thousandth, {} otherwise",
         r.mismatches.pixels, r.mismatches.edge, r.mismatches.depth, r.mismatches.unexplained);

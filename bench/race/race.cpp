@@ -195,14 +195,14 @@ void count_samples(const SampleGrid& grid, Sides& sides, RaceResult& result) {
         KernelScene scene{&data, &data.leaves, &v.mesh, &grid, &v.tiles};
         scene.vector_visible = v.vector_visible;
         const DrawCounts counts = draw_tiles(scene, {});
-        all.doubtful += counts.doubtful;
+        all.ambiguous += counts.ambiguous;
         all.unbounded += counts.unbounded;
     }
     const auto share = [&](std::size_t samples) {
         return result.pixels == 0 ? 0 : static_cast<double>(samples) / static_cast<double>(result.pixels);
     };
     result.shared = share(shared);
-    result.doubtful = share(all.doubtful);
+    result.ambiguous = share(all.ambiguous);
     result.unbounded = share(all.unbounded);
 }
 

@@ -46,8 +46,8 @@ struct RaceResult {
     double slowest_ratio = 0, fastest_ratio = 0;  // of `written` over the rounds
     Mismatches mismatches;
     // How the projector draws the samples: in vectors that facets share; decided exactly, where floats left
-    // doubt; without bounds, one facet at a time. Shares of `pixels`.
-    double shared = 0, doubtful = 0, unbounded = 0;
+    // open; without bounds, one ray at a time. Shares of `pixels`.
+    double shared = 0, ambiguous = 0, unbounded = 0;
     double depth_complexity = 0;  // depths at which a ray meets the scene, mean of some of the rays
     std::string projector_isa, embree_configuration;
     int rays_at_once = 0, threads = 0;

@@ -32,23 +32,23 @@ HWY_INLINE void store(const Vector& v, float (&to)[3][Segments::kMost], std::siz
 void make_local_here(const Segments& segments, const Vec3& centre, double scale, LocalSegments& local) {
     for (std::size_t first = 0; first < segments.count; first += kWidth) {
         const Vector step = load(segments.step, first), from = load(segments.from, first);
-        const Number squared = inner(step, step), zero = number(0);
+        const Number squared = dot(step, step), zero = number(0);
         const Truth usual = hn::And(hn::Gt(squared, number(1e-280)), hn::Lt(squared, number(1e280)));
         const Number inverse = hn::Div(number(1), hn::Sqrt(squared)), unit = number(scale);
         const Vector direction = times(inverse, step);
-        const Number speed = hn::Mul(inner(direction, step), unit);
+        const Number speed = hn::Mul(dot(direction, step), unit);
         const Vector origin = times(unit, minus(from, vector(centre)));
 
         // The stretch inside the scene's ball, with room for rounding of far origins.
         const Number far = hn::Add(hn::Add(hn::Abs(origin.x), hn::Abs(origin.y)), hn::Abs(origin.z));
         const Number radius = hn::Add(number(1 + 8 * kBoxMargin), hn::Mul(number(1e-14), far));
-        const Number to_nearest = hn::Neg(inner(origin, direction));
+        const Number to_nearest = hn::Neg(dot(origin, direction));
         const Vector nearest = along(origin, to_nearest, direction);
-        const Number half_chord_2 = hn::Sub(hn::Mul(radius, radius), inner(nearest, nearest));
+        const Number half_chord_2 = hn::Sub(hn::Mul(radius, radius), dot(nearest, nearest));
         const Number half_chord = hn::Sqrt(hn::Max(half_chord_2, zero));
         const Number enter = hn::Max(hn::Sub(to_nearest, half_chord), zero);
         const Number leave = hn::Min(hn::Add(to_nearest, half_chord), speed);
-        const Truth finite = hn::And(hn::IsFinite(speed), hn::IsFinite(inner(origin, origin)));
+        const Truth finite = hn::And(hn::IsFinite(speed), hn::IsFinite(dot(origin, origin)));
         const Truth meets = hn::And(hn::And(finite, hn::Gt(half_chord_2, zero)),
                                     hn::And(hn::Gt(speed, zero), hn::Le(enter, leave)));
         local.meets |= bits_of(hn::And(meets, usual)) << first;

@@ -7,7 +7,7 @@
 #include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "projector/draw_options.h"
-#include "projector/kernel/kernel_state.h"
+#include "projector/kernel/state.h"
 #include "projector/scalar/scalar_engine.h"
 #include "projector/scene/prepared_data.h"
 
@@ -67,9 +67,9 @@ std::size_t samples_in(const SampleTiles& tiles, std::uint32_t first, std::uint3
 
 DrawCounts draw_one_batch(const KernelScene& scene, std::size_t batch, const KernelOptions& options) {
     KernelState& state = own_state();
-    state.doubtful = 0;
+    state.seen.ambiguous_samples = 0;
     const std::uint32_t left = draw_batch(scene, batch, options, state);
-    DrawCounts counts{state.doubtful, 0};
+    DrawCounts counts{state.seen.ambiguous_samples, 0};
     const TileGroup& groups = scene.tiles->batches[batch];
     const std::uint32_t first_tile = scene.tiles->groups[groups.first].first;
     for (std::uint32_t j = 0; j < kLanes; ++j) {
@@ -84,15 +84,14 @@ DrawCounts draw_one_batch(const KernelScene& scene, std::size_t batch, const Ker
 
 DrawCounts draw_one_mixed(const KernelScene& scene, std::size_t number) {
     KernelState& state = own_state();
-    state.doubtful = 0;
+    state.seen.ambiguous_samples = 0;
     const std::uint32_t left = draw_mixed(scene, number, state);
-    DrawCounts counts{state.doubtful, 0};
+    DrawCounts counts{state.seen.ambiguous_samples, 0};
     const MixedGroup& group = scene.tiles->mixed[number];
     for (std::uint32_t v = 0; v < kLanes; ++v) {
         if (!(left >> v & 1)) continue;
-        draw_vector_scalar(scene, group.first_vector + v, [&](std::size_t k) {
-            return scene.tiles->lanes[group.first_lanes + v].rays[k];
-        });
+        draw_vector_scalar(scene, group.first_vector + v,
+                           [&](std::size_t k) { return scene.tiles->lanes[group.first_lanes + v].rays[k]; });
         counts.unbounded += samples_in(*scene.tiles, group.first_vector + v, 1);
     }
     return counts;
@@ -135,29 +134,28 @@ void draw_vectors(const KernelScene& asked, const FacetSamples& owned, const Dra
 }  // namespace
 
 DrawCounts draw_tiles(const KernelScene& scene, const KernelOptions& options) {
-    std::atomic<std::size_t> doubtful = 0, unbounded = 0;
+    std::atomic<std::size_t> ambiguous = 0, unbounded = 0;
     const std::size_t batches = scene.tiles->batches.size();
     parallel_for(batches + scene.tiles->mixed.size(), 1, [&](std::size_t first, std::size_t last) {
         DrawCounts own;
         for (std::size_t b = first; b < last; ++b) {
             const DrawCounts counts =
                 b < batches ? draw_one_batch(scene, b, options) : draw_one_mixed(scene, b - batches);
-            own.doubtful += counts.doubtful;
+            own.ambiguous += counts.ambiguous;
             own.unbounded += counts.unbounded;
         }
         // Locked additions wait for the hits on their way to memory.
-        if (own.doubtful > 0) doubtful += own.doubtful;
+        if (own.ambiguous > 0) ambiguous += own.ambiguous;
         if (own.unbounded > 0) unbounded += own.unbounded;
     });
-    return {doubtful, unbounded};
+    return {ambiguous, unbounded};
 }
 
 void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
           std::span<Hit> hits, const DrawOptions& options) {
     TRILENS_CHECK(hits.size() == grid.size(), "one hit per sample of the grid");
     check_samples(mesh, owned);
-    if (!options.vectors || !options.cull)
-        return draw_scalar(scene, mesh, owned, grid, hits, options.cull);
+    if (!options.vectors || !options.cull) return draw_scalar(scene, mesh, owned, grid, hits, options.cull);
     KernelScene asked = kernel_scene(scene, mesh, grid);
     asked.hits = hits;
     draw_vectors(asked, owned, options);

@@ -45,13 +45,13 @@ HWY_INLINE Smooth smooth_at(const Lanes& at, const Vector& geometric, const Vect
         plus(plus(times(at.weight(0), n[0]), times(at.weight(1), n[1])), times(at.weight(2), n[2])));
     const Truth none = hn::And(hn::And(hn::Eq(smooth.x, number(0)), hn::Eq(smooth.y, number(0))),
                                hn::Eq(smooth.z, number(0)));
-    const Number side = hn::IfThenElse(hn::Lt(inner(smooth, geometric), number(0)), number(-1), number(1));
+    const Number side = hn::IfThenElse(hn::Lt(dot(smooth, geometric), number(0)), number(-1), number(1));
 
     Vector lifted = position;
     for (int k = 0; k < 3; ++k) {
         const Vector turned = times(side, n[k]);
         const Number depth =
-            smaller(number(0), inner(minus(position, load(at.batch.corner[k], at.first)), turned));
+            smaller(number(0), dot(minus(position, load(at.batch.corner[k], at.first)), turned));
         lifted = minus(lifted, times(hn::Mul(at.weight(k), depth), turned));
     }
     return {hn::Not(none), times(side, smooth), lifted};
@@ -65,8 +65,8 @@ void find_surfaces_here(ShadeBatch& batch, double offset) {
                      c = load(batch.corner[2], first);
         const Vector position =
             plus(plus(times(at.weight(0), a), times(at.weight(1), b)), times(at.weight(2), c));
-        const Vector upward = unit_or_zero(outer(minus(b, a), minus(c, a)));
-        const Truth away = hn::Gt(inner(upward, load(batch.toward, first)), number(0));
+        const Vector upward = unit_or_zero(cross(minus(b, a), minus(c, a)));
+        const Truth away = hn::Gt(dot(upward, load(batch.toward, first)), number(0));
         const Vector geometric = either(away, opposite(upward), upward);
 
         Vector normal = geometric, surface = position;
@@ -95,16 +95,16 @@ void find_light_here(ShadeBatch& batch, const ShadeLight& light) {
         if (light.is_point) {
             target = vector(light.position);
             const Vector step = minus(target, position);
-            const Number distance2 = inner(step, step);
+            const Number distance2 = dot(step, step);
             lit = hn::Gt(distance2, number(0));
             toward = unit_or_zero(step);
             irradiance = hn::Div(irradiance, distance2);
         }
-        const Number cosine = inner(normal, toward);
+        const Number cosine = dot(normal, toward);
         lit = hn::AndNot(hn::Le(cosine, number(0)), lit);
         if (light.casts_shadows) {
             // Light that arrives from behind a flat triangle is in the triangle's own shadow.
-            const Truth behind = hn::Le(inner(load(batch.geometric_normal, first), toward), number(0));
+            const Truth behind = hn::Le(dot(load(batch.geometric_normal, first), toward), number(0));
             lit = hn::AndNot(hn::AndNot(truth_of(batch.smooth >> first), behind), lit);
             store(minus(target, load(batch.shadow_start, first)), batch.way, first);
         }

@@ -34,7 +34,7 @@ struct Sights {
 HWY_INLINE Sights sights_of(const Vector& points, const Vec3& position, double radius) {
     Sights sights;
     const Vector way = minus(vector(position), points);
-    sights.distance = hn::Sqrt(inner(way, way));
+    sights.distance = hn::Sqrt(dot(way, way));
     sights.apart = hn::Gt(sights.distance, number(radius));
     sights.by_distance = hn::Div(number(1), sights.distance);
     sights.direction = times(sights.by_distance, way);
@@ -62,7 +62,7 @@ HWY_INLINE Bend bend_of(const PathIndices& n, const Sights& sights, const PlaceB
     const Vector bend =
         plus(times(number(n.eye), vector(view.sight.direction)), times(number(n.point), sights.direction));
     const Number turn = hn::Add(number(n.eye * view.sight.turn), scaled(n.point, sights.turn));
-    const Number size = hn::Sqrt(inner(bend, bend));
+    const Number size = hn::Sqrt(dot(bend, bend));
     return {bend, hn::Add(turn, hn::Mul(hn::Add(size, turn), number(place.normal_radius)))};
 }
 
@@ -73,14 +73,14 @@ HWY_INLINE Truth empty_of(const LaneQuestion& question, const Vector& points, co
     const Number normal_radius = number(place.normal_radius);
     Truth empty = hn::FirstN(kTag, 0);
     if (view.knows_side) {
-        const Number cosine = inner(sights.direction, normal);
+        const Number cosine = dot(sights.direction, normal);
         const Truth known = hn::Not(hn::Le(hn::Abs(cosine), hn::Add(sights.turn, normal_radius)));
         const Truth reflects = hn::Gt(scaled(view.cosine, cosine), number(0));
         empty = hn::And(known, question.reflects ? hn::Not(reflects) : reflects);
     }
     const Bend bend = bend_of(question.n, sights, place, view);
-    const Vector across = minus(bend.middle, times(inner(bend.middle, normal), normal));
-    empty = hn::Or(empty, hn::Gt(inner(across, across), hn::Mul(bend.most, bend.most)));
+    const Vector across = minus(bend.middle, times(dot(bend.middle, normal), normal));
+    empty = hn::Or(empty, hn::Gt(dot(across, across), hn::Mul(bend.most, bend.most)));
     return hn::And(sights.apart, empty);
 }
 
@@ -98,7 +98,7 @@ HWY_INLINE Truth alone_of(const LaneQuestion& question, const PlaceBounds& place
     const Sights sights =
         sights_of(points_from(question.points, first), place.position, place.position_radius);
     const Bend bend = bend_of(n, sights, place, view);
-    const Number middle = inner(bend.middle, vector(place.normal));
+    const Number middle = dot(bend.middle, vector(place.normal));
     const Number margin = number(kClearBend * (n.eye + n.point)), along = hn::Load(kTag, zeros.along + first);
     const Number high = hn::Max(along, hn::Add(middle, bend.most));
     const Number low = hn::Min(along, hn::Sub(middle, bend.most));
@@ -106,7 +106,7 @@ HWY_INLINE Truth alone_of(const LaneQuestion& question, const PlaceBounds& place
 
     // The chords from the zero into the place lie within this of the place's middle.
     const Vector way = minus(points_from(zeros.at, first), vector(place.position));
-    const Number reach = hn::Add(hn::Sqrt(inner(way, way)), number(place.position_radius));
+    const Number reach = hn::Add(hn::Sqrt(dot(way, way)), number(place.position_radius));
     const Number by_eye = number(view.sight.by_distance);
     const Number to_eye = hn::Sub(number(1), hn::Mul(by_eye, reach));
     const Number to_point = hn::Sub(sights.distance, reach);
@@ -146,7 +146,7 @@ HWY_INLINE Verdicts newton_of(const CellTerms& cell, const Vector& points, const
     const SurfacePoint& m = cell.bounds->middle;
     const Sights point = sights_of(points, m.position, cell.bounds->position_radius);
     const Vector bend = plus(vector(cell.eye_bend), times(number(cell.n.point), point.direction));
-    const Number bend_size = hn::Sqrt(inner(bend, bend));
+    const Number bend_size = hn::Sqrt(dot(bend, bend));
     const Number bend_turn = hn::Add(number(cell.eye_turn), scaled(cell.n.point, point.turn));
     const Number stretch = hn::Div(hn::Mul(point.by_distance, point.sine), hn::Sub(number(1), point.sine));
     const auto radius = [&](double eye, const CellTerms::Reach& a, const CellTerms::Reach& b,
@@ -163,13 +163,13 @@ HWY_INLINE Verdicts newton_of(const CellTerms& cell, const Vector& points, const
     const Vector du = vector(m.du), dv = vector(m.dv);
     const Number share = scaled(cell.n.point, point.by_distance);
     const auto change = [&](const Vec3& eye, const Vector& step) {
-        const Vector turned = minus(step, times(inner(point.direction, step), point.direction));
+        const Vector turned = minus(step, times(dot(point.direction, step), point.direction));
         return plus(vector(eye), times(share, turned));
     };
     const Vector change_u = change(cell.eye_change_u, du), change_v = change(cell.eye_change_v, dv);
-    const Number a = hn::Add(inner(change_u, du), inner(bend, vector(m.duu)));
-    const Number b = hn::Add(inner(change_u, dv), inner(bend, vector(m.duv)));
-    const Number d = hn::Add(inner(change_v, dv), inner(bend, vector(m.dvv)));
+    const Number a = hn::Add(dot(change_u, du), dot(bend, vector(m.duu)));
+    const Number b = hn::Add(dot(change_u, dv), dot(bend, vector(m.duv)));
+    const Number d = hn::Add(dot(change_v, dv), dot(bend, vector(m.dvv)));
     const Number by_determinant = hn::Div(number(1), hn::Sub(hn::Mul(a, d), hn::Mul(b, b)));
     const Number inverse_uu = hn::Mul(d, by_determinant), inverse_vv = hn::Mul(a, by_determinant);
     const Number inverse_uv = hn::Neg(hn::Mul(b, by_determinant));
@@ -177,7 +177,7 @@ HWY_INLINE Verdicts newton_of(const CellTerms& cell, const Vector& points, const
         return Pair{hn::Add(hn::Mul(hn::Abs(inverse_uu), of.x), hn::Mul(hn::Abs(inverse_uv), of.y)),
                     hn::Add(hn::Mul(hn::Abs(inverse_uv), of.x), hn::Mul(hn::Abs(inverse_vv), of.y))};
     };
-    const Pair law = {inner(bend, du), inner(bend, dv)};
+    const Pair law = {dot(bend, du), dot(bend, dv)};
     const Pair step = {hn::Add(hn::Mul(inverse_uu, law.x), hn::Mul(inverse_uv, law.y)),
                        hn::Add(hn::Mul(inverse_uv, law.x), hn::Mul(inverse_vv, law.y))};
     const Pair spread = product(

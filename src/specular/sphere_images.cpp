@@ -26,7 +26,7 @@ struct Pair {
 };
 
 HWY_INLINE Number size_of(const Vector& v) {
-    return hn::Sqrt(inner(v, v));
+    return hn::Sqrt(dot(v, v));
 }
 
 HWY_INLINE Vector unit(const Vector& v) {
@@ -40,7 +40,7 @@ struct Ways {
 HWY_INLINE Ways ways_of(const Pair& pair) {
     const Vector way = minus(pair.point, pair.eye);
     const Number length = size_of(way);
-    const Number along = hn::Div(hn::Neg(inner(pair.eye, way)), inner(way, way));
+    const Number along = hn::Div(hn::Neg(dot(pair.eye, way)), dot(way, way));
     const Number inside = hn::Min(hn::Max(along, number(0)), number(1));
     const Number nearest = size_of(plus(pair.eye, times(inside, way)));
     const Number margin = hn::Add(number(kClearOfSphere), hn::Mul(number(kClearOfWay), length));
@@ -48,7 +48,7 @@ HWY_INLINE Ways ways_of(const Pair& pair) {
     const Truth apart =
         hn::And(hn::Gt(length, number(0)), hn::And(hn::Gt(eye, outside), hn::Gt(point, outside)));
     const Truth aside =
-        hn::Gt(size_of(outer(pair.eye, pair.point)), hn::Mul(number(kClearOfLine), hn::Mul(eye, point)));
+        hn::Gt(size_of(cross(pair.eye, pair.point)), hn::Mul(number(kClearOfLine), hn::Mul(eye, point)));
     return {hn::And(apart, hn::Gt(nearest, hn::Add(number(1), margin))),
             hn::And(hn::And(apart, aside), hn::Lt(nearest, hn::Sub(number(1), margin)))};
 }
@@ -61,11 +61,11 @@ HWY_INLINE Vector nearer(const Pair& pair, const Vector& normal) {
         const Vector way = minus(normal, from);
         const Number by_distance = hn::Div(number(1), size_of(way));
         const Vector direction = times(by_distance, way);
-        const Number cosine = inner(direction, normal);
+        const Number cosine = dot(direction, normal);
         bend = plus(bend, direction);
         slope = hn::Add(slope, hn::Mul(cosine, hn::Sub(hn::Mul(cosine, by_distance), number(1))));
     }
-    const Vector along = minus(bend, times(inner(bend, normal), normal));
+    const Vector along = minus(bend, times(dot(bend, normal), normal));
     return unit(minus(normal, over(along, slope)));
 }
 
@@ -80,7 +80,7 @@ HWY_INLINE Truth is_regular(const Pair& pair, const Vector& normal) {
     for (const Vector& from : {pair.eye, pair.point}) {
         const Vector way = minus(normal, from);
         const Number by_distance = hn::Div(number(1), size_of(way));
-        const Number cosine = hn::Mul(by_distance, inner(way, normal));
+        const Number cosine = hn::Mul(by_distance, dot(way, normal));
         along = hn::Add(along, hn::Mul(cosine, hn::Sub(hn::Mul(cosine, by_distance), number(1))));
         across = hn::Add(across, hn::Sub(by_distance, cosine));
     }
@@ -96,7 +96,7 @@ struct Edges {
 HWY_INLINE Edges edges_of(const Vector& from, const Vector& other) {
     const Number by_size = hn::Div(number(1), size_of(from));
     const Vector direction = times(by_size, from);
-    const Vector across = unit(minus(other, times(inner(other, direction), direction)));
+    const Vector across = unit(minus(other, times(dot(other, direction), direction)));
     const Vector out = times(by_size, direction);
     const Vector side = times(hn::Sqrt(hn::Sub(number(1), hn::Mul(by_size, by_size))), across);
     return {plus(out, side), minus(out, side)};
@@ -108,7 +108,7 @@ HWY_INLINE Vector near_start(const Pair& pair, const Edges& of_eye, const Edges&
     const Number eye = size_of(pair.eye), point = size_of(pair.point), one = number(1);
     const Vector plane = unit(plus(times(hn::Div(hn::Sub(point, one), eye), pair.eye),
                                    times(hn::Div(hn::Sub(eye, one), point), pair.point)));
-    const Truth seen = hn::And(hn::Gt(inner(plane, pair.eye), one), hn::Gt(inner(plane, pair.point), one));
+    const Truth seen = hn::And(hn::Gt(dot(plane, pair.eye), one), hn::Gt(dot(plane, pair.point), one));
     return either(seen, plane, unit(plus(of_eye.near, of_point.near)));
 }
 
@@ -116,7 +116,7 @@ HWY_INLINE Vector near_start(const Pair& pair, const Edges& of_eye, const Edges&
 HWY_INLINE Vector far_start(const Pair& pair, const Edges& of_eye, const Edges& of_point) {
     const Vector middle = unit(plus(of_eye.far, of_point.far));
     const Vector between = plus(unit(pair.eye), unit(pair.point));
-    return either(hn::Gt(inner(middle, between), number(0)), opposite(middle), middle);
+    return either(hn::Gt(dot(middle, between), number(0)), opposite(middle), middle);
 }
 
 HWY_INLINE void store(const Vector& v, PointLanes& to, std::size_t first) {

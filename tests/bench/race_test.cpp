@@ -63,7 +63,7 @@ TEST_CASE("a race counts its course and times both sides") {
     CHECK(r.mismatches.pixels < r.pixels / 100);
     CHECK(r.depth_complexity == 1);
     CHECK(r.shared == 0);
-    CHECK(r.doubtful < 0.01);
+    CHECK(r.ambiguous < 0.01);
     CHECK(r.unbounded == 0);
 }
 
@@ -83,10 +83,10 @@ TEST_CASE("a race counts layers, samples that share vectors, and samples that fl
     // The same wall again at the same place: floats cannot tell which is nearer.
     TriangleScene same = twice;
     for (std::size_t p = 0; p < course.scene.points.size(); ++p) same.points[points + p] = same.points[p];
-    const RaceResult doubtful = race({same, {view}, course.grid}, {1, ""});
-    CHECK(doubtful.depth_complexity == 1);
-    CHECK(doubtful.doubtful == 1);
-    CHECK(doubtful.unbounded == 0);
+    const RaceResult ambiguous = race({same, {view}, course.grid}, {1, ""});
+    CHECK(ambiguous.depth_complexity == 1);
+    CHECK(ambiguous.ambiguous == 1);
+    CHECK(ambiguous.unbounded == 0);
 
     // A film of many small facets.
     RayMesh small;

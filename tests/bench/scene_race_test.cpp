@@ -41,7 +41,7 @@ TEST_CASE("both sides of a race draw the rays of the scene's optics", "[bench][o
     CHECK(race.mismatches.unexplained == 0);
     CHECK(race.mismatches.pixels == race.mismatches.edge + race.mismatches.depth);
     CHECK_FALSE(bench.direct);
-    for (const double share : {race.shared, race.doubtful, race.unbounded}) {
+    for (const double share : {race.shared, race.ambiguous, race.unbounded}) {
         CHECK(share >= 0);
         CHECK(share < 1);
     }

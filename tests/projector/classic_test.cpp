@@ -125,11 +125,11 @@ TEST_CASE("a triangle that goes behind the camera holds what its visible part ho
         for (const Id s : samples) {
             const Vec3 e = glm::inverse(corner) * Vec3(grid.position(s), 1);
             const double least = std::min({e.x, e.y, e.z}), depth = 1 / (e.x + e.y + e.z);
-            const bool in_doubt =
+            const bool in_error =
                 std::fabs(least) < 1e-9 * length(e) || std::fabs(depth) < 1.01 * kLeastDepth;
             const bool inside = least > 0 && depth > kLeastDepth;
             held_by_both += inside && held[s];
-            wrong += !in_doubt && inside != held[s];
+            wrong += !in_error && inside != held[s];
         }
     }
     CHECK(held_by_both > 10000);

@@ -149,8 +149,8 @@ TEST_CASE("the vector engine draws the plain engine's bits where rays that meet 
     CHECK(use_instruction_set(""));
 }
 
-// Tiles of many vectors that see one triangle or few, at every size of sample, far from the world's origin and
-// from the triangles, near planes seen edge-on, and slivers over the whole film.
+// Tiles of many vectors that see one triangle or few, at every size of sample, far from the world's origin
+// and from the triangles, near planes seen edge-on, and slivers over the whole film.
 TEST_CASE("the vector engine draws the plain engine's bits for hits that doubles can hardly tell") {
     for (const std::string& set : kernel_instruction_sets()) {
         REQUIRE(use_instruction_set(set));

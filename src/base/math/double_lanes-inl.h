@@ -59,10 +59,10 @@ HWY_INLINE Vector over(const Vector& a, Number s) {
 HWY_INLINE Vector opposite(const Vector& a) {
     return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)};
 }
-HWY_INLINE Number inner(const Vector& a, const Vector& b) {
+HWY_INLINE Number dot(const Vector& a, const Vector& b) {
     return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
-HWY_INLINE Vector outer(const Vector& a, const Vector& b) {
+HWY_INLINE Vector cross(const Vector& a, const Vector& b) {
     return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
             hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
 }
@@ -76,7 +76,7 @@ HWY_INLINE Vector unit_or_zero(const Vector& v) {
     const Number largest = larger(larger(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
     const Truth usual = hn::AndNot(hn::Gt(largest, number(1.7e308)), hn::Gt(largest, number(0)));
     const Vector scaled = over(v, largest);
-    const Vector unit = over(scaled, hn::Sqrt(inner(scaled, scaled)));
+    const Vector unit = over(scaled, hn::Sqrt(dot(scaled, scaled)));
     return either(usual, unit, vector(Vec3(0)));
 }
 

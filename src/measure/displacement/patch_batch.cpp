@@ -19,7 +19,7 @@ struct Vector2 {
     Number x, y;
 };
 HWY_INLINE Number norm(const Vector& a) {
-    return hn::Sqrt(inner(a, a));
+    return hn::Sqrt(dot(a, a));
 }
 
 struct Tangents {
@@ -92,8 +92,8 @@ struct Walk {
 /// those that go on. Moves are at most half a cell; a direction in which the surface stands still is not
 /// followed.
 HWY_INLINE Truth step(const Tangents& t, Truth under_way, Walk& walk) {
-    const Number g0 = inner(t.du, t.value), g1 = inner(t.dv, t.value);
-    const Number a0 = inner(t.du, t.du), d0 = inner(t.dv, t.dv), b = inner(t.du, t.dv);
+    const Number g0 = dot(t.du, t.value), g1 = dot(t.dv, t.value);
+    const Number a0 = dot(t.du, t.du), d0 = dot(t.dv, t.dv), b = dot(t.du, t.dv);
     const Number sum = hn::Add(a0, d0), damping = hn::Mul(number(1e-14), sum);
     const Truth moves = hn::And(under_way, hn::Gt(sum, number(0)));
     const Number a = hn::Add(a0, damping), d = hn::Add(d0, damping);
@@ -148,8 +148,8 @@ HWY_INLINE Truth is_smooth(const Lanes& n) {
                          p3 = n.node(i + 3 * along);
             const Vector a = minus(p1, p0), b = minus(p2, p1), c = minus(p3, p2);
             const Vector d3 = plus(minus(c, times(number(2), b)), a);
-            longest = larger(larger(longest, inner(a, a)), larger(inner(b, b), inner(c, c)));
-            third = larger(third, inner(d3, d3));
+            longest = larger(larger(longest, dot(a, a)), larger(dot(b, b), dot(c, c)));
+            third = larger(third, dot(d3, d3));
         }
         smooth = hn::And(smooth, hn::Le(third, hn::Mul(number(kSmoothThird), longest)));
     }
@@ -167,9 +167,9 @@ HWY_INLINE Number outside_of(const Vector2& uv) {
 /// the normal; it may be as large as the surface's own bends between pixels (a crease, facets as small as
 /// pixels), a twentieth of the shorter tangent, and the rounding of float positions.
 HWY_INLINE Truth lies_on(const Lanes& n, const Tangents& at, Number rounding) {
-    const Vector normal = unit_or_zero(outer(at.du, at.dv));
+    const Vector normal = unit_or_zero(cross(at.du, at.dv));
     Number height[16];
-    for (std::size_t i = 0; i < 16; ++i) height[i] = inner(normal, n.node(i));
+    for (std::size_t i = 0; i < 16; ++i) height[i] = dot(normal, n.node(i));
     Number bend = number(0);
     for (const std::size_t along : {std::size_t{1}, std::size_t{4}}) {
         for (std::size_t line = 0; line < 4; ++line) {
@@ -181,7 +181,7 @@ HWY_INLINE Truth lies_on(const Lanes& n, const Tangents& at, Number rounding) {
             }
         }
     }
-    const Number tangent = hn::Sqrt(smaller(inner(at.du, at.du), inner(at.dv, at.dv)));
+    const Number tangent = hn::Sqrt(smaller(dot(at.du, at.du), dot(at.dv, at.dv)));
     const Number most = hn::Add(
         hn::Add(hn::Mul(number(kBendShare), bend), hn::Mul(number(kTangentShare), tangent)), rounding);
     return hn::Le(norm(at.value), most);

@@ -1,5 +1,5 @@
-// Frustum culling for a facet: the space that its rays can reach, bounded by planes. Boxes beyond one of them are
-// never hit.
+// Frustum culling for a facet: the space that its rays can reach, bounded by planes. Boxes beyond one of them
+// are never hit.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace trilens {
 
-/// The rays over the parallelogram that two edges of a facet span start in the hull of the four origins at its
-/// corners and go along the cone of the four directions there. Positions are from centre().
+/// The rays over the parallelogram that two edges of a facet span start in the hull of the four origins at
+/// its corners and go along the cone of the four directions there. Positions are from centre().
 class FacetFrustum {
   public:
     explicit FacetFrustum(const TrilinearFacet& facet);

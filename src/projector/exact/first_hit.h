@@ -4,13 +4,13 @@
 #include <limits>
 
 #include "base/raymesh/triangle_scene.h"
-#include "projector/exact/decide.h"
+#include "projector/exact/exact_hit.h"
 
 namespace trilens {
 
-/// Among the triangles whose t is within kDepthTie of the smallest, the one with the smallest rank. A rival may
-/// leave that band after it has driven out another that stays; `order_mattered` then asks for a second pass over
-/// the same triangles, which starts with the smallest t known and so is exact.
+/// Among the triangles whose t is within kDepthTie of the smallest, the one with the smallest rank. A rival
+/// may leave that band after it has driven out another that stays; `order_mattered` then asks for a second
+/// pass over the same triangles, which starts with the smallest t known and so is exact.
 class FirstHit {
   public:
     /// No triangle beyond this t can change the hit.

@@ -1,4 +1,34 @@
 // The vector engine's stages put together, once per instruction set, and the choice between those.
+//
+// Map. Samples come in vectors of 16 of one facet, vectors in tiles, tiles of neighbouring facets in groups,
+// groups in batches of at most 16 tiles (tiles/sample_tiles.h). Samples of facets too small for that share
+// vectors: mixed groups.
+//
+//     stage            file                     takes -> leaves
+//     set-up           setup-inl.h              a batch's facets and tiles -> state.lanes: rays as functions
+//     of the
+//                                               tile's (u, v), frusta; broken lanes have no bounds
+//     frusta           beams-inl.h              state.lanes -> state.beam (a group), state.work.beams (its
+//     vectors) walk             walk-inl.h               the tree's nodes, nearest first -> leaves that the
+//     group's beam meets;
+//                                               chooses how a leaf is drawn by its cost
+//     leaf modes       leaf_triangles-inl.h     lanes are the leaf's triangles, one tile at a time
+//                      leaf_facets-inl.h        lanes are the group's tiles, one triangle at a time
+//                      leaf_rays-inl.h          lanes are samples, each with its own ray
+//     coverage         coverage-inl.h           a triangle over a whole tile -> state.seen.whole, or pairs of
+//     vectors
+//                                               and triangles
+//     filter           filter-inl.h             floats with error bounds -> state.seen.nearest (sure),
+//     .ambiguous hit points       hit_points-inl.h         sure hits -> t and barycentrics with the bits of
+//     exact/hit_point.h results          resolve-inl.h, write-inl.h  ambiguous hits by exact/exact_hit.h, the
+//     same first-hit rule as the
+//                                               scalar engine -> hits, or triangles with bounds of t
+//     mixed groups     mixed-inl.h              the same stages for vectors whose lanes have facets of their
+//     own
+//
+// simd-inl.h wraps registers; state.h holds what stages hand on. A stage writes only what its line says.
+// Whatever has no bounds (rays through the eye's plane, too many ambiguous hits) is left to the scalar
+// engine, whose answers are the same.
 #include "projector/kernel/kernel.h"
 
 #include <algorithm>
@@ -19,9 +49,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "projector/kernel/kernel_mixed-inl.h"
-#include "projector/kernel/kernel_visible-inl.h"
-#include "projector/kernel/kernel_walk-inl.h"
+#include "projector/kernel/mixed-inl.h"
+#include "projector/kernel/resolve-inl.h"
+#include "projector/kernel/walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
@@ -29,38 +59,38 @@ namespace HWY_NAMESPACE {
 
 /// Of the vectors that `state` names, but for those of untouched tiles: nothing is seen yet.
 HWY_INLINE void begin_vectors(const KernelScene& scene, std::size_t samples, KernelState& state) {
-    state.group_farthest = kNever;
-    store(set(kNever), state.farthest);
-    state.doubts.clear();
-    state.beams_made = false;
-    state.most_doubts = 4096 + 64 * samples;
-    if (state.nearest.size() < state.vectors) state.nearest.resize(state.vectors);
-    const SampleVector* vector = &scene.tiles->vectors[state.first_vector];
-    const bool wait = state.untouched != 0;
-    for (std::uint32_t i = 0; i < state.vectors; ++i) {
-        if (!wait) clear_nearest(state.nearest[i]);
+    state.seen.all_farthest = kNever;
+    store(set(kNever), state.seen.farthest);
+    state.seen.ambiguous.clear();
+    state.work.beams_made = false;
+    state.seen.most_ambiguous = 4096 + 64 * samples;
+    if (state.seen.nearest.size() < state.group.vectors) state.seen.nearest.resize(state.group.vectors);
+    const SampleVector* vector = &scene.tiles->vectors[state.group.first_vector];
+    const bool wait = state.seen.untouched != 0;
+    for (std::uint32_t i = 0; i < state.group.vectors; ++i) {
+        if (!wait) clear_nearest(state.seen.nearest[i]);
         hwy::Prefetch(vector[i].u);
         hwy::Prefetch(vector[i].v);
-        if (!scene.hits.empty()) hwy::Prefetch(&scene.tiles->samples[state.first_vector + i]);
+        if (!scene.hits.empty()) hwy::Prefetch(&scene.tiles->samples[state.group.first_vector + i]);
     }
 }
 
 HWY_INLINE void begin_group(const KernelScene& scene, const TileGroup& group, KernelState& state) {
     const SampleTile* tile = &scene.tiles->tiles[group.first];
-    state.first_lane = group.first - state.first_tile;
-    state.tiles = group.count;
-    state.first_vector = tile[0].first_vector;
+    state.group.first_lane = group.first - state.group.first_tile;
+    state.group.tiles = group.count;
+    state.group.first_vector = tile[0].first_vector;
     std::size_t samples = 0;
     for (std::uint32_t i = 0; i < group.count; ++i) {
         samples += tile[i].samples;
-        state.tile_vectors[i] = tile[i].first_vector - state.first_vector;
-        state.vectors = state.tile_vectors[i + 1] = state.tile_vectors[i] + tile[i].vectors;
+        state.group.tile_vectors[i] = tile[i].first_vector - state.group.first_vector;
+        state.group.vectors = state.group.tile_vectors[i + 1] = state.group.tile_vectors[i] + tile[i].vectors;
     }
     const SampleTile& last = tile[group.count - 1];
-    state.limits.resize(last.first_boxes + (last.vectors + kLanes - 1) / kLanes - tile[0].first_boxes);
-    for (VectorLimits& limits : state.limits) store(set(kNever), limits.farthest);
-    state.covered = 0;
-    state.untouched = first_lanes(group.count) << state.first_lane;
+    state.seen.limits.resize(last.first_boxes + (last.vectors + kLanes - 1) / kLanes - tile[0].first_boxes);
+    for (VectorLimits& limits : state.seen.limits) store(set(kNever), limits.farthest);
+    state.seen.covered = 0;
+    state.seen.untouched = first_lanes(group.count) << state.group.first_lane;
     begin_vectors(scene, samples, state);
 }
 
@@ -85,14 +115,14 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
     const TileGroup* group = &scene.tiles->groups[groups.first];
     std::uint32_t tiles = 0;
     for (std::uint32_t g = 0; g < groups.count; ++g) tiles += group[g].count;
-    state.first_tile = group[0].first;
+    state.group.first_tile = group[0].first;
     state.cache.rays = kNone;
-    prefetch_rays(scene, tiles, state.first_tile);
-    set_up_batch(scene, &scene.tiles->tiles[state.first_tile], tiles, state.lanes);
+    prefetch_rays(scene, tiles, state.group.first_tile);
+    set_up_batch(scene, &scene.tiles->tiles[state.group.first_tile], tiles, state.lanes);
 
     std::uint32_t left = state.lanes.broken & first_lanes(tiles);
     for (std::uint32_t g = 0; g < groups.count; ++g) {
-        const std::uint32_t lanes = first_lanes(group[g].count) << (group[g].first - state.first_tile);
+        const std::uint32_t lanes = first_lanes(group[g].count) << (group[g].first - state.group.first_tile);
         if (left & lanes) {
             left |= lanes;
             continue;
@@ -100,10 +130,11 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
         begin_group(scene, group[g], state);
         state.beam.planes = 0;
         if (has_nodes(*scene.tree)) make_group_beam(scene, state, state.beam);
-        const std::uint32_t middle = state.first_lane + state.tiles / 2;
-        measure_pitch(state.lanes, middle, scene.tiles->tiles[state.first_tile + middle], state.beam.pitch);
+        const std::uint32_t middle = state.group.first_lane + state.group.tiles / 2;
+        measure_pitch(state.lanes, middle, scene.tiles->tiles[state.group.first_tile + middle],
+                      state.beam.pitch);
         walk_group(scene, options.leaf_mode, state);
-        if (state.doubts.size() > state.most_doubts) {
+        if (state.seen.ambiguous.size() > state.seen.most_ambiguous) {
             left |= lanes;
             continue;
         }
@@ -116,21 +147,21 @@ std::uint32_t draw_batch_here(const KernelScene& scene, std::size_t batch, const
     return left;
 }
 
-/// Some vectors of a mixed group. False: they have no bounds, or too many doubts.
+/// Some vectors of a mixed group. False: they have no bounds, or too many ambiguous hits.
 HWY_INLINE bool draw_mixed_vectors(const KernelScene& scene, const MixedGroup& group, std::uint32_t first,
                                    std::uint32_t count, KernelState& state) {
-    state.first_lane = 0;
-    state.tiles = 1;
-    state.first_vector = group.first_vector + first;
-    state.vectors = count;
-    state.tile_vectors[0] = 0;
-    state.tile_vectors[1] = count;
-    state.untouched = state.covered = 0;
-    state.limits.clear();
+    state.group.first_lane = 0;
+    state.group.tiles = 1;
+    state.group.first_vector = group.first_vector + first;
+    state.group.vectors = count;
+    state.group.tile_vectors[0] = 0;
+    state.group.tile_vectors[1] = count;
+    state.seen.untouched = state.seen.covered = 0;
+    state.seen.limits.clear();
     begin_vectors(scene, count * kLanes, state);
     if (!set_up_mixed(scene, group, state)) return false;
     walk_group(scene, LeafMode::kRays, state);
-    if (state.doubts.size() > state.most_doubts) return false;
+    if (state.seen.ambiguous.size() > state.seen.most_ambiguous) return false;
     if (wants_visible(scene))
         write_visible_mixed(scene, group, state);
     else

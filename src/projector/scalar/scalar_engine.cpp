@@ -1,5 +1,5 @@
-// The slab test of Kay and Kajiya (Ray Tracing Complex Scenes, 1986), homogeneous: a sample's ray is known times its
-// weight W, so that W x = O + t D is tested against W times the box.
+// The slab test of Kay and Kajiya (Ray Tracing Complex Scenes, 1986), homogeneous: a sample's ray is known
+// times its weight W, so that W x = O + t D is tested against W times the box.
 #include "projector/scalar/scalar_engine.h"
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 namespace trilens {
 namespace {
 
-// A box is widened by this share of the coordinates involved. Rounding in the boxes, the rays and the decision who is
-// hit stays below 64 units in the last place of them (1.4e-14).
+// A box is widened by this share of the coordinates involved. Rounding in the boxes, the rays and the
+// decision who is hit stays below 64 units in the last place of them (1.4e-14).
 constexpr double kBoxSlack = 1e-13;
 // A hit's t is off by less than this share of itself: kLeastDeterminant lets 2^30 units in the last place in.
 constexpr double kTimeSlack = 1e-5;
@@ -57,8 +57,8 @@ struct RayWalk {
 
     void offer(Id triangle) {
         const std::optional<LineHit> hit =
-            decide(ray, {scene.corner(0, triangle, centre), scene.corner(1, triangle, centre),
-                         scene.corner(2, triangle, centre)});
+            exact_hit(ray, {scene.corner(0, triangle, centre), scene.corner(1, triangle, centre),
+                            scene.corner(2, triangle, centre)});
         if (hit) first.offer(*hit, triangle, scene.rank(triangle));
     }
 

@@ -1,5 +1,5 @@
-// The scalar engine: one ray at a time through a bounding volume hierarchy, with the exact hit per triangle. What the
-// vector engine is tested against, and what it turns to where it has no bounds.
+// The scalar engine: one ray at a time through a bounding volume hierarchy, with the exact hit per triangle.
+// What the vector engine is tested against, and what it turns to where it has no bounds.
 #pragma once
 
 #include <span>

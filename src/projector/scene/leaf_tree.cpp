@@ -253,7 +253,7 @@ std::size_t Builder::put_large_last() {
 }
 
 /// Large triangles, as of a ground, have leaves of their own: among small ones they would spread the leaves'
-/// boxes and doubts over all.
+/// boxes and error bounds over all.
 Part Builder::make_all() {
     const LeafRange all{0, items_.size()};
     if (all.size() <= kLanes) return make(all);

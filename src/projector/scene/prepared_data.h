@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/util/lazy.h"
-#include "projector/exact/decide.h"
+#include "projector/exact/exact_hit.h"
 #include "projector/scene/bvh.h"
 #include "projector/scene/leaf_tree.h"
 #include "projector/scene/prepared_scene.h"
@@ -35,7 +35,8 @@ struct PreparedScene::Data {
     std::vector<Id> ranks;  // as rank() gives them; none where they are the indices into the scene
     LeafTree leaves;        // over the arrays above, for the vector engine
 
-    /// A tree over the arrays above for the scalar and the classic engine, made when it is first asked for. Thread-safe.
+    /// A tree over the arrays above for the scalar and the classic engine, made when it is first asked for.
+    /// Thread-safe.
     const Bvh& bvh() const;
 
     std::size_t size() const { return triangles.size(); }

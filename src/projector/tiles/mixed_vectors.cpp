@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "projector/exact/decide.h"
+#include "projector/exact/exact_hit.h"
 #include "projector/tiles/sample_tiles.h"
 
 namespace trilens {
@@ -25,7 +25,7 @@ void include_rays(const FacetRays& facet, const SampleGrid& grid, const MixedExt
                                 glm::abs(position_of(grid, extent.x1, extent.y1) - facet.screen));
     const std::array<double, 3>& w = facet.rays.weight;
     double terms = std::fabs(w[0]) + reach.x * std::fabs(w[1]) + reach.y * std::fabs(w[2]);
-    const double least = samples.least_weight - kDecisionDoubt * terms;
+    const double least = samples.least_weight - kDecisionErrorBound * terms;
     const double scale = least > 0 ? 1 / least : std::numeric_limits<double>::infinity();
     double origin = 0, direction = 0, shift = 0;
     for (int a = 0; a < 3; ++a) {

@@ -1,5 +1,5 @@
 // The products of vectors, one triangle and one ray at a time.
-#include "projector/exact/place.h"
+#include "projector/exact/hit_point.h"
 
 #include <cmath>
 
@@ -10,7 +10,7 @@ TriangleFrame triangle_frame(const std::array<Vec3, 3>& corner) {
     return {corner[0], e1, corner[0] - corner[2], cross(e1, e2), largest_part(e1) * largest_part(e2)};
 }
 
-std::optional<LineHit> place(const SampleRay& ray, const TriangleFrame& triangle) {
+std::optional<LineHit> hit_point(const SampleRay& ray, const TriangleFrame& triangle) {
     const Vec3 from = ray.weight * triangle.corner - ray.origin;
     const double along = dot(triangle.normal, ray.direction), above = dot(triangle.normal, from);
     const Vec3 turn = cross(ray.direction, from);

@@ -14,7 +14,8 @@ struct LineHit {
     Vec2 barycentric{0};  // weights of the second and third corner
 };
 
-/// What place() takes of a triangle: its first corner c, the edges e1 and e2 from there, and their product.
+/// What hit_point() takes of a triangle: its first corner c, the edges e1 and e2 from there, and their
+/// product.
 struct TriangleFrame {
     Vec3 corner{0}, e1{0}, turned{0};  // turned: -e2
     Vec3 normal{0};                    // e1 x e2
@@ -32,7 +33,7 @@ inline constexpr double kLeastDeterminant = 0x1p-30;
 /// mathematics section 2), t = n . s / n . direction', and the weights of the second and third corner are
 /// -e2 . K and e1 . K, over W n . direction', with K = direction' x s (Moeller and Trumbore, Fast, Minimum
 /// Storage Ray/Triangle Intersection, 1997, around the normal). None where the value is not trusted, or is
-/// outside the triangle by its rounding. kernel_place-inl.h repeats the operations, bit for bit.
-std::optional<LineHit> place(const SampleRay& ray, const TriangleFrame& triangle);
+/// outside the triangle by its rounding. hit_points-inl.h repeats the operations, bit for bit.
+std::optional<LineHit> hit_point(const SampleRay& ray, const TriangleFrame& triangle);
 
 }  // namespace trilens

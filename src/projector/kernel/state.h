@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "projector/exact/place.h"
-#include "projector/kernel/kernel_scene.h"
+#include "projector/exact/hit_point.h"
+#include "projector/kernel/kernel.h"
 
 namespace trilens {
 
@@ -24,24 +24,24 @@ namespace trilens {
 // bounds
 //   that the leaf modes take over a tile 6 u T. With D taken three times:
 //   in all at most (10 + 56) u sum |D_c| h_j h_k + (6 + 56) u sum |M_c| h_c.
-inline constexpr float kEdgeDoubt = 72 * 0x1p-24f;
+inline constexpr float kEdgeErrorBound = 72 * 0x1p-24f;
 // - The normal n = l_1 x l_2 is off by 56 u h_j h_k, its terms are up to 8 h_j h_k; N = n . d, linear in u
 // and v,
 //   by 56 u and 10 u of 8 h_j h_k |d_c|; A = W n . p_0 - n . O by 56 u and 13 u of 8, times |O_c| + W h_c.
-inline constexpr float kDepthDoubt = 176 * 0x1p-24f;
+inline constexpr float kDepthErrorBound = 176 * 0x1p-24f;
 // t = A / N by a reciprocal of 2^-22 and a product. Far more than kDepthTie.
-inline constexpr float kTimeDoubt = 0x1p-19f;
+inline constexpr float kTimeErrorBound = 0x1p-19f;
 // Products below the normal range lose up to this, times what they are multiplied with.
 inline constexpr float kUnderflow = 1e-36f;
 
 // A box is beyond a plane by floats only if it is by this share of the coordinates: eight roundings.
-inline constexpr double kPlaneDoubt = 16 * 0x1p-24;
+inline constexpr double kPlaneErrorBound = 16 * 0x1p-24;
 
 inline constexpr float kNever = std::numeric_limits<float>::infinity();
 inline constexpr std::uint32_t kAllLanes = 65535;
 
 /// Beams, one per lane: the hull of four corner rays, from a centre of each, and planes around it.
-struct alignas(64) HullLanes {
+struct alignas(64) TileFrusta {
     double centre[3][kLanes];     // world frame
     double origin_terms[kLanes];  // the origins are sums of terms of this size
     double origin[4][3][kLanes], direction[4][3][kLanes];
@@ -60,9 +60,9 @@ struct alignas(64) TileLanes {
     double weight_sum[kLanes];
     double weight_low[kLanes], weight_high[kLanes];     // of the samples; high before it is scaled to 1
     double origin_terms[kLanes], weight_terms[kLanes];  // as BlockRays' sizes
-    double decision_doubt[kLanes];  // times (weight_terms reach + origin_terms)^2: the decision's own doubt
+    double decision_error[kLanes];  // times (weight_terms reach + origin_terms)^2: the decision's own error
 
-    HullLanes hull;
+    TileFrusta hull;
 
     // The same by tile, so that the coefficients of one are together: line 0..2, moment 3..5, origin 6..8,
     // direction 9..11, weight 12. Made for the tiles of `transposed`.
@@ -92,12 +92,12 @@ struct alignas(64) Nearest {
 struct WholeTile {
     std::uint32_t triangle = 0;  // index into PreparedScene::Data
     float above[3], along[3];
-    float above_doubt, along_doubt;
+    float above_error, along_error;
     float farthest;
 };
 
 /// A triangle that may be what a sample sees, or may not.
-struct Doubt {
+struct AmbiguousHit {
     std::uint32_t vector, lane, triangle;
 };
 
@@ -155,34 +155,50 @@ struct alignas(64) VectorLimits {
     float farthest[kLanes];
 };
 
-/// Everything that one thread needs for one batch.
-struct KernelState {
-    TileLanes lanes;
-    GroupBeam beam;
-    LeafEdges edges;
+/// Which tiles and vectors are drawn: a group of a batch, or some vectors of a mixed group. Set before each
+/// walk.
+struct GroupSpan {
+    std::uint32_t first_tile = 0;             // of the batch
+    std::uint32_t first_lane = 0, tiles = 0;  // the group's lanes
+    std::uint32_t first_vector = 0, vectors = 0;
+    std::array<std::uint32_t, kLanes + 1> tile_vectors{};  // where the tiles' vectors begin, in the group
+};
+
+/// What the group's samples see so far, and how far hits can still matter.
+struct GroupSeen {
     alignas(64) float farthest[kLanes];  // by tile: no farther hit can matter
     std::vector<VectorLimits> limits;    // like the boxes of the group's tiles
-    float group_farthest = kNever;
+    float all_farthest = kNever;
     // By tile: what is known of all its samples at once, until one of its vectors meets another triangle.
     std::array<WholeTile, kLanes> whole;
     std::uint32_t untouched = 0;   // bit j: `nearest` of the vectors of the tile of lane j is not set
     std::uint32_t covered = 0;     // of those: bit j: whole[j] is seen, else nothing
     std::vector<Nearest> nearest;  // by vector of the group
-    std::vector<Waiting> stack;
-    std::vector<Doubt> doubts;
-    std::vector<std::uint32_t> pairs;
-    std::vector<VectorRays> rays;
+    std::vector<AmbiguousHit> ambiguous;
+    std::size_t most_ambiguous = 0;     // beyond that the group is left to the scalar engine
+    std::size_t ambiguous_samples = 0;  // of all groups so far
+};
+
+/// What stages work with; nothing of it outlives a group.
+struct KernelWork {
+    std::vector<Waiting> stack;        // of the walk
+    LeafEdges edges;                   // of the leaf at hand
+    std::vector<std::uint32_t> pairs;  // vectors and triangles that may meet
+    std::vector<VectorRays> rays;      // by vector of the group, where rays_made says so
     std::vector<std::uint8_t> rays_made, tile_of_vector;
-    std::vector<MixedRays> mixed;  // by vector of the group
-    std::vector<VectorBeams> beams;
+    std::vector<MixedRays> mixed;    // by vector of the group
+    std::vector<VectorBeams> beams;  // by 16 vectors of the group, where beams_made
     bool beams_made = false;
-    std::uint32_t first_tile = 0;             // of the batch
-    std::uint32_t first_lane = 0, tiles = 0;  // the group's lanes
-    std::uint32_t first_vector = 0, vectors = 0;
-    std::array<std::uint32_t, kLanes + 1> tile_vectors{};  // where the tiles' vectors begin, in the group
-    std::size_t most_doubts = 0;
-    std::size_t doubtful = 0;  // samples of all groups so far
-    FrameCache cache;
+};
+
+/// Everything that one thread needs for one batch.
+struct KernelState {
+    TileLanes lanes;  // the batch's set-up: written by set_up_batch(), read by all stages
+    GroupBeam beam;   // the group's frustum: written before the walk, read by it
+    GroupSpan group;
+    GroupSeen seen;
+    KernelWork work;
+    FrameCache cache;  // triangles' frames for the facet at hand, kept over groups
 };
 
 }  // namespace trilens

@@ -1,14 +1,14 @@
 // A leaf mode: lanes are the group's tiles, one triangle of the leaf after the other. For many tiles and few
 // triangles.
 // Included once per instruction set.
-#if defined(TRILENS_KERNEL_FACETS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TRILENS_KERNEL_FACETS_INL_H
-#undef TRILENS_KERNEL_FACETS_INL_H
+#if defined(TRILENS_KERNEL_LEAF_FACETS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TRILENS_KERNEL_LEAF_FACETS_INL_H
+#undef TRILENS_KERNEL_LEAF_FACETS_INL_H
 #else
-#define TRILENS_KERNEL_FACETS_INL_H
+#define TRILENS_KERNEL_LEAF_FACETS_INL_H
 #endif
 
-#include "projector/kernel/kernel_triangles-inl.h"
+#include "projector/kernel/leaf_triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
@@ -18,17 +18,17 @@ namespace HWY_NAMESPACE {
 struct alignas(64) TilesInLeaf {
     float line[3][6][kLanes], moment[3][6][kLanes], origin[3][3][kLanes], direction[3][3][kLanes];
     float weight[3][kLanes];
-    float edge_doubt[kLanes], above_doubt[kLanes], along_doubt[kLanes];  // TileDoubts
+    float edge_error[kLanes], above_error[kLanes], along_error[kLanes];  // TileErrorBounds
 };
 
-/// doubts_of() in lanes. The sums are over the coefficients of moments and origins.
-HWY_INLINE void put_doubts(const TileLanes& lanes, const Leaf& leaf, const DoubleLanes3& d,
-                           const DoubleLanes3& moment_sum, const DoubleLanes3& origin_sum,
-                           TilesInLeaf& in_leaf) {
+/// error_bounds_of() in lanes. The sums are over the coefficients of moments and origins.
+HWY_INLINE void put_error_bounds(const TileLanes& lanes, const Leaf& leaf, const DoubleLanes3& d,
+                                 const DoubleLanes3& moment_sum, const DoubleLanes3& origin_sum,
+                                 TilesInLeaf& in_leaf) {
     const double h[3] = {leaf.half[0], leaf.half[1], leaf.half[2]};
     const double hh[3] = {h[1] * h[2], h[2] * h[0], h[0] * h[1]};
     const auto number = [](double v) HWY_ATTR { return hn::Set(kDouble, v); };
-    DoubleLanes edge_doubt, above_doubt, along_doubt;
+    DoubleLanes edge_error, above_error, along_error;
     for (std::size_t i = 0; i < kHalves; ++i) {
         const std::size_t at = i * kDoubles;
         const auto lane = [at](const double* from) HWY_ATTR { return hn::Load(kDouble, from + at); };
@@ -46,19 +46,19 @@ HWY_INLINE void put_doubts(const TileLanes& lanes, const Leaf& leaf, const Doubl
         const Double far = hn::MulAdd(lane(lanes.weight_terms), reach, lane(lanes.origin_terms));
         const Double tiny = hn::Mul(number(static_cast<double>(kUnderflow)), hn::Add(number(1), all));
         const Double decision =
-            hn::Mul(number(1.0001), hn::Mul(lane(lanes.decision_doubt), hn::Mul(far, far)));
-        edge_doubt.part[i] =
-            hn::MulAdd(number(static_cast<double>(kEdgeDoubt)), edge, hn::Add(decision, tiny));
-        along_doubt.part[i] =
-            hn::Mul(number(2), hn::MulAdd(number(static_cast<double>(kDepthDoubt)), along, tiny));
-        above_doubt.part[i] =
-            hn::Mul(number(2),
-                    hn::MulAdd(number(static_cast<double>(kDepthDoubt)), above,
-                               hn::MulAdd(number(8 * kDecisionDoubt * (hh[0] + hh[1] + hh[2])), far, tiny)));
+            hn::Mul(number(1.0001), hn::Mul(lane(lanes.decision_error), hn::Mul(far, far)));
+        edge_error.part[i] =
+            hn::MulAdd(number(static_cast<double>(kEdgeErrorBound)), edge, hn::Add(decision, tiny));
+        along_error.part[i] =
+            hn::Mul(number(2), hn::MulAdd(number(static_cast<double>(kDepthErrorBound)), along, tiny));
+        above_error.part[i] = hn::Mul(
+            number(2),
+            hn::MulAdd(number(static_cast<double>(kDepthErrorBound)), above,
+                       hn::MulAdd(number(8 * kDecisionErrorBound * (hh[0] + hh[1] + hh[2])), far, tiny)));
     }
-    store(narrow(edge_doubt), in_leaf.edge_doubt);
-    store(narrow(along_doubt), in_leaf.along_doubt);
-    store(narrow(above_doubt), in_leaf.above_doubt);
+    store(narrow(edge_error), in_leaf.edge_error);
+    store(narrow(along_error), in_leaf.along_error);
+    store(narrow(above_error), in_leaf.above_error);
 }
 
 /// All lanes; those that hold no tile of the group are of no use.
@@ -77,7 +77,7 @@ HWY_NOINLINE void move_tiles_to_leaf(const TileLanes& lanes, const Leaf& leaf, T
         for (std::size_t i = 0; i < kHalves; ++i) {
             const std::size_t at = i * kDoubles;
             line.set(i, load_part(lanes.line, q, at));
-            moment.set(i, minus(load_part(lanes.moment, q, at), outer(d.at(i), line.at(i))));
+            moment.set(i, minus(load_part(lanes.moment, q, at), cross(d.at(i), line.at(i))));
             moment_sum.set(i, plus(moment_sum.at(i), absolute(moment.at(i))));
         }
         for (int a = 0; a < 3; ++a) {
@@ -101,7 +101,7 @@ HWY_NOINLINE void move_tiles_to_leaf(const TileLanes& lanes, const Leaf& leaf, T
         }
         store(narrow(weight), in_leaf.weight[p]);
     }
-    put_doubts(lanes, leaf, d, moment_sum, origin_sum, in_leaf);
+    put_error_bounds(lanes, leaf, d, moment_sum, origin_sum, in_leaf);
 }
 
 /// One triangle's conics and depth through 16 tiles.
@@ -169,39 +169,40 @@ HWY_NOINLINE void draw_facet_lanes(const KernelScene& scene, const Leaf& leaf, s
                                    std::uint32_t tiles, KernelState& state) {
     TilesInLeaf in_leaf;
     move_tiles_to_leaf(state.lanes, leaf, in_leaf);
-    const Floats doubt = load(in_leaf.edge_doubt);
+    const Floats error = load(in_leaf.edge_error);
     for (Each triangle(triangles); triangle; ++triangle) {
         Floats conic[3][6], above[3], along[3];
-        facet_forms(in_leaf, state.edges, *triangle, conic, above, along);
-        const Sides sides = facing_sides(sides_of(conic, doubt), along, doubt, load(in_leaf.along_doubt));
+        facet_forms(in_leaf, state.work.edges, *triangle, conic, above, along);
+        const Sides sides = facing_sides(sides_of(conic, error), along, error, load(in_leaf.along_error));
         const std::uint32_t first_back = sides.back & ~sides.front, second_back = sides.back & sides.front;
         for (int pass = 0; pass < 2; ++pass) {
             std::uint32_t lanes = tiles & (pass == 0 ? sides.front | sides.back : second_back);
             if (!lanes) break;
             const Floats flip = choose(mask_of(pass == 0 ? first_back : second_back), set(-0.0f), set(0.0f));
             const TurnedDepth depth = turn_depth(above, along, flip);
-            lanes &= ~bits(behind_tile(depth, load(in_leaf.above_doubt), load(in_leaf.along_doubt)));
+            lanes &= ~bits(behind_tile(depth, load(in_leaf.above_error), load(in_leaf.along_error)));
             if (!lanes) continue;
             Forms forms;
             alignas(64) float bound[3][kLanes];
             for (int k = 0; k < 3; ++k) {
-                const Floats middle = flip_signs(middle_of(conic[k]), flip), bend = bend_of(conic[k], doubt);
+                const Floats middle = flip_signs(middle_of(conic[k]), flip), bend = bend_of(conic[k], error);
                 store(middle + bend, bound[k]);
                 for (int q = 0; q < 6; ++q) store(flip_signs(conic[k][q], flip), forms.edge[k][q]);
                 store(depth.above[k], forms.above[k]);
                 store(depth.along[k], forms.along[k]);
             }
-            const std::uint32_t part = partly_outside(conic, doubt, flip);
+            const std::uint32_t part = partly_outside(conic, error, flip);
             for (Each lane(lanes); lane; ++lane) {
-                const SampleTile& tile = scene.tiles->tiles[state.first_tile + *lane];
-                const TileDoubts doubts{in_leaf.edge_doubt[*lane], in_leaf.above_doubt[*lane],
-                                        in_leaf.along_doubt[*lane]};
+                const SampleTile& tile = scene.tiles->tiles[state.group.first_tile + *lane];
+                const TileErrorBounds errors{in_leaf.edge_error[*lane], in_leaf.above_error[*lane],
+                                             in_leaf.along_error[*lane]};
                 const bool whole = !(part >> *lane & 1);
-                if (is_settled({forms, *lane, leaf.triangle[*triangle], *lane}, doubts, whole, state))
+                if (is_settled({forms, *lane, leaf.triangle[*triangle], *lane}, errors, whole, state))
                     continue;
                 touch_tile(scene, *lane, state);
-                meet_tile({scene, state, tile, doubts, leaf, tile.first_vector - state.first_vector, nullptr},
-                          forms, bound, *lane, leaf.triangle[*triangle], whole);
+                meet_tile(
+                    {scene, state, tile, errors, leaf, tile.first_vector - state.group.first_vector, nullptr},
+                    forms, bound, *lane, leaf.triangle[*triangle], whole);
             }
         }
     }

@@ -1,16 +1,17 @@
 // A leaf mode: samples' own rays, for triangles of few samples. Vectors whose beams miss the leaf are
 // skipped; then lanes are a vector's samples, one triangle after the other, or triangles, one sample after
-// the other. Included once per instruction set.
-#if defined(TRILENS_KERNEL_RAYS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TRILENS_KERNEL_RAYS_INL_H
-#undef TRILENS_KERNEL_RAYS_INL_H
+// the other.
+// Included once per instruction set.
+#if defined(TRILENS_KERNEL_LEAF_RAYS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TRILENS_KERNEL_LEAF_RAYS_INL_H
+#undef TRILENS_KERNEL_LEAF_RAYS_INL_H
 #else
-#define TRILENS_KERNEL_RAYS_INL_H
+#define TRILENS_KERNEL_LEAF_RAYS_INL_H
 #endif
 
-#include "projector/kernel/kernel_spots-inl.h"
-#include "projector/kernel/kernel_triangles-inl.h"
-#include "projector/kernel/kernel_vector_beams-inl.h"
+#include "projector/kernel/beams-inl.h"
+#include "projector/kernel/hit_points-inl.h"
+#include "projector/kernel/leaf_triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
@@ -45,11 +46,11 @@ HWY_INLINE Double exact_local(const float* local, int lines) {
 }
 
 HWY_NOINLINE void make_vector_rays(const KernelScene& scene, KernelState& state, std::uint32_t vector) {
-    const std::size_t j = state.tile_of_vector[vector];
-    const SampleVector& samples = scene.tiles->vectors[state.first_vector + vector];
+    const std::size_t j = state.work.tile_of_vector[vector];
+    const SampleVector& samples = scene.tiles->vectors[state.group.first_vector + vector];
     const TileLanes& lanes = state.lanes;
-    VectorRays& rays = state.rays[vector];
-    const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
+    VectorRays& rays = state.work.rays[vector];
+    const SampleTile& tile = scene.tiles->tiles[state.group.first_tile + j];
     for (std::size_t at = 0; at < kLanes; at += kDoubles) {
         const Double u = exact_local(samples.u + at, tile.width),
                      v = exact_local(samples.v + at, tile.height);
@@ -64,52 +65,52 @@ HWY_NOINLINE void make_vector_rays(const KernelScene& scene, KernelState& state,
         }
     }
     invert_directions(rays);
-    state.rays_made[vector] = 1;
+    state.work.rays_made[vector] = 1;
 }
 
-/// A vector's rays as floats around a leaf's centre, with their doubts.
+/// A vector's rays as floats around a leaf's centre, with their errors.
 struct alignas(64) RaysInLeaf {
     float origin[3][kLanes], direction[3][kLanes], moment[3][kLanes];
-    float edge_doubt[kLanes], above_doubt[kLanes], along_doubt[kLanes];
+    float edge_error[kLanes], above_error[kLanes], along_error[kLanes];
 };
 
-/// The double part of the doubts of a tile's rays in a leaf. Weights lie above kLeastWeight.
-struct RayDoubts {
+/// The double part of the errors of a tile's rays in a leaf. Weights lie above kLeastWeight.
+struct RayErrorBounds {
     double edge, above;
     double d[3];                // from the facet's centre to the leaf's
     float middle[3], swing[3];  // the leaf's box from the facet's centre, wider by what floats round
 };
 
-HWY_INLINE RayDoubts ray_doubts(const TileLanes& lanes, std::size_t j, const Leaf& leaf) {
-    RayDoubts doubts;
+HWY_INLINE RayErrorBounds ray_error_bounds(const TileLanes& lanes, std::size_t j, const Leaf& leaf) {
+    RayErrorBounds errors;
     double reach = leaf.half[0] + leaf.half[1] + leaf.half[2];
     for (int a = 0; a < 3; ++a) {
-        doubts.d[a] = leaf.centre[a] - lanes.centre[a][j];
-        reach += std::fabs(doubts.d[a]);
+        errors.d[a] = leaf.centre[a] - lanes.centre[a][j];
+        reach += std::fabs(errors.d[a]);
     }
     const double far = lanes.weight_terms[j] * reach + lanes.origin_terms[j];
     const double h = std::max(leaf.half[0], std::max(leaf.half[1], leaf.half[2]));
-    doubts.edge = 8 * lanes.decision_doubt[j] * far * far + kUnderflow;
-    doubts.above = 8 * 3 * 8 * kDecisionDoubt * h * h * far + kUnderflow;
+    errors.edge = 8 * lanes.decision_error[j] * far * far + kUnderflow;
+    errors.above = 8 * 3 * 8 * kDecisionErrorBound * h * h * far + kUnderflow;
     // |origin| + |d| is at most 3.5 `far`. Their floats, the products with the inverse, its own two roundings
     // and the difference are off by 7 half units of that.
-    const double slack = 4 * (8 * 0x1p-24 + 2 * kDecisionDoubt) * far;
+    const double slack = 4 * (8 * 0x1p-24 + 2 * kDecisionErrorBound) * far;
     for (int a = 0; a < 3; ++a) {
-        doubts.middle[a] = static_cast<float>(doubts.d[a]);
-        doubts.swing[a] = static_cast<float>(1.00001 * (leaf.half[a] + slack));
+        errors.middle[a] = static_cast<float>(errors.d[a]);
+        errors.swing[a] = static_cast<float>(1.00001 * (leaf.half[a] + slack));
     }
-    return doubts;
+    return errors;
 }
 
-HWY_NOINLINE void move_rays_to_leaf(const VectorRays& rays, const RayDoubts& doubts, const Leaf& leaf,
+HWY_NOINLINE void move_rays_to_leaf(const VectorRays& rays, const RayErrorBounds& errors, const Leaf& leaf,
                                     RaysInLeaf& r) {
     DoubleLanes o[3], d[3], m[3];
     for (std::size_t i = 0; i < kLanes / kDoubles; ++i) {
         const Vector3 direction = load3(rays.direction, i * kDoubles),
                       origin = minus(load3(rays.origin, i * kDoubles),
-                                     Vector3{hn::Set(kDouble, doubts.d[0]), hn::Set(kDouble, doubts.d[1]),
-                                             hn::Set(kDouble, doubts.d[2])});
-        const Vector3 moment = outer(origin, direction);
+                                     Vector3{hn::Set(kDouble, errors.d[0]), hn::Set(kDouble, errors.d[1]),
+                                             hn::Set(kDouble, errors.d[2])});
+        const Vector3 moment = cross(origin, direction);
         o[0].part[i] = origin.x, o[1].part[i] = origin.y, o[2].part[i] = origin.z;
         d[0].part[i] = direction.x, d[1].part[i] = direction.y, d[2].part[i] = direction.z;
         m[0].part[i] = moment.x, m[1].part[i] = moment.y, m[2].part[i] = moment.z;
@@ -128,36 +129,36 @@ HWY_NOINLINE void move_rays_to_leaf(const VectorRays& rays, const RayDoubts& dou
         speed = speed + absolute(direction);
     }
     const Floats tiny = set(kUnderflow) * (set(1.0f) + speed);
-    store(multiply_add(set(kEdgeDoubt), along + moments, set(static_cast<float>(doubts.edge)) + tiny),
-          r.edge_doubt);
-    store(set(2.0f) * multiply_add(set(kDepthDoubt), along, tiny), r.along_doubt);
-    store(set(2.0f) * multiply_add(set(kDepthDoubt), above, set(static_cast<float>(doubts.above))),
-          r.above_doubt);
+    store(multiply_add(set(kEdgeErrorBound), along + moments, set(static_cast<float>(errors.edge)) + tiny),
+          r.edge_error);
+    store(set(2.0f) * multiply_add(set(kDepthErrorBound), along, tiny), r.along_error);
+    store(set(2.0f) * multiply_add(set(kDepthErrorBound), above, set(static_cast<float>(errors.above))),
+          r.above_error);
 }
 
 /// The lanes whose rays meet the leaf's box before they see something nearer.
-HWY_INLINE std::uint32_t rays_at_leaf(const VectorRays& rays, const RayDoubts& doubts,
+HWY_INLINE std::uint32_t rays_at_leaf(const VectorRays& rays, const RayErrorBounds& errors,
                                       const Nearest& nearest) {
     Floats enter = set(-kNever), leave = load(nearest.high);
     for (int a = 0; a < 3; ++a) {
         const Floats inverse = load(rays.inverse[a]);
-        const Floats middle = multiply_subtract(set(doubts.middle[a]), inverse, load(rays.start[a]));
-        const Floats swing = set(doubts.swing[a]) * absolute(inverse);
+        const Floats middle = multiply_subtract(set(errors.middle[a]), inverse, load(rays.start[a]));
+        const Floats swing = set(errors.swing[a]) * absolute(inverse);
         enter = largest(enter, middle - swing);
         leave = least(leave, middle + swing);
     }
     return kAllLanes & ~bits((enter > leave) | (leave < set(0.0f)));
 }
 
-/// S, t and their doubts for 16 pairs of a ray and a triangle.
+/// S, t and their errors for 16 pairs of a ray and a triangle.
 HWY_INLINE Meeting meet_rays(const Floats (&conic)[3], const Floats& above, const Floats& along,
-                             const Floats& edge_doubt, const Floats& above_doubt, const Floats& along_doubt) {
+                             const Floats& edge_error, const Floats& above_error, const Floats& along_error) {
     const Floats low = least(conic[0], least(conic[1], conic[2])),
                  high = largest(conic[0], largest(conic[1], conic[2]));
-    const Floats minus = set(0.0f) - edge_doubt;
+    const Floats minus = set(0.0f) - edge_error;
     const Floats inverse = reciprocal(along), t = above * inverse;
-    return {(low < minus) & (high > edge_doubt), (low > edge_doubt) | (high < minus),
-            absolute(along) > along_doubt, t, doubt_of_time(t, absolute(inverse), above_doubt, along_doubt)};
+    return {(low < minus) & (high > edge_error), (low > edge_error) | (high < minus),
+            absolute(along) > along_error, t, error_of_time(t, absolute(inverse), above_error, along_error)};
 }
 
 /// Lanes are the vector's samples.
@@ -186,7 +187,7 @@ HWY_NOINLINE void meet_sample_lanes(const RaysInLeaf& r, const LeafEdges& edges,
         const Floats along = multiply_add(nx, dx, multiply_add(ny, dy, nz * dz));
         offer_lanes(
             state, vector, leaf.triangle[j],
-            meet_rays(conic, above, along, load(r.edge_doubt), load(r.above_doubt), load(r.along_doubt)),
+            meet_rays(conic, above, along, load(r.edge_error), load(r.above_error), load(r.along_error)),
             samples);
     }
 }
@@ -216,8 +217,8 @@ HWY_NOINLINE void meet_triangle_lanes(const RaysInLeaf& r, const LeafEdges& edge
                              subtract_product(ny, set(r.origin[1][s]),
                                               subtract_product(nz, set(r.origin[2][s]), load(edges.height))));
         const Floats along = multiply_add(nx, dx, multiply_add(ny, dy, nz * dz));
-        const Meeting m = meet_rays(conic, above, along, set(r.edge_doubt[s]), set(r.above_doubt[s]),
-                                    set(r.along_doubt[s]));
+        const Meeting m = meet_rays(conic, above, along, set(r.edge_error[s]), set(r.above_error[s]),
+                                    set(r.along_error[s]));
         const std::uint32_t near = triangles & ~bits(m.missed);
         if (!near) continue;
         alignas(64) float t_low[kLanes], t_high[kLanes];
@@ -236,34 +237,34 @@ HWY_NOINLINE void draw_ray_lanes(const KernelScene& scene, const Leaf& leaf, con
                                  float nearest, KernelState& state) {
     constexpr float kTrianglePerSample =
         0.8f;  // what a triangle over 16 samples costs, in samples over 16 triangles
-    if (!state.beams_made) make_vector_beams(scene, state);
+    if (!state.work.beams_made) make_vector_beams(scene, state);
     std::size_t tile = kLanes;
-    RayDoubts doubts{};
-    for (std::uint32_t g = 0; g * kLanes < state.vectors; ++g) {
-        const std::uint32_t live = first_lanes(state.vectors - g * static_cast<std::uint32_t>(kLanes));
+    RayErrorBounds errors{};
+    for (std::uint32_t g = 0; g * kLanes < state.group.vectors; ++g) {
+        const std::uint32_t live = first_lanes(state.group.vectors - g * static_cast<std::uint32_t>(kLanes));
         PlaneHeights heights;
-        for (Each lane(live & vectors_at_box(state.beams[g], middle, leaf.half, nearest, heights)); lane;
+        for (Each lane(live & vectors_at_box(state.work.beams[g], middle, leaf.half, nearest, heights)); lane;
              ++lane) {
             const std::uint32_t vector = g * static_cast<std::uint32_t>(kLanes) + *lane;
-            if (!state.rays_made[vector]) make_vector_rays(scene, state, vector);
-            if (state.tile_of_vector[vector] != tile) {
-                tile = state.tile_of_vector[vector];
+            if (!state.work.rays_made[vector]) make_vector_rays(scene, state, vector);
+            if (state.work.tile_of_vector[vector] != tile) {
+                tile = state.work.tile_of_vector[vector];
                 touch_tile(scene, tile, state);
-                doubts = ray_doubts(state.lanes, tile, leaf);
+                errors = ray_error_bounds(state.lanes, tile, leaf);
             }
-            const VectorRays& rays = state.rays[vector];
-            const std::uint32_t samples = scene.tiles->valid[state.first_vector + vector] &
-                                          rays_at_leaf(rays, doubts, state.nearest[vector]);
+            const VectorRays& rays = state.work.rays[vector];
+            const std::uint32_t samples = scene.tiles->valid[state.group.first_vector + vector] &
+                                          rays_at_leaf(rays, errors, state.seen.nearest[vector]);
             if (!samples) continue;
-            const std::uint32_t triangles = triangles_in_vector(state.beams[g], heights, *lane, leaf);
+            const std::uint32_t triangles = triangles_in_vector(state.work.beams[g], heights, *lane, leaf);
             if (!triangles) continue;
             RaysInLeaf r;
-            move_rays_to_leaf(rays, doubts, leaf, r);
+            move_rays_to_leaf(rays, errors, leaf, r);
             const float by_samples = kTrianglePerSample * static_cast<float>(std::popcount(triangles));
             if (by_samples <= static_cast<float>(std::popcount(samples)))
-                meet_sample_lanes(r, state.edges, leaf, triangles, vector, samples, state);
+                meet_sample_lanes(r, state.work.edges, leaf, triangles, vector, samples, state);
             else
-                meet_triangle_lanes(r, state.edges, leaf, triangles, vector, samples, state);
+                meet_triangle_lanes(r, state.work.edges, leaf, triangles, vector, samples, state);
         }
     }
 }

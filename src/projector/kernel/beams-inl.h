@@ -1,17 +1,20 @@
-// A group's beam: planes around all of its tiles' rays, and how soon these can be anywhere.
+// Frusta for culling: planes around all rays of a group of tiles, and around single vectors of samples.
 // Included once per instruction set.
-#if defined(TRILENS_KERNEL_GROUP_BEAM_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TRILENS_KERNEL_GROUP_BEAM_INL_H
-#undef TRILENS_KERNEL_GROUP_BEAM_INL_H
+#if defined(TRILENS_KERNEL_BEAMS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TRILENS_KERNEL_BEAMS_INL_H
+#undef TRILENS_KERNEL_BEAMS_INL_H
 #else
-#define TRILENS_KERNEL_GROUP_BEAM_INL_H
+#define TRILENS_KERNEL_BEAMS_INL_H
 #endif
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
 
-#include "projector/kernel/kernel_doubles-inl.h"
-#include "projector/kernel/kernel_scene.h"
+#include "projector/kernel/kernel.h"
+#include "projector/kernel/setup-inl.h"
+#include "projector/kernel/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
@@ -44,8 +47,8 @@ HWY_INLINE Vector3 set_vector(const double* v) {
 
 HWY_NOINLINE void gather_hulls(const KernelScene& scene, const KernelState& state, HullRays& rays) {
     const Vec3& centre = scene.tree->centre;
-    const HullLanes& hull = state.lanes.hull;
-    const std::size_t first = state.first_lane, tiles = state.tiles;
+    const TileFrusta& hull = state.lanes.hull;
+    const std::size_t first = state.group.first_lane, tiles = state.group.tiles;
     for (int a = 0; a < 3; ++a) {
         for (std::size_t k = 0; k < 4; ++k) {
             for (std::size_t j = 0; j < tiles; ++j) {
@@ -91,11 +94,11 @@ HWY_NOINLINE void add_plane(const HullRays& rays, const double* normal, const do
     const Vector3 plane = set_vector(n);
     Double offset = hn::Set(kDouble, INFINITY), along = offset;
     for (std::size_t at = 0; at < rays.count; at += kDoubles) {
-        along = hn::Min(along, inner(load_ray(rays.direction, at), plane));
-        offset = hn::Min(offset, inner(load_ray(rays.origin, at), plane));
+        along = hn::Min(along, dot(load_ray(rays.direction, at), plane));
+        offset = hn::Min(offset, dot(load_ray(rays.origin, at), plane));
     }
     if (!(least_of(along) >= 0)) return;
-    beam.offset[to] = static_cast<float>(least_of(offset) - kPlaneDoubt * rays.size);
+    beam.offset[to] = static_cast<float>(least_of(offset) - kPlaneErrorBound * rays.size);
     ++beam.planes;
 }
 
@@ -108,10 +111,10 @@ HWY_INLINE AlongAxis measure_along(const HullRays& rays, const double* axis) {
     const Vector3 ahead = set_vector(axis);
     Double speed = hn::Zero(kDouble), start = hn::Set(kDouble, -INFINITY), cosine = hn::Set(kDouble, 1.0);
     for (std::size_t at = 0; at < rays.count; at += kDoubles) {
-        const Double along = inner(load_ray(rays.direction, at), ahead);
+        const Double along = dot(load_ray(rays.direction, at), ahead);
         cosine = hn::Min(cosine, hn::Mul(along, hn::Load(kDouble, rays.shortness + at)));
         speed = hn::Max(speed, along);
-        start = hn::Max(start, inner(load_ray(rays.origin, at), ahead));
+        start = hn::Max(start, dot(load_ray(rays.origin, at), ahead));
     }
     return {largest_of(speed), largest_of(start), least_of(cosine)};
 }
@@ -136,7 +139,7 @@ HWY_INLINE void add_slopes(const HullRays& rays, const double* side, const doubl
     const Vector3 across = set_vector(side), ahead = set_vector(axis);
     for (std::size_t at = 0; at < rays.count; at += kDoubles) {
         const Vector3 d = load_ray(rays.direction, at);
-        const Double slope = hn::Div(inner(d, across), inner(d, ahead));
+        const Double slope = hn::Div(dot(d, across), dot(d, ahead));
         low = hn::Min(low, slope);
         high = hn::Max(high, slope);
     }
@@ -153,7 +156,7 @@ HWY_INLINE void mean_direction(HullRays& rays, double (&axis)[3]) {
     Vector3 sum = {hn::Zero(kDouble), hn::Zero(kDouble), hn::Zero(kDouble)};
     for (std::size_t at = 0; at < rays.count; at += kDoubles) {
         const Vector3 d = load_ray(rays.direction, at);
-        const Double square = inner(d, d);
+        const Double square = dot(d, d);
         const Double inverse = hn::Div(hn::Set(kDouble, 1.0), hn::Sqrt(square));
         const Double own = hn::IfThenElseZero(hn::Gt(square, hn::Zero(kDouble)), inverse);
         hn::Store(own, kDouble, rays.shortness + at);
@@ -181,23 +184,103 @@ HWY_NOINLINE void make_group_beam(const KernelScene& scene, const KernelState& s
         axis[a] = beam.axis[a];
     }
     const AlongAxis along = measure_along(rays, axis);
-    beam.start = static_cast<float>(along.start + kPlaneDoubt * rays.size);
+    beam.start = static_cast<float>(along.start + kPlaneErrorBound * rays.size);
     beam.speed_inverse = along.speed > 0 ? static_cast<float>((1 - 1e-6) / along.speed) : 0;
     if (!(along.cosine > 1e-3)) return;
 
     add_plane(rays, axis, axis, along.cosine, beam);
-    if (state.tiles == 1) {
+    if (state.group.tiles == 1) {
         for (int k = 0; k < 4; ++k) {
-            if (!(state.lanes.hull.offset[k][state.first_lane] > -kNever)) continue;
+            if (!(state.lanes.hull.offset[k][state.group.first_lane] > -kNever)) continue;
             for (int a = 0; a < 3; ++a)
-                beam.plane[beam.planes][a] = state.lanes.hull.plane[k][a][state.first_lane];
-            beam.offset[beam.planes++] = state.lanes.hull.offset[k][state.first_lane];
+                beam.plane[beam.planes][a] = state.lanes.hull.plane[k][a][state.group.first_lane];
+            beam.offset[beam.planes++] = state.lanes.hull.offset[k][state.group.first_lane];
         }
         return;
     }
     double across[2][3];
     directions_across(axis, across);
     for (const double* side : {across[0], across[1]}) add_slopes(rays, side, axis, along.cosine, beam);
+}
+
+// Beams around single vectors of samples, 16 at once, and what reaches into them.
+
+/// Beams around all of the group's vectors, 16 at a time.
+HWY_NOINLINE void make_vector_beams(const KernelScene& scene, KernelState& state) {
+    state.work.beams_made = true;
+    state.work.rays_made.assign(state.group.vectors, 0);
+    state.work.tile_of_vector.resize(state.group.vectors);
+    if (state.work.rays.size() < state.group.vectors) state.work.rays.resize(state.group.vectors);
+    state.work.beams.resize((state.group.vectors + kLanes - 1) / kLanes);
+    for (std::uint32_t j = state.group.first_lane; j < state.group.first_lane + state.group.tiles; ++j) {
+        const SampleTile& tile = scene.tiles->tiles[state.group.first_tile + j];
+        std::fill_n(state.work.tile_of_vector.begin() + (tile.first_vector - state.group.first_vector),
+                    tile.vectors, static_cast<std::uint8_t>(j));
+    }
+    TileFrusta hull;
+    for (std::uint32_t g = 0; g * kLanes < state.group.vectors; ++g) {
+        for (std::uint32_t k = 0; k < kLanes; ++k) {
+            const std::uint32_t vector =
+                std::min(g * static_cast<std::uint32_t>(kLanes) + k, state.group.vectors - 1);
+            const std::size_t j = state.work.tile_of_vector[vector];
+            const SampleTile& tile = scene.tiles->tiles[state.group.first_tile + j];
+            const std::uint32_t own = vector + state.group.first_vector - tile.first_vector;
+            const VectorBoxes& box = scene.tiles->boxes[tile.first_boxes + own / kLanes];
+            const std::size_t b = own % kLanes;
+            // No thinner than a third of a sample, so that the hull has sides.
+            const double half_u = std::max<double>(box.half_u[b], 0.6 / std::max(1, tile.width - 1)),
+                         half_v = std::max<double>(box.half_v[b], 0.6 / std::max(1, tile.height - 1));
+            const double weight =
+                put_rectangle(state.lanes, j, {box.centre_u[b], box.centre_v[b], half_u, half_v}, hull, k);
+            for (int a = 0; a < 3; ++a) hull.centre[a][k] = state.lanes.centre[a][j];
+            hull.origin_terms[k] =
+                weight > 0.1 ? state.lanes.origin_terms[j] : std::numeric_limits<double>::infinity();
+        }
+        make_planes(scene, hull);
+        VectorBeams& beams = state.work.beams[g];
+        std::memcpy(beams.plane, hull.plane, sizeof beams.plane);
+        std::memcpy(beams.offset, hull.offset, sizeof beams.offset);
+        for (std::uint32_t k = 0; k < kLanes; ++k)
+            beams.farthest[k] = g * kLanes + k < state.group.vectors ? kNever : -kNever;
+    }
+}
+
+/// The offsets of vectors' planes as seen from a box's middle.
+struct alignas(64) PlaneHeights {
+    float from_middle[4][kLanes];
+};
+
+/// Which of 16 vectors' beams reach a box, before their samples all see something nearer. Fills `heights`.
+HWY_INLINE std::uint32_t vectors_at_box(const VectorBeams& beams, const float* middle, const float* half,
+                                        float nearest, PlaneHeights& heights) {
+    const Floats cx = set(middle[0]), cy = set(middle[1]), cz = set(middle[2]);
+    const Floats hx = set(half[0]), hy = set(half[1]), hz = set(half[2]);
+    Mask missed = set(nearest) > load(beams.farthest);
+    for (int k = 0; k < 4; ++k) {
+        const Floats x = load(beams.plane[k][0]), y = load(beams.plane[k][1]), z = load(beams.plane[k][2]);
+        const Floats swing = multiply_add(absolute(x), hx, multiply_add(absolute(y), hy, absolute(z) * hz));
+        const Floats height =
+            subtract_product(x, cx, subtract_product(y, cy, subtract_product(z, cz, load(beams.offset[k]))));
+        store(height, heights.from_middle[k]);
+        missed = missed | (swing < height);
+    }
+    return kAllLanes & ~bits(missed);
+}
+
+/// The leaf's triangles that reach into one vector's beam. `heights`: of the planes over the leaf's middle.
+HWY_INLINE std::uint32_t triangles_in_vector(const VectorBeams& beams, const PlaneHeights& heights,
+                                             std::size_t lane, const Leaf& leaf) {
+    Mask missed = mask_of(0);
+    for (int p = 0; p < 4; ++p) {
+        const Floats x = set(beams.plane[p][0][lane]), y = set(beams.plane[p][1][lane]),
+                     z = set(beams.plane[p][2][lane]);
+        Floats height = set(-kNever);
+        for (int k = 0; k < 3; ++k)
+            height = largest(height, multiply_add(x, load(leaf.x[k]),
+                                                  multiply_add(y, load(leaf.y[k]), z * load(leaf.z[k]))));
+        missed = missed | (height < set(heights.from_middle[p][lane]));
+    }
+    return first_lanes(leaf.count) & ~bits(missed);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,13 +1,14 @@
 // A leaf mode: lanes are the leaf's triangles, for one tile. Triangles with few samples walk over them lane
-// by lane; the others meet vectors of samples one by one. Included once per instruction set.
-#if defined(TRILENS_KERNEL_TRIANGLES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TRILENS_KERNEL_TRIANGLES_INL_H
-#undef TRILENS_KERNEL_TRIANGLES_INL_H
+// by lane; the others meet vectors of samples one by one.
+// Included once per instruction set.
+#if defined(TRILENS_KERNEL_LEAF_TRIANGLES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TRILENS_KERNEL_LEAF_TRIANGLES_INL_H
+#undef TRILENS_KERNEL_LEAF_TRIANGLES_INL_H
 #else
-#define TRILENS_KERNEL_TRIANGLES_INL_H
+#define TRILENS_KERNEL_LEAF_TRIANGLES_INL_H
 #endif
 
-#include "projector/kernel/kernel_pairs-inl.h"
+#include "projector/kernel/coverage-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
@@ -18,7 +19,7 @@ struct TileDrawing {
     const KernelScene& scene;
     KernelState& state;
     const SampleTile& tile;
-    const TileDoubts& doubts;
+    const TileErrorBounds& errors;
     const Leaf& leaf;
     std::uint32_t first_vector;  // of the tile, in the group
     const VectorLimits* limits;  // of its vectors; none where no pairs are listed
@@ -29,13 +30,13 @@ struct TileVectors {
     const SampleVector* vectors;
     const std::uint16_t* valid;
     Nearest* nearest;
-    TileDoubts doubts;
+    TileErrorBounds errors;
 };
 
 HWY_INLINE TileVectors vectors_of(const TileDrawing& drawing) {
     return {&drawing.scene.tiles->vectors[drawing.tile.first_vector],
             &drawing.scene.tiles->valid[drawing.tile.first_vector],
-            &drawing.state.nearest[drawing.first_vector], drawing.doubts};
+            &drawing.state.seen.nearest[drawing.first_vector], drawing.errors};
 }
 
 /// A triangle, whose forms are in `lane`, against one vector of the tile.
@@ -51,21 +52,22 @@ HWY_INLINE void meet_vector(const TileDrawing& drawing, const TileVectors& tile,
     const auto linear = [&](const float(&c)[3][kLanes]) HWY_ATTR {
         return multiply_add(u, set(c[1][lane]), multiply_add(v, set(c[2][lane]), set(c[0][lane])));
     };
-    const TileDoubts& doubts = tile.doubts;
+    const TileErrorBounds& errors = tile.errors;
     const Floats low = least(conic(forms.edge[0]), least(conic(forms.edge[1]), conic(forms.edge[2])));
     const Floats along = linear(forms.along), inverse = reciprocal(along), t = linear(forms.above) * inverse;
-    const Meeting meeting{low<set(-doubts.edge), low> set(doubts.edge), along > set(doubts.along), t,
-                          doubt_of_time(t, inverse, set(doubts.above), set(doubts.along))};
-    const std::uint32_t doubtful = tile.valid[vector] & keep_nearest(tile.nearest[vector], triangle, meeting);
-    if (HWY_UNLIKELY(doubtful != 0))
-        list_doubts(drawing.state, drawing.first_vector + vector, doubtful, triangle);
+    const Meeting meeting{low<set(-errors.edge), low> set(errors.edge), along > set(errors.along), t,
+                          error_of_time(t, inverse, set(errors.above), set(errors.along))};
+    const std::uint32_t ambiguous =
+        tile.valid[vector] & keep_nearest(tile.nearest[vector], triangle, meeting);
+    if (HWY_UNLIKELY(ambiguous != 0))
+        list_ambiguous(drawing.state, drawing.first_vector + vector, ambiguous, triangle);
 }
 
 /// Of the tile of lane j. None: the group has no tiles.
 HWY_INLINE VectorLimits* limits_of(const KernelScene& scene, std::size_t j, KernelState& state) {
-    if (state.limits.empty()) return nullptr;
-    const SampleTile* tiles = &scene.tiles->tiles[state.first_tile];
-    return &state.limits[tiles[j].first_boxes - tiles[state.first_lane].first_boxes];
+    if (state.seen.limits.empty()) return nullptr;
+    const SampleTile* tiles = &scene.tiles->tiles[state.group.first_tile];
+    return &state.seen.limits[tiles[j].first_boxes - tiles[state.group.first_lane].first_boxes];
 }
 
 /// Cells of the tile's lattice.
@@ -93,7 +95,7 @@ HWY_NOINLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, con
                 middle_y = static_cast<float>(tile.height - 1) / 2;
     const Floats scale_u = set(1 / std::max(0.5f, middle_x)), scale_v = set(1 / std::max(0.5f, middle_y));
     const std::uint16_t* slots = &drawing.scene.tiles->slot[tile.first_slot];
-    const TileDoubts& doubts = drawing.doubts;
+    const TileErrorBounds& errors = drawing.errors;
     Floats x = cells.x_low, y = cells.y_low;
     while (lanes) {
         const Floats u = (x - set(middle_x)) * scale_u, v = (y - set(middle_y)) * scale_v;
@@ -102,16 +104,16 @@ HWY_NOINLINE void walk_cells(const TileDrawing& drawing, const Forms& forms, con
                                 multiply_add(v, multiply_add(v, load(c[5]), load(c[2])), load(c[0])));
         };
         const Floats low = least(conic(forms.edge[0]), least(conic(forms.edge[1]), conic(forms.edge[2])));
-        const std::uint32_t near = lanes & ~bits(low < set(-doubts.edge));
+        const std::uint32_t near = lanes & ~bits(low < set(-errors.edge));
         if (near) {
             const auto linear = [&](const float(&c)[3][kLanes]) HWY_ATTR {
                 return multiply_add(u, load(c[1]), multiply_add(v, load(c[2]), load(c[0])));
             };
             const Floats along = linear(forms.along), inverse = reciprocal(along);
             const Floats t = linear(forms.above) * inverse;
-            const Floats off = doubt_of_time(t, inverse, set(doubts.above), set(doubts.along));
-            const std::uint32_t inside = bits(low > set(doubts.edge)),
-                                placed = bits(along > set(doubts.along));
+            const Floats off = error_of_time(t, inverse, set(errors.above), set(errors.along));
+            const std::uint32_t inside = bits(low > set(errors.edge)),
+                                placed = bits(along > set(errors.along));
             alignas(64) float t_low[kLanes], t_high[kLanes], at_x[kLanes], at_y[kLanes];
             store(t - off, t_low);
             store(t + off, t_high);
@@ -147,7 +149,7 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
     const std::uint32_t small = lanes & bits(area <= set(kFewCells));
     if (small) walk_cells(drawing, forms, cells, small);
     if (!(lanes & ~small)) return;
-    std::vector<std::uint32_t>& list = drawing.state.pairs;
+    std::vector<std::uint32_t>& list = drawing.state.work.pairs;
     if (list.size() < (drawing.tile.vectors + 1) * kLanes) list.resize((drawing.tile.vectors + 1) * kLanes);
     const VectorBoxes* boxes = &drawing.scene.tiles->boxes[drawing.tile.first_boxes];
     const std::size_t pairs = list_pairs({boxes, drawing.limits, drawing.tile.vectors}, bounds, extent,
@@ -162,7 +164,7 @@ HWY_NOINLINE void draw_turned(const TileDrawing& drawing, const Forms& forms, co
 /// A leaf through an untouched tile.
 struct LeafThroughTile {
     const Leaf& leaf;
-    const TileDoubts& doubts;
+    const TileErrorBounds& errors;
     std::size_t tile;
 };
 
@@ -174,7 +176,7 @@ HWY_NOINLINE std::uint32_t unsettled(const Forms& forms, std::uint32_t lanes, st
     for (const std::uint32_t some : {lanes & ~partly, lanes & partly}) {
         for (Each lane(some); lane; ++lane) {
             const bool whole = !(partly >> *lane & 1);
-            if (!is_settled({forms, *lane, through.leaf.triangle[*lane], through.tile}, through.doubts, whole,
+            if (!is_settled({forms, *lane, through.leaf.triangle[*lane], through.tile}, through.errors, whole,
                             state))
                 left |= 1u << *lane;
         }
@@ -189,17 +191,17 @@ HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf
     if (!(state.lanes.transposed >> j & 1)) transpose_tile(j, state.lanes);
     move_tile_to_leaf(state.lanes, j, leaf, in_leaf);
     Floats conic[3][6], above[3], along[3];
-    triangle_forms(in_leaf, state.edges, conic, above, along);
-    const Floats doubt = set(in_leaf.doubts.edge);
-    const Sides sides = facing_sides(sides_of(conic, doubt), along, doubt, set(in_leaf.doubts.along));
+    triangle_forms(in_leaf, state.work.edges, conic, above, along);
+    const Floats error = set(in_leaf.errors.edge);
+    const Sides sides = facing_sides(sides_of(conic, error), along, error, set(in_leaf.errors.along));
     const std::uint32_t live = first_lanes(leaf.count);
-    const SampleTile& tile = scene.tiles->tiles[state.first_tile + j];
+    const SampleTile& tile = scene.tiles->tiles[state.group.first_tile + j];
     const TileDrawing drawing{scene,
                               state,
                               tile,
-                              in_leaf.doubts,
+                              in_leaf.errors,
                               leaf,
-                              tile.first_vector - state.first_vector,
+                              tile.first_vector - state.group.first_vector,
                               limits_of(scene, j, state)};
 
     // Front where it may be seen, else back; then the back of those that may be seen from both sides.
@@ -209,22 +211,22 @@ HWY_NOINLINE void draw_triangle_lanes(const KernelScene& scene, const Leaf& leaf
         if (!lanes) break;
         const Floats flip = choose(mask_of(pass == 0 ? first_back : second_back), set(-0.0f), set(0.0f));
         const TurnedDepth depth = turn_depth(above, along, flip);
-        lanes &= ~bits(behind_tile(depth, set(in_leaf.doubts.above), set(in_leaf.doubts.along)));
+        lanes &= ~bits(behind_tile(depth, set(in_leaf.errors.above), set(in_leaf.errors.along)));
         if (!lanes) continue;
         Forms forms;
         EdgeBounds bounds;
-        bounds.nearest = least_depth(depth, set(in_leaf.doubts.above), set(in_leaf.doubts.along));
+        bounds.nearest = least_depth(depth, set(in_leaf.errors.above), set(in_leaf.errors.along));
         for (int k = 0; k < 3; ++k) {
             bounds.slope_u[k] = flip_signs(conic[k][1], flip);
             bounds.slope_v[k] = flip_signs(conic[k][2], flip);
-            bounds.bound[k] = flip_signs(middle_of(conic[k]), flip) + bend_of(conic[k], doubt);
+            bounds.bound[k] = flip_signs(middle_of(conic[k]), flip) + bend_of(conic[k], error);
             for (int q = 0; q < 6; ++q) store(flip_signs(conic[k][q], flip), forms.edge[k][q]);
             store(depth.above[k], forms.above[k]);
             store(depth.along[k], forms.along[k]);
         }
-        if (state.untouched >> j & 1) {
+        if (state.seen.untouched >> j & 1) {
             lanes =
-                unsettled(forms, lanes, partly_outside(conic, doubt, flip), {leaf, in_leaf.doubts, j}, state);
+                unsettled(forms, lanes, partly_outside(conic, error, flip), {leaf, in_leaf.errors, j}, state);
             if (!lanes) continue;
             touch_tile(scene, j, state);
         }

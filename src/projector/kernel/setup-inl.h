@@ -1,4 +1,4 @@
-// Set-up: 16 tiles at once, their rays as functions of local coordinates, and their hulls.
+// Set-up of 16 tiles at once: their rays as functions of the tile's coordinates, and the frusta around them.
 // Included once per instruction set.
 #if defined(TRILENS_KERNEL_SETUP_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRILENS_KERNEL_SETUP_INL_H
@@ -10,12 +10,123 @@
 #include <algorithm>
 #include <cmath>
 
-#include "projector/exact/decide.h"
-#include "projector/kernel/kernel_hulls-inl.h"
+#include "projector/exact/exact_hit.h"
+#include "projector/kernel/kernel.h"
+#include "projector/kernel/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {
 namespace HWY_NAMESPACE {
+
+/// A rectangle of local coordinates.
+struct LocalRectangle {
+    double u, v, half_u, half_v;
+};
+
+/// Into lane `at` of `hull`: the rays at the rectangle's corners, of the tile of lane j. Returns the least
+/// weight there: they are a hull where it is positive.
+HWY_NOINLINE double put_rectangle(const TileLanes& lanes, std::size_t j, const LocalRectangle& r,
+                                  TileFrusta& hull, std::size_t at) {
+    constexpr double kU[4] = {-1, 1, 1, -1}, kV[4] = {-1, -1, 1, 1};
+    double least = INFINITY;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double u = r.u + kU[k] * r.half_u, v = r.v + kV[k] * r.half_v;
+        const double weight = lanes.weight[0][j] + u * lanes.weight[1][j] + v * lanes.weight[2][j];
+        const double inverse = 1 / weight;
+        least = std::min(least, weight);
+        for (int a = 0; a < 3; ++a) {
+            hull.origin[k][a][at] =
+                inverse * (lanes.origin[a][0][j] + u * lanes.origin[a][1][j] + v * lanes.origin[a][2][j]);
+            hull.direction[k][a][at] = inverse * (lanes.direction[a][0][j] + u * lanes.direction[a][1][j] +
+                                                  v * lanes.direction[a][2][j]);
+        }
+    }
+    return least;
+}
+
+/// The hull of the rays of a tile: where the tile is part of its facet, of the rays at its rectangle's
+/// corners, if the weight is positive there; else of the facet's corner rays, widened to the outermost
+/// sample. Both by convexity of the weights.
+HWY_NOINLINE void gather_hull(const KernelScene& scene, const SampleTile& tile, std::size_t j,
+                              TileLanes& lanes) {
+    constexpr double kReach = 1 + 1e-6, kPositive = 0.1;
+    if (!tile.whole_facet || !(tile.least_weight > -1)) {
+        if (put_rectangle(lanes, j, {0, 0, kReach, kReach}, lanes.hull, j) > kPositive) return;
+    }
+    const IdTriple& corner = scene.mesh->facets[tile.facet];
+    const double out = std::min(0.0, tile.least_weight) - 1e-9;  // the weight of the other two corners
+    for (int a = 0; a < 3; ++a) {
+        double o[3], d[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            o[k] = scene.mesh->rays[corner[k]].origin[a] - lanes.centre[a][j];
+            d[k] = scene.mesh->rays[corner[k]].direction[a];
+        }
+        const double o_sum = out * (o[0] + o[1] + o[2]), d_sum = out * (d[0] + d[1] + d[2]);
+        for (std::size_t k = 0; k < 4; ++k) {
+            lanes.hull.origin[k][a][j] = o_sum + (1 - 3 * out) * o[std::min<std::size_t>(k, 2)];
+            lanes.hull.direction[k][a][j] = d_sum + (1 - 3 * out) * d[std::min<std::size_t>(k, 2)];
+        }
+    }
+}
+
+/// Planes around each tile's hull. A plane holds only if, as floats, its normal points along all four corner
+/// directions; it is turned towards the axis by more than it rounds, then checked.
+HWY_NOINLINE void make_planes(const KernelScene& scene, TileFrusta& lanes) {
+    const LeafTree& tree = *scene.tree;
+    const double reach = tree.half.x + tree.half.y + tree.half.z;
+    const Double zero = hn::Zero(kDouble);
+    for (std::size_t at = 0; at < kLanes; at += kDoubles) {
+        Vector3 o[4], d[4], step;
+        for (int k = 0; k < 4; ++k) {
+            o[k] = load3(lanes.origin[k], at);
+            d[k] = unit(load3(lanes.direction[k], at));
+        }
+        const Vector3 axis = unit(plus(plus(d[0], d[1]), plus(d[2], d[3])));
+        Double cosine = dot(axis, d[0]);
+        for (int k = 1; k < 4; ++k) cosine = hn::Min(cosine, dot(axis, d[k]));
+        const Double turn = hn::Div(hn::Set(kDouble, 0x1p-21), hn::Max(cosine, hn::Set(kDouble, 1e-3)));
+        const Vector3 centre = load3(lanes.centre, at);
+        const Vector3 from_tree = {hn::Sub(centre.x, hn::Set(kDouble, tree.centre.x)),
+                                   hn::Sub(centre.y, hn::Set(kDouble, tree.centre.y)),
+                                   hn::Sub(centre.z, hn::Set(kDouble, tree.centre.z))};
+        for (int k = 0; k < 4; ++k) {
+            const int next = (k + 1) % 4;
+            Vector3 normal = cross(d[k], d[next]);
+            step = cross(minus(o[next], o[k]), axis);
+            const auto parallel = hn::Lt(dot(normal, normal), hn::Set(kDouble, 1e-14));
+            normal = {hn::IfThenElse(parallel, step.x, normal.x), hn::IfThenElse(parallel, step.y, normal.y),
+                      hn::IfThenElse(parallel, step.z, normal.z)};
+            // Into the hull: towards the other corners.
+            Double inside = zero;
+            for (int m = 0; m < 4; ++m)
+                inside = hn::Add(inside,
+                                 hn::IfThenElse(parallel, dot(normal, minus(o[m], o[k])), dot(normal, d[m])));
+            const Double sign =
+                hn::IfThenElse(hn::Lt(inside, zero), hn::Set(kDouble, -1.0), hn::Set(kDouble, 1.0));
+            normal = plus(times(sign, unit(normal)), times(turn, axis));
+
+            const Vector3 rounded = store_floats(normal, lanes.plane[k], at);
+            Double along = dot(rounded, d[0]), offset = dot(rounded, o[0]), size = zero;
+            for (int m = 0; m < 4; ++m) {
+                along = hn::Min(along, dot(rounded, d[m]));
+                offset = hn::Min(offset, dot(rounded, o[m]));
+                size = hn::Max(size, hn::Add(hn::Abs(o[m].x), hn::Add(hn::Abs(o[m].y), hn::Abs(o[m].z))));
+            }
+            size = hn::Max(size, hn::Mul(hn::Set(kDouble, 1e-6), hn::Load(kDouble, lanes.origin_terms + at)));
+            size = hn::Add(
+                size, hn::Add(hn::Abs(from_tree.x), hn::Add(hn::Abs(from_tree.y), hn::Abs(from_tree.z))));
+            size = hn::Add(size, hn::Set(kDouble, reach));
+            offset = hn::Add(offset, dot(rounded, from_tree));
+            offset = hn::Sub(offset, hn::Mul(hn::Set(kDouble, kPlaneErrorBound), size));
+            const auto holds = hn::Gt(along, hn::Set(kDouble, 1e-12));
+            offset = hn::IfThenElse(holds, offset, hn::Set(kDouble, -1e300));
+            const hn::Rebind<float, DoubleTag> some;
+            hn::Store(hn::DemoteTo(some, offset), some, lanes.offset[k] + at);
+        }
+    }
+}
+
+// Set-up: 16 tiles at once, their rays as functions of local coordinates, and their hulls.
 
 /// Copies what one tile brings into its lane: the facet's rays, moved to the tile's rectangle.
 HWY_NOINLINE void gather_tile(const KernelScene& scene, const SampleTile& tile, std::size_t j,
@@ -72,8 +183,8 @@ HWY_NOINLINE void scale_lanes(TileLanes& lanes) {
             s * (lanes.direction_sum[0][j] + lanes.direction_sum[1][j] + lanes.direction_sum[2][j]);
         lanes.weight_sum[j] =
             std::fabs(lanes.weight[0][j]) + std::fabs(lanes.weight[1][j]) + std::fabs(lanes.weight[2][j]);
-        const double weight_least = lanes.weight_low[j] - kDecisionDoubt * lanes.weight_terms[j];
-        lanes.decision_doubt[j] = kDecisionDoubt * direction_terms / weight_least;
+        const double weight_least = lanes.weight_low[j] - kDecisionErrorBound * lanes.weight_terms[j];
+        lanes.decision_error[j] = kDecisionErrorBound * direction_terms / weight_least;
         for (int a = 0; a < 3; ++a)
             lanes.direction_sum[a][j] = std::fabs(lanes.direction[a][0][j]) +
                                         std::fabs(lanes.direction[a][1][j]) +
@@ -82,8 +193,8 @@ HWY_NOINLINE void scale_lanes(TileLanes& lanes) {
     // Tiles over whose samples the weight changes much, or its sign, and what is not finite.
     std::uint32_t broken = 0;
     for (std::size_t j = 0; j < kLanes; ++j) {
-        const bool good = lanes.weight_low[j] >= kLeastWeight && lanes.decision_doubt[j] >= 0 &&
-                          std::isfinite(lanes.decision_doubt[j]) && std::isfinite(lanes.origin_terms[j]);
+        const bool good = lanes.weight_low[j] >= kLeastWeight && lanes.decision_error[j] >= 0 &&
+                          std::isfinite(lanes.decision_error[j]) && std::isfinite(lanes.origin_terms[j]);
         broken |= good ? 0 : 1u << j;
     }
     lanes.broken = broken;
@@ -108,9 +219,9 @@ HWY_NOINLINE void make_lines(TileLanes& lanes) {
         const auto mixed = [&](int p, int r) HWY_ATTR { return plus(times(w[p], d[r]), times(w[r], d[p])); };
         const Vector3 line[6] = {square(0), mixed(0, 1), mixed(0, 2), square(1), mixed(1, 2), square(2)};
         const auto mixed_moment = [&](int p, int r)
-                                      HWY_ATTR { return plus(outer(o[p], d[r]), outer(o[r], d[p])); };
-        const Vector3 moment[6] = {outer(o[0], d[0]), mixed_moment(0, 1), mixed_moment(0, 2),
-                                   outer(o[1], d[1]), mixed_moment(1, 2), outer(o[2], d[2])};
+                                      HWY_ATTR { return plus(cross(o[p], d[r]), cross(o[r], d[p])); };
+        const Vector3 moment[6] = {cross(o[0], d[0]), mixed_moment(0, 1), mixed_moment(0, 2),
+                                   cross(o[1], d[1]), mixed_moment(1, 2), cross(o[2], d[2])};
         Vector3 sum = absolute(line[0]);
         for (int q = 1; q < 6; ++q) sum = plus(sum, absolute(line[q]));
         for (int q = 0; q < 6; ++q) {
