@@ -16,7 +16,7 @@
 using namespace trilens;
 namespace fs = std::filesystem;
 
-TEST_CASE("files: names that a killed process left are passed over and stay", "[base]") {
+TEST_CASE("files: names that a killed process left are passed over and stay", "[base][law]") {
     const std::string folder = trilens_test::scratch_dir("base_left_parts"), file = folder + "/s.exr";
     // Ids of processes come back: those of a process with this one's id, which had written some files.
     const int left = 2000;

@@ -134,7 +134,7 @@ RayMesh random_facets(Random& random, const SampleGrid& grid, int count) {
 
 }  // namespace
 
-TEST_CASE("owners found row by row are those that every sample finds for itself") {
+TEST_CASE("owners found row by row are those that every sample finds for itself", "[base][law]") {
     Random random(15);
     std::size_t wrong = 0, owned_samples = 0;
     for (int i = 0; i < 1500; ++i) {
@@ -154,7 +154,7 @@ TEST_CASE("owners found row by row are those that every sample finds for itself"
     CHECK(owned_samples > 100000);
 }
 
-TEST_CASE("most of a large facet's row is decided at its ends") {
+TEST_CASE("most of a large facet's row is decided at its ends", "[base]") {
     const SampleGrid grid{0, 0, 1920, 1080, 1};
     const FacetEdges edges({Vec3(-5, -7, 1), Vec3(2500, 3, 1), Vec3(100, 2300, 1)}, 0, grid);
     std::size_t asked = 0, covered = 0;
@@ -167,7 +167,7 @@ TEST_CASE("most of a large facet's row is decided at its ends") {
     CHECK(covered > 1000000);
 }
 
-TEST_CASE("facets that tile the film own every sample exactly once") {
+TEST_CASE("facets that tile the film own every sample exactly once", "[base][law]") {
     Random random(12);
     std::size_t wrong = 0, unowned = 0;
     for (int i = 0; i < 120; ++i) {
@@ -183,7 +183,8 @@ TEST_CASE("facets that tile the film own every sample exactly once") {
 
 TEST_CASE(
     "around a camera inside a closed box, walls behind it and through it included, every sample has one "
-    "facet") {
+    "facet",
+    "[base][law]") {
     Random random(13);
     const SampleGrid grid{0, 0, 24, 24, 1};
     constexpr std::array<std::array<int, 4>, 6> kFaces{
@@ -211,7 +212,7 @@ TEST_CASE(
     CHECK(wrong == 0);
 }
 
-TEST_CASE("samples on an edge or a corner go to the facet right of it or below it") {
+TEST_CASE("samples on an edge or a corner go to the facet right of it or below it", "[base]") {
     // The diagonal and the outline of a square from the centre of pixel 2 to that of pixel 5 run through
     // samples.
     const SampleGrid grid{0, 0, 8, 8, 1};
@@ -228,7 +229,7 @@ TEST_CASE("samples on an edge or a corner go to the facet right of it or below i
     CHECK(owns(1, 2, 3));
 }
 
-TEST_CASE("where facets overlap the smaller index owns; facets without rays or area own nothing") {
+TEST_CASE("where facets overlap the smaller index owns; facets without rays or area own nothing", "[base]") {
     const SampleGrid grid{0, 0, 4, 4, 1};
     const std::vector<Vec3> screen{{-9, -9, 1}, {30, -9, 1}, {-9, 30, 1}};
     const RayMesh mesh = screen_mesh(screen, {{0, 1, 1}, {kNone, kNone, kNone}, {0, 1, 2}, {2, 1, 0}});
@@ -239,7 +240,7 @@ TEST_CASE("where facets overlap the smaller index owns; facets without rays or a
     CHECK(owned.of(3).empty());
 }
 
-TEST_CASE("the sign of a difference of products is exact") {
+TEST_CASE("the sign of a difference of products is exact", "[base]") {
     // Integers of 53 bits have exact products in 128; c and d lie so close to a and b that double sees no
     // difference.
     __extension__ using Wide = __int128;

@@ -53,7 +53,7 @@ int count_by_discriminant(const Coefficients& k) {
 
 }  // namespace
 
-TEST_CASE("roots: random cubics over sixteen decades keep every root", "[roots]") {
+TEST_CASE("roots: random cubics over sixteen decades keep every root", "[base][roots][law]") {
     std::mt19937_64 random(1);
     int three = 0, unsure = 0;
     double worst = 0;
@@ -73,7 +73,7 @@ TEST_CASE("roots: random cubics over sixteen decades keep every root", "[roots]"
     CHECK(unsure < 300);
 }
 
-TEST_CASE("roots: every sign change on a fine grid has its root", "[roots]") {
+TEST_CASE("roots: every sign change on a fine grid has its root", "[base][roots][law]") {
     // Independent of any formula: walk outward in steps of 3 % on both sides of zero.
     std::mt19937_64 random(2);
     std::vector<double> grid;
@@ -93,7 +93,7 @@ TEST_CASE("roots: every sign change on a fine grid has its root", "[roots]") {
     }
 }
 
-TEST_CASE("roots: planted roots of any magnitude come back", "[roots]") {
+TEST_CASE("roots: planted roots of any magnitude come back", "[base][roots][law]") {
     std::mt19937_64 random(3);
     double worst = 0;
     for (int trial = 0; trial < 100000; ++trial) {
@@ -117,7 +117,7 @@ TEST_CASE("roots: planted roots of any magnitude come back", "[roots]") {
     CHECK(worst < 1e-8);
 }
 
-TEST_CASE("roots: a double root is returned twice, a triple root three times", "[roots]") {
+TEST_CASE("roots: a double root is returned twice, a triple root three times", "[base][roots][law]") {
     std::mt19937_64 random(4);
     double worst_double = 0, worst_triple = 0, worst_residual = 0;
     for (int trial = 0; trial < 50000; ++trial) {
@@ -153,7 +153,7 @@ TEST_CASE("roots: a double root is returned twice, a triple root three times", "
     CHECK(exact.root[2] == 2);
 }
 
-TEST_CASE("roots: quadratics, lines and constants", "[roots]") {
+TEST_CASE("roots: quadratics, lines and constants", "[base][roots]") {
     std::mt19937_64 random(5);
     for (int trial = 0; trial < 100000; ++trial) {
         const double a = log_uniform(random, 1e-8, 1e8), r = log_uniform(random, 1e-8, 1e8);
@@ -182,7 +182,7 @@ TEST_CASE("roots: quadratics, lines and constants", "[roots]") {
     CHECK(zeros.root == (std::array<double, 3>{0, 0, 1.5}));
 }
 
-TEST_CASE("roots: a negligible leading coefficient loses no finite root", "[roots]") {
+TEST_CASE("roots: a negligible leading coefficient loses no finite root", "[base][roots]") {
     // (t - 1)(t + 2) with ever smaller cubic terms: the third root leaves for infinity.
     for (int exponent = 0; exponent < 300; ++exponent) {
         for (const double sign : {-1.0, 1.0}) {
@@ -200,7 +200,7 @@ TEST_CASE("roots: a negligible leading coefficient loses no finite root", "[root
     }
 }
 
-TEST_CASE("roots: scaling the polynomial or its variable scales the roots", "[roots]") {
+TEST_CASE("roots: scaling the polynomial or its variable scales the roots", "[base][roots][law]") {
     std::mt19937_64 random(6);
     std::uniform_real_distribution<double> uniform(-1, 1);
     for (int trial = 0; trial < 20000; ++trial) {

@@ -42,7 +42,7 @@ Film make_film(double scale) {
 
 }  // namespace
 
-TEST_CASE("packets hold every owned sample once") {
+TEST_CASE("packets hold every owned sample once", "[bench][law]") {
     const Film film = make_film(1);
     const std::vector<RayPacket> packets = make_ray_packets(film.mesh, film.owned, film.grid);
     std::vector<int> count(film.grid.size(), 0);
@@ -56,7 +56,7 @@ TEST_CASE("packets hold every owned sample once") {
     }
 }
 
-TEST_CASE("float packets see what the truth sees, but for edges") {
+TEST_CASE("float packets see what the truth sees, but for edges", "[bench]") {
     Random random(41);
     for (const bool best_tree : {false, true}) {
         for (const double scale : {1e-3, 1.0, 1e3}) {
@@ -91,7 +91,7 @@ TEST_CASE("float packets see what the truth sees, but for edges") {
     }
 }
 
-TEST_CASE("packets through an empty scene see nothing") {
+TEST_CASE("packets through an empty scene see nothing", "[bench]") {
     const Film film = make_film(1);
     std::vector<FloatHit> hits(film.grid.size(), FloatHit{5, -1, 0, 0});
     PacketTracer(TriangleScene{}).trace(make_ray_packets(film.mesh, film.owned, film.grid), hits);
@@ -100,7 +100,7 @@ TEST_CASE("packets through an empty scene see nothing") {
     }
 }
 
-TEST_CASE("hits left in the packets' order are those written per sample") {
+TEST_CASE("hits left in the packets' order are those written per sample", "[bench]") {
     Random random(42);
     const TriangleScene scene = random_triangles(random, 300, 1);
     const Film film = make_film(1);

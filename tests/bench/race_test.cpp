@@ -45,7 +45,7 @@ struct Course {
 
 }  // namespace
 
-TEST_CASE("a race counts its course and times both sides") {
+TEST_CASE("a race counts its course and times both sides", "[bench]") {
     const Course course;
     const RaceResult r = race({course.scene, {{&course.mesh, &course.owned}}, course.grid}, {3, ""});
     CHECK(r.pixels == course.grid.size());
@@ -67,7 +67,8 @@ TEST_CASE("a race counts its course and times both sides") {
     CHECK(r.unbounded == 0);
 }
 
-TEST_CASE("a race counts layers, samples that share vectors, and samples that floats leave in doubt") {
+TEST_CASE("a race counts layers, samples that share vectors, and samples that floats leave in doubt",
+          "[bench]") {
     Course course;
     const RaceView view{&course.mesh, &course.owned};
     TriangleScene twice = course.scene;
@@ -107,7 +108,7 @@ TEST_CASE("a race counts layers, samples that share vectors, and samples that fl
     CHECK(race({course.scene, {{&small, &owned}}, course.grid}, {1, ""}).shared == 1);
 }
 
-TEST_CASE("two views of a course add up") {
+TEST_CASE("two views of a course add up", "[bench][law]") {
     const Course course;
     const RaceView view{&course.mesh, &course.owned};
     const RaceResult r = race({course.scene, {view, view}, course.grid}, {1, ""});
@@ -115,7 +116,7 @@ TEST_CASE("two views of a course add up") {
     CHECK(r.facets == 4);
 }
 
-TEST_CASE("an instruction set that a side does not have is a usage error") {
+TEST_CASE("an instruction set that a side does not have is a usage error", "[bench][bad-input]") {
     const Course course;
     CHECK_THROWS_AS(race({course.scene, {{&course.mesh, &course.owned}}, course.grid}, {1, "mmx"}),
                     UsageError);

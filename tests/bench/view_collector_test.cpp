@@ -21,7 +21,7 @@ RayMesh film_mesh(double from) {
 
 }  // namespace
 
-TEST_CASE("a mesh that comes in bands is one mesh with the samples of all", "[trilens]") {
+TEST_CASE("a mesh that comes in bands is one mesh with the samples of all", "[bench][trilens]") {
     const SampleGrid film{0, 0, 9, 7, 2};
     const RayMesh near = film_mesh(0), far = film_mesh(1);
     for (const int rows : {1, 2, 3, 7}) {
@@ -47,7 +47,7 @@ TEST_CASE("a mesh that comes in bands is one mesh with the samples of all", "[tr
     }
 }
 
-TEST_CASE("parts of a film that are narrower than it count in the film", "[trilens]") {
+TEST_CASE("parts of a film that are narrower than it count in the film", "[bench][trilens]") {
     const SampleGrid film{0, 0, 9, 7, 2};
     const RayMesh mesh = film_mesh(0);
     ViewCollector collector(film);
@@ -68,7 +68,7 @@ TEST_CASE("parts of a film that are narrower than it count in the film", "[trile
     }
 }
 
-TEST_CASE("a benchmark of many bands races each sample on the optics once", "[trilens]") {
+TEST_CASE("a benchmark of many bands races each sample on the optics once", "[bench][trilens]") {
     Scene scene = parse_scene(
         scene_examples()[0].json, "",
         std::vector<SceneOverride>{{"/film/width", "400"}, {"/film/height", "300"}, {"/film/spp", "1"}});

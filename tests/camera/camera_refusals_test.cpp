@@ -25,7 +25,7 @@ bool begins(const std::string& text, const std::string& with) {
 
 }  // namespace
 
-TEST_CASE("cameras that are none are refused by field") {
+TEST_CASE("cameras that are none are refused by field", "[camera][bad-input]") {
     const auto refused = [](CameraType type, const std::string& field, auto change) {
         CameraDescription from;
         from.type = type;
@@ -76,7 +76,7 @@ TEST_CASE("cameras that are none are refused by field") {
     refused(CameraType::kOrthographic, "ymag", [](auto& c) { c.ymag = 0; });
 }
 
-TEST_CASE("a lens that folds the film is refused with the place") {
+TEST_CASE("a lens that folds the film is refused with the place", "[camera][bad-input]") {
     CameraDescription from;
     from.type = CameraType::kOpencv;
     from.lens = {false, 200, 200, 160, 120, {-0.9, 0, 0, 0}};

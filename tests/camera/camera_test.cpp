@@ -89,7 +89,7 @@ Off mesh_off(const Camera& camera, double t, bool folds = false) {
 
 }  // namespace
 
-TEST_CASE("a point along an exact ray is shown where the ray leaves the film") {
+TEST_CASE("a point along an exact ray is shown where the ray leaves the film", "[camera]") {
     Draw draw(1);
     for (CameraDescription from : every_camera()) {
         INFO(from.name);
@@ -119,7 +119,7 @@ TEST_CASE("a point along an exact ray is shown where the ray leaves the film") {
     }
 }
 
-TEST_CASE("the RayMesh comes to the exact rays with order 2") {
+TEST_CASE("the RayMesh comes to the exact rays with order 2", "[camera][law]") {
     for (CameraDescription from : every_camera()) {
         INFO(from.name);
         const bool folds =
@@ -145,7 +145,7 @@ TEST_CASE("the RayMesh comes to the exact rays with order 2") {
     }
 }
 
-TEST_CASE("a tolerance is kept all over the film") {
+TEST_CASE("a tolerance is kept all over the film", "[camera][golden]") {
     for (CameraDescription from : every_camera()) {
         INFO(from.name);
         const bool folds =
@@ -162,7 +162,7 @@ TEST_CASE("a tolerance is kept all over the film") {
     }
 }
 
-TEST_CASE("what panoramas and fisheyes show where, by hand") {
+TEST_CASE("what panoramas and fisheyes show where, by hand", "[camera][oracle]") {
     CameraDescription from;
     from.eye = {0, 0, 0};
     from.at = {0, 0, -1};
@@ -193,7 +193,7 @@ TEST_CASE("what panoramas and fisheyes show where, by hand") {
     CHECK(exact_ray(camera_of(from), {41, 120}));
 }
 
-TEST_CASE("the seam of a panorama and the far side of an inward sphere show a point twice") {
+TEST_CASE("the seam of a panorama and the far side of an inward sphere show a point twice", "[camera][law]") {
     CameraDescription from;
     from.eye = {0, 0, 0};
     from.at = {0, 0, -1};
@@ -216,7 +216,7 @@ TEST_CASE("the seam of a panorama and the far side of an inward sphere show a po
     CHECK(images.back().t == Approx(2.5));
 }
 
-TEST_CASE("crossed slits that cross are a pinhole, a pushbroom that stands still nearly one") {
+TEST_CASE("crossed slits that cross are a pinhole, a pushbroom that stands still nearly one", "[camera]") {
     // Slits through one point, seen from it: where a perspective shows the same points.
     CameraDescription slits;
     slits.type = CameraType::kCrossedSlits;
@@ -245,7 +245,7 @@ TEST_CASE("crossed slits that cross are a pinhole, a pushbroom that stands still
     CHECK(length(image[0].origin - Vec3(0.75, 0, 4)) < 1e-12);
 }
 
-TEST_CASE("the bent ground: flat near the eye, rigid beyond the arc, continuous between") {
+TEST_CASE("the bent ground: flat near the eye, rigid beyond the arc, continuous between", "[camera][law]") {
     CameraDescription from = every_camera().back();
     from.eye = {0, 1.5, 0};
     from.at = {0, 1.4, -1};
@@ -289,7 +289,7 @@ TEST_CASE("the bent ground: flat near the eye, rigid beyond the arc, continuous 
     }
 }
 
-TEST_CASE("the detail is a perspective, the border sees the context's angle") {
+TEST_CASE("the detail is a perspective, the border sees the context's angle", "[camera]") {
     CameraDescription from;
     from.type = CameraType::kDistortion;
     from.eye = {0, 0, 0};
@@ -306,7 +306,7 @@ TEST_CASE("the detail is a perspective, the border sees the context's angle") {
         CHECK(-normalize(exact_ray(camera, at)->direction).z == Approx(std::cos(80 * kPi / 180)));
 }
 
-TEST_CASE("between views rays pass from one to the next, without a jump") {
+TEST_CASE("between views rays pass from one to the next, without a jump", "[camera][law]") {
     for (const CameraDescription& from : every_camera()) {
         if (from.type != CameraType::kMultiPerspective) continue;
         const Camera camera = camera_of(from);
@@ -327,7 +327,7 @@ TEST_CASE("between views rays pass from one to the next, without a jump") {
     }
 }
 
-TEST_CASE("distorted and back is where it was") {
+TEST_CASE("distorted and back is where it was", "[camera]") {
     Draw draw(9);
     for (const CameraDescription& from : every_camera()) {
         if (from.type != CameraType::kOpencv) continue;

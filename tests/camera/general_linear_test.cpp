@@ -59,7 +59,7 @@ Characteristic characteristic(const Rays& rays) {
 
 }  // namespace
 
-TEST_CASE("rays of each general linear camera are named as what they are") {
+TEST_CASE("rays of each general linear camera are named as what they are", "[camera]") {
     Draw draw(21);
     for (int round = 0; round < 200; ++round) {
         const Vec3 eye = draw.in_cube(1);
@@ -125,7 +125,7 @@ TEST_CASE("rays of each general linear camera are named as what they are") {
     }
 }
 
-TEST_CASE("an eye that every ray leaves but for rounding is a pinhole") {
+TEST_CASE("an eye that every ray leaves but for rounding is a pinhole", "[camera][law]") {
     Draw draw(23);
     for (int round = 0; round < 2000; ++round) {
         const Vec3 eye = draw.in_cube(20), mean = draw.unit();
@@ -142,7 +142,7 @@ TEST_CASE("an eye that every ray leaves but for rounding is a pinhole") {
     }
 }
 
-TEST_CASE("near rays mirrored in a sphere meet at Coddington's two foci") {
+TEST_CASE("near rays mirrored in a sphere meet at Coddington's two foci", "[camera][oracle]") {
     // Convex, radius 1; object at `away`, the middle ray at angle i to the normal: 1/s + 1/t = -2 / cos i in
     // the plane of incidence, -2 cos i across it (Coddington 1829).
     Draw draw(24);
@@ -170,7 +170,7 @@ TEST_CASE("near rays mirrored in a sphere meet at Coddington's two foci") {
     }
 }
 
-TEST_CASE("the facets of every camera are of the kind that the camera is") {
+TEST_CASE("the facets of every camera are of the kind that the camera is", "[camera][law]") {
     const FilmSize film{320, 240};
     for (CameraDescription from : every_camera()) {
         INFO(from.name);
@@ -202,7 +202,7 @@ TEST_CASE("the facets of every camera are of the kind that the camera is") {
     CHECK(facet_kinds(make_camera(linear, film)).count(GeneralLinearKind::kOrthographic) == 2);
 }
 
-TEST_CASE("a general linear camera of three rays of a kind has facets of that kind") {
+TEST_CASE("a general linear camera of three rays of a kind has facets of that kind", "[camera]") {
     // Between the planes z = 0 and z = -1, as the camera looks along -z.
     const double k = 0.7;
     const auto kind_with = [&](auto way) {
@@ -230,7 +230,7 @@ TEST_CASE("a general linear camera of three rays of a kind has facets of that ki
     CHECK(kind_with([&](const Vec2& at) { return Vec2(-k * at.y, k * at.x); }) == "bilinear");
 }
 
-TEST_CASE("facets without rays, with two rays in one or opposite ones have no kind") {
+TEST_CASE("facets without rays, with two rays in one or opposite ones have no kind", "[camera]") {
     RayMesh mesh;
     mesh.rays = {{Vec3(0), Vec3(0, 0, 1)},
                  {Vec3(1, 0, 0), Vec3(0, 0, 1)},
@@ -248,7 +248,7 @@ TEST_CASE("facets without rays, with two rays in one or opposite ones have no ki
     CHECK(kinds.count(GeneralLinearKind::kOrthographic) == 1);
 }
 
-TEST_CASE("random rays have as many roots as the paper's characteristic equation") {
+TEST_CASE("random rays have as many roots as the paper's characteristic equation", "[camera][oracle][law]") {
     Draw draw(22);
     int slits = 0, bilinear = 0;
     for (int round = 0; round < 2000; ++round) {
@@ -280,7 +280,7 @@ TEST_CASE("random rays have as many roots as the paper's characteristic equation
     CHECK(bilinear > 200);
 }
 
-TEST_CASE("three rays that make no camera have no kind") {
+TEST_CASE("three rays that make no camera have no kind", "[camera]") {
     const Ray ray{Vec3(0), Vec3(0, 0, 1)};
     const Vec3 axis(0, 0, 1);
     CHECK_FALSE(general_linear_camera({ray, ray, Ray{Vec3(1, 0, 0), Vec3(0, 0, 1)}}, axis));

@@ -41,7 +41,8 @@ double miss(const Ray& ray, double t, const Vec3& point, double size) {
 
 }  // namespace
 
-TEST_CASE("the film's ray through a point's screen position passes through the point at t = its depth") {
+TEST_CASE("the film's ray through a point's screen position passes through the point at t = its depth",
+          "[camera]") {
     Draw draw(1);
     int tested = 0;
     for (int round = 0; round < 2000; ++round) {
@@ -64,7 +65,7 @@ TEST_CASE("the film's ray through a point's screen position passes through the p
     CHECK(tested > 700);
 }
 
-TEST_CASE("a camera's film spans its angle, x to the right and y down, square pixels") {
+TEST_CASE("a camera's film spans its angle, x to the right and y down, square pixels", "[camera]") {
     PerspectiveParams params;
     params.look_at = {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}};
     params.yfov_degrees = 90;
@@ -87,7 +88,7 @@ TEST_CASE("a camera's film spans its angle, x to the right and y down, square pi
     }
 }
 
-TEST_CASE("scaling the world leaves the picture as it was") {
+TEST_CASE("scaling the world leaves the picture as it was", "[camera][law]") {
     Draw draw(2);
     for (int round = 0; round < 200; ++round) {
         PerspectiveParams params = draw_camera(draw, 1);
@@ -102,7 +103,7 @@ TEST_CASE("scaling the world leaves the picture as it was") {
     }
 }
 
-TEST_CASE("a parallel camera's rays pass through the points that it projects") {
+TEST_CASE("a parallel camera's rays pass through the points that it projects", "[camera]") {
     Draw draw(3);
     for (int round = 0; round < 500; ++round) {
         const double size = draw.log_uniform(1e-4, 1e4);
@@ -125,7 +126,7 @@ TEST_CASE("a parallel camera's rays pass through the points that it projects") {
     CHECK(length(Vec2(screen_from_world(camera, {1, 2, -7})) - Vec2(500, 0)) < 1e-12);
 }
 
-TEST_CASE("cameras that cannot be are refused with their place") {
+TEST_CASE("cameras that cannot be are refused with their place", "[camera][bad-input]") {
     auto place_of = [](auto change) -> std::string {
         PerspectiveParams params;
         change(params);
@@ -147,7 +148,7 @@ TEST_CASE("cameras that cannot be are refused with their place") {
     CHECK_THROWS_AS(make_orthographic({{}, 0, 10, 10}), InputError);
 }
 
-TEST_CASE("explicit rays become a mesh with pixels for screen positions") {
+TEST_CASE("explicit rays become a mesh with pixels for screen positions", "[camera]") {
     const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
         directions{{0, 0, 2}, {0, 0, 1}, {1, 0, 1}};
     const std::vector<Vec2> screen{{0, 0}, {1, 0}, {0, 1}};

@@ -59,7 +59,7 @@ Vec3 mapped(const Mat4& matrix, const Vec3& point) {
 
 }  // namespace
 
-TEST_CASE("Npar and Nper take view volumes to the canonical ones") {
+TEST_CASE("Npar and Nper take view volumes to the canonical ones", "[camera]") {
     Draw draw(11);
     for (int round = 0; round < 50; ++round) {
         ViewVolume volume = random_volume(draw, true);
@@ -84,7 +84,7 @@ TEST_CASE("Npar and Nper take view volumes to the canonical ones") {
     }
 }
 
-TEST_CASE("Npar and Nper of the standard view are the textbook's numbers") {
+TEST_CASE("Npar and Nper of the standard view are the textbook's numbers", "[camera][oracle]") {
     // Vrp at the origin, axes those of the world, window 4 x 2: the matrices by hand.
     ViewVolume volume;
     volume.prp = {0, 0, 5};
@@ -105,7 +105,7 @@ TEST_CASE("Npar and Nper of the standard view are the textbook's numbers") {
     CHECK(parallel[3][2] == Approx(-1.0 / 6));
 }
 
-TEST_CASE("a view volume's camera shows a point where its matrix says") {
+TEST_CASE("a view volume's camera shows a point where its matrix says", "[camera]") {
     Draw draw(12);
     for (int round = 0; round < 100; ++round) {
         const ViewVolume volume = random_volume(draw, round % 2 == 0);
@@ -131,7 +131,7 @@ TEST_CASE("a view volume's camera shows a point where its matrix says") {
     }
 }
 
-TEST_CASE("a perspective with shift is the view volume with its window moved") {
+TEST_CASE("a perspective with shift is the view volume with its window moved", "[camera]") {
     CameraDescription shifted;
     shifted.eye = {1, 2, 7};
     shifted.at = {1, 2, 0};
@@ -155,7 +155,7 @@ TEST_CASE("a perspective with shift is the view volume with its window moved") {
     }
 }
 
-TEST_CASE("oblique views move points by their depth") {
+TEST_CASE("oblique views move points by their depth", "[camera]") {
     CameraDescription from;
     from.type = CameraType::kOblique;
     from.eye = {0, 0, 5};
@@ -191,7 +191,8 @@ TEST_CASE("oblique views move points by their depth") {
     }
 }
 
-TEST_CASE("homogeneous clipping keeps what lies in the volume, also of triangles through the eye's plane") {
+TEST_CASE("homogeneous clipping keeps what lies in the volume, also of triangles through the eye's plane",
+          "[camera]") {
     Draw draw(15);
     int cut = 0;
     for (int round = 0; round < 300; ++round) {
@@ -237,7 +238,7 @@ TEST_CASE("homogeneous clipping keeps what lies in the volume, also of triangles
     CHECK(cut > 50);
 }
 
-TEST_CASE("view volumes that are none are refused by field") {
+TEST_CASE("view volumes that are none are refused by field", "[camera][bad-input]") {
     const auto refused = [](const std::string& field, auto change) {
         CameraDescription from;
         from.type = CameraType::kViewVolume;

@@ -89,7 +89,7 @@ std::vector<BadScene> bad_scenes() {
 
 }  // namespace
 
-TEST_CASE("a scene that cannot be used: exit 3, the file and the place", "[cli]") {
+TEST_CASE("a scene that cannot be used: exit 3, the file and the place", "[cli][bad-input]") {
     const std::string folder = scratch_dir("bad_scenes");
     for (const BadScene& bad : bad_scenes()) {
         INFO(bad.what);
@@ -107,7 +107,7 @@ TEST_CASE("a scene that cannot be used: exit 3, the file and the place", "[cli]"
     }
 }
 
-TEST_CASE("files that cannot be read: exit 3", "[cli]") {
+TEST_CASE("files that cannot be read: exit 3", "[cli][bad-input]") {
     const std::string folder = scratch_dir("bad_files");
     const std::string scene = write_file(folder, "scene.json", small_scene());
     check_one_message(run_trilens("render " + folder + "/nothing.json -o " + folder + "/out.exr"), 3,
@@ -130,7 +130,7 @@ TEST_CASE("files that cannot be read: exit 3", "[cli]") {
     }
 }
 
-TEST_CASE("an OBJ with a face of 300 corners: exit 3 with its line", "[cli]") {
+TEST_CASE("an OBJ with a face of 300 corners: exit 3 with its line", "[cli][bad-input]") {
     const std::string folder = scratch_dir("big_face");
     std::string obj = "# a disk\n", face = "f";
     for (int k = 0; k < 300; ++k) {
@@ -147,7 +147,7 @@ TEST_CASE("an OBJ with a face of 300 corners: exit 3 with its line", "[cli]") {
                       {"disk.obj", "302", "300"});
 }
 
-TEST_CASE("a command line that makes no sense: exit 2 and the nearest word", "[cli]") {
+TEST_CASE("a command line that makes no sense: exit 2 and the nearest word", "[cli][bad-input]") {
     const std::string folder = scratch_dir("bad_usage");
     const std::string scene = write_file(folder, "scene.json", small_scene());
     const std::string out = " -o " + folder + "/out.exr";
@@ -178,7 +178,7 @@ TEST_CASE("a command line that makes no sense: exit 2 and the nearest word", "[c
     CHECK(files_in(folder) == 1);
 }
 
-TEST_CASE("--set and --size reach the checks of the scene: exit 3", "[cli]") {
+TEST_CASE("--set and --size reach the checks of the scene: exit 3", "[cli][bad-input]") {
     const std::string folder = scratch_dir("bad_set");
     const std::string scene = write_file(folder, "scene.json", small_scene());
     const std::string out = " -o " + folder + "/out.exr";
@@ -189,7 +189,7 @@ TEST_CASE("--set and --size reach the checks of the scene: exit 3", "[cli]") {
     CHECK(files_in(folder) == 1);
 }
 
-TEST_CASE("output that cannot be written: exit 4, and nothing half-written", "[cli]") {
+TEST_CASE("output that cannot be written: exit 4, and nothing half-written", "[cli][bad-input]") {
     const std::string folder = scratch_dir("bad_output");
     const std::string scene = write_file(folder, "scene.json", small_scene());
     check_one_message(run_trilens("render " + scene + " -o " + folder + "/no/such/out.exr"), 4, {"out.exr"});
@@ -218,7 +218,7 @@ TEST_CASE("with --json a failure is one object with the same words", "[cli]") {
     CHECK(usage.out.find("\"exit_code\": 2") != std::string::npos);
 }
 
-TEST_CASE("A resolution for a scene without meshes is no error of the program's") {
+TEST_CASE("A resolution for a scene without meshes is no error of the program's", "[cli]") {
     const std::string folder = scratch_dir("no_meshes"), scene = folder + "/a.json";
     std::ofstream(scene) << R"({"version": 1, "film": {"width": 32, "height": 24},
         "cameras": [{"name": "c", "lookAt": {"eye": [0, 1, 4], "at": [0, 0, 0]}}]})";
@@ -228,7 +228,7 @@ TEST_CASE("A resolution for a scene without meshes is no error of the program's"
     CHECK(fs::exists(folder + "/a.exr"));
 }
 
-TEST_CASE("Messages of libraries are told as ours, with the file") {
+TEST_CASE("Messages of libraries are told as ours, with the file", "[cli]") {
     const std::string folder = scratch_dir("library_messages");
     const auto scene_with = [&](const std::string& file) {
         const std::string scene = folder + "/s.json";

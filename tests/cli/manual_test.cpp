@@ -55,7 +55,7 @@ TEST_CASE("there is a page for every command, and one command prints it", "[cli]
     CHECK(run_trilens("man render run").exit_code == 2);
 }
 
-TEST_CASE("man has nothing to warn of in any page", "[cli][manual]") {
+TEST_CASE("man has nothing to warn of in any page", "[cli][manual][oracle]") {
     if (!has_program("man")) TRILENS_SKIP("needs man");
     const std::string folder = scratch_dir("cli_manual_man");
     for (const fs::path& page : written_pages(folder)) {
@@ -65,7 +65,7 @@ TEST_CASE("man has nothing to warn of in any page", "[cli][manual]") {
     }
 }
 
-TEST_CASE("mandoc has nothing to warn of in any page", "[cli][manual]") {
+TEST_CASE("mandoc has nothing to warn of in any page", "[cli][manual][oracle]") {
     if (!has_program("mandoc")) TRILENS_SKIP("needs mandoc");
     for (const fs::path& page : written_pages(scratch_dir("cli_manual_mandoc"))) {
         INFO(page);

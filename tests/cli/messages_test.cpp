@@ -45,7 +45,7 @@ TEST_CASE("a film that --size cannot make is that option's fault", "[cli][messag
     CHECK(run_trilens("project " + quoted_word(scene) + " --point 1,1,3 --size 32768x8192").exit_code == 0);
 }
 
-TEST_CASE("compare names the images that cannot be compared", "[cli][messages]") {
+TEST_CASE("compare names the images that cannot be compared", "[cli][messages][bad-input]") {
     const std::string folder = scratch_dir("cli_messages_compare");
     const std::string scene = write_file(folder, "room.json", small_scene());
     const std::string a = folder + "/a.exr", b = folder + "/b.exr", bare = folder + "/bare.exr";
@@ -70,7 +70,7 @@ TEST_CASE("compare names the images that cannot be compared", "[cli][messages]")
 }
 
 TEST_CASE("scenes of one name, and standard input, are refused by what reads or writes twice",
-          "[cli][messages]") {
+          "[cli][messages][bad-input]") {
     const std::string folder = scratch_dir("cli_messages_names");
     for (const char* below : {"/aa", "/bb"}) {
         fs::create_directories(folder + below);

@@ -43,7 +43,7 @@ TEST_CASE("a scene on standard input and an image on standard output are those o
     CHECK(run_trilens("render " + scene + " -o - --pixel 3,3").exit_code == 2);
 }
 
-TEST_CASE("a bad scene on standard input is told as such", "[cli][streams]") {
+TEST_CASE("a bad scene on standard input is told as such", "[cli][streams][bad-input]") {
     const CommandRun empty = run_trilens("render - -o - < /dev/null");
     CHECK(empty.exit_code == 3);
     CHECK(empty.err.find("standard input: is empty") != std::string::npos);

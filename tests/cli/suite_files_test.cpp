@@ -30,7 +30,7 @@ TEST_CASE("outputs of trilens test are never what its tests read", "[cli][files]
     CHECK(bytes_of(test + "/" + name) == before);
 }
 
-TEST_CASE("a reference may lie beside test.json; a wrong camera is that file's", "[cli][suite]") {
+TEST_CASE("a reference may lie beside test.json; a wrong camera is that file's", "[cli][suite][golden]") {
     const std::string folder = scratch_dir("cli_suite_beside");
     write_file(folder, "scene.json", small_scene());
     write_file(folder, "test.json", R"({ "against": "golden", "reference": "main.exr", "resolution": 2 })");

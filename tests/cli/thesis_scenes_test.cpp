@@ -34,7 +34,7 @@ std::size_t regions_in(const CommandRun& run) {
 
 }  // namespace
 
-TEST_CASE("the thesis' configurations show their shapes, projected and ray traced", "[cli][thesis]") {
+TEST_CASE("the thesis' configurations show their shapes, projected and ray traced", "[cli][thesis][golden]") {
     const std::string folder = scratch_dir("thesis_scenes");
     std::size_t scenes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(source_dir() + "/scenes/thesis")) {

@@ -28,7 +28,8 @@ void check_usage(const std::string& arguments, const std::vector<std::string>& s
 
 }  // namespace
 
-TEST_CASE("an unknown command is refused with the nearest, even where help is asked for", "[cli][usage]") {
+TEST_CASE("an unknown command is refused with the nearest, even where help is asked for",
+          "[cli][usage][bad-input]") {
     check_usage("rendr --help", {"\"rendr\"", "'render'"});
     check_usage("help rendr", {"\"rendr\"", "'render'"});
     check_usage("sweep rnu --help", {"\"sweep rnu\"", "'run'"});
@@ -86,7 +87,7 @@ TEST_CASE("every kind of bad option is told in one line with what the option tak
     check_usage("info --progress loud", {"--progress takes auto, bar, plain, json or none"});
 }
 
-TEST_CASE("options that would do nothing are refused, each with its reason", "[cli][usage]") {
+TEST_CASE("options that would do nothing are refused, each with its reason", "[cli][usage][bad-input]") {
     const std::string scene = write_file(scratch_dir("cli_usage_idle"), "room.json", small_scene());
     check_usage("trace " + scene + " -o out.exr --grid screen", {"--grid", "--surface facets"});
     check_usage("render " + scene + " -o out.exr --engine envmap --max-error 1", {"--max-error", "envmap"});

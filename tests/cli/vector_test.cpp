@@ -121,7 +121,7 @@ double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
 
 }  // namespace
 
-TEST_CASE("the outline in a flat mirror is that of a second camera behind it", "[cli][vector]") {
+TEST_CASE("the outline in a flat mirror is that of a second camera behind it", "[cli][vector][oracle]") {
     const std::string folder = scratch_dir("vector_flat");
     const std::string scene = write_file(folder, "scene.json", flat_mirror_scene());
     REQUIRE(run_trilens("render " + scene + " --wire -o " + folder + "/out.svg").exit_code == 0);
@@ -222,7 +222,8 @@ TEST_CASE("a path's Bezier curves stay within the tolerance of its exact conics"
     CHECK(cubics > 8);
 }
 
-TEST_CASE("a drawing's names are escaped, and options that make no sense are refused", "[cli][vector]") {
+TEST_CASE("a drawing's names are escaped, and options that make no sense are refused",
+          "[cli][vector][bad-input]") {
     const std::string folder = scratch_dir("vector_options");
     const std::string scene = write_file(folder, "scene.json", flat_mirror_scene());
     REQUIRE(run_trilens("render " + scene + " --format svg -o " + folder + "/lines.xml").exit_code == 0);

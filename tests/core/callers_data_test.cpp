@@ -105,7 +105,7 @@ std::vector<CameraDescription> odd_descriptions(CameraType type) {
 
 }  // namespace
 
-TEST_CASE("a window of samples that is none, or too many, is refused by its name", "[core]") {
+TEST_CASE("a window of samples that is none, or too many, is refused by its name", "[core][bad-input]") {
     const RayMesh mesh = film_of_4();
     const TriangleScene scene = one_triangle();
     constexpr int kLeast = -2147483647 - 1, kMost = 2147483647;
@@ -127,7 +127,7 @@ TEST_CASE("a window of samples that is none, or too many, is refused by its name
 }
 
 TEST_CASE("a camera without film or rays is refused, and so are matrices of a volume without planes",
-          "[core]") {
+          "[core][bad-input]") {
     const LinearCamera camera = make_perspective({});
     for (const double size : {0.0, -1.0, kNaN, kInfinity}) {
         CHECK(refusal([&] { make_camera_mesh(camera, size, 480); }).rfind("film: ", 0) == 0);
@@ -151,7 +151,7 @@ TEST_CASE("a camera without film or rays is refused, and so are matrices of a vo
         CHECK(refusal([&] { parallel_from_perspective(z); }).rfind("z_min: ", 0) == 0);
 }
 
-TEST_CASE("meshes that are none are refused wherever rays are looked through", "[core]") {
+TEST_CASE("meshes that are none are refused wherever rays are looked through", "[core][bad-input]") {
     std::size_t refused = 0;
     for (const RayMesh& mesh : odd_meshes()) {
         only_errors("draw_through", [&] { draw_through(mesh, one_triangle(), {0, 0, 4, 4, 2}); });
@@ -181,7 +181,7 @@ TEST_CASE("meshes that are none are refused wherever rays are looked through", "
     CHECK(refusal([&] { images.images(Vec3(kNaN)); }).rfind("point: ", 0) == 0);
 }
 
-TEST_CASE("triangles and grids that are none are refused", "[core]") {
+TEST_CASE("triangles and grids that are none are refused", "[core][bad-input]") {
     const RayMesh mesh = film_of_4();
     const LinearCamera camera = make_perspective({});
     const auto with_scene = [&](const auto& change) {
@@ -219,7 +219,7 @@ TEST_CASE("triangles and grids that are none are refused", "[core]") {
     only_errors("make_mirror_mesh", [&] { make_mirror_mesh(one_facet(), {}); });
 }
 
-TEST_CASE("cameras of numbers that are none are refused or have rays", "[core]") {
+TEST_CASE("cameras of numbers that are none are refused or have rays", "[core][bad-input]") {
     for (const double x : kOddNumbers) {
         for (const Vec3& v : kOddVectors) {
             only_errors("make_perspective", [&] {
@@ -253,7 +253,8 @@ TEST_CASE("cameras of numbers that are none are refused or have rays", "[core]")
     }
 }
 
-TEST_CASE("every kind of camera meets descriptions, films, places and points that are none", "[core]") {
+TEST_CASE("every kind of camera meets descriptions, films, places and points that are none",
+          "[core][bad-input]") {
     only_errors("exact_ray", [] { exact_ray({}, {0, 0}); });
     only_errors("film_positions", [] { film_positions({}, {0, 0, 0}); });
     only_errors("facet_kinds", [] { facet_kinds(Camera()); });
@@ -281,7 +282,7 @@ TEST_CASE("every kind of camera meets descriptions, films, places and points tha
     }
 }
 
-TEST_CASE("facets by themselves answer numbers that are none", "[core]") {
+TEST_CASE("facets by themselves answer numbers that are none", "[core][bad-input]") {
     for (const Vec3& v : kOddVectors) {
         const std::array<Ray, 3> rays{Ray{v, {0, 0, 1}}, Ray{{1, 0, 0}, v}, Ray{{0, 1, 0}, {0, 0, 1}}};
         only_errors("general_linear_camera", [&] { general_linear_camera(rays, {0, 0, 1}); });

@@ -106,7 +106,7 @@ TEST_CASE("a delay that no fraction of 16 bits has is the nearest", "[image]") {
     }
 }
 
-TEST_CASE("what is no animation is refused", "[image]") {
+TEST_CASE("what is no animation is refused", "[image][bad-input]") {
     CHECK_THROWS_AS(encode_apng({}, 24), UsageError);
     const std::vector<ApngBytes> different{picture(0.1f), picture(0.1f, 8)}, damaged{ApngBytes(100, 7)},
         good{picture(0.1f)}, cut{ApngBytes(good[0].begin(), good[0].begin() + 50)};

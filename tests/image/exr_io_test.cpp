@@ -105,7 +105,7 @@ std::string reading_error(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("an EXR keeps every bit, the windows and the texts", "[image]") {
+TEST_CASE("an EXR keeps every bit, the windows and the texts", "[image][law]") {
     const std::string folder = trilens_test::scratch_dir("exr_round_trip");
     const int width = GENERATE(1, 2, 33), height = GENERATE(1, 17, 600);
     const Image image = random_image(static_cast<unsigned>(width * 1000 + height), width + 1, height);
@@ -132,7 +132,7 @@ Image repetitive_image(unsigned seed, int width, int height) {
 
 }  // namespace
 
-TEST_CASE("values that deflate shrinks keep every bit as well", "[image]") {
+TEST_CASE("values that deflate shrinks keep every bit as well", "[image][law]") {
     const std::string folder = trilens_test::scratch_dir("exr_shrunk");
     const int width = GENERATE(1, 3, 100), height = GENERATE(1, 16, 70);
     const Image image = repetitive_image(8, width, height);
@@ -141,7 +141,7 @@ TEST_CASE("values that deflate shrinks keep every bit as well", "[image]") {
     check_same(image, read_exr(folder + "/a.exr"));
 }
 
-TEST_CASE("another program's library reads our files to the last bit", "[image]") {
+TEST_CASE("another program's library reads our files to the last bit", "[image][oracle]") {
     if (std::system("command -v oiiotool > /dev/null 2>&1") != 0) TRILENS_SKIP("needs oiiotool");
     const std::string folder = trilens_test::scratch_dir("exr_for_others");
     Image image;
@@ -241,7 +241,7 @@ TEST_CASE("an EXR's bytes depend on the image alone", "[image]") {
     CHECK(fixed.find("1970:01:01 00:00:00") != std::string::npos);
 }
 
-TEST_CASE("a truncated EXR is an InputError at every length", "[image]") {
+TEST_CASE("a truncated EXR is an InputError at every length", "[image][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("exr_truncated");
     const Image image = random_image(2, 19, 40);
     const auto bytes = encode_exr("whole", image);
@@ -284,7 +284,7 @@ TEST_CASE("an EXR whose writer died before the offset table is never read as hal
     }
 }
 
-TEST_CASE("a damaged EXR is an error or an image, never a crash", "[image]") {
+TEST_CASE("a damaged EXR is an error or an image, never a crash", "[image][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("exr_damaged");
     const auto bytes = encode_exr("whole", random_image(4, 19, 40));
     std::mt19937 random(99);
@@ -300,7 +300,7 @@ TEST_CASE("a damaged EXR is an error or an image, never a crash", "[image]") {
     CHECK(errors > 50);
 }
 
-TEST_CASE("what cannot be read is named with its reason", "[image]") {
+TEST_CASE("what cannot be read is named with its reason", "[image][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("exr_unreadable");
     CHECK(reading_error(folder + "/missing.exr").find("No such file") != std::string::npos);
     CHECK(reading_error(folder).find("is a folder") != std::string::npos);
@@ -313,7 +313,7 @@ TEST_CASE("what cannot be read is named with its reason", "[image]") {
     CHECK(reading_error(folder + "/picture.exr") != "");
 }
 
-TEST_CASE("what cannot be written is named with its reason and leaves nothing behind", "[image]") {
+TEST_CASE("what cannot be written is named with its reason and leaves nothing behind", "[image][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("exr_unwritable");
     const Image image = random_image(6, 64, 64);
     const auto writing_error = [&](const std::string& file) -> std::string {

@@ -46,7 +46,7 @@ void check_constant(const Texture& texture, std::array<double, 3> rgb, double to
 
 }  // namespace
 
-TEST_CASE("a picture with a NaN or an infinity is refused by name", "[image]") {
+TEST_CASE("a picture with a NaN or an infinity is refused by name", "[image][bad-input]") {
     const std::string file = trilens_test::scratch_dir("odd_texture") + "/sky.exr";
     for (const float odd :
          {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
@@ -115,7 +115,7 @@ TEST_CASE("every value is stored as the nearest step of sRGB", "[image]") {
     CHECK(wrong == 0);
 }
 
-TEST_CASE("values outside 0..1 and NaN have a defined colour", "[image]") {
+TEST_CASE("values outside 0..1 and NaN have a defined colour", "[image][bad-input]") {
     const float nan = std::numeric_limits<float>::quiet_NaN(),
                 infinity = std::numeric_limits<float>::infinity();
     const std::vector<float> odd = {-1, 7, nan, infinity, -infinity, 0.5f};
@@ -202,7 +202,7 @@ TEST_CASE("pictures of every kind become linear", "[image]") {
     }
 }
 
-TEST_CASE("what is no picture is an InputError that names it", "[image]") {
+TEST_CASE("what is no picture is an InputError that names it", "[image][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("no_texture");
     std::ofstream(folder + "/a.png") << "not a picture at all";
     CHECK_THROWS_AS(read_texture(folder + "/a.png"), InputError);

@@ -49,7 +49,7 @@ const PictureLibrary& library() {
 
 }  // namespace
 
-TEST_CASE("an ordinary PNG has the values that the library of all pictures gives it", "[image]") {
+TEST_CASE("an ordinary PNG has the values that the library of all pictures gives it", "[image][oracle]") {
     const Bytes own = every_value();
     const auto texture = decode_ordinary_png(own);
     REQUIRE(texture);
@@ -87,7 +87,7 @@ TEST_CASE("a PNG with depth, gamma, profile or interlacing of its own is left to
     CHECK_FALSE(decode_ordinary_png({}));
 }
 
-TEST_CASE("a damaged or boasting PNG is left to the library, wherever it is cut", "[image]") {
+TEST_CASE("a damaged or boasting PNG is left to the library, wherever it is cut", "[image][bad-input]") {
     const Bytes png = every_value();
     for (std::size_t length = 0; length + 20 < png.size(); length += 7) {
         INFO("length " << length << " of " << png.size());

@@ -41,7 +41,8 @@ std::vector<unsigned char> some_png() {
 
 }  // namespace
 
-TEST_CASE("a PNG with any damaged byte is read or refused without a word on stderr", "[image][talk]") {
+TEST_CASE("a PNG with any damaged byte is read or refused without a word on stderr",
+          "[image][talk][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("image_talk");
     const std::vector<unsigned char> whole = some_png();
     int refused = 0;

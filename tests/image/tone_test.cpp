@@ -26,7 +26,7 @@ Vec3 neutral_inverse(Vec3 shown) {
 
 }  // namespace
 
-TEST_CASE("no curve: exposure doubles the light per stop, and nothing else") {
+TEST_CASE("no curve: exposure doubles the light per stop, and nothing else", "[image]") {
     const Vec3 colour(0.1, 0.7, 3);
     CHECK(tone_mapped(colour, {}) == colour);
     CHECK(length(tone_mapped(colour, {3, ToneCurve::kLinear, 4}) - 8.0 * colour) < 1e-14);
@@ -42,7 +42,7 @@ TEST_CASE("no curve: exposure doubles the light per stop, and nothing else") {
     }
 }
 
-TEST_CASE("Reinhard: grey goes by L (1 + L / w^2) / (1 + L), white becomes 1, hues stay") {
+TEST_CASE("Reinhard: grey goes by L (1 + L / w^2) / (1 + L), white becomes 1, hues stay", "[image]") {
     for (const double white : {1.0, 2.5, 4.0, 20.0}) {
         CHECK(tone_mapped(Vec3(white), {0, ToneCurve::kReinhard, white}).x == Approx(1).epsilon(1e-12));
         for (const double light : {0.01, 0.3, 1.0, 7.0}) {
@@ -57,7 +57,8 @@ TEST_CASE("Reinhard: grey goes by L (1 + L / w^2) / (1 + L), white becomes 1, hu
     CHECK(shown.y / shown.z == Approx(2));
 }
 
-TEST_CASE("ACES by Narkowicz: values by hand, rising, and the quadratic's root takes it back") {
+TEST_CASE("ACES by Narkowicz: values by hand, rising, and the quadratic's root takes it back",
+          "[image][oracle]") {
     const auto shown = [](double x) { return tone_mapped(Vec3(x), {0, ToneCurve::kAces, 4}).x; };
     CHECK(shown(1) == Approx(2.54 / 3.16));
     CHECK(shown(0.18) == Approx(0.086724 / 0.324932));
@@ -72,7 +73,7 @@ TEST_CASE("ACES by Narkowicz: values by hand, rising, and the quadratic's root t
     }
 }
 
-TEST_CASE("PBR Neutral: the specification's inverse takes it back") {
+TEST_CASE("PBR Neutral: the specification's inverse takes it back", "[image]") {
     // Not from 0 on: there the inverse is a square root, which makes much of rounding.
     for (double r = 0.009; r < 6; r += 0.37)
         for (double g = 0.011; g < 6; g += 0.41)
@@ -87,7 +88,7 @@ TEST_CASE("PBR Neutral: the specification's inverse takes it back") {
           1e-12);
 }
 
-TEST_CASE("a mapping that is none is refused") {
+TEST_CASE("a mapping that is none is refused", "[image][bad-input]") {
     CHECK_THROWS_AS(check_tone_mapping({101, ToneCurve::kLinear, 4}), UsageError);
     CHECK_THROWS_AS(check_tone_mapping({std::nan(""), ToneCurve::kLinear, 4}), UsageError);
     CHECK_THROWS_AS(check_tone_mapping({0, ToneCurve::kReinhard, 0}), UsageError);

@@ -63,7 +63,7 @@ Ray random_ray(const std::vector<Box>& boxes, std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("every box that a ray meets is visited, once, wherever the boxes lie", "[truth]") {
+TEST_CASE("every box that a ray meets is visited, once, wherever the boxes lie", "[intersect][truth][law]") {
     std::mt19937 random(50);
     std::uniform_real_distribution<double> exponent(0, 30);
     std::size_t met = 0;
@@ -89,7 +89,7 @@ TEST_CASE("every box that a ray meets is visited, once, wherever the boxes lie",
     CHECK(met > 4000);
 }
 
-TEST_CASE("boxes far away leave the others told apart", "[truth]") {
+TEST_CASE("boxes far away leave the others told apart", "[intersect][truth]") {
     std::mt19937 random(51);
     for (const double distance : {0.0, 1e5, 1e9, 1e15, 1e30}) {
         std::vector<Box> boxes = dust(10000, random);
@@ -105,7 +105,7 @@ TEST_CASE("boxes far away leave the others told apart", "[truth]") {
     }
 }
 
-TEST_CASE("what a visitor says ends the visit in every tree", "[truth]") {
+TEST_CASE("what a visitor says ends the visit in every tree", "[intersect][truth][law]") {
     std::mt19937 random(52);
     std::vector<Box> boxes = dust(1000, random);
     for (const double far : {1e6, 1e12}) boxes.push_back({Vec3(-far), Vec3(far)});

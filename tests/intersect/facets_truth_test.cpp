@@ -18,7 +18,8 @@ bool same_hit(const Hit& a, const Hit& b) {
 
 }  // namespace
 
-TEST_CASE("facets truth traces the interpolated ray of every owned sample, and nothing else") {
+TEST_CASE("facets truth traces the interpolated ray of every owned sample, and nothing else",
+          "[intersect][law]") {
     Random random(7);
     const TriangleScene scene = random_triangles(random, 400, 1);
     const Tracer tracer(scene);
@@ -70,7 +71,7 @@ TEST_CASE("facets truth traces the interpolated ray of every owned sample, and n
     CHECK(seen > 500);
 }
 
-TEST_CASE("facets truth does not depend on the number of threads") {
+TEST_CASE("facets truth does not depend on the number of threads", "[intersect][law]") {
     Random random(8);
     const TriangleScene scene = random_triangles(random, 500, 1);
     const Tracer tracer(scene);

@@ -83,7 +83,8 @@ std::optional<double> march(const Ray& ray, const March& way, const Distance& di
 
 }  // namespace
 
-TEST_CASE("a sphere of faces is met where the sphere is, at every scale and from every side") {
+TEST_CASE("a sphere of faces is met where the sphere is, at every scale and from every side",
+          "[intersect][law]") {
     Random random(11);
     int touching = 0, rays = 0;
     for (int trial = 0; trial < 8; ++trial) {
@@ -104,7 +105,8 @@ TEST_CASE("a sphere of faces is met where the sphere is, at every scale and from
     CHECK(touching < 5);
 }
 
-TEST_CASE("rays that graze the silhouette hit or miss as the surface says, not as the fine grid says") {
+TEST_CASE("rays that graze the silhouette hit or miss as the surface says, not as the fine grid says",
+          "[intersect]") {
     Random random(12);
     const Vec3 centre(0.2, -0.1, 0.3);
     const ProjectedSphere sphere(FaceDomain::kSquare, centre, 1);
@@ -122,7 +124,7 @@ TEST_CASE("rays that graze the silhouette hit or miss as the surface says, not a
     CHECK(touching < 50);
 }
 
-TEST_CASE("no ray slips between faces, not even straight at their edges and corners") {
+TEST_CASE("no ray slips between faces, not even straight at their edges and corners", "[intersect][law]") {
     Random random(17);
     for (const FaceDomain domain : {FaceDomain::kSquare, FaceDomain::kTriangle}) {
         const double radius = random.log_uniform(1e-4, 1e4);
@@ -141,7 +143,7 @@ TEST_CASE("no ray slips between faces, not even straight at their edges and corn
     }
 }
 
-TEST_CASE("a torus shows the first of its up to four hits") {
+TEST_CASE("a torus shows the first of its up to four hits", "[intersect]") {
     Random random(13);
     int touching = 0, later = 0, hits = 0;
     for (const double scale : {1e-4, 1.0, 1e4}) {
@@ -180,7 +182,7 @@ TEST_CASE("a torus shows the first of its up to four hits") {
     CHECK(later > 1000);
 }
 
-TEST_CASE("waves seen along their crests show the first crest") {
+TEST_CASE("waves seen along their crests show the first crest", "[intersect]") {
     Random random(14);
     const Waves waves(0.12, 9);
     const LimitTracer tracer(waves, grid_of(waves, 24));
@@ -216,7 +218,7 @@ TEST_CASE("waves seen along their crests show the first crest") {
     CHECK(hits > 3000);
 }
 
-TEST_CASE("hits are found where derivatives vanish or have no bound") {
+TEST_CASE("hits are found where derivatives vanish or have no bound", "[intersect]") {
     Random random(15);
     for (const double power : {0.6, 0.85, 1.285}) {
         const PinchedParaboloid surface(power);
@@ -238,7 +240,7 @@ TEST_CASE("hits are found where derivatives vanish or have no bound") {
     }
 }
 
-TEST_CASE("a collapsed edge gives the facet's normal") {
+TEST_CASE("a collapsed edge gives the facet's normal", "[intersect]") {
     // A cone: the face's edge v = 1 is one point, where du and the normal vanish.
     class Cone : public Surface {
       public:
@@ -265,7 +267,7 @@ TEST_CASE("a collapsed edge gives the facet's normal") {
     CHECK(hit->point.normal.y > 0.5);
 }
 
-TEST_CASE("surfaces with a closed form are asked for it") {
+TEST_CASE("surfaces with a closed form are asked for it", "[intersect][oracle]") {
     class Plane : public Surface {
       public:
         std::size_t face_count() const override { return 1; }
@@ -294,7 +296,8 @@ TEST_CASE("surfaces with a closed form are asked for it") {
 }
 
 TEST_CASE(
-    "hits on the limit have the same bits for every instruction set, thread count and alone or in a batch") {
+    "hits on the limit have the same bits for every instruction set, thread count and alone or in a batch",
+    "[intersect][law]") {
     Random random(16);
     const Torus torus(1, 0.45);
     const SurfaceGrid grid = grid_of(torus, 12);

@@ -70,7 +70,7 @@ void check_bounds(const Surface& surface, int n, Random& random) {
 
 }  // namespace
 
-TEST_CASE("Patches bound the surface and its normals") {
+TEST_CASE("Patches bound the surface and its normals", "[intersect]") {
     Random random(3);
     for (const auto type :
          {Primitive::Type::kSphere, Primitive::Type::kParaboloid, Primitive::Type::kCylinder})
@@ -79,7 +79,7 @@ TEST_CASE("Patches bound the surface and its normals") {
     check_bounds(*cube(0, 2), 4, random);
 }
 
-TEST_CASE("Borders and creases are rims, and closed surfaces are known") {
+TEST_CASE("Borders and creases are rims, and closed surfaces are known", "[intersect]") {
     const auto tree_of = [](const Surface& surface) { return PatchTree(surface, make_grid(surface, 4)); };
     const PatchTree ball = tree_of(*primitive(Primitive::Type::kSphere));
     CHECK(ball.rims().empty());
@@ -98,7 +98,7 @@ TEST_CASE("Borders and creases are rims, and closed surfaces are known") {
     CHECK(open.rims().size() == 4 * 4);
 }
 
-TEST_CASE("A surface that winds over itself is no graph, nor is one with a hole") {
+TEST_CASE("A surface that winds over itself is no graph, nor is one with a hole", "[intersect]") {
     // A helical ramp of two turns: all normals look up.
     Cage ramp;
     constexpr int kAround = 24, kTurns = 2;
@@ -115,7 +115,7 @@ TEST_CASE("A surface that winds over itself is no graph, nor is one with a hole"
     CHECK_FALSE(PatchTree(*winding, make_grid(*winding, 2)).is_height_field());
 }
 
-TEST_CASE("Visits reach every patch whose box is asked for") {
+TEST_CASE("Visits reach every patch whose box is asked for", "[intersect][law]") {
     Random random(17);
     const auto surface = cube(1.5);
     const PatchTree tree(*surface, make_grid(*surface, 8));

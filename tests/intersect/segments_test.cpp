@@ -61,7 +61,7 @@ Segments any_segments(Random& random, const Vec3& centre, double size) {
 
 }  // namespace
 
-TEST_CASE("segments side by side are hidden as single rays are") {
+TEST_CASE("segments side by side are hidden as single rays are", "[intersect][oracle][law]") {
     Random random(31);
     int hidden = 0, open = 0;
     for (int trial = 0; trial < 60; ++trial) {
@@ -94,7 +94,7 @@ TEST_CASE("segments side by side are hidden as single rays are") {
     CHECK(Tracer(TriangleScene()).occluded(any_segments(random, Vec3(0), 1)) == 0);
 }
 
-TEST_CASE("segments side by side meet a curved surface as single rays do") {
+TEST_CASE("segments side by side meet a curved surface as single rays do", "[intersect][oracle][law]") {
     Random random(33);
     const Torus torus(1, 0.4);
     const ProjectedSphere sphere(FaceDomain::kSquare, Vec3(3, -2, 1), 0.01);
@@ -119,7 +119,7 @@ TEST_CASE("segments side by side meet a curved surface as single rays do") {
     CHECK(passed > 300);
 }
 
-TEST_CASE("a segment that may not meet a box has no point in it") {
+TEST_CASE("a segment that may not meet a box has no point in it", "[intersect][law]") {
     Random random(32);
     int apart = 0, met = 0;
     for (int trial = 0; trial < 3000; ++trial) {

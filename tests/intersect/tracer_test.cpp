@@ -93,7 +93,7 @@ bool same_bits(const Hit& a, const Hit& b) {
 
 }  // namespace
 
-TEST_CASE("first hits are those of brute force in long double, at every scale") {
+TEST_CASE("first hits are those of brute force in long double, at every scale", "[intersect][oracle][law]") {
     Random random(1);
     int edge_ties = 0, rays = 0;
     for (int trial = 0; trial < 24; ++trial) {
@@ -111,7 +111,7 @@ TEST_CASE("first hits are those of brute force in long double, at every scale") 
     CHECK(edge_ties < rays / 500);
 }
 
-TEST_CASE("coherent rays over a mesh see what brute force sees") {
+TEST_CASE("coherent rays over a mesh see what brute force sees", "[intersect][oracle]") {
     Random random(2);
     int edge_ties = 0;
     for (const double scale : {1e-4, 1.0, 1e4}) {
@@ -128,7 +128,7 @@ TEST_CASE("coherent rays over a mesh see what brute force sees") {
     CHECK(edge_ties < 20);
 }
 
-TEST_CASE("closed meshes never leak, not even through their edges and corners") {
+TEST_CASE("closed meshes never leak, not even through their edges and corners", "[intersect][law]") {
     Random random(3);
     for (int trial = 0; trial < 12; ++trial) {
         const double radius = random.log_uniform(1e-4, 1e4);
@@ -154,7 +154,8 @@ TEST_CASE("closed meshes never leak, not even through their edges and corners") 
     }
 }
 
-TEST_CASE("coincident triangles show the one with the smaller object, then the smaller primitive") {
+TEST_CASE("coincident triangles show the one with the smaller object, then the smaller primitive",
+          "[intersect]") {
     Random random(4);
     for (int trial = 0; trial < 200; ++trial) {
         const double scale = random.log_uniform(1e-4, 1e4);
@@ -180,7 +181,7 @@ TEST_CASE("coincident triangles show the one with the smaller object, then the s
     }
 }
 
-TEST_CASE("depths that differ by more than the tie are told apart, whatever the ids") {
+TEST_CASE("depths that differ by more than the tie are told apart, whatever the ids", "[intersect][law]") {
     TriangleScene scene;
     for (const double z : {0.0, -1e-8, -2e-8}) {
         for (const Vec2& xy : {Vec2(-1, -1), Vec2(1, -1), Vec2(0, 1)})
@@ -195,7 +196,7 @@ TEST_CASE("depths that differ by more than the tie are told apart, whatever the 
     CHECK(tracer.first_hit({{0.1, 0.1, -1}, {0, 0, 1}}).triangle == 2);
 }
 
-TEST_CASE("every instruction set and every number of threads gives the same bits") {
+TEST_CASE("every instruction set and every number of threads gives the same bits", "[intersect][law]") {
     Random random(5);
     const TriangleScene scene = random_triangles(random, 3000, 7.0);
     const Tracer best(scene);
@@ -214,7 +215,8 @@ TEST_CASE("every instruction set and every number of threads gives the same bits
     CHECK(seen > 2000);
 }
 
-TEST_CASE("neighbours that share a box are seen as if each stood alone, whoever holds the triangles") {
+TEST_CASE("neighbours that share a box are seen as if each stood alone, whoever holds the triangles",
+          "[intersect]") {
     // A mesh in its own order, where neighbours follow each other, with triangles without area between them;
     // and the same in any order.
     Random random(15);
@@ -243,7 +245,7 @@ TEST_CASE("neighbours that share a box are seen as if each stood alone, whoever 
     CHECK(seen > 1000);
 }
 
-TEST_CASE("t_min leaves out what is nearer and keeps what is there") {
+TEST_CASE("t_min leaves out what is nearer and keeps what is there", "[intersect]") {
     TriangleScene scene;
     for (const double z : {-1.0, -2.0}) {
         for (const Vec2& xy : {Vec2(-1, -1), Vec2(1, -1), Vec2(0, 1)})
@@ -267,7 +269,7 @@ TEST_CASE("t_min leaves out what is nearer and keeps what is there") {
     CHECK_FALSE(tracer.occluded({{0, 0, 0}, {0, 0, 1}}, 0, std::numeric_limits<double>::infinity()));
 }
 
-TEST_CASE("occluded agrees with first_hit") {
+TEST_CASE("occluded agrees with first_hit", "[intersect][oracle]") {
     Random random(6);
     const TriangleScene scene = random_triangles(random, 100, 1e-3);
     const Tracer tracer(scene);
@@ -281,7 +283,8 @@ TEST_CASE("occluded agrees with first_hit") {
     }
 }
 
-TEST_CASE("empty scenes, triangles without area and rays that are none see nothing") {
+TEST_CASE("empty scenes, triangles without area and rays that are none see nothing",
+          "[intersect][bad-input]") {
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  infinity = std::numeric_limits<double>::infinity();
     CHECK_FALSE(Tracer(TriangleScene{}).first_hit({{0, 0, 0}, {0, 0, 1}}).seen());
@@ -314,7 +317,8 @@ TEST_CASE("empty scenes, triangles without area and rays that are none see nothi
     }
 }
 
-TEST_CASE("Embree's version is known, and unknown instruction sets are refused") {
+TEST_CASE("Embree's version is known, and unknown instruction sets are refused",
+          "[intersect][bad-input][oracle]") {
     CHECK(tracer_library_version().rfind("Embree ", 0) == 0);
     CHECK(tracer_library_version().size() > 10);
     CHECK_THROWS_AS(Tracer(TriangleScene{}, "abacus"), UsageError);

@@ -59,7 +59,7 @@ std::vector<PlaneTriangle> triangles() {
 
 }  // namespace
 
-TEST_CASE("no triangle is rejected that comes as near to the origin as is asked", "[intersect]") {
+TEST_CASE("no triangle is rejected that comes as near to the origin as is asked", "[intersect][law]") {
     constexpr std::array<double, 6> shares{1, 1 + 1e-12, 1 + 1e-6, 1.01, 2, 100};
     for (const PlaneTriangle& triangle : triangles()) {
         const Long exact = distance_from_triangle(triangle);

@@ -54,33 +54,34 @@ void check_cages(int width, int height, bool print) {
 
 }  // namespace
 
-TEST_CASE("projector and Embree agree on the shipped scenes", "[laws]") {
+TEST_CASE("projector and Embree agree on the shipped scenes", "[laws][oracle][law][golden]") {
     check_shipped(160, 120, false);
 }
 
-TEST_CASE("projector and Embree agree over whole paths: every end of every sample", "[laws][paths]") {
+TEST_CASE("projector and Embree agree over whole paths: every end of every sample",
+          "[laws][paths][oracle][law]") {
     for (const std::string name : {"crystal-ball", "mirror-balls", "glass-before-mirror", "bowl"})
         for (const int n : {1, 2, 8})
             check_agreement(name, n, *shipped_world("paths/" + name, n, 120, 90), true);
 }
 
-TEST_CASE("the same through prism, lenses, rings and a glass of wine", "[laws][paths]") {
+TEST_CASE("the same through prism, lenses, rings and a glass of wine", "[laws][paths][law]") {
     for (const std::string name :
          {"prism", "plano-convex", "meniscus", "glass-torus", "mirror-torus", "wine-glass", "under-water"})
         for (const int n : {1, 2, 8})
             check_agreement(name, n, *shipped_world("paths/" + name, n, 160, 120), true);
 }
 
-TEST_CASE("projector and Embree agree on cages of every kind as mirrors", "[laws]") {
+TEST_CASE("projector and Embree agree on cages of every kind as mirrors", "[laws][oracle][law]") {
     for (const auto& [name, cage] : made_cages())
         for (const int n : {1, 4}) check_agreement(name, n, *cage_world(cage, n, 120, 90), false);
 }
 
-TEST_CASE("projector and Embree agree on Pixar's cages as mirrors", "[laws]") {
+TEST_CASE("projector and Embree agree on Pixar's cages as mirrors", "[laws][oracle][law]") {
     check_cages(96, 72, false);
 }
 
-TEST_CASE("the same at full size, with a table", "[.long][agreement]") {
+TEST_CASE("the same at full size, with a table", "[.long][agreement][law]") {
     check_shipped(640, 480, true);
     check_cages(640, 480, true);
 }

@@ -67,7 +67,7 @@ std::vector<unsigned char> drawn(const Renderer& renderer) {
 
 }  // namespace
 
-TEST_CASE("a frame is the still scene with the values between the keys, byte for byte") {
+TEST_CASE("a frame is the still scene with the values between the keys, byte for byte", "[laws][law]") {
     const std::string tracks =
         track("/meshes/2/transform/translate", key(0, "[0, 0, 0]") + "," + key(8, "[1, -2, 0.5]")) + "," +
         track("/cameras/0/yfov", key(0, "40") + "," + key(8, "44"), R"(, "interpolation": "linear")") + "," +
@@ -109,7 +109,7 @@ TEST_CASE("a frame is the still scene with the values between the keys, byte for
     CHECK(as_it_stands.find("R")->floats() == plain.find("R")->floats());
 }
 
-TEST_CASE("what does not move is kept, what does is built anew") {
+TEST_CASE("what does not move is kept, what does is built anew", "[laws][law][golden]") {
     const auto kept_by = [](const std::string& tracks) {
         const Scene scene = parse_scene(scene_text({}, tracks));
         Renderer renderer(scene_at_frame(scene, 0));
@@ -127,7 +127,7 @@ TEST_CASE("what does not move is kept, what does is built anew") {
     CHECK((light.objects && light.optics == 2));
 }
 
-TEST_CASE("rotations go along the shorter great arc at even speed") {
+TEST_CASE("rotations go along the shorter great arc at even speed", "[laws][law]") {
     // About one axis by a growing angle: the quaternion of the half angle, written down directly.
     const double most = 2.4, c = std::cos(0.5 * most), s = std::sin(0.5 * most);
     const auto quaternion = [](double x, double y, double z, double w) {
@@ -153,7 +153,7 @@ TEST_CASE("rotations go along the shorter great arc at even speed") {
     }
 }
 
-TEST_CASE("smooth keys ease in and out") {
+TEST_CASE("smooth keys ease in and out", "[laws][law]") {
     const std::string tracks =
         track("/cameras/0/yfov", key(0, "40") + "," + key(4, "48"), R"(, "interpolation": "smooth")");
     const Scene scene = parse_scene(scene_text({}, tracks));
@@ -163,7 +163,7 @@ TEST_CASE("smooth keys ease in and out") {
     }
 }
 
-TEST_CASE("a turntable goes once around what the camera looks at") {
+TEST_CASE("a turntable goes once around what the camera looks at", "[laws][law]") {
     const Scene scene = parse_scene(scene_text({}));
     const Vec3 eye = scene.cameras[0].eye;
     for (int frame = 0; frame < 8; ++frame) {
@@ -178,7 +178,7 @@ TEST_CASE("a turntable goes once around what the camera looks at") {
     CHECK(scene_at_frame(scene, 0, turntable(scene, 0, 0, 8)).cameras[0].eye == eye);
 }
 
-TEST_CASE("animations that are none are refused with their place") {
+TEST_CASE("animations that are none are refused with their place", "[laws][bad-input][law]") {
     const auto refused = [](const std::string& tracks) -> std::string {
         try {
             parse_scene(scene_text({}, tracks), "", {}, "film.json");

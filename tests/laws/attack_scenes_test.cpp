@@ -61,7 +61,7 @@ Shown images_of_pixels(const World& world, int step) {
 
 }  // namespace
 
-TEST_CASE("Scenes that an attack found have the truth's paths", "[law][data]") {
+TEST_CASE("Scenes that an attack found have the truth's paths", "[laws][law][data][oracle]") {
     struct Attack {
         const char* name;
         int n;
@@ -88,7 +88,7 @@ TEST_CASE("Scenes that an attack found have the truth's paths", "[law][data]") {
 }
 
 TEST_CASE("Ids without weight and reflections without light are not drawn: as the truth has them",
-          "[law][data]") {
+          "[laws][law][data]") {
     for (const std::string name :
          {"law-05-depth0-weightless-reflect-ids", "law-07-nofresnel-grazing-pure-reflection"}) {
         TRILENS_NEEDS_DATA(file_of(name));
@@ -103,7 +103,7 @@ TEST_CASE("Ids without weight and reflections without light are not drawn: as th
     }
 }
 
-TEST_CASE("What an attack's white rooms lose is what the pictures say", "[law][data]") {
+TEST_CASE("What an attack's white rooms lose is what the pictures say", "[laws][law][data]") {
     for (const std::string name : {"law-11-cut-over-100-percent-dispersion", "law-12-energy-below-stated-cut",
                                    "law-14-energy-above-1"})
         for (const int n : {1, 8}) {
@@ -124,7 +124,7 @@ TEST_CASE("What an attack's white rooms lose is what the pictures say", "[law][d
         }
 }
 
-TEST_CASE("Paths at a seam of mirrors meet as many optics as the truth's", "[law][data]") {
+TEST_CASE("Paths at a seam of mirrors meet as many optics as the truth's", "[laws][law][data][oracle]") {
     const std::string name = "law-13-overlapping-mirrors-33-hits";
     TRILENS_NEEDS_DATA(file_of(name));
     const auto world = data_world(name);
@@ -137,7 +137,7 @@ TEST_CASE("Paths at a seam of mirrors meet as many optics as the truth's", "[law
     for (const int n : {1, 2, 4, 8}) CHECK(most(Engine::kExact, n) <= truth);
 }
 
-TEST_CASE("What the truth shows in a pixel is a visible image there", "[law][data]") {
+TEST_CASE("What the truth shows in a pixel is a visible image there", "[laws][law][data][oracle]") {
     struct Attack {
         const char* name;
         int step;

@@ -103,7 +103,7 @@ Difference compare(const World& world, const SampleViews& a, const SampleViews& 
 
 }  // namespace
 
-TEST_CASE("a perspective's rays as an explicit mesh show optics as the perspective does") {
+TEST_CASE("a perspective's rays as an explicit mesh show optics as the perspective does", "[laws][law]") {
     for (const std::string material : {"mirror", "glass"})
         for (const int depth : {0, 8}) {
             INFO(material << " " << depth);
@@ -134,7 +134,8 @@ TEST_CASE("a perspective's rays as an explicit mesh show optics as the perspecti
         }
 }
 
-TEST_CASE("through an explicit mesh the picture comes to the exact one as facets get smaller") {
+TEST_CASE("through an explicit mesh the picture comes to the exact one as facets get smaller",
+          "[laws][law]") {
     std::array<double, 2> median{};
     for (const bool fine : {false, true}) {
         const auto world = world_from("mesh", ball_scene(as_ray_mesh(6), "mirror", 8), fine ? 32 : 8);
@@ -146,8 +147,8 @@ TEST_CASE("through an explicit mesh the picture comes to the exact one as facets
     CHECK(median[1] < median[0] / 8);
 }
 
-TEST_CASE(
-    "a camera inside a room of mirrors: engines agree and rays end where the exact surfaces send them") {
+TEST_CASE("a camera inside a room of mirrors: engines agree and rays end where the exact surfaces send them",
+          "[laws][oracle][law]") {
     // Five mirrors and an open front; a card stands in the room.
     const auto wall = [](const std::string& name, const std::string& points) {
         return R"({ "name": ")" + name +
@@ -189,7 +190,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("an error that is asked for is kept before every camera, and most is projected", "[laws]") {
+TEST_CASE("an error that is asked for is kept before every camera, and most is projected",
+          "[laws][law][golden]") {
     const auto summary = [](const World& world, std::size_t camera, std::optional<double> max_error) {
         PictureRequest request;
         request.frame.camera = camera;
@@ -224,7 +226,7 @@ TEST_CASE("an error that is asked for is kept before every camera, and most is p
 }
 
 TEST_CASE("glass before a camera that is not linear is as near to the truth as before a perspective",
-          "[laws]") {
+          "[laws][law]") {
     const auto mean_of = [](const std::string& camera) {
         const auto world = world_from("fisheye_glass", ball_scene(camera, "glass", 8), 12);
         PictureRequest request;

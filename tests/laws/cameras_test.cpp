@@ -79,7 +79,8 @@ const std::vector<Id>& ids(const Image& image, const std::string& channel) {
 
 }  // namespace
 
-TEST_CASE("through every camera the projector, the thesis' engine and Embree see the same") {
+TEST_CASE("through every camera the projector, the thesis' engine and Embree see the same",
+          "[laws][oracle][law]") {
     const auto world = room(120, 90, 5);
     REQUIRE(world->scene.cameras.size() >= 12);
     for (std::size_t c = 0; c < world->scene.cameras.size(); ++c) {
@@ -105,7 +106,8 @@ TEST_CASE("through every camera the projector, the thesis' engine and Embree see
     }
 }
 
-TEST_CASE("through every camera the picture comes to the exact surface's and the exact rays'") {
+TEST_CASE("through every camera the picture comes to the exact surface's and the exact rays'",
+          "[laws][law]") {
     const auto coarse = room(120, 90, 6), fine = room(120, 90, 24);
     for (std::size_t c = 0; c < coarse->scene.cameras.size(); ++c) {
         INFO(coarse->scene.cameras[c].name);
@@ -140,7 +142,8 @@ TEST_CASE("through every camera the picture comes to the exact surface's and the
     }
 }
 
-TEST_CASE("every example is drawn by projection as its facets' rays have it, through each of its cameras") {
+TEST_CASE("every example is drawn by projection as its facets' rays have it, through each of its cameras",
+          "[laws][law][golden]") {
     std::size_t drawn = 0;
     for (const SceneExample& example : scene_examples()) {
         std::string text = example.json;
@@ -164,14 +167,14 @@ TEST_CASE("every example is drawn by projection as its facets' rays have it, thr
     CHECK(drawn >= 20);
 }
 
-TEST_CASE("the examples of cameras are the shipped scenes") {
+TEST_CASE("the examples of cameras are the shipped scenes", "[laws][law][golden]") {
     for (const auto& [name, file] : {std::pair("cameras", "cameras.json"), {"caustic", "cameras/cup.json"}})
         for (const SceneExample& example : scene_examples())
             if (example.name == std::string(name))
                 CHECK(example.json == trilens_test::bytes_of(source_dir() + "/scenes/" + file));
 }
 
-TEST_CASE("the tiles of a shifted camera join to the whole picture, every id the same") {
+TEST_CASE("the tiles of a shifted camera join to the whole picture, every id the same", "[laws][law]") {
     const std::string look_at = R"("lookAt": { "eye": [0.6, 1.8, 4.7], "at": [-0.1, 1, 0] } })";
     const double yfov = 60, tile = 2 * std::atan(0.5 * std::tan(yfov * 3.14159265358979323846 / 360)) * 180 /
                                    3.14159265358979323846;
@@ -204,7 +207,7 @@ TEST_CASE("the tiles of a shifted camera join to the whole picture, every id the
     CHECK(compared == 4 * 200 * 120);
 }
 
-TEST_CASE("a panorama is what six faces of a cube show") {
+TEST_CASE("a panorama is what six faces of a cube show", "[laws][law]") {
     const std::string eye = "\"eye\": [-0.4, 1.6, 2.4]";
     std::string cameras = R"({ "name": "all", "type": "spherical", "facets": 128, "lookAt": { )" + eye +
                           R"(, "at": [-0.4, 1.6, 0] } })";
@@ -248,7 +251,7 @@ TEST_CASE("a panorama is what six faces of a cube show") {
     CHECK(static_cast<double>(same) >= 0.9995 * static_cast<double>(compared));
 }
 
-TEST_CASE("what project names, the exact rays see, through every camera") {
+TEST_CASE("what project names, the exact rays see, through every camera", "[laws][law]") {
     const auto world = room(160, 120, 8);
     const std::vector<Vec3> points{
         {-1.55, 0.9, 1.2}, {1.65, 0.8, 0.5}, {-2.9, 2, 1}, {0.4, 3.9, 1}, {2.9, 1, 3}};
@@ -283,7 +286,7 @@ TEST_CASE("what project names, the exact rays see, through every camera") {
     CHECK(refined > 30);
 }
 
-TEST_CASE("what a picture shows in a mirror, project finds there, through every camera") {
+TEST_CASE("what a picture shows in a mirror, project finds there, through every camera", "[laws][law]") {
     const auto world = room(160, 120, 16);
     REQUIRE(world->scene.render.max_depth > 0);
     std::size_t asked = 0;
@@ -330,7 +333,7 @@ TEST_CASE("what a picture shows in a mirror, project finds there, through every 
     CHECK(asked > 500);
 }
 
-TEST_CASE("beyond a fisheye's circle there is nothing: no ray, alpha 0, black") {
+TEST_CASE("beyond a fisheye's circle there is nothing: no ray, alpha 0, black", "[laws][law]") {
     const auto world = room(160, 120, 6);
     const std::size_t fisheye = camera_named(*world, "fisheye");
     for (const Engine engine : {Engine::kExact, Engine::kLimitTruth}) {
@@ -356,7 +359,8 @@ TEST_CASE("beyond a fisheye's circle there is nothing: no ray, alpha 0, black") 
     }
 }
 
-TEST_CASE("clipping planes: nothing nearer than near, nothing farther than far, Z counts from the eye") {
+TEST_CASE("clipping planes: nothing nearer than near, nothing farther than far, Z counts from the eye",
+          "[laws][law]") {
     const std::string look_at = R"("lookAt": { "eye": [0.6, 1.8, 4.7], "at": [-0.1, 1, 0] } })";
     const auto open = room(160, 120, 8, R"({ "name": "open", "yfov": 60, )" + look_at);
     const auto clipped =

@@ -95,7 +95,7 @@ ObjCounts counts_of(const std::string& obj) {
 
 }  // namespace
 
-TEST_CASE("parallel rays in a ring have a nephroid, its sheet and the curve on the table", "[laws]") {
+TEST_CASE("parallel rays in a ring have a nephroid, its sheet and the curve on the table", "[laws][law]") {
     const Scene scene = load_scene(SceneRequest{cup(), {}, 0});
     std::vector<double> errors;
     for (const int n : {6, 12, 24}) {
@@ -131,7 +131,7 @@ TEST_CASE("parallel rays in a ring have a nephroid, its sheet and the curve on t
     CHECK(nearest_to_axis == Approx(0.5).margin(1e-3));  // the cusp: half way to the mirror
 }
 
-TEST_CASE("rays from a point of a ball have a cardioid turned about the axis, and the axis", "[laws]") {
+TEST_CASE("rays from a point of a ball have a cardioid turned about the axis, and the axis", "[laws][law]") {
     const Scene scene = inside_ball();
     std::vector<double> errors;
     for (const int n : {8, 16, 32}) {
@@ -150,7 +150,8 @@ TEST_CASE("rays from a point of a ball have a cardioid turned about the axis, an
     CHECK(std::log2(errors[1] / errors[2]) > 1.65);
 }
 
-TEST_CASE("the caustic of crossed slits are the slits; of an eye and a flat mirror there is none", "[laws]") {
+TEST_CASE("the caustic of crossed slits are the slits; of an eye and a flat mirror there is none",
+          "[laws][law]") {
     Scene scene = inside_ball();
     scene.meshes[0].role = Role::kObject, scene.meshes[0].primitive.reset();
     scene.materials[0] = {};
@@ -199,7 +200,8 @@ TEST_CASE("the caustic of crossed slits are the slits; of an eye and a flat mirr
     CHECK(drawn(flat, "main", 4).caustics.empty());
 }
 
-TEST_CASE("the command writes caustics as an OBJ, and the shipped one is what it writes", "[laws]") {
+TEST_CASE("the command writes caustics as an OBJ, and the shipped one is what it writes",
+          "[laws][law][golden]") {
     const std::string folder = scratch_dir("caustic_of_cup");
     const std::string file = folder + "/caustic_of_cup.obj";
     const CommandRun run =

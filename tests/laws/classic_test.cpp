@@ -72,7 +72,8 @@ ClassicDifference difference(int n, const ClassicParams& params, int width, int 
 
 }  // namespace
 
-TEST_CASE("with arcs the classic engine shows the exact one's picture but for edges", "[laws][classic]") {
+TEST_CASE("with arcs the classic engine shows the exact one's picture but for edges",
+          "[laws][classic][law]") {
     for (const int n : {1, 2, 8}) {
         for (const Clip clip : {Clip::kScene, Clip::kScreen}) {
             const ClassicDifference d = difference(n, {Curves::kArcs, clip}, 160, 120);
@@ -83,7 +84,7 @@ TEST_CASE("with arcs the classic engine shows the exact one's picture but for ed
     }
 }
 
-TEST_CASE("slices and tessellation come to the exact picture as K grows", "[laws][classic]") {
+TEST_CASE("slices and tessellation come to the exact picture as K grows", "[laws][classic][law]") {
     for (const Curves curves : {Curves::kSlices, Curves::kTessellate}) {
         double last = 1, first = 0;
         for (const int k : {1, 2, 4, 8, 16}) {
@@ -100,7 +101,7 @@ TEST_CASE("slices and tessellation come to the exact picture as K grows", "[laws
     }
 }
 
-TEST_CASE("a mirror in a closed room shows the room in every pixel", "[laws][classic]") {
+TEST_CASE("a mirror in a closed room shows the room in every pixel", "[laws][classic][law]") {
     std::size_t open = 0;
     for (const int n : {1, 2, 5, 16}) {
         const auto world = shipped_world("closed", n, 200, 150);
@@ -124,7 +125,7 @@ TEST_CASE("a mirror in a closed room shows the room in every pixel", "[laws][cla
     CHECK(open > 0);
 }
 
-TEST_CASE("the classic engine shows the same with any number of threads", "[laws][classic]") {
+TEST_CASE("the classic engine shows the same with any number of threads", "[laws][classic][law]") {
     const auto world = shipped_world("torus", 4, 120, 90);
     for (const ClassicParams& params : {ClassicParams{}, ClassicParams{Curves::kSlices, Clip::kScreen, 3}}) {
         set_thread_count(1);

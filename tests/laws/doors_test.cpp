@@ -131,7 +131,7 @@ const std::vector<std::string> kFolders{"src", "reflect", "refract", "surfaces"}
 
 }  // namespace
 
-TEST_CASE("every outside library is included through its one door", "[laws]") {
+TEST_CASE("every outside library is included through its one door", "[laws][law]") {
     std::map<std::string, std::set<std::string>> doors_used;
     for (const std::string& folder : kFolders) {
         for (const Include& include : includes_under(folder)) {
@@ -151,7 +151,7 @@ TEST_CASE("every outside library is included through its one door", "[laws]") {
     for (const char* single : {"glm/", "tbb/"}) CHECK(doors_used[single].size() == 1);
 }
 
-TEST_CASE("no header of ours brings an outside library with it, but for the vocabulary", "[laws]") {
+TEST_CASE("no header of ours brings an outside library with it, but for the vocabulary", "[laws][law]") {
     const std::set<std::string> vocabulary{
         "src/base/math/vec.h",
         "src/projector/kernel/simd-inl.h",  // parts of the .cpp files that include them
@@ -175,7 +175,7 @@ TEST_CASE("no header of ours brings an outside library with it, but for the voca
     }
 }
 
-TEST_CASE("rooms include only rooms that they may see", "[laws]") {
+TEST_CASE("rooms include only rooms that they may see", "[laws][law]") {
     const std::map<std::string, Room> all = rooms();
     REQUIRE(all.size() >= 14);
     std::size_t checked = 0;
@@ -190,7 +190,7 @@ TEST_CASE("rooms include only rooms that they may see", "[laws]") {
     CHECK(checked > 100);
 }
 
-TEST_CASE("folders of a room include only those below them", "[laws]") {
+TEST_CASE("folders of a room include only those below them", "[laws][law]") {
     const std::map<std::string, Room> all = rooms();
     std::size_t checked = 0;
     for (const auto& [name, room] : all) {
@@ -217,7 +217,7 @@ TEST_CASE("folders of a room include only those below them", "[laws]") {
     CHECK(checked > 100);
 }
 
-TEST_CASE("the arrows between rooms have no way back", "[laws]") {
+TEST_CASE("the arrows between rooms have no way back", "[laws][law]") {
     const std::map<std::string, Room> all = rooms();
     for (const auto& [name, room] : all) {
         // Everything reachable from what the room sees; itself must not be among it.

@@ -76,7 +76,7 @@ LayerStatistics check_energy(const std::string& name, const std::string& scene, 
 
 }  // namespace
 
-TEST_CASE("in a white room every pixel is white, but for what the picture says is left out", "[laws]") {
+TEST_CASE("in a white room every pixel is white, but for what the picture says is left out", "[laws][law]") {
     for (const int n : {1, 2, 8, 32})
         for (const Engine engine : {Engine::kExact, Engine::kFacetsTruth, Engine::kLimitTruth}) {
             check_energy("ball", kBall, n, engine);
@@ -84,7 +84,7 @@ TEST_CASE("in a white room every pixel is white, but for what the picture says i
         }
 }
 
-TEST_CASE("light that is left out is a share of each colour, not their sum", "[laws]") {
+TEST_CASE("light that is left out is a share of each colour, not their sum", "[laws][law]") {
     for (const Engine engine : {Engine::kExact, Engine::kLimitTruth}) {
         const LayerStatistics left = check_energy("colours", kColours, 8, engine);
         CHECK(left.deep_light > 0.6);  // so that three colours' sum would be more than all

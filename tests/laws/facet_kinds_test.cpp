@@ -54,7 +54,7 @@ std::map<std::string, int> kinds_over_film(const Scene& scene) {
 }  // namespace
 
 TEST_CASE("a flat mirror is a pinhole, a ball one of two slits: rays of one eye stay normal to a surface",
-          "[laws]") {
+          "[laws][law]") {
     Primitive flat;
     flat.type = Primitive::Type::kPlane;
     flat.axis = {0, 0, 1};
@@ -70,7 +70,7 @@ TEST_CASE("a flat mirror is a pinhole, a ball one of two slits: rays of one eye 
     CHECK(of_ball["pinhole"] == 0);
 }
 
-TEST_CASE("the exact rays of the limit truth belong to no facet", "[laws]") {
+TEST_CASE("the exact rays of the limit truth belong to no facet", "[laws][law]") {
     PictureRequest truth;
     truth.engine = Engine::kLimitTruth;
     const PixelExplanation pixel = Renderer(before_wall(Primitive{})).explain(truth, 32, 24);
@@ -80,7 +80,7 @@ TEST_CASE("the exact rays of the limit truth belong to no facet", "[laws]") {
     CHECK_FALSE(pixel.end_kinds[0]);
 }
 
-TEST_CASE("scene info and --pixel name the kinds of facets", "[laws]") {
+TEST_CASE("scene info and --pixel name the kinds of facets", "[laws][law]") {
     const std::string scene = source_dir() + "/scenes/cameras.json";
     const CommandRun text = run_trilens("scene info " + scene),
                      json = run_trilens("scene info --json " + scene);

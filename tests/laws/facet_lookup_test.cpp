@@ -54,7 +54,7 @@ SurfaceGrid uneven_grid(std::mt19937& random, int n) {
 
 }  // namespace
 
-TEST_CASE("bins of facets answer as a look at every facet") {
+TEST_CASE("bins of facets answer as a look at every facet", "[laws][oracle][law]") {
     std::mt19937 random(91);
     std::uniform_real_distribution<double> unit(0, 1);
     int inside = 0, outside = 0;

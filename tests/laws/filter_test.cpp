@@ -71,7 +71,7 @@ double weight(const std::string& filter, double x) {
 
 }  // namespace
 
-TEST_CASE("a constant picture stays constant through every filter") {
+TEST_CASE("a constant picture stays constant through every filter", "[laws][law]") {
     for (const std::string filter : kFilters)
         for (const int spp : {1, 2, 3}) {
             INFO(filter << " " << spp);
@@ -87,7 +87,8 @@ TEST_CASE("a constant picture stays constant through every filter") {
         }
 }
 
-TEST_CASE("a filtered picture is the weighted mean of a picture with a pixel for every sample") {
+TEST_CASE("a filtered picture is the weighted mean of a picture with a pixel for every sample",
+          "[laws][law]") {
     constexpr int kWidth = 40, kHeight = 30, kSide = 3;
     const Image fine = picture(room(film_text(kWidth * kSide, kHeight * kSide, 1, "box"), kEye, true));
     for (const std::string filter : kFilters) {
@@ -116,7 +117,7 @@ TEST_CASE("a filtered picture is the weighted mean of a picture with a pixel for
     }
 }
 
-TEST_CASE("filtered, a flat mirror shows what a second camera behind it sees") {
+TEST_CASE("filtered, a flat mirror shows what a second camera behind it sees", "[laws][law]") {
     constexpr int kWidth = 80, kHeight = 60;
     const std::string behind = R"({ "yfov": 50, "lookAt": { "eye": [0.4, 0.3, -5], "at": [0.1, 0, 0] } })";
     for (const std::string filter : kFilters) {
@@ -139,7 +140,7 @@ TEST_CASE("filtered, a flat mirror shows what a second camera behind it sees") {
     }
 }
 
-TEST_CASE("a filtered crop is a part of the filtered whole, and the truth is filtered alike") {
+TEST_CASE("a filtered crop is a part of the filtered whole, and the truth is filtered alike", "[laws][law]") {
     for (const std::string filter : kFilters)
         for (const int spp : {1, 2}) {
             INFO(filter << " " << spp);

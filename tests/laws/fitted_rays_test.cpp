@@ -105,7 +105,7 @@ bool same_in(const Image& whole, const Image& part) {
 
 }  // namespace
 
-TEST_CASE("fitting leaves the rays of flat mirrors as they are, one after the other too") {
+TEST_CASE("fitting leaves the rays of flat mirrors as they are, one after the other too", "[laws][law]") {
     const auto one = room_with(kTwoPlanes, 0, 4);
     const Frame exact = make_frame(*one, with(CornerRays::kInterpolated), ignore);
     const Frame fitted = make_frame(*one, with(CornerRays::kFitted), ignore);
@@ -140,7 +140,7 @@ TEST_CASE("fitting leaves the rays of flat mirrors as they are, one after the ot
     CHECK(later > 0);
 }
 
-TEST_CASE("fitted rays show a ball's mirror image nearer to its place, with order 2") {
+TEST_CASE("fitted rays show a ball's mirror image nearer to its place, with order 2", "[laws][law]") {
     const auto world = room_with(kFittedBall, 0, 8);
     const Image truth = draw(*world, {}, Engine::kLimitTruth).image;
     double before = 0;
@@ -156,7 +156,7 @@ TEST_CASE("fitted rays show a ball's mirror image nearer to its place, with orde
     }
 }
 
-TEST_CASE("fitted rays show what is behind a glass ball nearer to its place") {
+TEST_CASE("fitted rays show what is behind a glass ball nearer to its place", "[laws][law]") {
     const auto world = room_with(kFittedGlassBall, 4, 8);
     const Image truth = draw(*world, {}, Engine::kLimitTruth).image;
     FrameParams frame = with(CornerRays::kInterpolated);
@@ -166,7 +166,7 @@ TEST_CASE("fitted rays show what is behind a glass ball nearer to its place") {
     CHECK(mean_error(*world, frame, truth, "refract") < interpolated / 2);
 }
 
-TEST_CASE("fitted pictures do not depend on crops or threads") {
+TEST_CASE("fitted pictures do not depend on crops or threads", "[laws][law]") {
     for (const int max_depth : {0, 3}) {
         const auto world = room_with(kFittedGlassBall, max_depth, 6);
         LayerRequest window;
@@ -181,7 +181,7 @@ TEST_CASE("fitted pictures do not depend on crops or threads") {
     }
 }
 
-TEST_CASE("facets divided for an error keep it, whatever they began with") {
+TEST_CASE("facets divided for an error keep it, whatever they began with", "[laws][law]") {
     struct Case {
         const std::string& optic;
         int max_depth;
@@ -208,7 +208,7 @@ TEST_CASE("facets divided for an error keep it, whatever they began with") {
     }
 }
 
-TEST_CASE("an error asked for does not depend on crops or threads") {
+TEST_CASE("an error asked for does not depend on crops or threads", "[laws][law]") {
     const auto world = room_with(kFittedGlassBall, 3, 4);
     FrameParams frame;
     frame.max_error = 0.5;

@@ -157,7 +157,7 @@ void check_folds(const Scene& scene, const std::string& path) {
 }  // namespace
 
 TEST_CASE("folds drawn through glass and in a mirror are where the truth's Jacobian changes its sign",
-          "[laws]") {
+          "[laws][oracle][law]") {
     // A wall inside the caustic of a ball lens.
     check_folds(before_wall(Primitive{}, true, -1.4, {0, 0.2, 4.2}), "refract");
 
@@ -172,7 +172,7 @@ TEST_CASE("folds drawn through glass and in a mirror are where the truth's Jacob
     check_folds(scene, "reflect");
 }
 
-TEST_CASE("flat and convex mirrors have no folds, and none are drawn that nobody asked for", "[laws]") {
+TEST_CASE("flat and convex mirrors have no folds, and none are drawn that nobody asked for", "[laws][law]") {
     Scene ball = before_wall(Primitive{}, false, 6, {0, 0.2, 4});
     CHECK(Renderer(ball).draw_lines({}, {.folds = true}).folds == 0);
     Primitive flat;

@@ -68,7 +68,7 @@ Tally compare(const World& world, int step) {
 
 }  // namespace
 
-TEST_CASE("an image of project weighs what the traced pixel's path does") {
+TEST_CASE("an image of project weighs what the traced pixel's path does", "[laws][law]") {
     std::size_t compared = 0, several = 0;
     for (const char* name :
          {"sphere", "water", "torus", "paths/crystal-ball", "paths/under-water", "paths/meniscus",
@@ -88,7 +88,8 @@ TEST_CASE("an image of project weighs what the traced pixel's path does") {
 
 TEST_CASE(
     "what carries no light is no image: glass without Fresnel's equations reflects below the critical angle "
-    "nothing") {
+    "nothing",
+    "[laws][oracle][law]") {
     const auto world_with = [](const char* fresnel) {
         const std::string json =
             std::string(R"({ "version": 1, "film": { "width": 64, "height": 48 },

@@ -17,7 +17,7 @@
 using namespace trilens;
 using namespace trilens_test;
 
-TEST_CASE("displacement has the same bits with every instruction set", "[laws][displacement]") {
+TEST_CASE("displacement has the same bits with every instruction set", "[laws][displacement][law]") {
     constexpr int kSize = 90;
     const Image reference =
         image_of(kSize, kSize, [](double x, double y) { return mirror_sphere(x, y, kSize); });
@@ -40,7 +40,7 @@ TEST_CASE("displacement has the same bits with every instruction set", "[laws][d
     CHECK(use_instruction_set(""));
 }
 
-TEST_CASE("the search for images has the same answers with every instruction set", "[laws][project]") {
+TEST_CASE("the search for images has the same answers with every instruction set", "[laws][project][law]") {
     const auto sphere = make_primitive_surface(Primitive{});
     SpecularQuery query;
     query.camera.eye = {0.3, 0.6, 4.4};
@@ -72,7 +72,7 @@ TEST_CASE("the search for images has the same answers with every instruction set
     CHECK(use_instruction_set(""));
 }
 
-TEST_CASE("pictures have the same bits with every instruction set", "[laws][render]") {
+TEST_CASE("pictures have the same bits with every instruction set", "[laws][render][law]") {
     for (const char* name : {"sphere", "torus", "water"}) {
         const auto world = shipped_world(name, 4, 90, 60);
         REQUIRE(world);

@@ -228,15 +228,15 @@ void check_flat_layer(const std::string& material, int n) {
 }  // namespace
 
 TEST_CASE("a ball seen in a flat mirror as a layer is the ball before the mirrored camera",
-          "[laws][layers]") {
+          "[laws][layers][law]") {
     for (const int n : {4, 9}) check_flat_layer("chrome", n);
 }
 
-TEST_CASE("the same of a ball of glass", "[laws][layers]") {
+TEST_CASE("the same of a ball of glass", "[laws][layers][law]") {
     check_flat_layer("glass", 9);
 }
 
-TEST_CASE("layers lie where the exact paths have them, with second order", "[laws][layers]") {
+TEST_CASE("layers lie where the exact paths have them, with second order", "[laws][layers][law]") {
     std::vector<LayerErrors> found;
     for (const int n : {8, 16, 32}) {
         const auto world = two_balls(n, 512);
@@ -256,7 +256,7 @@ TEST_CASE("layers lie where the exact paths have them, with second order", "[law
     }
 }
 
-TEST_CASE("layers at full size beside dividing, with a table", "[.long][layers-table]") {
+TEST_CASE("layers at full size beside dividing, with a table", "[.long][layers-table][law]") {
     for (const int n : {8, 16, 32}) {
         const auto world = two_balls(n, 1024);
         const SampleViews truth = views_of(*world, {}, Engine::kLimitTruth);
@@ -269,7 +269,7 @@ TEST_CASE("layers at full size beside dividing, with a table", "[.long][layers-t
     }
 }
 
-TEST_CASE("projector and Embree see the same layers", "[laws][layers]") {
+TEST_CASE("projector and Embree see the same layers", "[laws][layers][oracle][law]") {
     const auto balls = two_balls(8, 300);
     const SampleViews shown = views_of(*balls, layered(true), Engine::kExact);
     CHECK(std::count_if(shown.samples.begin(), shown.samples.end(),
@@ -289,7 +289,7 @@ TEST_CASE("projector and Embree see the same layers", "[laws][layers]") {
     CHECK(a.seen + a.coverage <= 3);
 }
 
-TEST_CASE("a scene says whether optics seen in an optic are layers", "[laws][layers]") {
+TEST_CASE("a scene says whether optics seen in an optic are layers", "[laws][layers][law]") {
     for (const Mesh& mesh : two_balls(8, 200)->scene.meshes) CHECK(mesh.layered);
     const std::string ball =
         R"({"name":"%","role":"optic","material":"chrome","seenOptics":"divided","primitive":{"type":"sphere","center":[%],"radius":0.6}})";
@@ -314,7 +314,7 @@ TEST_CASE("a scene says whether optics seen in an optic are layers", "[laws][lay
     CHECK(layers.statistics.traced_pixels < as_said.statistics.traced_pixels);
 }
 
-TEST_CASE("crops and threads do not change layers", "[laws][layers]") {
+TEST_CASE("crops and threads do not change layers", "[laws][layers][law]") {
     const auto world = two_balls(8, 300);
     PictureRequest request;
     request.layers.layers = layer_names();

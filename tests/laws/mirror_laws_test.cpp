@@ -35,7 +35,7 @@ Vec3 alhazen_point(const Vec3& e, const Vec3& x) {
 
 }  // namespace
 
-TEST_CASE("a flat mirror shows what a second camera behind it sees, at any resolution", "[laws]") {
+TEST_CASE("a flat mirror shows what a second camera behind it sees, at any resolution", "[laws][law]") {
     for (const int n : {1, 2, 7}) {
         const auto world = shipped_world("flat", n, 96, 72);
         const Film& film = world->scene.film;
@@ -70,7 +70,7 @@ TEST_CASE("a flat mirror shows what a second camera behind it sees, at any resol
     }
 }
 
-TEST_CASE("project agrees with Alhazen's problem on the sphere to 1e-9 of the film", "[laws]") {
+TEST_CASE("project agrees with Alhazen's problem on the sphere to 1e-9 of the film", "[laws][oracle][law]") {
     const auto world = shipped_world("sphere", 8, 640, 480);
     const CameraDescription& camera = world->scene.cameras[0];
     const LinearCamera linear = make_perspective({{camera.eye, camera.at, camera.up}, camera.yfov, 640, 480});
@@ -97,7 +97,7 @@ TEST_CASE("project agrees with Alhazen's problem on the sphere to 1e-9 of the fi
     CHECK(worst < 1e-9 * 640);
 }
 
-TEST_CASE("the same file for one thread and for two", "[laws]") {
+TEST_CASE("the same file for one thread and for two", "[laws][law]") {
     const std::string folder = scratch_dir("threads");
     for (const std::string scene : {"piece", "water"}) {
         for (const std::string command : {"render", "trace", "trace --surface facets"}) {
@@ -115,7 +115,7 @@ TEST_CASE("the same file for one thread and for two", "[laws]") {
     }
 }
 
-TEST_CASE("an image drawn again from its own header is the same image", "[laws]") {
+TEST_CASE("an image drawn again from its own header is the same image", "[laws][law]") {
     const std::string folder = scratch_dir("again");
     const std::string scene = write_file(folder, "scene.json", small_scene());
     REQUIRE(
@@ -129,7 +129,8 @@ TEST_CASE("an image drawn again from its own header is the same image", "[laws]"
     CHECK(compared.out.find("PASS") != std::string::npos);
 }
 
-TEST_CASE("degenerate but legal scenes render, with a word where the user would want one", "[laws]") {
+TEST_CASE("degenerate but legal scenes render, with a word where the user would want one",
+          "[laws][bad-input][law]") {
     const std::string folder = scratch_dir("degenerate");
     struct Case {
         std::string what, replace, by, says;

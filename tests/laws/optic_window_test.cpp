@@ -48,7 +48,7 @@ const std::string kEyeAtFour =
 
 }  // namespace
 
-TEST_CASE("an optic's window holds all samples that meet its facets, with the same hits", "[laws]") {
+TEST_CASE("an optic's window holds all samples that meet its facets, with the same hits", "[laws][law]") {
     for (const std::string& name : shipped_scenes()) {
         CAPTURE(name);
         const auto world = shipped_world(name, kFacets, kWindowWidth, kHeight);
@@ -78,7 +78,7 @@ TEST_CASE("an optic's window holds all samples that meet its facets, with the sa
     }
 }
 
-TEST_CASE("an optic's window is about as large as the optic looks, or all of the film", "[laws]") {
+TEST_CASE("an optic's window is about as large as the optic looks, or all of the film", "[laws][law]") {
     const auto window_of = [](const World& world) {
         const Frame frame = frame_of(world);
         return optic_window(frame.optics.at(0), frame.camera);

@@ -70,7 +70,7 @@ struct OrderCase {
 
 }  // namespace
 
-TEST_CASE("on smooth parts displacement falls with order 1.9 or more, whatever the path", "[laws]") {
+TEST_CASE("on smooth parts displacement falls with order 1.9 or more, whatever the path", "[laws][law]") {
     // The wine glass and the water have so many faces that fewer facets on each are as small.
     for (const OrderCase& one : std::vector<OrderCase>{{"sphere"},
                                                        {"torus"},

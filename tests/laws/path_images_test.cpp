@@ -61,7 +61,8 @@ Vec3 world_axis(int k) {
 
 }  // namespace
 
-TEST_CASE("a point that the truth shows over whole paths is projected to the pixel that shows it", "[laws]") {
+TEST_CASE("a point that the truth shows over whole paths is projected to the pixel that shows it",
+          "[laws][law]") {
     const Renderer renderer(two_balls());
     PictureRequest truth;
     truth.engine = Engine::kLimitTruth;
@@ -127,7 +128,7 @@ TEST_CASE("a point that the truth shows over whole paths is projected to the pix
     CHECK(missed * 100 <= asked.size());
 }
 
-TEST_CASE("what another optic cuts off is no image, and depth 0 knows no other optic", "[laws]") {
+TEST_CASE("what another optic cuts off is no image, and depth 0 knows no other optic", "[laws][law]") {
     Scene scene = two_balls();
     const Vec3 behind(2.2, -0.9, -3.0);  // seen through the glass ball alone, its rays bent twice
     ProjectRequest request;
@@ -146,7 +147,8 @@ TEST_CASE("what another optic cuts off is no image, and depth 0 knows no other o
     CHECK(std::all_of(first.begin(), first.end(), [](std::size_t steps) { return steps == 1; }));
 }
 
-TEST_CASE("the magnification that facets have in closed form is that of the exact images", "[laws]") {
+TEST_CASE("the magnification that facets have in closed form is that of the exact images",
+          "[laws][oracle][law]") {
     const Renderer renderer(two_balls());
     PictureRequest picture;
     picture.frame.resolution = 48;

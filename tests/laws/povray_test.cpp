@@ -263,17 +263,17 @@ const Ball kLeft{{-0.9, 0.2, -0.2}, 0.8}, kRight{{0.95, -0.1, 0.3}, 0.75};
 
 }  // namespace
 
-TEST_CASE("POV-Ray sees the same squares through a glass ball", "[laws][povray]") {
+TEST_CASE("POV-Ray sees the same squares through a glass ball", "[laws][povray][oracle][law]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
     check({{kGlassBall}, povray_room()}, "glass ball", kSameColour);
 }
 
-TEST_CASE("POV-Ray sees the same squares in two mirror balls", "[laws][povray]") {
+TEST_CASE("POV-Ray sees the same squares in two mirror balls", "[laws][povray][oracle][law]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
     check({{kLeft, kRight}, povray_room()}, "two mirrors", kSameColour);
 }
 
-TEST_CASE("POV-Ray sees the same squares through glass in glass", "[laws][povray]") {
+TEST_CASE("POV-Ray sees the same squares through glass in glass", "[laws][povray][oracle][law]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
     Stage stage{{kGlassBall, {{0.15, 0.2, 0.1}, 0.55, 1.2, 1}}, povray_room()};
     check(stage, "water in glass", kSameColour);
@@ -284,7 +284,7 @@ TEST_CASE("POV-Ray sees the same squares through glass in glass", "[laws][povray
 }
 
 TEST_CASE("POV-Ray sees the same squares from inside of glass, past other glass and a mirror",
-          "[laws][povray]") {
+          "[laws][povray][oracle][law]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
     Stage stage{{{{0, 0.1, 0}, 2, 1.5}, {{0.15, 0.2, -0.3}, 0.55, 1.2, 1}, {{-0.9, -0.2, -0.4}, 0.35}},
                 povray_room()};
@@ -296,7 +296,7 @@ TEST_CASE("POV-Ray sees the same squares from inside of glass, past other glass 
     check(stage, "eye in glass with Fresnel", 1e-3);
 }
 
-TEST_CASE("POV-Ray weighs reflection and transmission of a glass ball alike", "[laws][povray]") {
+TEST_CASE("POV-Ray weighs reflection and transmission of a glass ball alike", "[laws][povray][oracle][law]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
     Stage stage{{kGlassBall}, povray_room()};
     stage.fresnel = true;

@@ -79,7 +79,7 @@ Primitive plate() {
 }  // namespace
 
 TEST_CASE("facets on the film show what rays along them meet, and come to the exact surface's picture",
-          "[laws]") {
+          "[laws][law]") {
     for (const bool glass : {false, true}) {
         const Renderer renderer(in_room(4, Primitive{}, glass));
         const std::string layer = glass ? "refract" : "reflect";
@@ -96,7 +96,7 @@ TEST_CASE("facets on the film show what rays along them meet, and come to the ex
     }
 }
 
-TEST_CASE("an environment map is right where everything is far away, and wrong nearby", "[laws]") {
+TEST_CASE("an environment map is right where everything is far away, and wrong nearby", "[laws][law]") {
     const Renderer far(in_room(1e6, Primitive{}, false)), near(in_room(3.5, Primitive{}, false));
     FrameParams same_rays;
     same_rays.rays = CornerRays::kInterpolated;
@@ -108,7 +108,7 @@ TEST_CASE("an environment map is right where everything is far away, and wrong n
     CHECK(wrong(near) > 50);
 }
 
-TEST_CASE("flat facets are right for a flat mirror and wrong for a ball", "[laws]") {
+TEST_CASE("flat facets are right for a flat mirror and wrong for a ball", "[laws][law]") {
     const Renderer flat(in_room(4, plate(), false)), round(in_room(4, Primitive{}, false));
     const auto wrong = [&](const Renderer& renderer) {
         return different(seen(renderer, Engine::kPlanar, "reflect"),

@@ -15,7 +15,8 @@ using namespace trilens;
 using namespace trilens_test;
 
 TEST_CASE(
-    "a cage with a vertex far away is searched with bounded memory, and the answer says that it may miss") {
+    "a cage with a vertex far away is searched with bounded memory, and the answer says that it may miss",
+    "[laws][law]") {
     constexpr std::size_t kLargestTree = 1u << 16, kOfWalks = 2 * SearchLimits().most_cells;
     const std::vector<SceneOverride> far{{"/meshes/0/points/20/0", "-441.71"}};
     const auto world = make_world(

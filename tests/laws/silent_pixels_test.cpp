@@ -125,7 +125,7 @@ void check_silent(const std::vector<Case>& cases) {
 
 }  // namespace
 
-TEST_CASE("at n = 32 no projected pixel is off by more than a pixel, but at folds", "[laws]") {
+TEST_CASE("at n = 32 no projected pixel is off by more than a pixel, but at folds", "[laws][law]") {
     // The wine glass and the water have so many faces that fewer facets on each are as small.
     check_silent({{"paths/crystal-ball"},
                   {"paths/plano-convex"},
@@ -140,7 +140,7 @@ TEST_CASE("at n = 32 no projected pixel is off by more than a pixel, but at fold
                   {"paths/glass-before-mirror"}});
 }
 
-TEST_CASE("nor where paths end at their first optic, whatever the corner rays", "[laws]") {
+TEST_CASE("nor where paths end at their first optic, whatever the corner rays", "[laws][law]") {
     for (const CornerRays rays : {CornerRays::kFitted, CornerRays::kInterpolated})
         check_silent({{"flat", 32, 1, rays},
                       {"sphere", 32, 2, rays},
@@ -153,7 +153,7 @@ TEST_CASE("nor where paths end at their first optic, whatever the corner rays", 
                       {"animation", 32, 1, rays}});
 }
 
-TEST_CASE("near total reflection no facet lies, whatever error is allowed", "[laws]") {
+TEST_CASE("near total reflection no facet lies, whatever error is allowed", "[laws][law]") {
     const auto world = shipped_world("paths/prism", 32, kWidth, kHeight);
     REQUIRE(world);
     Truths truths{"paths/prism", draw(*world, Engine::kLimitTruth), nullptr};

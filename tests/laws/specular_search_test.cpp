@@ -172,34 +172,34 @@ Cage icosahedron() {
 
 }  // namespace
 
-TEST_CASE("search: no image is missing on the saddle mirror") {
+TEST_CASE("search: no image is missing on the saddle mirror", "[laws][law]") {
     std::unique_ptr<World> world;
     check(compare_with_brute_force({optic_of("saddle", world), SpecularEvent::kReflect, 1, 100, 400}, 1), 60);
 }
 
-TEST_CASE("search: no image is missing on the torus mirror") {
+TEST_CASE("search: no image is missing on the torus mirror", "[laws][law]") {
     std::unique_ptr<World> world;
     check(compare_with_brute_force({optic_of("torus", world), SpecularEvent::kReflect, 1, 50, 300}, 2), 600);
 }
 
-TEST_CASE("search: no image is missing through the torus as glass") {
+TEST_CASE("search: no image is missing through the torus as glass", "[laws][law]") {
     std::unique_ptr<World> world;
     check(compare_with_brute_force({optic_of("torus", world), SpecularEvent::kRefract, 1.5, 50, 300}, 3),
           150);
 }
 
-TEST_CASE("search: no image is missing on a piece with creases and extraordinary vertices") {
+TEST_CASE("search: no image is missing on a piece with creases and extraordinary vertices", "[laws][law]") {
     std::unique_ptr<World> world;
     check(compare_with_brute_force({optic_of("piece", world), SpecularEvent::kReflect, 1, 40, 60}, 4), 200);
 }
 
-TEST_CASE("search: no image is missing on a Loop surface") {
+TEST_CASE("search: no image is missing on a Loop surface", "[laws][law]") {
     const auto surface = make_limit_surface(icosahedron(), "icosahedron", {});
     check(compare_with_brute_force({*surface, SpecularEvent::kReflect, 1, 60, 200}, 5), 200);
     check(compare_with_brute_force({*surface, SpecularEvent::kRefract, 1.7, 60, 200}, 6), 50);
 }
 
-TEST_CASE("search: no image is missing on primitives") {
+TEST_CASE("search: no image is missing on primitives", "[laws][law]") {
     Primitive primitive;
     primitive.axis = {0.2, 1, 0.1};
     unsigned seed = 10;

@@ -44,7 +44,8 @@ std::vector<std::string> said(const World& world, Engine engine) {
 
 }  // namespace
 
-TEST_CASE("from inside of glass, past other glass: projector and Embree on the same facets", "[laws]") {
+TEST_CASE("from inside of glass, past other glass: projector and Embree on the same facets",
+          "[laws][oracle][law]") {
     struct Case {
         std::string name, camera, render;
     };
@@ -72,7 +73,7 @@ TEST_CASE("from inside of glass, past other glass: projector and Embree on the s
     }
 }
 
-TEST_CASE("from inside of glass the projected picture is the truth's", "[laws]") {
+TEST_CASE("from inside of glass the projected picture is the truth's", "[laws][oracle][law]") {
     const auto world =
         world_from("in_glass", glass_room(kPlainPerspective, R"("maxDepth":8,"fresnel":false)"), 16);
     const SampleGrid grid{0, 0, 96, 72, 1};
@@ -102,7 +103,7 @@ TEST_CASE("from inside of glass the projected picture is the truth's", "[laws]")
     CHECK(worst < 0.05);
 }
 
-TEST_CASE("tinted glass around the eye takes light on the way to what is seen in it", "[laws]") {
+TEST_CASE("tinted glass around the eye takes light on the way to what is seen in it", "[laws][law]") {
     const auto world = world_from("in_glass", glass_room(kPlainPerspective, R"("maxDepth":8)"), 8);
     for (const Engine engine : {Engine::kExact, Engine::kLimitTruth}) {
         SampleViews views;
@@ -122,7 +123,7 @@ TEST_CASE("tinted glass around the eye takes light on the way to what is seen in
     }
 }
 
-TEST_CASE("points are imaged into glass where its truth shows them", "[laws]") {
+TEST_CASE("points are imaged into glass where its truth shows them", "[laws][law]") {
     const auto world =
         world_from("in_glass", glass_room(kPlainPerspective, R"("maxDepth":8,"fresnel":false)"), 16);
     SampleViews views;
@@ -153,7 +154,7 @@ TEST_CASE("points are imaged into glass where its truth shows them", "[laws]") {
     CHECK(several > 0);
 }
 
-TEST_CASE("glass that holds the eye in some directions only is told of", "[laws]") {
+TEST_CASE("glass that holds the eye in some directions only is told of", "[laws][law]") {
     const std::string gutter =
         R"({"name":"gutter","role":"optic","material":"glass","points":[[-2,-1,-3],[2,-1,-3],[2,-1,3],[-2,-1,3],[2,2,-3],[2,2,3],[-2,2,-3],[-2,2,3]],
            "faceVertexCounts":[4,4,4],"faceVertexIndices":[0,1,2,3, 1,4,5,2, 0,3,7,6]},)";

@@ -49,7 +49,7 @@ void check_engines(const World& world) {
 }  // namespace
 
 TEST_CASE("from water through the glass that it fills there is no air between, whichever is named first",
-          "[laws]") {
+          "[laws][law]") {
     const double third = 1.0 / 3;
     const std::string water = box("water", "water", {-1, -1, -third}, {1, 1, third});
     const std::string pane = box("pane", "glass", {-1, -1, -third - 0.1}, {1, 1, -third});
@@ -89,7 +89,7 @@ TEST_CASE("from water through the glass that it fills there is no air between, w
     }
 }
 
-TEST_CASE("a ball that lies on a slab, and glass on a mirror that is seen beside it", "[laws]") {
+TEST_CASE("a ball that lies on a slab, and glass on a mirror that is seen beside it", "[laws][law]") {
     const std::string slab = box("slab", "glass", {-1, -0.5, -1}, {1, 0, 1});
     const std::string ball =
         R"({"name":"ball","role":"optic","material":"water","primitive":{"type":"sphere","center":[0,0.4,0],"radius":0.4}})";
@@ -98,7 +98,7 @@ TEST_CASE("a ball that lies on a slab, and glass on a mirror that is seen beside
     check_engines(*world_from("on_mirror", room(mirror + "," + slab, "[0.6,0.9,2]", "[0,-0.3,0]"), 6));
 }
 
-TEST_CASE("a body in a body with one side in common is met there once", "[laws]") {
+TEST_CASE("a body in a body with one side in common is met there once", "[laws][law]") {
     // Equal media would pass; the one of higher priority is felt behind the common side.
     const std::string outer = box("outer", "glass", {-1, -1, -1}, {1, 1, 1});
     std::string inner = box("inner", "water", {-0.5, -0.5, 0}, {0.5, 0.5, 1});

@@ -6,7 +6,7 @@
 
 using namespace trilens_test;
 
-TEST_CASE("Small optics behind, in and before mirrors and glass do not vanish", "[law][hunt]") {
+TEST_CASE("Small optics behind, in and before mirrors and glass do not vanish", "[laws][law][hunt]") {
     constexpr std::uint64_t kScenes = 200;
     for (std::uint64_t seed = 0; seed < kScenes; ++seed) {
         const Quarry quarry = make_quarry(seed);

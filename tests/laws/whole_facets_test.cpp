@@ -96,7 +96,7 @@ Outlines outlines_of(const World& world, const FrameParams& frame) {
 
 }  // namespace
 
-TEST_CASE("A ball behind a pane of glass is seen wherever it is", "[law]") {
+TEST_CASE("A ball behind a pane of glass is seen wherever it is", "[laws][law]") {
     for (const double radius : {0.05, 0.1, 0.2})
         for (int i = 0; i < 6; ++i) {
             const Vec3 at(-1.1 + 0.37 * i, 0.5 - 0.13 * i, -1 - 0.1 * i);
@@ -111,7 +111,7 @@ TEST_CASE("A ball behind a pane of glass is seen wherever it is", "[law]") {
         }
 }
 
-TEST_CASE("A flat mirror shows a ball whatever error is asked for", "[law]") {
+TEST_CASE("A flat mirror shows a ball whatever error is asked for", "[laws][law]") {
     for (const double radius : {0.04, 0.1})
         for (int i = 0; i < 4; ++i) {
             const auto world =
@@ -127,7 +127,7 @@ TEST_CASE("A flat mirror shows a ball whatever error is asked for", "[law]") {
         }
 }
 
-TEST_CASE("Paths that end at the first optic are true where the eye is in it", "[law]") {
+TEST_CASE("Paths that end at the first optic are true where the eye is in it", "[laws][law]") {
     const char* const inside = R"("yfov": 90, "lookAt": { "eye": [0.5, 0.2, 0.3], "at": [-1, 0, -1] })";
     for (const char* const material : {"diamond", "gold"})
         for (const int n : {8, 32}) {
@@ -138,7 +138,7 @@ TEST_CASE("Paths that end at the first optic are true where the eye is in it", "
         }
 }
 
-TEST_CASE("A path that carries no light shows nothing, projected or traced", "[law]") {
+TEST_CASE("A path that carries no light shows nothing, projected or traced", "[laws][law]") {
     // Glass without Fresnel passes all light on: at its front nothing is reflected.
     std::string json = scene_of(kAbove, 0, ball("ball", "glass", {0, 0, 0}, 1));
     json.replace(json.find("\"maxDepth\": 0"), 13, "\"maxDepth\": 0, \"fresnel\": false");
@@ -160,7 +160,7 @@ TEST_CASE("A path that carries no light shows nothing, projected or traced", "[l
     }
 }
 
-TEST_CASE("The outline of an optic is that of its surface within the error asked for", "[law]") {
+TEST_CASE("The outline of an optic is that of its surface within the error asked for", "[laws][law]") {
     const std::string balls =
         ball("ball", "gold", {-0.4, 0, 0}, 0.9) + ", " + ball("small", "glass", {1, 0.4, -1}, 0.3);
     for (const char* const camera :
@@ -187,7 +187,7 @@ TEST_CASE("The outline of an optic is that of its surface within the error asked
         }
 }
 
-TEST_CASE("Where mirrors cross, a path starts on the one that comes first, not inside of it", "[law]") {
+TEST_CASE("Where mirrors cross, a path starts on the one that comes first, not inside of it", "[laws][law]") {
     const std::string balls = R"({ "name": "one", "role": "optic", "material": "gold",
     "primitive": { "type": "sphere", "center": [-0.5, 0, 0], "radius": 0.9 } },
   { "name": "two", "role": "optic", "material": "gold",

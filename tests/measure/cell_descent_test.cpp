@@ -73,7 +73,8 @@ TEST_CASE("a packet finds the cells whose boxes hold its points, near enough, an
     CHECK(wrong == 0);
 }
 
-TEST_CASE("a packet drops no point that a cell's reach holds, and few others", "[measure][displacement]") {
+TEST_CASE("a packet drops no point that a cell's reach holds, and few others",
+          "[measure][displacement][law]") {
     std::mt19937_64 random(22);
     std::size_t held = 0, lost = 0, more = 0, none = 0;
     for (int trial = 0; trial < 40; ++trial) {

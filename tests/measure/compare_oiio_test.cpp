@@ -37,7 +37,7 @@ double number_after(const std::string& text, const std::string& label) {
 
 }  // namespace
 
-TEST_CASE("numbers agree with oiiotool, verdicts do where its own are right", "[measure][compare]") {
+TEST_CASE("numbers agree with oiiotool, verdicts do where its own are right", "[measure][compare][oracle]") {
     if (!have("oiiotool") || !have("idiff")) TRILENS_SKIP("needs oiiotool and idiff");
     const std::string folder = trilens_test::scratch_dir("compare_oiio");
     for (const unsigned seed : {10u, 12u}) {

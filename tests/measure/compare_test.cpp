@@ -75,7 +75,7 @@ TEST_CASE("equal images pass with perfect numbers", "[measure][compare]") {
     CHECK(same.counts.pixels == 1200);
 }
 
-TEST_CASE("a constant offset has closed forms", "[measure][compare]") {
+TEST_CASE("a constant offset has closed forms", "[measure][compare][oracle]") {
     const double r = 0.5, d = 0.125;
     const Comparison result = compare(constant(32, 20, 0.5f), constant(32, 20, 0.625f));
     CHECK(result.metrics.mae == Approx(d));
@@ -88,7 +88,7 @@ TEST_CASE("a constant offset has closed forms", "[measure][compare]") {
     CHECK(result.verdict == Verdict::kFailure);
 }
 
-TEST_CASE("metrics agree with their formulas, for any number of threads", "[measure][compare]") {
+TEST_CASE("metrics agree with their formulas, for any number of threads", "[measure][compare][oracle][law]") {
     for (const auto& [width, height] : {std::pair{1, 1}, {7, 40}, {33, 9}, {50, 141}}) {
         const Image a = noise(2, width, height), b = noise(3, width, height);
         double sum = 0, squares = 0, relative = 0;
@@ -153,7 +153,8 @@ TEST_CASE("where few pixels differ the similarity is the same mean over all", "[
     }
 }
 
-TEST_CASE("one NaN or infinity is a failure, wherever it is and even in both", "[measure][compare]") {
+TEST_CASE("one NaN or infinity is a failure, wherever it is and even in both",
+          "[measure][compare][bad-input]") {
     const Image good = noise(4, 16, 16);
     CompareOptions lax;
     lax.fail = lax.hardfail = lax.warn = 1e30;
@@ -181,7 +182,7 @@ TEST_CASE("one NaN or infinity is a failure, wherever it is and even in both", "
     CHECK(compare(with_z, odd_z, lax).verdict == Verdict::kFailure);
 }
 
-TEST_CASE("hardfail holds where no pixel exceeds fail", "[measure][compare]") {
+TEST_CASE("hardfail holds where no pixel exceeds fail", "[measure][compare][law]") {
     const Image a = constant(16, 16, 0.5f), b = constant(16, 16, 0.505f);
     CompareOptions options = only(0.01, 0.001);
     CHECK(compare(a, b, options).verdict == Verdict::kFailure);
@@ -192,7 +193,8 @@ TEST_CASE("hardfail holds where no pixel exceeds fail", "[measure][compare]") {
     CHECK(compare(a, b, options).verdict == Verdict::kPass);
 }
 
-TEST_CASE("images of different make are not comparable, and the message says why", "[measure][compare]") {
+TEST_CASE("images of different make are not comparable, and the message says why",
+          "[measure][compare][bad-input]") {
     const Image black = constant(64, 64, 0);
     CHECK(refusal(black, constant(32, 64, 0)).find("64x64") != std::string::npos);
     Image more = black;

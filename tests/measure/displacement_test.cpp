@@ -75,7 +75,7 @@ TEST_CASE("an image is displaced from itself by exactly nothing", "[measure][dis
 }
 
 TEST_CASE("an affine field gives its shift at every scale, from a thousandth of a pixel to 30",
-          "[measure][displacement]") {
+          "[measure][displacement][law]") {
     const double scale = GENERATE(1e-4, 1.0, 1e4);
     for (const double size : {0.001, 0.1, 0.77, 5.3, 30.0}) {
         for (const double angle : {0.3, 2.0, 4.4}) {
@@ -161,7 +161,7 @@ TEST_CASE("of two images of one point the nearer one counts", "[measure][displac
     }
 }
 
-TEST_CASE("objects never answer for one another", "[measure][displacement]") {
+TEST_CASE("objects never answer for one another", "[measure][displacement][law]") {
     // Two objects in one plane, left and right of a slanted border.
     const Field two = [](double x, double y) {
         return Seen{x + 0.3 * y < 50 ? 1u : 2u, 0, Vec3(0.05 * x, 0.05 * y, 0)};
@@ -184,7 +184,8 @@ TEST_CASE("objects never answer for one another", "[measure][displacement]") {
     CHECK(measure_displacement(reference, test, "reflect")->lost == 1200);
 }
 
-TEST_CASE("a crease between triangles costs nothing where images name triangles", "[measure][displacement]") {
+TEST_CASE("a crease between triangles costs nothing where images name triangles",
+          "[measure][displacement][law]") {
     // Two walls that meet at a right angle under a slant.
     const Field corner = [](double x, double y) {
         const double u = 0.05 * (x - 40 - 0.4 * y);
@@ -209,7 +210,7 @@ TEST_CASE("one piece in front of another of the same object is not mixed with it
     CHECK(result.measured.lost == 0);
 }
 
-TEST_CASE("what the reference does not show is lost, and only that", "[measure][displacement]") {
+TEST_CASE("what the reference does not show is lost, and only that", "[measure][displacement][golden]") {
     const Field all = [](double x, double y) { return Seen{1, 0, Vec3(0.05 * x, 0.05 * y, 0)}; };
     const Field hole = [&](double x, double y) {
         return std::hypot(x - 40, y - 30) < 12 ? Seen{} : all(x, y);
@@ -260,13 +261,13 @@ TEST_CASE("the mask asks only for pixels of its optic", "[measure][displacement]
 }
 
 TEST_CASE("images without the layer have no displacement; different images are refused",
-          "[measure][displacement]") {
+          "[measure][displacement][bad-input]") {
     const Image image = image_of(8, 8, plane(1));
     CHECK_FALSE(measure_displacement(image, image, "refract").has_value());
     CHECK_THROWS_AS(measure_displacement(image, image_of(9, 8, plane(1)), "reflect"), InputError);
 }
 
-TEST_CASE("any input gives an answer, the same for any number of threads", "[measure][displacement]") {
+TEST_CASE("any input gives an answer, the same for any number of threads", "[measure][displacement][law]") {
     std::mt19937 random(17);
     const auto number = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
     const auto noise = [&](int width, int height, double spread) {

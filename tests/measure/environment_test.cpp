@@ -117,7 +117,7 @@ TEST_CASE("a turn of the whole sky moves its picture as a pinhole says", "[measu
     }
 }
 
-TEST_CASE("the environment and an object never answer for one another", "[measure][environment]") {
+TEST_CASE("the environment and an object never answer for one another", "[measure][environment][law]") {
     // A ball of radius 1 round the origin shows points that are, as numbers, directions.
     const Field ball = [](double x, double y) { return Seen{3, 0, sky(x, y).point}; };
     const Image directions = with_optic(image_of(kEnvironmentWidth, kHeight, sky), 5),

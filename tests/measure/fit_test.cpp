@@ -19,7 +19,7 @@ std::vector<FitPoint> law(double constant, double order, const std::vector<doubl
 
 }  // namespace
 
-TEST_CASE("an exact law is recovered at any scale", "[measure][fit]") {
+TEST_CASE("an exact law is recovered at any scale", "[measure][fit][law]") {
     for (const double order : {0.5, 1.0, 2.0, 4.0, -1.0}) {
         for (const double constant : {1e-6, 0.3, 7.0, 1e8}) {
             const Fit fit = fit_power_law(law(constant, order, {64, 4, 16, 8, 32})).value();
@@ -88,7 +88,8 @@ TEST_CASE("a plateau is left out where that is asked for", "[measure][fit]") {
 }
 
 TEST_CASE(
-    "fit: Student's t is that of the tables, and the interval of an order covers it as often as it says") {
+    "fit: Student's t is that of the tables, and the interval of an order covers it as often as it says",
+    "[measure][oracle][law]") {
     // Abramowitz and Stegun, table 26.10: 95 % and 99 %, both sides.
     const std::vector<std::pair<int, double>> table = {{1, 12.706}, {2, 4.303},  {3, 3.182},  {4, 2.776},
                                                        {5, 2.571},  {10, 2.228}, {30, 2.042}, {120, 1.980}};

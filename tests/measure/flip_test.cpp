@@ -104,7 +104,7 @@ TEST_CASE("farther away small differences are seen less", "[measure][flip]") {
     CHECK(mean(20) > 1.5 * mean(67));
 }
 
-TEST_CASE("FLIP has the same bits for any number of threads", "[measure][flip]") {
+TEST_CASE("FLIP has the same bits for any number of threads", "[measure][flip][law]") {
     const Film a = noise(4), b = noise(5);
     set_thread_count(1);
     const std::vector<float> one = flip_map(a.picture(), b.picture());
@@ -113,7 +113,7 @@ TEST_CASE("FLIP has the same bits for any number of threads", "[measure][flip]")
 }
 
 TEST_CASE("where pictures agree nothing is measured, and elsewhere nothing changes by that",
-          "[measure][flip]") {
+          "[measure][flip][oracle]") {
     std::mt19937 random(6);
     const auto below = [&](int limit) { return std::uniform_int_distribution<int>(0, limit - 1)(random); };
     const auto random_film = [&](int width, int height) {
@@ -154,7 +154,7 @@ TEST_CASE("where pictures agree nothing is measured, and elsewhere nothing chang
     }
 }
 
-TEST_CASE("what was made of a reference before serves the next test as well", "[measure][flip]") {
+TEST_CASE("what was made of a reference before serves the next test as well", "[measure][flip][golden]") {
     std::mt19937 random(7);
     const Film a = noise(8);
     FlipReference kept;

@@ -116,7 +116,8 @@ bool same_bits(const std::optional<Vec2>& a, const std::optional<Vec2>& b) {
 
 }  // namespace
 
-TEST_CASE("the image finder finds what trying every cell finds, to the last bit", "[measure][displacement]") {
+TEST_CASE("the image finder finds what trying every cell finds, to the last bit",
+          "[measure][displacement][oracle][law]") {
     std::mt19937_64 random(11);
     std::size_t found = 0, none = 0, far = 0, wrong = 0, alone = 0;
     for (int trial = 0; trial < 30; ++trial) {
@@ -147,7 +148,7 @@ TEST_CASE("the image finder finds what trying every cell finds, to the last bit"
     CHECK(none > 500);
 }
 
-TEST_CASE("patches are continued as in plain code, to the last bit", "[measure][displacement]") {
+TEST_CASE("patches are continued as in plain code, to the last bit", "[measure][displacement][oracle][law]") {
     std::mt19937_64 random(14);
     std::size_t patches = 0, continued = 0, none = 0, wrong = 0;
     for (int trial = 0; trial < 60; ++trial) {
@@ -181,7 +182,7 @@ TEST_CASE("patches are continued as in plain code, to the last bit", "[measure][
 }
 
 TEST_CASE("no patch of a cell answers for a point that the cell's reach does not hold",
-          "[measure][displacement]") {
+          "[measure][displacement][law]") {
     std::mt19937_64 random(12);
     std::normal_distribution<double> normal;
     std::size_t hits = 0, outside = 0, held = 0, in_box = 0;

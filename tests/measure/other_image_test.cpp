@@ -40,7 +40,7 @@ TEST_CASE("an isolated jump and a rim of jumps are other images", "[measure]") {
     CHECK(d.shift_x[15 * kWidth + 20] == 0);
 }
 
-TEST_CASE("a fold, where shifts grow together, keeps every pixel", "[measure]") {
+TEST_CASE("a fold, where shifts grow together, keeps every pixel", "[measure][law]") {
     for (const double scale : {0.01, 0.1, 1.0, 10.0}) {
         Displacement d = field_of([&](int x, int) { return scale / std::sqrt(std::fabs(x - 20) + 0.05); });
         drop_other_images(d, kWidth);

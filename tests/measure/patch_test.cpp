@@ -42,7 +42,7 @@ bool holds(const Box& box, const Vec3& p) {
 
 }  // namespace
 
-TEST_CASE("a patch answers for no point outside its reach", "[measure][displacement]") {
+TEST_CASE("a patch answers for no point outside its reach", "[measure][displacement][law]") {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> share(-0.6, 1.6), start(0, 1);
     std::normal_distribution<double> normal;
@@ -127,7 +127,7 @@ Question random_question(std::mt19937_64& random) {
 }  // namespace
 
 TEST_CASE("patches inverted side by side answer as each alone in plain code, to the last bit",
-          "[measure][displacement]") {
+          "[measure][displacement][oracle][law]") {
     std::mt19937_64 random(3);
     std::size_t hits = 0, misses = 0, wrong = 0;
     for (int round = 0; round < 12000; ++round) {

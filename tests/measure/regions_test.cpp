@@ -57,7 +57,7 @@ std::size_t count_by_labels(const Image& image, std::size_t least) {
 }  // namespace
 
 TEST_CASE("regions touch by sides and corners, partly covered pixels are seen, and specks do not count",
-          "[measure]") {
+          "[measure][law]") {
     CHECK(count_regions(drawn({"....", "...."}), 1) == 0);
     CHECK(count_regions(drawn({"####", "####"}), 1) == 1);
     CHECK(count_regions(drawn({"#..#", ".##.", "#..#"}), 1) == 1);
@@ -70,7 +70,7 @@ TEST_CASE("regions touch by sides and corners, partly covered pixels are seen, a
     CHECK(count_regions(drawn({"############", "............", "###########."})) == 1);
 }
 
-TEST_CASE("regions of random pictures are those that spreading labels find", "[measure]") {
+TEST_CASE("regions of random pictures are those that spreading labels find", "[measure][oracle][law]") {
     std::mt19937 random(11);
     for (int i = 0; i < 200; ++i) {
         const int width = std::uniform_int_distribution(1, 24)(random),

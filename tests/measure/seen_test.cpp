@@ -38,7 +38,7 @@ TEST_CASE("what is seen is counted in disjoint classes", "[measure][seen]") {
 }
 
 TEST_CASE("the difference image holds test minus reference, the mask and the shifts",
-          "[measure][difference]") {
+          "[measure][difference][golden]") {
     const Image a = noise(20, 9, 7), b = noise(21, 9, 7);
     const Image difference = make_difference(a, b);
     for (std::size_t i = 0; i < a.pixels(); ++i) {

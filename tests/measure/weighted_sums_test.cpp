@@ -11,7 +11,7 @@
 
 using namespace trilens;
 
-TEST_CASE("weighted sums are the plain ones, to the last bit", "[measure]") {
+TEST_CASE("weighted sums are the plain ones, to the last bit", "[measure][law]") {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> share(-1, 1);
     const auto value = [&] {

@@ -75,7 +75,7 @@ Rays random_rays(Random& random, double width, double bend) {
 
 }  // namespace
 
-TEST_CASE("The hull of a quadratic over a facet holds all of its values, and little more", "[law]") {
+TEST_CASE("The hull of a quadratic over a facet holds all of its values, and little more", "[paths][law]") {
     Random random(311);
     double slack = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -97,7 +97,7 @@ TEST_CASE("The hull of a quadratic over a facet holds all of its values, and lit
     CHECK(slack / 2000 < 3);
 }
 
-TEST_CASE("A beam may touch whatever one of its rays meets", "[law]") {
+TEST_CASE("A beam may touch whatever one of its rays meets", "[paths][law]") {
     Random random(312);
     std::size_t beams = 0, beside = 0, excluded = 0;
     for (int i = 0; i < 400; ++i) {
@@ -133,7 +133,7 @@ TEST_CASE("A beam may touch whatever one of its rays meets", "[law]") {
     CHECK(excluded > beside * 9 / 10);
 }
 
-TEST_CASE("A beam comes to nothing beyond where it ends, nor behind where it starts") {
+TEST_CASE("A beam comes to nothing beyond where it ends, nor behind where it starts", "[paths]") {
     Random random(313);
     std::size_t asked = 0;
     for (int i = 0; i < 100; ++i) {

@@ -50,7 +50,7 @@ double turned(const Stage& stage, const Ray& ray, std::size_t steps) {
 
 }  // namespace
 
-TEST_CASE("from inside of a ball of glass a ray passes a ball of water as Bouguer says") {
+TEST_CASE("from inside of a ball of glass a ray passes a ball of water as Bouguer says", "[paths][oracle]") {
     Stage stage;
     const Id glass = stage.add_ball(Vec3(0), 1, glass_of(kGlass));
     const Id water = stage.add_ball(Vec3(0), kInner, glass_of(kWater), 1);
@@ -72,7 +72,7 @@ TEST_CASE("from inside of a ball of glass a ray passes a ball of water as Bougue
     }
 }
 
-TEST_CASE("the critical angle at a ball in the glass around the eye is that of the two indices") {
+TEST_CASE("the critical angle at a ball in the glass around the eye is that of the two indices", "[paths]") {
     Stage stage;
     stage.add_ball(Vec3(0), 1, glass_of(kGlass));
     const Id water = stage.add_ball(Vec3(0), kInner, glass_of(kWater), 1);
@@ -90,7 +90,8 @@ TEST_CASE("the critical angle at a ball in the glass around the eye is that of t
     }
 }
 
-TEST_CASE("of two bodies around the eye the one of higher priority is felt, and the other's skin is none") {
+TEST_CASE("of two bodies around the eye the one of higher priority is felt, and the other's skin is none",
+          "[paths]") {
     Stage stage;
     const Id box = stage.add_body(make_box({-1, -1, -1}, {1, 1, 1}), glass_of(kGlass), 1);
     const Id ball = stage.add_ball(Vec3(0), 0.6, glass_of(kWater), 0);
@@ -107,7 +108,7 @@ TEST_CASE("of two bodies around the eye the one of higher priority is felt, and 
     CHECK(length(cross(end->ray.direction, Vec3(0, 0, 1))) == Approx(kGlass * sine).margin(1e-9));
 }
 
-TEST_CASE("a place outside of bodies, in a hollow, or beside an open surface") {
+TEST_CASE("a place outside of bodies, in a hollow, or beside an open surface", "[paths]") {
     Stage stage;
     stage.add_ball(Vec3(0), 1, glass_of(kGlass));
     stage.add_ball({5, 0, 0}, 1, mirror_of());

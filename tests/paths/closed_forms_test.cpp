@@ -82,7 +82,8 @@ void check_lens(const LensSide& front, const LensSide& back, double n) {
 
 }  // namespace
 
-TEST_CASE("a slab shifts a ray by t sin(i) (1 - cos(i) / (n cos(r))) and keeps its direction") {
+TEST_CASE("a slab shifts a ray by t sin(i) (1 - cos(i) / (n cos(r))) and keeps its direction",
+          "[paths][oracle]") {
     Random random(32);
     for (int i = 0; i < 300; ++i) {
         const double n = random.uniform(1.1, 3), thickness = random.log_uniform(0.01, 1);
@@ -105,7 +106,7 @@ TEST_CASE("a slab shifts a ray by t sin(i) (1 - cos(i) / (n cos(r))) and keeps i
     }
 }
 
-TEST_CASE("a prism turns a ray by i + asin(sin A sqrt(n^2 - sin^2 i) - cos A sin i) - A") {
+TEST_CASE("a prism turns a ray by i + asin(sin A sqrt(n^2 - sin^2 i) - cos A sin i) - A", "[paths][oracle]") {
     Random random(33);
     int seen = 0;
     for (int i = 0; i < 300; ++i) {
@@ -140,7 +141,7 @@ TEST_CASE("a prism turns a ray by i + asin(sin A sqrt(n^2 - sin^2 i) - cos A sin
     CHECK(seen > 100);
 }
 
-TEST_CASE("a prism turns least where light passes it symmetrically") {
+TEST_CASE("a prism turns least where light passes it symmetrically", "[paths][oracle]") {
     const double n = 1.5168, apex = M_PI / 3;
     Stage stage;
     stage.world.fresnel = false;
@@ -161,7 +162,8 @@ TEST_CASE("a prism turns least where light passes it symmetrically") {
     for (const double off : {-0.2, -0.05, 0.05, 0.2}) CHECK(turned(symmetric + off) > least);
 }
 
-TEST_CASE("a ball lens of either kind of surface: where the ray leaves and whither, by angles") {
+TEST_CASE("a ball lens of either kind of surface: where the ray leaves and whither, by angles",
+          "[paths][oracle]") {
     Random random(34);
     const std::shared_ptr<const Surface> faces =
         std::make_shared<ProjectedSphere>(FaceDomain::kSquare, Vec3(0), 1);
@@ -192,7 +194,8 @@ TEST_CASE("a ball lens of either kind of surface: where the ray leaves and whith
     }
 }
 
-TEST_CASE("plano-convex, biconvex and meniscus lenses trace as the trigonometric ray trace has it") {
+TEST_CASE("plano-convex, biconvex and meniscus lenses trace as the trigonometric ray trace has it",
+          "[paths][oracle]") {
     check_lens({0.3, 1 / 2.0}, {0, 0}, 1.5);            // plano-convex, round side first
     check_lens({0.3, 0}, {0, -1 / 2.5}, 1.7);           // flat side first
     check_lens({0.4, 1 / 3.0}, {-0.1, -1 / 2.2}, 1.6);  // biconvex
@@ -200,7 +203,7 @@ TEST_CASE("plano-convex, biconvex and meniscus lenses trace as the trigonometric
     check_lens({0.2, -1 / 3.0}, {-0.1, 1 / 3.0}, 1.8);  // biconcave
 }
 
-TEST_CASE("rays near the axis meet at the lensmaker's focus") {
+TEST_CASE("rays near the axis meet at the lensmaker's focus", "[paths][oracle]") {
     struct Case {
         LensSide front, back;
         double n;
@@ -232,7 +235,7 @@ TEST_CASE("rays near the axis meet at the lensmaker's focus") {
     CHECK(1 - focus == Approx(1.5 * 2 / (2 * 0.5)).epsilon(1e-6));
 }
 
-TEST_CASE("just below the critical angle light leaves along the surface, just above none does") {
+TEST_CASE("just below the critical angle light leaves along the surface, just above none does", "[paths]") {
     const double n = 1.5, critical = std::asin(1 / n);
     Stage stage;
     const Id slab = stage.add_body(make_box({-50, -50, -1}, {50, 50, 0}), glass_of(n));
@@ -268,7 +271,8 @@ TEST_CASE("just below the critical angle light leaves along the surface, just ab
     }
 }
 
-TEST_CASE("a right-angled prism turns light by a right angle, or back, by total reflection alone") {
+TEST_CASE("a right-angled prism turns light by a right angle, or back, by total reflection alone",
+          "[paths]") {
     Stage stage;
     const Id prism = stage.add_body(make_prism({Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}, 1), glass_of(1.5));
     // In by the left leg, at the long side, out by the bottom leg.

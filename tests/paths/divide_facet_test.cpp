@@ -83,7 +83,7 @@ FullLooks full_looks(const Looking& looking, const FacetPart& part) {
 
 }  // namespace
 
-TEST_CASE("a look's principal paths are the same whether others are followed or not") {
+TEST_CASE("a look's principal paths are the same whether others are followed or not", "[paths]") {
     Stage stage;
     put_up_stage(stage);
     const Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};
@@ -120,7 +120,7 @@ TEST_CASE("a look's principal paths are the same whether others are followed or 
     CHECK(refused > 50);
 }
 
-TEST_CASE("parts are projected where all paths agree, and traced only where they do not") {
+TEST_CASE("parts are projected where all paths agree, and traced only where they do not", "[paths][oracle]") {
     Stage stage;
     put_up_stage(stage);
     const Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};

@@ -6,7 +6,7 @@
 using namespace trilens;
 using namespace trilens_test;
 
-TEST_CASE("a triangle with any point on the film may reach it, through the eye's plane too") {
+TEST_CASE("a triangle with any point on the film may reach it, through the eye's plane too", "[paths]") {
     const Vec2 film(640, 480);
     Random random(61);
     std::size_t on_film = 0, kept_off = 0, left_out = 0;
@@ -35,7 +35,7 @@ TEST_CASE("a triangle with any point on the film may reach it, through the eye's
     CHECK(kept_off < on_film);
 }
 
-TEST_CASE("what is behind the eye, or off one side, does not reach the film") {
+TEST_CASE("what is behind the eye, or off one side, does not reach the film", "[paths]") {
     const Vec2 film(100, 100);
     CHECK_FALSE(may_reach_film({Vec3(50, 50, -1), Vec3(60, 50, -1), Vec3(50, 60, -2)}, film));
     CHECK_FALSE(may_reach_film({Vec3(-50, 50, 1), Vec3(-60, 50, 1), Vec3(-50, 60, 2)}, film));

@@ -103,7 +103,7 @@ double worst(const std::vector<FitValue>& a, const std::vector<FitValue>& b) {
 
 }  // namespace
 
-TEST_CASE("the fit is the least-squares solution that elimination finds") {
+TEST_CASE("the fit is the least-squares solution that elimination finds", "[paths][oracle]") {
     Random random(31);
     for (const Id side : {1u, 2u, 5u}) {
         const std::vector<IdTriple> facets = grid_facets(side);
@@ -116,7 +116,7 @@ TEST_CASE("the fit is the least-squares solution that elimination finds") {
     }
 }
 
-TEST_CASE("three uneven samples a facet are fitted as well, more slowly") {
+TEST_CASE("three uneven samples a facet are fitted as well, more slowly", "[paths]") {
     Random random(32);
     const std::vector<IdTriple> facets = grid_facets(4);
     std::vector<FitSample> samples;
@@ -132,7 +132,7 @@ TEST_CASE("three uneven samples a facet are fitted as well, more slowly") {
     CHECK(worst(values, least_squares(samples, values.size())) < 1e-3);
 }
 
-TEST_CASE("linear functions stay as they are, and so do corners without samples") {
+TEST_CASE("linear functions stay as they are, and so do corners without samples", "[paths][law]") {
     Random random(33);
     const std::vector<IdTriple> facets = grid_facets(3);
     std::vector<FitValue> values(17);
@@ -152,7 +152,7 @@ TEST_CASE("linear functions stay as they are, and so do corners without samples"
     CHECK(fitted[16] == values[16]);
 }
 
-TEST_CASE("where samples leave a choice the fit satisfies them and does not run away") {
+TEST_CASE("where samples leave a choice the fit satisfies them and does not run away", "[paths]") {
     // One sample on one facet: any change along its weights will do.
     FitSample sample{{0, 1, 2}, Vec3(0.5, 0.3, 0.2), 2, {}};
     sample.value.fill(1);

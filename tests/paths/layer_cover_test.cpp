@@ -41,7 +41,7 @@ std::optional<CoveringFacet> by_search(const RayMesh& mesh, const std::vector<ch
 
 }  // namespace
 
-TEST_CASE("the nearest facet over a place is found") {
+TEST_CASE("the nearest facet over a place is found", "[paths]") {
     Random random(72);
     RayMesh mesh;
     std::vector<char> covers;
@@ -74,7 +74,7 @@ TEST_CASE("the nearest facet over a place is found") {
     CHECK(!LayerCover(mesh, std::vector<char>(covers.size(), 0)).at({100, 50}));
 }
 
-TEST_CASE("no place between two facets that share an edge is left open") {
+TEST_CASE("no place between two facets that share an edge is left open", "[paths][law]") {
     RayMesh mesh;
     Random random(73);
     for (int j = 0; j < 9; ++j)

@@ -57,7 +57,7 @@ constexpr double kMediaGlass = 1.5, kWater = 1.33, kInner = 0.6, kLiquid = 0.75;
 
 }  // namespace
 
-TEST_CASE("liquid that reaches into its glass: the one of higher priority is inside") {
+TEST_CASE("liquid that reaches into its glass: the one of higher priority is inside", "[paths]") {
     for (const double h : {0.0, 0.1, 0.3, 0.5, 0.65}) {
         for (const bool glass_first : {true, false}) {
             const auto stage_of = [&](Stage& stage, int glass, int liquid) {
@@ -93,7 +93,7 @@ TEST_CASE("liquid that reaches into its glass: the one of higher priority is ins
     }
 }
 
-TEST_CASE("liquid that just fills its glass, or ends before it") {
+TEST_CASE("liquid that just fills its glass, or ends before it", "[paths]") {
     // A gap of air: turned at every skin.
     Stage gap;
     gap.add_body(Shell(1, 0.8), glass_of(kMediaGlass), 1);
@@ -107,7 +107,7 @@ TEST_CASE("liquid that just fills its glass, or ends before it") {
     CHECK(steps == 6);
 }
 
-TEST_CASE("two bodies of one glass that overlap are one body") {
+TEST_CASE("two bodies of one glass that overlap are one body", "[paths]") {
     Stage two;
     two.world.fresnel = false;
     const Material glass = glass_of(1.5);
@@ -132,7 +132,8 @@ TEST_CASE("two bodies of one glass that overlap are one body") {
     CHECK(same->way == Approx(end->way).epsilon(1e-9));
 }
 
-TEST_CASE("the camera in the glass: what leaves is turned away from the normal, what is reflected stays") {
+TEST_CASE("the camera in the glass: what leaves is turned away from the normal, what is reflected stays",
+          "[paths][law]") {
     Stage stage;
     const Id ball = stage.add_ball(Vec3(0), 1, glass_of(1.5));
     for (const double h : {0.0, 0.2, 0.5, 0.66, 0.7}) {
@@ -149,7 +150,7 @@ TEST_CASE("the camera in the glass: what leaves is turned away from the normal, 
     }
 }
 
-TEST_CASE("more bodies around a ray than can be told are light lost, and said so") {
+TEST_CASE("more bodies around a ray than can be told are light lost, and said so", "[paths]") {
     Stage stage;
     stage.world.max_depth = 30;
     for (int i = 0; i < Media::kMost + 1; ++i)

@@ -49,7 +49,7 @@ Vec3 mirrored_in(const Primitive& plane, const Vec3& p) {
 
 }  // namespace
 
-TEST_CASE("a point's image in a ball is Alhazen's") {
+TEST_CASE("a point's image in a ball is Alhazen's", "[paths][oracle]") {
     Stage stage;
     stage.add_ball({0, 0, 0}, 1, mirror_of());
     Random random(71);
@@ -72,7 +72,7 @@ TEST_CASE("a point's image in a ball is Alhazen's") {
     CHECK(found > 200);
 }
 
-TEST_CASE("flat mirrors image a point where it is mirrored to, with kappa 1") {
+TEST_CASE("flat mirrors image a point where it is mirrored to, with kappa 1", "[paths]") {
     Stage stage;
     const Primitive first = mirror_plane_at({0, 0, -3}, {0.05, 0.02, 1}, {1, 0, 0});
     const Primitive second = mirror_plane_at({4, 0, 0}, {-1, 0, 0.05}, {0, 1, 0});
@@ -92,7 +92,8 @@ TEST_CASE("flat mirrors image a point where it is mirrored to, with kappa 1") {
     CHECK(two->kappa() == Approx(1).margin(1e-12));
 }
 
-TEST_CASE("a chain's ray turns as its derivatives say, with own normals and with differences of them") {
+TEST_CASE("a chain's ray turns as its derivatives say, with own normals and with differences of them",
+          "[paths]") {
     Stage stage;
     stage.add_ball({-0.75, 0.1, 0}, 0.8, mirror_of());
     stage.add_ball({1, -0.2, 0.3}, 0.65, mirror_of());
@@ -129,7 +130,7 @@ TEST_CASE("a chain's ray turns as its derivatives say, with own normals and with
     }
 }
 
-TEST_CASE("a ball has no image of a point in its shadow, and none is behind a mirror") {
+TEST_CASE("a ball has no image of a point in its shadow, and none is behind a mirror", "[paths][law]") {
     Stage stage;
     stage.add_ball({0, 0, 0}, 1, mirror_of());
     const MirrorChain chain = chain_over(stage, {0, 0, 4}, {0});

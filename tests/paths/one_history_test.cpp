@@ -84,7 +84,7 @@ void check(const Counts& counts, double least_share) {
 
 }  // namespace
 
-TEST_CASE("One history is proven where nothing is near") {
+TEST_CASE("One history is proven where nothing is near", "[paths][law]") {
     Random random(5);
     for (const bool is_glass : {false, true}) {
         Stage stage;
@@ -95,7 +95,7 @@ TEST_CASE("One history is proven where nothing is near") {
     }
 }
 
-TEST_CASE("What is proven holds beside small optics anywhere") {
+TEST_CASE("What is proven holds beside small optics anywhere", "[paths][law]") {
     Random random(7);
     Counts counts;
     for (int scene = 0; scene < 24; ++scene) {
@@ -113,7 +113,7 @@ TEST_CASE("What is proven holds beside small optics anywhere") {
     CHECK(counts.rays > 5000);
 }
 
-TEST_CASE("What is proven holds where bodies of glass overlap, whichever has priority") {
+TEST_CASE("What is proven holds where bodies of glass overlap, whichever has priority", "[paths][law]") {
     Random random(9);
     Counts counts;
     for (int scene = 0; scene < 24; ++scene) {
@@ -130,7 +130,7 @@ TEST_CASE("What is proven holds where bodies of glass overlap, whichever has pri
     CHECK(counts.rays > 3000);
 }
 
-TEST_CASE("What is proven holds inside of a mirror, around other optics") {
+TEST_CASE("What is proven holds inside of a mirror, around other optics", "[paths][law]") {
     Random random(11);
     Counts counts;
     for (int scene = 0; scene < 12; ++scene) {

@@ -182,7 +182,7 @@ void check_flat_mirrors(const std::vector<Primitive>& planes, const Vec3& eye, b
 
 }  // namespace
 
-TEST_CASE("the parts of a facet cover it once, each where leaf_at says") {
+TEST_CASE("the parts of a facet cover it once, each where leaf_at says", "[paths][law]") {
     Stage stage;
     put_up(stage);
     const SurfaceGrid grid = make_grid(stage.surface(0), 4);
@@ -226,7 +226,7 @@ TEST_CASE("the parts of a facet cover it once, each where leaf_at says") {
             CHECK(paths.leaves()[paths.leaf_at(f, weights)].facet == f);
 }
 
-TEST_CASE("a facet's rays do not depend on what was asked for before") {
+TEST_CASE("a facet's rays do not depend on what was asked for before", "[paths][law]") {
     Stage stage;
     put_up(stage);
     const SurfaceGrid grid = make_grid(stage.surface(0), 3);
@@ -252,7 +252,8 @@ TEST_CASE("a facet's rays do not depend on what was asked for before") {
         }
 }
 
-TEST_CASE("facets whose paths there is no room for are traced, the same ones whatever is asked for first") {
+TEST_CASE("facets whose paths there is no room for are traced, the same ones whatever is asked for first",
+          "[paths][law]") {
     Stage stage;
     put_up(stage);
     const SurfaceGrid grid = make_grid(stage.surface(0), 6);
@@ -285,7 +286,7 @@ TEST_CASE("facets whose paths there is no room for are traced, the same ones wha
     CHECK(traced >= at_once.crowded_out());
 }
 
-TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times kappa") {
+TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times kappa", "[paths]") {
     Stage stage;
     put_up(stage);
     const Vec3 eye(0.3, 0.2, 5);
@@ -319,7 +320,7 @@ TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times ka
     CHECK(compared > 100);
 }
 
-TEST_CASE("flat plates and flat mirrors have kappa 1") {
+TEST_CASE("flat plates and flat mirrors have kappa 1", "[paths]") {
     Random random(54);
     Stage stage;
     const Primitive mirror = plane_at({0, 0, 2}, {0.2, 0.1, 1}, {1, 0, -0.2});
@@ -352,21 +353,21 @@ TEST_CASE("flat plates and flat mirrors have kappa 1") {
     (void)flat;
 }
 
-TEST_CASE("two flat mirrors are exact: every ray comes from the eye's image in both") {
+TEST_CASE("two flat mirrors are exact: every ray comes from the eye's image in both", "[paths][law]") {
     const std::vector<Primitive> planes{plane_at({0, 0, 0}, {0.3, 0, 1}, {1, 0, -0.3}),
                                         plane_at({2, 0, 1}, {-1, 0.1, 0.4}, {0.4, 0, 1})};
     check_flat_mirrors(planes, {-0.5, 0.3, 4}, false, 2);
     check_flat_mirrors(planes, {-0.5, 0.3, 4}, true, 2);
 }
 
-TEST_CASE("three flat mirrors in a corner are exact") {
+TEST_CASE("three flat mirrors in a corner are exact", "[paths]") {
     const std::vector<Primitive> planes{plane_at({0, 0, 0}, {0, 0, 1}, {1, 0, 0}),
                                         plane_at({3, 0, 3}, {-1, 0, 0}, {0, 0, 1}),
                                         plane_at({0, -3, 3}, {0, 1, 0}, {1, 0, 0})};
     check_flat_mirrors(planes, {-2, 1.7, 5}, false, 3);
 }
 
-TEST_CASE("what is left at the smallest size is traced, what is whole is not divided") {
+TEST_CASE("what is left at the smallest size is traced, what is whole is not divided", "[paths]") {
     Stage stage;
     put_up(stage);
     const SurfaceGrid grid = make_grid(stage.surface(0), 4);

@@ -22,7 +22,8 @@ SurfaceHit hit_with(const Vec3& position, const Vec3& normal) {
 
 }  // namespace
 
-TEST_CASE("mirrored rays leave from the hit, keep their length and ignore which way the normal points") {
+TEST_CASE("mirrored rays leave from the hit, keep their length and ignore which way the normal points",
+          "[paths]") {
     Random random(21);
     for (int i = 0; i < 500; ++i) {
         const Vec3 position = random.in_box(5), normal = random.direction();
@@ -38,7 +39,8 @@ TEST_CASE("mirrored rays leave from the hit, keep their length and ignore which 
     }
 }
 
-TEST_CASE("what enters by the front leaves by the back: a parallel plate gives the direction back") {
+TEST_CASE("what enters by the front leaves by the back: a parallel plate gives the direction back",
+          "[paths]") {
     Random random(22);
     for (int i = 0; i < 500; ++i) {
         const double ior = random.uniform(1.01, 3);
@@ -65,7 +67,7 @@ TEST_CASE("what enters by the front leaves by the back: a parallel plate gives t
     }
 }
 
-TEST_CASE("beyond the critical angle nothing leaves") {
+TEST_CASE("beyond the critical angle nothing leaves", "[paths]") {
     const double ior = 1.5, critical = std::asin(1 / ior);
     const SurfaceHit hit = hit_with(Vec3(0), {0, 1, 0});
     const auto from_within = [](double angle) { return Ray{{}, {std::sin(angle), std::cos(angle), 0}}; };
@@ -73,7 +75,7 @@ TEST_CASE("beyond the critical angle nothing leaves") {
     CHECK_FALSE(refracted_ray(from_within(critical + 1e-9), hit, ior).has_value());
 }
 
-TEST_CASE("a ray through a glass ball is turned by twice the difference of its angles") {
+TEST_CASE("a ray through a glass ball is turned by twice the difference of its angles", "[paths][law]") {
     Random random(23);
     const ProjectedSphere ball(FaceDomain::kSquare, Vec3(0), 1);
     const LimitTracer tracer(ball, grid_of(ball, 16));
@@ -99,7 +101,7 @@ TEST_CASE("a ray through a glass ball is turned by twice the difference of its a
     }
 }
 
-TEST_CASE("a hollow mirror sphere keeps a ray's distance from its centre over many bounces") {
+TEST_CASE("a hollow mirror sphere keeps a ray's distance from its centre over many bounces", "[paths]") {
     Random random(24);
     const ProjectedSphere ball(FaceDomain::kTriangle, Vec3(0), 1);
     const LimitTracer tracer(ball, grid_of(ball, 16));

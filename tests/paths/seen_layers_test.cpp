@@ -90,7 +90,7 @@ Shown compare(const Layered& layered, SeenLayers& seen, Id mirror, int step) {
 
 }  // namespace
 
-TEST_CASE("of two balls behind one another a flat mirror shows the nearer, as exact paths do") {
+TEST_CASE("of two balls behind one another a flat mirror shows the nearer, as exact paths do", "[paths]") {
     Layered layered;
     Primitive plane;
     plane.type = Primitive::Type::kPlane;
@@ -120,7 +120,7 @@ TEST_CASE("of two balls behind one another a flat mirror shows the nearer, as ex
     CHECK(both > 20);
 }
 
-TEST_CASE("mirror balls show each other, and each other's images, where exact paths do") {
+TEST_CASE("mirror balls show each other, and each other's images, where exact paths do", "[paths]") {
     double before = 1;
     for (const int n : {8, 16, 32}) {
         Layered layered;
@@ -141,7 +141,8 @@ TEST_CASE("mirror balls show each other, and each other's images, where exact pa
     CHECK(before < 0.005);
 }
 
-TEST_CASE("layers and exact paths agree but at outlines, and a way that no layer has is told") {
+TEST_CASE("layers and exact paths agree but at outlines, and a way that no layer has is told",
+          "[paths][oracle]") {
     Layered layered;
     layered.stage.add_ball({-0.75, 0.1, 0}, 0.8, mirror_of());
     layered.stage.add_ball({1, -0.2, 0.3}, 0.65, mirror_of());

@@ -45,7 +45,7 @@ std::vector<PathSegment> straight_through(const FollowedPaths& paths) {
 
 }  // namespace
 
-TEST_CASE("light goes from one body into another that touches it as if no air lay between") {
+TEST_CASE("light goes from one body into another that touches it as if no air lay between", "[paths][law]") {
     Random random(81);
     for (const bool upper_first : {true, false})
         for (const int priority : {-1, 0, 1}) {
@@ -75,7 +75,8 @@ TEST_CASE("light goes from one body into another that touches it as if no air la
         }
 }
 
-TEST_CASE("two touching bodies of one glass are one: light passes, and nothing is reflected between") {
+TEST_CASE("two touching bodies of one glass are one: light passes, and nothing is reflected between",
+          "[paths][law]") {
     Random random(82);
     const TwoSlabs slabs(true, 0, kUpper);
     for (int i = 0; i < 200; ++i) {
@@ -89,7 +90,8 @@ TEST_CASE("two touching bodies of one glass are one: light passes, and nothing i
     }
 }
 
-TEST_CASE("glass that lies on a mirror: light is mirrored in the glass, and comes out as it went in") {
+TEST_CASE("glass that lies on a mirror: light is mirrored in the glass, and comes out as it went in",
+          "[paths]") {
     Random random(83);
     for (const bool glass_first : {true, false}) {
         Stage stage;
@@ -113,7 +115,7 @@ TEST_CASE("glass that lies on a mirror: light is mirrored in the glass, and come
     }
 }
 
-TEST_CASE("a table under a slab that lies on it is seen through the slab by every ray") {
+TEST_CASE("a table under a slab that lies on it is seen through the slab by every ray", "[paths][law]") {
     Stage stage;
     stage.add_body(make_box({-9, kTouch, -9}, {9, 0.7, 9}), glass_of(kUpper));
     TriangleScene table;
@@ -136,7 +138,8 @@ TEST_CASE("a table under a slab that lies on it is seen through the slab by ever
     }
 }
 
-TEST_CASE("paths that come to a third place where a body lies on an object end there, and no others do") {
+TEST_CASE("paths that come to a third place where a body lies on an object end there, and no others do",
+          "[paths][law]") {
     // A slab between two tables; the upper one leaves half of it open.
     Stage stage;
     const double top = 0.7;

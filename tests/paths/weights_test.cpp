@@ -84,7 +84,8 @@ void check_energy(bool fresnel, double dispersion, double least, std::uint64_t s
 
 }  // namespace
 
-TEST_CASE("without absorption the ends of all paths, with what was cut, add up to all the light") {
+TEST_CASE("without absorption the ends of all paths, with what was cut, add up to all the light",
+          "[paths][law]") {
     SECTION("Fresnel") {
         check_energy(true, 0, kLeastWeight, 41);
     }
@@ -102,7 +103,7 @@ TEST_CASE("without absorption the ends of all paths, with what was cut, add up t
     }
 }
 
-TEST_CASE("what is beyond the last optic that is followed is said") {
+TEST_CASE("what is beyond the last optic that is followed is said", "[paths]") {
     Stage stage;
     stage.world.fresnel = false;
     const Id near = stage.add_body(make_box({-9, -9, -1}, {9, 9, 0}), mirror_of());
@@ -120,7 +121,7 @@ TEST_CASE("what is beyond the last optic that is followed is said") {
     }
 }
 
-TEST_CASE("glass absorbs by the length of the way inside, once for every crossing") {
+TEST_CASE("glass absorbs by the length of the way inside, once for every crossing", "[paths][law]") {
     Random random(46);
     for (int i = 0; i < 200; ++i) {
         Material glass = glass_of(random.uniform(1.2, 2));
@@ -150,7 +151,7 @@ TEST_CASE("glass absorbs by the length of the way inside, once for every crossin
     }
 }
 
-TEST_CASE("a prism parts the colours as Snell has it for each colour's own index") {
+TEST_CASE("a prism parts the colours as Snell has it for each colour's own index", "[paths][oracle]") {
     Material glass = glass_of(1.6);
     glass.dispersion = 20.0 / 30;  // Abbe number 30
     CHECK((glass.ior - 1) / (ior_of(glass, 2) - ior_of(glass, 0)) == Approx(30).epsilon(1e-12));
@@ -181,7 +182,7 @@ TEST_CASE("a prism parts the colours as Snell has it for each colour's own index
     }
 }
 
-TEST_CASE("the same paths again from the same place, and from beside it") {
+TEST_CASE("the same paths again from the same place, and from beside it", "[paths]") {
     Random random(47);
     int compared = 0;
     for (int i = 0; i < 60; ++i) {

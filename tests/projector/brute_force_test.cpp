@@ -55,7 +55,8 @@ void compare_case(const RayMesh& mesh, const TriangleScene& scene, const SampleG
 
 }  // namespace
 
-TEST_CASE("draw sees the same first triangle as brute force, for rays of every kind") {
+TEST_CASE("draw sees the same first triangle as brute force, for rays of every kind",
+          "[projector][oracle][law]") {
     Random random(1);
     for (int rays = 0; rays < static_cast<int>(Rays::kCount); ++rays) {
         for (int screen = 0; screen < static_cast<int>(Screen::kCount); ++screen) {
@@ -81,7 +82,7 @@ TEST_CASE("draw sees the same first triangle as brute force, for rays of every k
     }
 }
 
-TEST_CASE("draw is right for samples outside their facet, on either side of its horizon") {
+TEST_CASE("draw is right for samples outside their facet, on either side of its horizon", "[projector]") {
     Random random(2);
     BruteForceTally tally;
     for (int i = 0; i < 150; ++i) {
@@ -99,7 +100,7 @@ TEST_CASE("draw is right for samples outside their facet, on either side of its 
     CHECK(tally.marginal <= tally.samples / 200);
 }
 
-TEST_CASE("a flat mirror's rays meet what the mirrored eye sees") {
+TEST_CASE("a flat mirror's rays meet what the mirrored eye sees", "[projector][oracle]") {
     // The virtual eye is a pinhole behind the mirror; both facets must see one picture, at t apart by 1.
     Random random(3);
     const SampleGrid grid{0, 0, 40, 40, 1};

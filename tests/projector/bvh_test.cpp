@@ -60,7 +60,7 @@ std::vector<int> met_items(const Bvh& bvh, const std::vector<Box>& boxes) {
 
 }  // namespace
 
-TEST_CASE("every item stands once in the tree, in boxes that hold it", "[projector][bvh]") {
+TEST_CASE("every item stands once in the tree, in boxes that hold it", "[projector][bvh][law]") {
     const std::size_t count = GENERATE(1u, 2u, 5u, 17u, 1000u, 20000u);
     const double size = GENERATE(1.0, 1e-4, 1e300), far = GENERATE(0.0, 1e6);
     const std::vector<Box> boxes = random_boxes(count, Vec3(far, -far, far), size);
@@ -85,7 +85,7 @@ TEST_CASE("the tree is cut where it pays", "[projector][bvh]") {
         CHECK(bvh.nodes[child].box.size().x < 3);
 }
 
-TEST_CASE("the same boxes give the same tree for any number of threads", "[projector][bvh]") {
+TEST_CASE("the same boxes give the same tree for any number of threads", "[projector][bvh][law]") {
     const std::vector<Box> boxes = random_boxes(50000, Vec3(5), 2);
     set_thread_count(1);
     const Bvh one = tree_over(boxes);

@@ -66,7 +66,7 @@ std::vector<Pixel> rasterized(const TriangleScene& scene, const SampleGrid& grid
 
 }  // namespace
 
-TEST_CASE("through a pinhole, draw is textbook rasterisation with a depth buffer") {
+TEST_CASE("through a pinhole, draw is textbook rasterisation with a depth buffer", "[projector][oracle]") {
     Random random(11);
     const SampleGrid grid{0, 0, kPixels, kPixels, 1};
     const RayMesh mesh = camera();

@@ -71,7 +71,8 @@ std::vector<Id> every_sample(const SampleGrid& grid) {
 
 }  // namespace
 
-TEST_CASE("triangles of a mesh, filled one by one, hold every sample once, ties included") {
+TEST_CASE("triangles of a mesh, filled one by one, hold every sample once, ties included",
+          "[projector][law]") {
     Random random(21);
     for (int trial = 0; trial < 60; ++trial) {
         const SampleGrid grid{2, 3, 22, 18, 1 + trial % 3};
@@ -102,7 +103,7 @@ TEST_CASE("triangles of a mesh, filled one by one, hold every sample once, ties 
     }
 }
 
-TEST_CASE("a triangle that goes behind the camera holds what its visible part holds") {
+TEST_CASE("a triangle that goes behind the camera holds what its visible part holds", "[projector]") {
     Random random(26);
     const SampleGrid grid{0, 0, 32, 32, 1};
     const std::vector<Id> samples = every_sample(grid);
@@ -136,7 +137,7 @@ TEST_CASE("a triangle that goes behind the camera holds what its visible part ho
     CHECK(wrong == 0);
 }
 
-TEST_CASE("with arcs the classic engine draws what the exact one draws") {
+TEST_CASE("with arcs the classic engine draws what the exact one draws", "[projector]") {
     Random random(22);
     std::size_t samples = 0, different = 0, off = 0;
     double worst_t = 0;
@@ -165,7 +166,7 @@ TEST_CASE("with arcs the classic engine draws what the exact one draws") {
     CHECK(off == 0);
 }
 
-TEST_CASE("a closed box leaves no sample uncovered, however coarse its outlines") {
+TEST_CASE("a closed box leaves no sample uncovered, however coarse its outlines", "[projector][law]") {
     Random random(23);
     for (int i = 0; i < 40; ++i) {
         const SampleGrid grid{0, 0, 48, 40, 1};
@@ -179,7 +180,7 @@ TEST_CASE("a closed box leaves no sample uncovered, however coarse its outlines"
     }
 }
 
-TEST_CASE("whatever the outlines, hits are finite and inside their triangle") {
+TEST_CASE("whatever the outlines, hits are finite and inside their triangle", "[projector][law]") {
     Random random(24);
     std::size_t seen = 0;
     for (int i = 0; i < 240; ++i) {
@@ -204,7 +205,8 @@ TEST_CASE("whatever the outlines, hits are finite and inside their triangle") {
     CHECK(seen > 1000);
 }
 
-TEST_CASE("the classic engine: the number of threads and the order of triangles change no bit") {
+TEST_CASE("the classic engine: the number of threads and the order of triangles change no bit",
+          "[projector][law]") {
     Random random(25);
     const SampleGrid grid{3, 5, 90, 70, 2};
     const RayMesh mesh = bulging_mesh(grid, 5, 0.4);

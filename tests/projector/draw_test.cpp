@@ -57,7 +57,8 @@ void add_square(TriangleScene& scene, double z, double half) {
 
 }  // namespace
 
-TEST_CASE("the order and winding of the scene's triangles do not matter, coincident ones included") {
+TEST_CASE("the order and winding of the scene's triangles do not matter, coincident ones included",
+          "[projector][law]") {
     Random random(6);
     std::size_t compared = 0, different = 0;
     for (int i = 0; i < 60; ++i) {
@@ -86,7 +87,7 @@ TEST_CASE("the order and winding of the scene's triangles do not matter, coincid
     CHECK(different == 0);
 }
 
-TEST_CASE("a chain of depths, each tied with the next, gives one answer in every order") {
+TEST_CASE("a chain of depths, each tied with the next, gives one answer in every order", "[projector][law]") {
     const SampleGrid grid{0, 0, 8, 8, 1};
     const RayMesh mesh = curved_mesh(grid, 1, 0);
     const std::vector<double> depth{5 * (1 + 1.4e-9), 5 * (1 + 0.7e-9), 5, 5 * (1 + 2.1e-9)};
@@ -105,7 +106,7 @@ TEST_CASE("a chain of depths, each tied with the next, gives one answer in every
     } while (std::next_permutation(order.begin(), order.end()));
 }
 
-TEST_CASE("culling changes no bit") {
+TEST_CASE("culling changes no bit", "[projector][law]") {
     Random random(7);
     std::size_t seen = 0, different = 0;
     for (int i = 0; i < 400; ++i) {
@@ -125,7 +126,7 @@ TEST_CASE("culling changes no bit") {
     CHECK(different == 0);
 }
 
-TEST_CASE("the number of threads changes no bit") {
+TEST_CASE("the number of threads changes no bit", "[projector][law]") {
     Random random(8);
     const SampleGrid grid{3, 5, 100, 77, 2};
     const RayMesh mesh = curved_mesh(grid, 7, 0.4);
@@ -139,7 +140,7 @@ TEST_CASE("the number of threads changes no bit") {
     CHECK(std::equal(one.begin(), one.end(), two.begin(), two.end(), same));
 }
 
-TEST_CASE("samples of any density are those of the facets, each once") {
+TEST_CASE("samples of any density are those of the facets, each once", "[projector]") {
     Random random(9);
     TriangleScene scene;
     add_square(scene, 3, 20);
@@ -153,7 +154,7 @@ TEST_CASE("samples of any density are those of the facets, each once") {
     }
 }
 
-TEST_CASE("what no facet with rays owns is left alone") {
+TEST_CASE("what no facet with rays owns is left alone", "[projector][oracle][law]") {
     const SampleGrid grid{0, 0, 8, 8, 1};
     RayMesh mesh = curved_mesh(grid, 1, 0);
     TriangleScene scene;
@@ -168,7 +169,7 @@ TEST_CASE("what no facet with rays owns is left alone") {
     for (const Id s : owned.of(1)) CHECK(hits[s].triangle == 77);
 }
 
-TEST_CASE("an empty scene is not seen, and neither are triangles without area") {
+TEST_CASE("an empty scene is not seen, and neither are triangles without area", "[projector]") {
     const SampleGrid grid{0, 0, 16, 16, 1};
     const RayMesh mesh = curved_mesh(grid, 2, 0.2);
     TriangleScene scene;
@@ -181,7 +182,7 @@ TEST_CASE("an empty scene is not seen, and neither are triangles without area") 
     for (const Hit& hit : drawn(scene, mesh, grid)) CHECK_FALSE(hit.seen());
 }
 
-TEST_CASE("a triangle through the facet shows only the part in front of it") {
+TEST_CASE("a triangle through the facet shows only the part in front of it", "[projector]") {
     // A tilted square that crosses the rays' starting plane z = 0 along x = 0.
     const SampleGrid grid{0, 0, 32, 32, 1};
     const RayMesh mesh = curved_mesh(grid, 1, 0);
@@ -196,7 +197,7 @@ TEST_CASE("a triangle through the facet shows only the part in front of it") {
     }
 }
 
-TEST_CASE("whatever the triangles, hits are finite and inside their triangle") {
+TEST_CASE("whatever the triangles, hits are finite and inside their triangle", "[projector][law]") {
     Random random(10);
     const SampleGrid grid{0, 0, 24, 24, 1};
     std::size_t seen = 0;

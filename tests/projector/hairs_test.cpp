@@ -7,7 +7,8 @@ using namespace trilens_test;
 
 // Which side of a triangle faces a ray that grazes it is nearly anybody's guess: for all of a tile where the
 // rays are parallel.
-TEST_CASE("the vector engine draws the plain engine's bits where rays graze triangles from either side") {
+TEST_CASE("the vector engine draws the plain engine's bits where rays graze triangles from either side",
+          "[projector][oracle]") {
     Random random(29);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;
@@ -73,7 +74,8 @@ void add_hairs(TriangleScene& scene, Random& random, const Ray& ray) {
 
 }  // namespace
 
-TEST_CASE("the vector engine draws the plain engine's bits where rays pass edges and corners by a hair") {
+TEST_CASE("the vector engine draws the plain engine's bits where rays pass edges and corners by a hair",
+          "[projector][oracle]") {
     Random random(30);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;

@@ -53,7 +53,7 @@ void visit(const PreparedScene::Data& data, std::int32_t child, const FloatBound
 
 }  // namespace
 
-TEST_CASE("every triangle is in one leaf, inside all boxes above it") {
+TEST_CASE("every triangle is in one leaf, inside all boxes above it", "[projector][law]") {
     Random random(31);
     for (const int size : {1, 16, 17, 40, 300, 5000}) {
         for (int i = 0; i < 5; ++i) {
@@ -73,7 +73,7 @@ TEST_CASE("every triangle is in one leaf, inside all boxes above it") {
     }
 }
 
-TEST_CASE("triangles that all coincide still make a tree") {
+TEST_CASE("triangles that all coincide still make a tree", "[projector]") {
     constexpr int kCount = 5000;
     TriangleScene scene;
     for (int i = 0; i < kCount; ++i) add_triangle(scene, {0, 0, 1}, {1, 0, 1}, {0, 1, 1});
@@ -84,7 +84,7 @@ TEST_CASE("triangles that all coincide still make a tree") {
     CHECK(std::count(count.seen.begin(), count.seen.end(), 1) == kCount);
 }
 
-TEST_CASE("a large triangle shares no leaf with small ones") {
+TEST_CASE("a large triangle shares no leaf with small ones", "[projector]") {
     Random random(33);
     for (const int small : {1, 30, 300, 5000}) {
         for (const int large : {1, 12, 40}) {
@@ -112,7 +112,7 @@ TEST_CASE("a large triangle shares no leaf with small ones") {
     }
 }
 
-TEST_CASE("any number of threads makes the same tree") {
+TEST_CASE("any number of threads makes the same tree", "[projector][law]") {
     Random random(32);
     const TriangleScene scene = random_triangles(random, random_frame(random), 40000);
     std::vector<std::unique_ptr<PreparedScene>> made;

@@ -37,7 +37,7 @@ FacetSamples without_some(const FacetSamples& owned) {
 
 }  // namespace
 
-TEST_CASE("every owned sample is in one lane, whose place, box and slot are its own") {
+TEST_CASE("every owned sample is in one lane, whose place, box and slot are its own", "[projector][law]") {
     for (const int side : {1, 2, 3}) {
         for (const auto& [cells, gaps] :
              {std::pair(1, false), {1, true}, {7, false}, {7, true}, {40, false}}) {
@@ -128,7 +128,8 @@ TEST_CASE("every owned sample is in one lane, whose place, box and slot are its 
     }
 }
 
-TEST_CASE("groups and batches hold every tile once, within their limits, as one range of vectors") {
+TEST_CASE("groups and batches hold every tile once, within their limits, as one range of vectors",
+          "[projector][law]") {
     const SampleGrid grid{0, 0, 200, 150, 1};
     const RayMesh mesh = flat_mesh(grid, 23);
     const FacetSamples owned = rasterize_facets(mesh, grid);

@@ -58,7 +58,7 @@ TriangleScene sheets(Random& random, const Frame& frame, int count) {
 
 }  // namespace
 
-TEST_CASE("tiles that one triangle covers, with others before, behind and through it") {
+TEST_CASE("tiles that one triangle covers, with others before, behind and through it", "[projector][law]") {
     Random random(25);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;
@@ -101,7 +101,8 @@ void compare_in_order(const Case& c, Tally& tally) {
     }
 }
 
-TEST_CASE("what is visible, left in the order of vectors, holds the hits of the samples") {
+TEST_CASE("what is visible, left in the order of vectors, holds the hits of the samples",
+          "[projector][law]") {
     Random random(26);
     Tally tally;
     for (int i = 0; i < 20; ++i) {
@@ -116,7 +117,8 @@ TEST_CASE("what is visible, left in the order of vectors, holds the hits of the 
     CHECK(tally.seen > 100000);
 }
 
-TEST_CASE("the vector engine draws the plain engine's bits where rays that meet see a tiny triangle") {
+TEST_CASE("the vector engine draws the plain engine's bits where rays that meet see a tiny triangle",
+          "[projector][oracle]") {
     for (const std::string& set : kernel_instruction_sets()) {
         REQUIRE(use_instruction_set(set));
         Random random(28);
@@ -151,7 +153,8 @@ TEST_CASE("the vector engine draws the plain engine's bits where rays that meet 
 
 // Tiles of many vectors that see one triangle or few, at every size of sample, far from the world's origin
 // and from the triangles, near planes seen edge-on, and slivers over the whole film.
-TEST_CASE("the vector engine draws the plain engine's bits for hits that doubles can hardly tell") {
+TEST_CASE("the vector engine draws the plain engine's bits for hits that doubles can hardly tell",
+          "[projector][oracle]") {
     for (const std::string& set : kernel_instruction_sets()) {
         REQUIRE(use_instruction_set(set));
         Random random(27);
@@ -186,7 +189,8 @@ TEST_CASE("the vector engine draws the plain engine's bits for hits that doubles
     CHECK(use_instruction_set(""));
 }
 
-TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens of every kind") {
+TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens of every kind",
+          "[projector][oracle][law]") {
     Random random(21);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;
@@ -210,7 +214,8 @@ TEST_CASE("the vector engine draws the plain engine's bits, for rays and screens
     }
 }
 
-TEST_CASE("the vector engine draws the plain engine's bits through many facets, large and small") {
+TEST_CASE("the vector engine draws the plain engine's bits through many facets, large and small",
+          "[projector][oracle]") {
     Random random(22);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;
@@ -230,7 +235,7 @@ TEST_CASE("the vector engine draws the plain engine's bits through many facets, 
     }
 }
 
-TEST_CASE("every instruction set draws the same bits") {
+TEST_CASE("every instruction set draws the same bits", "[projector][law]") {
     const std::vector<std::string> sets = kernel_instruction_sets();
     REQUIRE(!sets.empty());
     CHECK_FALSE(use_instruction_set("none of them"));
@@ -253,7 +258,8 @@ TEST_CASE("every instruction set draws the same bits") {
 }
 
 TEST_CASE(
-    "no wrong pixel: slivers, needles, coincident and edge-on triangles, far coordinates and all scales") {
+    "no wrong pixel: slivers, needles, coincident and edge-on triangles, far coordinates and all scales",
+    "[projector][law]") {
     Random random(24);
     for (const DrawOptions& way : all_ways()) {
         Tally tally;

@@ -59,7 +59,7 @@ std::size_t missed(const PreparedScene& scene, const RayMesh& mesh, const Sample
 
 }  // namespace
 
-TEST_CASE("every ray inside a closed box or sphere sees it") {
+TEST_CASE("every ray inside a closed box or sphere sees it", "[projector][law]") {
     Random random(4);
     const SampleGrid grid{0, 0, 16, 16, 1};
     std::size_t samples = 0, lost = 0;
@@ -78,7 +78,7 @@ TEST_CASE("every ray inside a closed box or sphere sees it") {
     CHECK(lost == 0);
 }
 
-TEST_CASE("rays that run exactly along edges and through corners see the closed surface") {
+TEST_CASE("rays that run exactly along edges and through corners see the closed surface", "[projector]") {
     // A pinhole at the centre of a cube, pixels on its diagonals and its axes, at scales where nothing is a
     // power of two.
     for (const double scale : {1.0, 0.1, 1e-4 / 3, 1e4 / 7}) {
@@ -99,7 +99,7 @@ TEST_CASE("rays that run exactly along edges and through corners see the closed 
     }
 }
 
-TEST_CASE("around a corner that lies on a ray exactly one triangle is seen") {
+TEST_CASE("around a corner that lies on a ray exactly one triangle is seen", "[projector]") {
     Random random(5);
     const SampleGrid grid{0, 0, 9, 9, 1};
     std::size_t wrong = 0, fans = 0;

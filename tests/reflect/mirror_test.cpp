@@ -21,8 +21,8 @@ struct Drawn {
 
 }  // namespace
 
-TEST_CASE(
-    "the angle of reflection is the angle of incidence, in the plane of incidence, at the same length") {
+TEST_CASE("the angle of reflection is the angle of incidence, in the plane of incidence, at the same length",
+          "[reflect]") {
     Drawn draw;
     for (int i = 0; i < 2000; ++i) {
         const Vec3 incoming = draw.scaled(), normal = normalize(draw.vector());
@@ -36,7 +36,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("mirroring twice gives the ray back, and the side of the normal does not matter") {
+TEST_CASE("mirroring twice gives the ray back, and the side of the normal does not matter",
+          "[reflect][law]") {
     Drawn draw;
     for (int i = 0; i < 2000; ++i) {
         const Vec3 incoming = draw.scaled(), normal = normalize(draw.vector());
@@ -45,7 +46,7 @@ TEST_CASE("mirroring twice gives the ray back, and the side of the normal does n
     }
 }
 
-TEST_CASE("known mirrors: head on, grazing, and a corner of three") {
+TEST_CASE("known mirrors: head on, grazing, and a corner of three", "[reflect]") {
     CHECK(mirrored({0, -2, 0}, {0, 1, 0}) == Vec3(0, 2, 0));
     CHECK(mirrored({3, 0, 0}, {0, 1, 0}) == Vec3(3, 0, 0));
     const Vec3 in(0.3, -1.7, 0.9);

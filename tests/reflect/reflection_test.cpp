@@ -43,7 +43,7 @@ double largest_angle_error(const CubeSphere& sphere, const LinearCamera& camera,
 
 }  // namespace
 
-TEST_CASE("all rays of a flat mirror meet in the virtual eye at t = -1") {
+TEST_CASE("all rays of a flat mirror meet in the virtual eye at t = -1", "[reflect]") {
     Draw draw(21);
     for (int round = 0; round < 300; ++round) {
         const double size = draw.log_uniform(1e-4, 1e4);
@@ -60,7 +60,7 @@ TEST_CASE("all rays of a flat mirror meet in the virtual eye at t = -1") {
     }
 }
 
-TEST_CASE("corners and facets of the mesh are those of the grid") {
+TEST_CASE("corners and facets of the mesh are those of the grid", "[reflect]") {
     Draw draw(22);
     const CubeSphere sphere({0.3, 0.1, -0.2}, 1.2);
     const SurfaceGrid grid = regular_grid(sphere, 4);
@@ -77,7 +77,7 @@ TEST_CASE("corners and facets of the mesh are those of the grid") {
     }
 }
 
-TEST_CASE("a mirror has two sides: turning its normals changes nothing") {
+TEST_CASE("a mirror has two sides: turning its normals changes nothing", "[reflect][law]") {
     const CubeSphere sphere({0.3, 0.1, -0.2}, 1.2);
     SurfaceGrid grid = regular_grid(sphere, 3);
     const RayMesh mesh = make_reflection(grid, pinhole({1, 2, 6}));
@@ -87,7 +87,7 @@ TEST_CASE("a mirror has two sides: turning its normals changes nothing") {
         CHECK(mesh.rays[k].direction == turned.rays[k].direction);
 }
 
-TEST_CASE("parallel rays along a paraboloid's axis leave it through the focus") {
+TEST_CASE("parallel rays along a paraboloid's axis leave it through the focus", "[reflect]") {
     for (const double bend : {0.05, 0.5, 3.0}) {
         const Patch bowl({0.5, -0.2, 0.1}, 1, bend);
         const Vec3 focus = bowl.center + Vec3(0, 0, 1 / (4 * bend));
@@ -102,7 +102,7 @@ TEST_CASE("parallel rays along a paraboloid's axis leave it through the focus") 
     }
 }
 
-TEST_CASE("a curved mirror's interpolated rays converge with order two") {
+TEST_CASE("a curved mirror's interpolated rays converge with order two", "[reflect][law]") {
     const CubeSphere sphere(Vec3(0), 1);
     const LinearCamera camera = pinhole({0.4, 0.7, 3.1});
     const double coarse = largest_angle_error(sphere, camera, 8),
@@ -112,7 +112,7 @@ TEST_CASE("a curved mirror's interpolated rays converge with order two") {
     CHECK(coarse / fine < 22);
 }
 
-TEST_CASE("facets without a normal, or at the eye, have no rays; their neighbours do") {
+TEST_CASE("facets without a normal, or at the eye, have no rays; their neighbours do", "[reflect][law]") {
     const Patch plane(Vec3(0), 1, 0);
     SurfaceGrid grid = regular_grid(plane, 4);
     const Id lost = 12;  // the middle corner, of six facets
@@ -133,7 +133,7 @@ TEST_CASE("facets without a normal, or at the eye, have no rays; their neighbour
     CHECK(without == 6);
 }
 
-TEST_CASE("an empty grid is an empty mesh") {
+TEST_CASE("an empty grid is an empty mesh", "[reflect]") {
     const RayMesh mesh = make_reflection({}, pinhole({0, 0, 1}));
     CHECK(mesh.rays.empty());
     CHECK(mesh.facets.empty());

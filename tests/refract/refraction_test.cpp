@@ -19,7 +19,8 @@ bool from_back(const SurfaceGrid& grid, std::size_t facet, const Vec3& eye) {
 
 }  // namespace
 
-TEST_CASE("every corner obeys Snell's law on its facet's side, and keeps the eye's distance as length") {
+TEST_CASE("every corner obeys Snell's law on its facet's side, and keeps the eye's distance as length",
+          "[refract][oracle][law]") {
     Draw draw(31);
     std::size_t bent = 0, grazing = 0, total = 0;
     for (int round = 0; round < 60; ++round) {
@@ -66,7 +67,7 @@ TEST_CASE("every corner obeys Snell's law on its facet's side, and keeps the eye
     CHECK(total > 100);
 }
 
-TEST_CASE("index one bends nothing: every ray goes on from the eye") {
+TEST_CASE("index one bends nothing: every ray goes on from the eye", "[refract][law]") {
     const CubeSphere sphere({0.2, 0.3, 0.1}, 1);
     const Vec3 eye(0.5, -1, 5);
     const SurfaceGrid grid = regular_grid(sphere, 6);
@@ -84,7 +85,8 @@ TEST_CASE("index one bends nothing: every ray goes on from the eye") {
     }
 }
 
-TEST_CASE("a corner of facets on both sides has one ray for each; unneeded back corners are not made") {
+TEST_CASE("a corner of facets on both sides has one ray for each; unneeded back corners are not made",
+          "[refract]") {
     const Patch plane(Vec3(0), 1, 0);
     const SurfaceGrid grid = regular_grid(plane, 4);
     const RayMesh above = make_refraction(grid, pinhole({0, 0, 3}), 1.5);
@@ -100,7 +102,7 @@ TEST_CASE("a corner of facets on both sides has one ray for each; unneeded back 
     CHECK(mesh.rays.size() < 2 * ball.corner_point.size());
 }
 
-TEST_CASE("from under water all but Snell's window is total reflection") {
+TEST_CASE("from under water all but Snell's window is total reflection", "[refract][oracle]") {
     const Patch surface(Vec3(0), 4, 0);
     const SurfaceGrid grid = regular_grid(surface, 40);
     const double ior = 1.33, depth = 1;
@@ -117,7 +119,7 @@ TEST_CASE("from under water all but Snell's window is total reflection") {
     CHECK(dark < mesh.facets.size());
 }
 
-TEST_CASE("facets whose corner has no normal have no rays") {
+TEST_CASE("facets whose corner has no normal have no rays", "[refract][law]") {
     const Patch plane(Vec3(0), 1, 0);
     SurfaceGrid grid = regular_grid(plane, 2);
     grid.corner_normal[4] = Vec3(0);

@@ -27,7 +27,8 @@ const Vec3 kUp{0, 1, 0};
 
 }  // namespace
 
-TEST_CASE("refraction keeps the plane and the length, and the sines have the ratio of the indices") {
+TEST_CASE("refraction keeps the plane and the length, and the sines have the ratio of the indices",
+          "[refract]") {
     Drawn draw;
     int refracted_count = 0, reflected_count = 0;
     for (int i = 0; i < 5000; ++i) {
@@ -54,7 +55,7 @@ TEST_CASE("refraction keeps the plane and the length, and the sines have the rat
     CHECK(reflected_count > 500);
 }
 
-TEST_CASE("light takes the same way back") {
+TEST_CASE("light takes the same way back", "[refract][law]") {
     Drawn draw;
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3);
@@ -67,7 +68,7 @@ TEST_CASE("light takes the same way back") {
     }
 }
 
-TEST_CASE("known refractions: straight through, equal media, glass at 30 degrees") {
+TEST_CASE("known refractions: straight through, equal media, glass at 30 degrees", "[refract]") {
     CHECK(length(*refracted({0, -2, 0}, kUp, 1 / 1.5) - Vec3(0, -2, 0)) < 1e-15);
     CHECK(length(*refracted(arriving(1.2), kUp, 1) - arriving(1.2)) < 1e-15);
     const double inside = std::asin(0.5 / 1.5);  // 19.4712 degrees
@@ -75,7 +76,7 @@ TEST_CASE("known refractions: straight through, equal media, glass at 30 degrees
     CHECK(length(*refracted(arriving(M_PI / 6), kUp, 1 / 1.5) - arriving(inside)) < 1e-15);
 }
 
-TEST_CASE("total internal reflection begins at the critical angle") {
+TEST_CASE("total internal reflection begins at the critical angle", "[refract]") {
     for (const double ior : {1.1, 1.33, 1.5, 2.4}) {
         const double critical = std::asin(1 / ior);
         CHECK(refracted(arriving(critical - 1e-9), kUp, ior).has_value());
@@ -83,7 +84,8 @@ TEST_CASE("total internal reflection begins at the critical angle") {
     }
 }
 
-TEST_CASE("normals turned past grazing count as grazing; rays without direction refract to nothing") {
+TEST_CASE("normals turned past grazing count as grazing; rays without direction refract to nothing",
+          "[refract]") {
     const auto grazing = refracted({1, 0, 0}, kUp, 1 / 1.5);
     const auto beyond = refracted(normalize(Vec3(1, 1e-6, 0)), kUp, 1 / 1.5);
     REQUIRE(grazing.has_value());
@@ -92,4 +94,3 @@ TEST_CASE("normals turned past grazing count as grazing; rays without direction 
     CHECK(grazing->x == Approx(1 / 1.5));
     CHECK_FALSE(refracted({0, 0, 0}, kUp, 1 / 1.5).has_value());
 }
-

@@ -56,7 +56,7 @@ std::vector<std::string> references(const std::string& html) {
 
 }  // namespace
 
-TEST_CASE("sweep: no text of a report becomes markup") {
+TEST_CASE("sweep: no text of a report becomes markup", "[report]") {
     const std::string html = report_html(evil_report());
     CHECK(html.find("<img src=x") == std::string::npos);
     CHECK(html.find("onerror=\"") == std::string::npos);
@@ -66,7 +66,7 @@ TEST_CASE("sweep: no text of a report becomes markup") {
     CHECK(count(html, "<img ") == 1);  // the one picture that has bytes
 }
 
-TEST_CASE("sweep: pages refer to nothing outside themselves") {
+TEST_CASE("sweep: pages refer to nothing outside themselves", "[report]") {
     Gallery gallery{"scenes", "all of them", {}, {"trilens sweep run a.json"}, {{"trilens", "0.1"}}};
     gallery.entries.push_back(
         {"inside", "", {{"one", 1, 1, {1}, {}, false}}, {}, "ball/report.html", evil_report().plots[0]});
@@ -88,7 +88,8 @@ TEST_CASE("sweep: pages refer to nothing outside themselves") {
     CHECK(pages.find("fetch(") == std::string::npos);
 }
 
-TEST_CASE("sweep: a page holds its pictures' bytes, captions and the reason where there is none") {
+TEST_CASE("sweep: a page holds its pictures' bytes, captions and the reason where there is none",
+          "[report]") {
     const std::vector<unsigned char> bytes = {0x89, 'P', 'N', 'G', 1, 2, 3};
     const std::string html =
         html_pictures({{"projected", 320, 240, bytes, {}, false}, {"truth: missing", 0, 0, {}, {}, true}});
@@ -100,7 +101,7 @@ TEST_CASE("sweep: a page holds its pictures' bytes, captions and the reason wher
     CHECK(html.find("truth: missing") != std::string::npos);
 }
 
-TEST_CASE("sweep: pages are written whole or not at all") {
+TEST_CASE("sweep: pages are written whole or not at all", "[report]") {
     const std::string folder = trilens_test::scratch_dir("sweep_html");
     write_report(folder + "/report.html", evil_report());
     CHECK(read_whole_file(folder + "/report.html") == report_html(evil_report()));
@@ -115,7 +116,8 @@ TEST_CASE("sweep: pages are written whole or not at all") {
     CHECK(files == 2);
 }
 
-TEST_CASE("sweep: two pictures of one thing lie under a slider, and beside each other without scripts") {
+TEST_CASE("sweep: two pictures of one thing lie under a slider, and beside each other without scripts",
+          "[report]") {
     const std::vector<PagePicture> pictures = {
         {"projected", 4, 3, {1}, {}, false},
         {"truth", 4, 3, {2}, {}, true},

@@ -41,7 +41,8 @@ void check_colour(const LinearRgb& seen, const LinearRgb& expected) {
 
 }  // namespace
 
-TEST_CASE("sweep: a beauty picture shows the film, black outside the data window, magenta where not finite") {
+TEST_CASE("sweep: a beauty picture shows the film, black outside the data window, magenta where not finite",
+          "[report]") {
     Image image{4, 3, 1, 1, 2, 1, {}, {}};
     for (const char* name : {"R", "G", "B"})
         image.channels.push_back({name, std::vector<float>{0.5f, 0.25f}});
@@ -56,7 +57,7 @@ TEST_CASE("sweep: a beauty picture shows the film, black outside the data window
     CHECK_THROWS_AS(beauty_picture(image, ""), InputError);
 }
 
-TEST_CASE("sweep: large films shrink to the mean of what lies under a pixel") {
+TEST_CASE("sweep: large films shrink to the mean of what lies under a pixel", "[report]") {
     for (const int width : {1281, 1600, 2560}) {
         Image image = grey_image(width, width / 2, 0.0f);
         double sum = 0;
@@ -76,14 +77,15 @@ TEST_CASE("sweep: large films shrink to the mean of what lies under a pixel") {
     }
 }
 
-TEST_CASE("sweep: a difference picture is scaled and without sign; films of two sizes have none") {
+TEST_CASE("sweep: a difference picture is scaled and without sign; films of two sizes have none",
+          "[report]") {
     const Image dark = grey_image(3, 2, 0.1f), light = grey_image(3, 2, 0.15f);
     check_colour(pixel(difference_picture(dark, light, 8, ""), 1, 1), {0.4f, 0.4f, 0.4f});
     check_colour(pixel(difference_picture(light, dark, 8, ""), 1, 1), {0.4f, 0.4f, 0.4f});
     CHECK_THROWS_AS(difference_picture(dark, grey_image(2, 3, 0), 1, ""), InputError);
 }
 
-TEST_CASE("sweep: the difference's scale is the largest power of two that keeps it below white") {
+TEST_CASE("sweep: the difference's scale is the largest power of two that keeps it below white", "[report]") {
     CHECK(difference_scale(0.03) == 32);
     CHECK(difference_scale(0.5) == 1);
     CHECK(difference_scale(0.49) == 2);
@@ -92,7 +94,7 @@ TEST_CASE("sweep: the difference's scale is the largest power of two that keeps 
     CHECK(difference_scale(9) == 1);
 }
 
-TEST_CASE("sweep: a displacement picture tells small, large, none and lost apart") {
+TEST_CASE("sweep: a displacement picture tells small, large, none and lost apart", "[report]") {
     const ColourRange range{0.01, 10};
     const std::vector<float> pixels = {0.01f, 10.0f, NAN, INFINITY, 0.0f, 1e6f};
     const PagePicture picture = displacement_picture(pixels, 3, range, "");
@@ -111,7 +113,7 @@ TEST_CASE("sweep: a displacement picture tells small, large, none and lost apart
     check_colour(pixel(displacement_picture(large, 2560, range, ""), 0, 0), lost);
 }
 
-TEST_CASE("sweep: the colour map grows lighter all along and ends where viridis ends") {
+TEST_CASE("sweep: the colour map grows lighter all along and ends where viridis ends", "[report]") {
     float previous = -1;
     for (int i = 0; i <= 100; ++i) {
         const LinearRgb colour = viridis(i / 100.0);

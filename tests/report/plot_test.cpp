@@ -51,7 +51,8 @@ std::size_t count_class(const std::vector<XmlElement>& svg, const std::string& n
 
 }  // namespace
 
-TEST_CASE("sweep: points of a log-log plot stand on their decades, and between them in proportion") {
+TEST_CASE("sweep: points of a log-log plot stand on their decades, and between them in proportion",
+          "[report]") {
     std::vector<PlotSeries> series = quadratic_series(10);
     series[0].points.push_back({std::sqrt(10.0), 1});
     const auto svg = trilens_test::read_xml(log_log_plot({"t", "n", "px", {}, true, 640, 420}, series));
@@ -69,7 +70,7 @@ TEST_CASE("sweep: points of a log-log plot stand on their decades, and between t
     CHECK(at[3].y == Approx((at[0].y + at[1].y) / 2).margin(0.02));
 }
 
-TEST_CASE("sweep: points of a linear plot stand in proportion between its ticks") {
+TEST_CASE("sweep: points of a linear plot stand in proportion between its ticks", "[report]") {
     const std::vector<PlotSeries> series = {{"all", {{0, -20}, {5, 30}, {10, 80}}, std::nullopt}};
     const auto svg = trilens_test::read_xml(linear_plot({"t", "x", "y", {}, true, 640, 420}, series));
     const std::vector<Vec2> at = circles(svg);
@@ -81,8 +82,8 @@ TEST_CASE("sweep: points of a linear plot stand in proportion between its ticks"
     CHECK(at[1].y == Approx((at[0].y + at[2].y) / 2).margin(0.02));
 }
 
-TEST_CASE(
-    "sweep: the fitted line and the reference orders have their slopes, whatever the scale of the data") {
+TEST_CASE("sweep: the fitted line and the reference orders have their slopes, whatever the scale of the data",
+          "[report][law][golden]") {
     for (const double scale : {1e-12, 1e-4, 1.0, 1e4, 1e15}) {
         const auto svg = trilens_test::read_xml(
             log_log_plot({"t", "n", "px", {}, true, 640, 420}, quadratic_series(scale)));
@@ -103,7 +104,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("sweep: everything drawn stays inside the picture") {
+TEST_CASE("sweep: everything drawn stays inside the picture", "[report]") {
     std::vector<PlotSeries> series;
     for (int i = 0; i < 11; ++i) {
         PlotSeries one{"optic " + std::to_string(i), {}, PlotFit{0.3 * i - 1, std::pow(10.0, i - 3)}};
@@ -157,7 +158,7 @@ std::vector<Words> all_words(const std::vector<XmlElement>& svg) {
 
 }  // namespace
 
-TEST_CASE("sweep: no word of a plot touches another one, the picture's border or a measurement") {
+TEST_CASE("sweep: no word of a plot touches another one, the picture's border or a measurement", "[report]") {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> order(0, 3), decade(-9, 6), share(0, 1);
     std::uniform_int_distribution<int> how_many(1, 7), how_often(1, 40);
@@ -202,7 +203,7 @@ TEST_CASE("sweep: no word of a plot touches another one, the picture's border or
     }
 }
 
-TEST_CASE("sweep: measured values are the ticks; of very many, round ones") {
+TEST_CASE("sweep: measured values are the ticks; of very many, round ones", "[report]") {
     const auto labels_of = [](const std::vector<double>& values) {
         PlotParams params;
         params.ticks_at_points = true;
@@ -222,7 +223,7 @@ TEST_CASE("sweep: measured values are the ticks; of very many, round ones") {
     CHECK(labels_of(thousand) == std::set<std::string>{"1", "10", "100", "1000"});
 }
 
-TEST_CASE("sweep: what a scale cannot show is left out and counted") {
+TEST_CASE("sweep: what a scale cannot show is left out and counted", "[report]") {
     const std::vector<PlotSeries> series = {
         {"all", {{1, 1}, {2, 0}, {4, -1}, {8, NAN}, {0, 3}, {16, INFINITY}}, std::nullopt}};
     const std::string logarithmic = log_log_plot({"t", "n", "px", {}, true, 640, 420}, series);
@@ -239,7 +240,7 @@ TEST_CASE("sweep: what a scale cannot show is left out and counted") {
     CHECK_NOTHROW(trilens_test::read_xml(linear_plot({}, {})));
 }
 
-TEST_CASE("sweep: plots escape their text, draw their levels, and do not depend on the locale") {
+TEST_CASE("sweep: plots escape their text, draw their levels, and do not depend on the locale", "[report]") {
     const PlotParams params{"<&\"title'>", "n <", "px & more", {{1, "1 px"}, {1e9, "far off"}},
                             true,          640,   420};
     std::vector<PlotSeries> series = quadratic_series(40);
@@ -257,7 +258,8 @@ TEST_CASE("sweep: plots escape their text, draw their levels, and do not depend 
     CHECK(again == plain);
 }
 
-TEST_CASE("sweep: scales hold their values and have between two and twenty labels at every magnitude") {
+TEST_CASE("sweep: scales hold their values and have between two and twenty labels at every magnitude",
+          "[report]") {
     for (const ScaleKind kind : {ScaleKind::kLinear, ScaleKind::kLog})
         for (const double magnitude : {1e-30, 1e-4, 1.0, 1e4, 1e30})
             for (const double span : {1.0, 1.3, 7.0, 1e3, 1e12}) {

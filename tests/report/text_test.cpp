@@ -14,7 +14,7 @@
 
 using namespace trilens;
 
-TEST_CASE("sweep: shortest_text reads back as the same double") {
+TEST_CASE("sweep: shortest_text reads back as the same double", "[report]") {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> exponent(-300, 300), mantissa(-10, 10);
     for (int i = 0; i < 2000; ++i) {
@@ -26,7 +26,7 @@ TEST_CASE("sweep: shortest_text reads back as the same double") {
     CHECK(shortest_text(-INFINITY) == "-inf");
 }
 
-TEST_CASE("sweep: numbers for people") {
+TEST_CASE("sweep: numbers for people", "[report]") {
     CHECK(fixed_text(-0.0004, 2) == "0.00");
     CHECK(fixed_text(-0.006, 2) == "-0.01");
     CHECK(fixed_text(1e300, 0).size() == 301);
@@ -38,7 +38,7 @@ TEST_CASE("sweep: numbers for people") {
     CHECK(rounded_text(0, 3) == "0");
 }
 
-TEST_CASE("sweep: escaped markup is well formed whatever the bytes, and text survives it") {
+TEST_CASE("sweep: escaped markup is well formed whatever the bytes, and text survives it", "[report][law]") {
     std::mt19937 random(5);
     std::uniform_int_distribution<int> byte(0, 255), length(0, 40);
     for (int i = 0; i < 500; ++i) {
@@ -53,7 +53,7 @@ TEST_CASE("sweep: escaped markup is well formed whatever the bytes, and text sur
     CHECK(escape_markup("\xED\xA0\x80") == "\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD");  // surrogate
 }
 
-TEST_CASE("sweep: cells of a table are quoted as in RFC 4180") {
+TEST_CASE("sweep: cells of a table are quoted as in RFC 4180", "[report][oracle]") {
     CHECK(csv_text("ball") == "ball");
     CHECK(csv_text("") == "");
     CHECK(csv_text("a b") == "a b");
@@ -62,7 +62,7 @@ TEST_CASE("sweep: cells of a table are quoted as in RFC 4180") {
     CHECK(csv_text("two\nlines") == "\"two\nlines\"");
 }
 
-TEST_CASE("sweep: base64 as in RFC 4648 section 10") {
+TEST_CASE("sweep: base64 as in RFC 4648 section 10", "[report][oracle]") {
     const auto encode = [](const std::string& text) {
         return base64_text(std::vector<unsigned char>(text.begin(), text.end()));
     };
@@ -74,7 +74,7 @@ TEST_CASE("sweep: base64 as in RFC 4648 section 10") {
     CHECK(encode("\xFF\xFE\xFD") == "//79");
 }
 
-TEST_CASE("sweep: the hash is FNV-1a") {
+TEST_CASE("sweep: the hash is FNV-1a", "[report]") {
     CHECK(hash_text("") == "cbf29ce484222325");
     CHECK(hash_text("a") == "af63dc4c8601ec8c");
     CHECK(hash_text("foobar") == "85944171f73967e8");

@@ -23,11 +23,11 @@ void check_all(std::initializer_list<Bad> cases) {
 
 }  // namespace
 
-TEST_CASE("the room that the others break is good") {
+TEST_CASE("the room that the others break is good", "[scene]") {
     CHECK(error_of(kRoom) == "");
 }
 
-TEST_CASE("files that are missing or unreadable or no JSON") {
+TEST_CASE("files that are missing or unreadable or no JSON", "[scene][bad-input]") {
     const std::string folder = scratch_dir("scene_bad_files");
     const auto error = [&](const std::string& file) {
         try {
@@ -53,7 +53,7 @@ TEST_CASE("files that are missing or unreadable or no JSON") {
     CHECK(error(folder + "/good.json") == "");
 }
 
-TEST_CASE("syntax errors come with line and column in one line") {
+TEST_CASE("syntax errors come with line and column in one line", "[scene]") {
     const std::string trailing = error_of("{\n  \"version\": 1,\n  \"cameras\": [],\n}");
     CHECK(begins_with(trailing, "room.json: line 4, column 1: syntax error"));
     CHECK(trailing.find('\n') == std::string::npos);
@@ -67,14 +67,14 @@ TEST_CASE("syntax errors come with line and column in one line") {
     }() + ": nested deeper than 64 levels");
 }
 
-TEST_CASE("a key that stands twice is an error") {
+TEST_CASE("a key that stands twice is an error", "[scene][bad-input]") {
     CHECK(error_of(replaced(kRoom, "\"spp\": 2", "\"width\": 2")) ==
           "room.json: /film/width: this key stands twice in its object");
     CHECK(error_of(replaced(kRoom, "\"ior\": 1.5", "\"ior\": 1.5, \"ior\": 1.5")) ==
           "room.json: /materials/1/ior: this key stands twice in its object");
 }
 
-TEST_CASE("an unknown key is named with the nearest known one") {
+TEST_CASE("an unknown key is named with the nearest known one", "[scene][bad-input]") {
     CHECK(error_of(replaced(kRoom, "\"materials\"", "\"meterials\"")) ==
           "room.json: /meterials: unknown key 'meterials' of a scene; did you mean 'materials'?");
     CHECK(error_of(replaced(kRoom, "\"yfov\"", "\"yFov\"")) ==
@@ -88,14 +88,14 @@ TEST_CASE("an unknown key is named with the nearest known one") {
           "room.json: /meshes/1/primitive/height: 'height' is no key of a sphere");
 }
 
-TEST_CASE("what a message quotes does not break its line") {
+TEST_CASE("what a message quotes does not break its line", "[scene]") {
     CHECK(error_of(replaced(kRoom, "\"spp\"", "\"s\\np\"")) ==
           "room.json: /film/s p: unknown key 's p' of a film; did you mean 'spp'?");
     CHECK(error_with("/meshes/2/material", "\"a\\nb\"") ==
           "room.json: /meshes/2/material: unknown material 'a b'; known: chrome, glass, red");
 }
 
-TEST_CASE("wrong types and ranges and lengths") {
+TEST_CASE("wrong types and ranges and lengths", "[scene]") {
     check_all({
         {"/version", "2", "/version: the number 2 is not 1"},
         {"/film", "[1]", "/film: expected an object, found an array of 1"},
@@ -149,7 +149,7 @@ TEST_CASE("wrong types and ranges and lengths") {
     });
 }
 
-TEST_CASE("indices and lengths that do not fit each other") {
+TEST_CASE("indices and lengths that do not fit each other", "[scene]") {
     check_all({
         {"/meshes/2/faceVertexIndices/3", "12",
          "/meshes/2/faceVertexIndices/3: index 12 is out of range: there are 4 points"},
@@ -185,7 +185,7 @@ TEST_CASE("indices and lengths that do not fit each other") {
         "room.json: /meshes/0/creaseIndices: without creaseLengths the points go in pairs, but there are 3");
 }
 
-TEST_CASE("cameras and directions and transforms that mean nothing") {
+TEST_CASE("cameras and directions and transforms that mean nothing", "[scene][bad-input]") {
     check_all({
         {"/cameras/0/lookAt/at", "[0,1,4]",
          "/cameras/0/lookAt: eye and at are the same point: the camera looks nowhere"},
@@ -219,7 +219,7 @@ TEST_CASE("cameras and directions and transforms that mean nothing") {
     });
 }
 
-TEST_CASE("materials that do not exist or do not fit") {
+TEST_CASE("materials that do not exist or do not fit", "[scene]") {
     check_all({
         {"/meshes/2/material", "read", "/meshes/2/material: unknown material 'read'; did you mean 'red'?"},
         {"/meshes/2/material", "mahogany",
@@ -241,7 +241,7 @@ TEST_CASE("materials that do not exist or do not fit") {
     });
 }
 
-TEST_CASE("keys that need or exclude each other") {
+TEST_CASE("keys that need or exclude each other", "[scene]") {
     check_all({
         {"/meshes/1/points", "[[0,0,0],[1,0,0],[0,1,0]]",
          "/meshes/1: 'points' needs 'faceVertexCounts' beside it"},
@@ -258,7 +258,7 @@ TEST_CASE("keys that need or exclude each other") {
     });
 }
 
-TEST_CASE("a point of an optic's cage far beyond the others is refused by name") {
+TEST_CASE("a point of an optic's cage far beyond the others is refused by name", "[scene][bad-input]") {
     // Half of the cage's points lie within 4 of its middle.
     const std::string far =
         "room.json: /meshes/0/points/4: lies more than 10000 times as far from the middle of the cage as "
@@ -278,7 +278,7 @@ TEST_CASE("a point of an optic's cage far beyond the others is refused by name")
     CHECK(begins_with(error, file + ": /meshes/0/file: point 3 of the file lies more than 10000 times"));
 }
 
-TEST_CASE("files that a scene names") {
+TEST_CASE("files that a scene names", "[scene]") {
     const std::string folder = scratch_dir("scene_bad_names");
     const std::string file = folder + "/room.json";
     const auto error = [&](const std::string& pointer, const std::string& value) {
@@ -308,7 +308,7 @@ TEST_CASE("files that a scene names") {
               "/round.obj: line 301: a face may have at most 255 corners, found 300");
 }
 
-TEST_CASE("a picture that cannot be read is named with its place in the scene") {
+TEST_CASE("a picture that cannot be read is named with its place in the scene", "[scene][bad-input]") {
     const std::string folder = scratch_dir("scene_bad_picture");
     std::ofstream(folder + "/brick.png") << "no picture";
     TextureReader reader;
@@ -325,7 +325,7 @@ TEST_CASE("a picture that cannot be read is named with its place in the scene") 
     }
 }
 
-TEST_CASE("overrides by JSON pointer") {
+TEST_CASE("overrides by JSON pointer", "[scene]") {
     const Scene scene =
         load_text(kRoom, {{"/film/width", "100"},
                           {"/cameras/0/name", "front"},          // no JSON: a string

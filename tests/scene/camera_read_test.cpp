@@ -27,7 +27,7 @@ std::string refusal(const std::string& camera) {
 
 }  // namespace
 
-TEST_CASE("cameras of the shipped scene are read with their types") {
+TEST_CASE("cameras of the shipped scene are read with their types", "[scene]") {
     std::ifstream in(source_dir() + "/scenes/cameras.json");
     std::stringstream text;
     text << in.rdbuf();
@@ -47,7 +47,7 @@ TEST_CASE("cameras of the shipped scene are read with their types") {
     CHECK(several.views[1].window == std::array<double, 4>{0.3, 0, 0.7, 1});
 }
 
-TEST_CASE("every field of a camera arrives") {
+TEST_CASE("every field of a camera arrives", "[scene]") {
     const CameraDescription shifted =
         camera_of(R"({ "yfov": 50, "shift": [0.5, -1], "near": 0.1, "far": 9, )" + kLookAt + "}");
     CHECK(shifted.type == CameraType::kPerspective);
@@ -98,7 +98,8 @@ TEST_CASE("every field of a camera arrives") {
     CHECK(views.views[0].camera.mapping == FisheyeMapping::kEquisolid);
 }
 
-TEST_CASE("camera fields that do not belong, lack or make no sense are refused with their place") {
+TEST_CASE("camera fields that do not belong, lack or make no sense are refused with their place",
+          "[scene][bad-input]") {
     const auto check = [](const std::string& camera, const std::string& message) {
         const std::string found = refusal(camera);
         INFO(camera);

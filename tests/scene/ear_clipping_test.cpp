@@ -161,7 +161,7 @@ Polygon random_spiral(std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("law: concave polygons are covered once and nothing beside them") {
+TEST_CASE("law: concave polygons are covered once and nothing beside them", "[scene][law]") {
     std::mt19937 random(40);
     std::size_t not_fans = 0, tried = 0;
     for (const auto& make : {random_star, random_comb, random_spiral}) {
@@ -178,7 +178,7 @@ TEST_CASE("law: concave polygons are covered once and nothing beside them") {
     CHECK(not_fans > tried * 9 / 10);
 }
 
-TEST_CASE("law: convex polygons stay the fan from their first corner") {
+TEST_CASE("law: convex polygons stay the fan from their first corner", "[scene][law]") {
     std::mt19937 random(41);
     std::uniform_real_distribution<double> share(0, 1);
     for (int round = 0; round < 3000; ++round) {
@@ -201,7 +201,7 @@ TEST_CASE("law: convex polygons stay the fan from their first corner") {
     }
 }
 
-TEST_CASE("a dart is cut at its reflex corner, wherever it begins") {
+TEST_CASE("a dart is cut at its reflex corner, wherever it begins", "[scene]") {
     const Polygon dart = {{0, 1}, {-1, -1}, {0, -0.5}, {1, -1}};
     for (std::size_t first = 0; first < 4; ++first) {
         Polygon turned = dart;
@@ -218,7 +218,7 @@ TEST_CASE("a dart is cut at its reflex corner, wherever it begins") {
     }
 }
 
-TEST_CASE("a square with a hole, joined by a bridge that is walked twice") {
+TEST_CASE("a square with a hole, joined by a bridge that is walked twice", "[scene]") {
     std::mt19937 random(42);
     const Polygon keyhole = {{-1, -1},     {1, -1},     {1, 1},     {-1, 1},     {-1, -1},
                              {-0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}, {0.5, -0.5}, {-0.5, -0.5}};
@@ -227,7 +227,7 @@ TEST_CASE("a square with a hole, joined by a bridge that is walked twice") {
     check_cut(keyhole, cut.triangles, random);
 }
 
-TEST_CASE("a bent quad is cut along the diagonal that its outline allows") {
+TEST_CASE("a bent quad is cut along the diagonal that its outline allows", "[scene]") {
     // Seen from above a dart with its notch at corner 1; the notch stands high above the rest.
     const std::vector<Vec3> corners = {{0, 1, 0}, {0, -0.5, 3}, {1, -1, 0}, {-1, -1, 0}};
     std::vector<Vec3> turned = {corners[3], corners[0], corners[1], corners[2]};
@@ -237,7 +237,7 @@ TEST_CASE("a bent quad is cut along the diagonal that its outline allows") {
         CHECK((a == 2 || b == 2 || c == 2));  // the notch is a corner of both
 }
 
-TEST_CASE("polygons that no triangles cover are fans and counted") {
+TEST_CASE("polygons that no triangles cover are fans and counted", "[scene]") {
     const auto covers = [](const std::vector<Vec3>& corners) {
         const PolygonTriangles cut = triangulate_polygon(corners);
         CHECK(cut.triangles == fan(corners.size()));
@@ -251,7 +251,7 @@ TEST_CASE("polygons that no triangles cover are fans and counted") {
     CHECK(covers({{0, 0, 0}, {5e-324, 0, 0}, {5e-324, 5e-324, 0}, {0, 5e-324, 0}}));
 }
 
-TEST_CASE("a mesh counts n - 2 triangles per polygon in face order, whatever their shape") {
+TEST_CASE("a mesh counts n - 2 triangles per polygon in face order, whatever their shape", "[scene][law]") {
     const std::string mesh = R"({"name":"thing","role":"object","material":"red",
         "points":[[0,1,0],[-1,-1,0],[0,-0.5,0],[1,-1,0],[5,0,0],[6,0,0],[5,1,0]],"faceVertexCounts":[4,3,4],
         "faceVertexIndices":[1,2,3,0,4,5,6,4,6,5,4]})";

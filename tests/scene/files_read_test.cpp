@@ -74,7 +74,7 @@ std::map<std::string, std::string> hash_of_path(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("every kind of file that a scene reads is listed once with the hash of its bytes") {
+TEST_CASE("every kind of file that a scene reads is listed once with the hash of its bytes", "[scene]") {
     const std::string folder = scratch_dir("scene_files_read");
     std::map<std::string, std::string> wanted = write_files(folder);
     for (auto& [path, bytes] : wanted) bytes = hash_text(bytes);
@@ -94,7 +94,7 @@ TEST_CASE("every kind of file that a scene reads is listed once with the hash of
     CHECK(hash_of_path(load_text(kScene, {}, file)) == wanted);
 }
 
-TEST_CASE("a scene in the current folder lists absolute paths") {
+TEST_CASE("a scene in the current folder lists absolute paths", "[scene]") {
     const std::string folder = scratch_dir("scene_files_here");
     write_files(folder);
     const std::filesystem::path before = std::filesystem::current_path();
@@ -108,6 +108,6 @@ TEST_CASE("a scene in the current folder lists absolute paths") {
     }
 }
 
-TEST_CASE("a scene of one text reads no file") {
+TEST_CASE("a scene of one text reads no file", "[scene]") {
     CHECK(load_text(kRoom).files.empty());
 }

@@ -124,7 +124,7 @@ void check_whole(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("law: broken model files load or say what is wrong in which file") {
+TEST_CASE("law: broken model files load or say what is wrong in which file", "[scene][bad-input][law]") {
     const std::string folder = scratch_dir("scene_fuzz_files"), file = folder + "/room.json";
     const std::map<std::string, std::string> good = {
         {"a.obj", kObj}, {"a.mtl", kMtl}, {"a.gltf", kGltf}, {"a.bin", buffer()}, {"a.glb", glb()}};

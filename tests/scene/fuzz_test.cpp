@@ -98,7 +98,7 @@ void break_something(Json& value, std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("law: a broken scene loads or says what is wrong in which file") {
+TEST_CASE("law: a broken scene loads or says what is wrong in which file", "[scene][bad-input][law]") {
     std::vector<Json> scenes = {Json::parse(kRoom)};
     for (const SceneExample& example : scene_examples())
         scenes.push_back(Json::parse(example.json, nullptr, true, true));
@@ -131,7 +131,7 @@ TEST_CASE("law: a broken scene loads or says what is wrong in which file") {
     CHECK(refused > 2000);
 }
 
-TEST_CASE("law: broken text loads or says what is wrong in which file") {
+TEST_CASE("law: broken text loads or says what is wrong in which file", "[scene][bad-input][law]") {
     std::mt19937 random(21);
     const std::string good = kRoom;
     const std::string letters = "{}[]\",:0e-.\\/\x80\n a";

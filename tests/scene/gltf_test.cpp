@@ -79,7 +79,7 @@ std::string read_error(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("glTF triangles: lists and strips and fans with and without indices") {
+TEST_CASE("glTF triangles: lists and strips and fans with and without indices", "[scene]") {
     const std::string folder = scratch_dir("scene_gltf_modes");
     Square square;
     const auto indices = [&](const std::string& primitive) {
@@ -95,7 +95,7 @@ TEST_CASE("glTF triangles: lists and strips and fans with and without indices") 
           ": no triangles in the default scene of this glTF");
 }
 
-TEST_CASE("glTF nodes: matrices and TRS through the hierarchy; mirrored ones keep their fronts") {
+TEST_CASE("glTF nodes: matrices and TRS through the hierarchy; mirrored ones keep their fronts", "[scene]") {
     const std::string folder = scratch_dir("scene_gltf_nodes");
     Square square;
     // Parent: a quarter turn about Z and a move along X. Child: scale 2 along X, move along Y.
@@ -122,7 +122,7 @@ TEST_CASE("glTF nodes: matrices and TRS through the hierarchy; mirrored ones kee
           ": /nodes/0: mesh 1 is out of range: there are 1");
 }
 
-TEST_CASE("glTF accessors: sparse or normalised or out of bounds") {
+TEST_CASE("glTF accessors: sparse or normalised or out of bounds", "[scene]") {
     const std::string folder = scratch_dir("scene_gltf_accessors");
     Square square;
     const std::string sparse =
@@ -154,7 +154,7 @@ TEST_CASE("glTF accessors: sparse or normalised or out of bounds") {
     CHECK(mesh.uvs[2] == Vec2(0, 0));
 }
 
-TEST_CASE("glTF materials and their pictures") {
+TEST_CASE("glTF materials and their pictures", "[scene]") {
     const std::string folder = scratch_dir("scene_gltf_materials");
     Square square;
     square.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1,"material":0)";
@@ -204,7 +204,7 @@ TEST_CASE("glTF materials and their pictures") {
           ": /extensionsRequired: the extension 'KHR_draco_mesh_compression' is required but not supported");
 }
 
-TEST_CASE("known glTF models") {
+TEST_CASE("known glTF models", "[scene]") {
     if (!std::filesystem::exists(kModels + "/glTF2")) TRILENS_SKIP("needs assimp's test models");
     const std::map<std::string, std::size_t> triangles = {
         {"BoxTextured-glTF/BoxTextured.gltf", 12},
@@ -231,7 +231,7 @@ TEST_CASE("known glTF models") {
     CHECK(box.materials[0].base_color_texture);
 }
 
-TEST_CASE("the modes of Mesh_PrimitiveMode draw the same square") {
+TEST_CASE("the modes of Mesh_PrimitiveMode draw the same square", "[scene]") {
     const std::string folder = kModels + "/glTF2/glTF-Asset-Generator/Mesh_PrimitiveMode";
     if (!std::filesystem::exists(folder)) TRILENS_SKIP("needs assimp's test models");
     int drawn = 0;
@@ -256,7 +256,7 @@ TEST_CASE("the modes of Mesh_PrimitiveMode draw the same square") {
     CHECK(drawn >= 6);
 }
 
-TEST_CASE("every OBJ and glTF and GLB at hand loads or says why not") {
+TEST_CASE("every OBJ and glTF and GLB at hand loads or says why not", "[scene]") {
     if (!std::filesystem::exists(kModels)) TRILENS_SKIP("needs assimp's test models");
     int loaded = 0, refused = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(kModels)) {
@@ -274,7 +274,7 @@ TEST_CASE("every OBJ and glTF and GLB at hand loads or says why not") {
     CHECK(refused >= 5);
 }
 
-TEST_CASE("law: a broken glTF loads or says why not") {
+TEST_CASE("law: a broken glTF loads or says why not", "[scene][bad-input][law]") {
     const std::string folder = scratch_dir("scene_gltf_fuzz");
     Square square;
     square.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1,"material":0)";

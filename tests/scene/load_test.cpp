@@ -7,7 +7,7 @@
 using namespace trilens;
 using namespace trilens_test;
 
-TEST_CASE("a scene file becomes plain data") {
+TEST_CASE("a scene file becomes plain data", "[scene]") {
     const Scene scene = load_text(kRoom);
     CHECK(scene.file == "room.json");
     CHECK(scene.film.width == 64);
@@ -47,7 +47,7 @@ TEST_CASE("a scene file becomes plain data") {
     CHECK(scene.render.reflect);
 }
 
-TEST_CASE("the resolved scene is one line that loads as the same scene") {
+TEST_CASE("the resolved scene is one line that loads as the same scene", "[scene]") {
     const Scene scene = load_text(kRoom, {{"/film/width", "99"}, {"/render/paths", "[\"reflect\"]"}});
     CHECK(scene.resolved.find('\n') == std::string::npos);
     const Scene again = load_text(scene.resolved);
@@ -57,7 +57,7 @@ TEST_CASE("the resolved scene is one line that loads as the same scene") {
     CHECK(again.meshes[0].cage.points == scene.meshes[0].cage.points);
 }
 
-TEST_CASE("comments and free keys and the smallest scene") {
+TEST_CASE("comments and free keys and the smallest scene", "[scene]") {
     const std::string small = R"({ "version": 1, // a comment
         /* another */ "x-tool": { "any": [1, {"thing": null}] }, "extras": 3,
         "cameras": [ { "lookAt": { "eye": [0,0,1], "at": [0,0,0], "x-why": 1 } } ] })";
@@ -68,7 +68,7 @@ TEST_CASE("comments and free keys and the smallest scene") {
     CHECK(scene.warnings[0] == "room.json: the scene has no meshes");
 }
 
-TEST_CASE("what is doubtful is a warning with its place") {
+TEST_CASE("what is doubtful is a warning with its place", "[scene]") {
     const auto warned = [](const std::vector<SceneOverride>& overrides, const std::string& warning) {
         const Scene scene = load_text(kRoom, overrides);
         for (const std::string& found : scene.warnings)
@@ -91,7 +91,7 @@ TEST_CASE("what is doubtful is a warning with its place") {
                  "reflects and refracts"));
 }
 
-TEST_CASE("creases come in chains or pairs with one sharpness per chain or edge") {
+TEST_CASE("creases come in chains or pairs with one sharpness per chain or edge", "[scene]") {
     const Scene pairs = load_text(
         replaced(kRoom, R"("creaseIndices": [0,1,2], "creaseLengths": [3], "creaseSharpnesses": [2.5])",
                  R"("creaseIndices": [0,1,1,2], "creaseSharpnesses": [1,2])"));
@@ -100,7 +100,7 @@ TEST_CASE("creases come in chains or pairs with one sharpness per chain or edge"
     CHECK(per_edge.meshes[0].cage.crease_sharpnesses == std::vector<double>{1, 2});
 }
 
-TEST_CASE("holes of an object are not drawn and uvIndices pick uvs") {
+TEST_CASE("holes of an object are not drawn and uvIndices pick uvs", "[scene]") {
     const Scene scene =
         load_text(kRoom, {{"/meshes/2/points", "[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[2,0,0],[2,1,0]]"},
                           {"/meshes/2/faceVertexCounts", "[4,4]"},
@@ -113,7 +113,7 @@ TEST_CASE("holes of an object are not drawn and uvIndices pick uvs") {
     CHECK(scene.meshes[2].object.uvs[1] == std::array<Vec2, 3>{Vec2(1, 1), Vec2(1, 1), Vec2(0, 0)});
 }
 
-TEST_CASE("a background picture turns about the Y axis") {
+TEST_CASE("a background picture turns about the Y axis", "[scene]") {
     const std::string folder = scratch_dir("scene_background");
     std::ofstream(folder + "/sky.exr") << "stands for a picture";
     const std::string text =

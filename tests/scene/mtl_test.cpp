@@ -36,7 +36,7 @@ std::vector<std::string> warnings_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("an MTL without materials has none, with and without a byte order mark") {
+TEST_CASE("an MTL without materials has none, with and without a byte order mark", "[scene]") {
     for (const std::string& mark : {std::string(), kMark}) {
         for (const char* text : {"", "\n", "# Blender MTL File: 'None'\n# Material Count: 0\n", " \t\r\n#"}) {
             const MtlFile mtl = parse_mtl(mark + text, "a.mtl");
@@ -52,7 +52,7 @@ TEST_CASE("an MTL without materials has none, with and without a byte order mark
     CHECK(mtl_error(std::string("\xFF\xFEn\0e\0", 6)) == "a.mtl: is UTF-16 or UTF-32 text: save it as UTF-8");
 }
 
-TEST_CASE("an OBJ whose library has no materials is drawn in the default colour") {
+TEST_CASE("an OBJ whose library has no materials is drawn in the default colour", "[scene]") {
     const std::string folder = scratch_dir("scene_mtl_empty");
     std::ofstream(folder + "/a.obj") << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl None\nf 1 2 3\n";
     const std::vector<SceneOverride> mesh = {{"/meshes/2", R"({"role":"object","file":"a.obj"})"}};
@@ -65,7 +65,7 @@ TEST_CASE("an OBJ whose library has no materials is drawn in the default colour"
     }
 }
 
-TEST_CASE("what an MTL says in vain is named once") {
+TEST_CASE("what an MTL says in vain is named once", "[scene]") {
     CHECK(warnings_of("newmtl a\nKd 1 1 1\nd 1\nTr 0.0\n").empty());
     CHECK(warnings_of("newmtl a\nNs 250\nKd 1 1 1\nd 0.5\nillum 2\nnewmtl b\nd 0.2\nNs 3\nTr 1\n") ==
           std::vector<std::string>{"ignored: Ns (line 2), d (line 4), illum (line 5), Tr (line 9)"});
@@ -87,7 +87,7 @@ TEST_CASE("what an MTL says in vain is named once") {
                               "-clamp (line 2), map_Kd -mm (line 6), map_Kd without a picture (line 8)"});
 }
 
-TEST_CASE("what an MTL leaves out reaches the scene's warnings") {
+TEST_CASE("what an MTL leaves out reaches the scene's warnings", "[scene]") {
     const std::string folder = scratch_dir("scene_mtl_warnings"), file = folder + "/room.json";
     std::ofstream(folder + "/a.obj") << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
     std::ofstream(folder + "/a.mtl") << "newmtl a\nd 0.5\n";
@@ -96,7 +96,7 @@ TEST_CASE("what an MTL leaves out reaches the scene's warnings") {
     CHECK(std::count(scene.warnings.begin(), scene.warnings.end(), wanted) == 1);
 }
 
-TEST_CASE("what is wrong in an MTL comes with its line") {
+TEST_CASE("what is wrong in an MTL comes with its line", "[scene][bad-input]") {
     CHECK(mtl_error("newmtl a\nKd 1 1\n") == "a.mtl: line 2: 'Kd' needs 3 numbers, found 2");
     CHECK(mtl_error("newmtl a\nKd\n") == "a.mtl: line 2: 'Kd' needs 3 numbers, found 0");
     CHECK(mtl_error("newmtl a\n\nKd 1 1 red\n") ==
@@ -109,7 +109,7 @@ TEST_CASE("what is wrong in an MTL comes with its line") {
     CHECK(mtl_error("newmtl a\nmap_Kd -s\n") == "a.mtl: line 2: '-s' of map_Kd needs a value");
 }
 
-TEST_CASE("two readers agree on random materials") {
+TEST_CASE("two readers agree on random materials", "[scene][oracle][law]") {
     std::mt19937 random(31);
     std::uniform_real_distribution<double> share(0, 1);
     std::size_t textures = 0;

@@ -36,7 +36,7 @@ const std::string kQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
 }  // namespace
 
-TEST_CASE("an OBJ becomes a cage with its tags") {
+TEST_CASE("an OBJ becomes a cage with its tags", "[scene]") {
     const ObjFile obj = parse_obj(
         "# comment\nmtllib some file.mtl\nv 0 0 0\r\nv +1 0 0 1\nv 1 1 .5e0 # tail\nv 0 1 0\nv 2 0 0\nv 2 1 "
         "0\n"
@@ -66,7 +66,7 @@ TEST_CASE("an OBJ becomes a cage with its tags") {
     CHECK(obj.warnings.empty());
 }
 
-TEST_CASE("several edges in one crease tag are read as pairs with a warning") {
+TEST_CASE("several edges in one crease tag are read as pairs with a warning", "[scene]") {
     const ObjFile obj = parse_obj(kQuad + "t crease 4/2/0 0 1 2 3 1 2\n", "cage.obj");
     CHECK(obj.mesh.cage.crease_indices == std::vector<int>{0, 1, 2, 3});
     CHECK(obj.mesh.cage.crease_sharpnesses == std::vector<double>{1, 2});
@@ -74,7 +74,7 @@ TEST_CASE("several edges in one crease tag are read as pairs with a warning") {
           std::vector<std::string>{"line 6: a crease tag of several points is read as pairs"});
 }
 
-TEST_CASE("what is wrong in an OBJ comes with its line") {
+TEST_CASE("what is wrong in an OBJ comes with its line", "[scene][bad-input]") {
     CHECK(obj_error("") == "cage.obj: no faces: an OBJ without an 'f' line cannot be drawn");
     CHECK(obj_error("v 0 0\n") == "cage.obj: line 1: 'v' needs 3 numbers, found 2");
     CHECK(obj_error("v 0 0 x\n") == "cage.obj: line 1: 'x' is no number");
@@ -108,7 +108,7 @@ TEST_CASE("what is wrong in an OBJ comes with its line") {
           "cage.obj: line 6: the tag 'crease' has the wrong number of values");
 }
 
-TEST_CASE("two readers agree on the cages and models") {
+TEST_CASE("two readers agree on the cages and models", "[scene][oracle]") {
     TRILENS_NEEDS_DATA("cages");
     int files = 0;
     for (const char* folder : {"/cages", "/models"}) {
@@ -156,7 +156,7 @@ TEST_CASE("two readers agree on the cages and models") {
     CHECK(files == 19);
 }
 
-TEST_CASE("cages load as optics and as objects and count the same") {
+TEST_CASE("cages load as optics and as objects and count the same", "[scene]") {
     TRILENS_NEEDS_DATA("cages/catmark_pawn.obj");
     const auto scene_with = [](const std::string& file, const std::string& role, const std::string& more) {
         return load_text(kRoom, {{"/meshes/0", R"({"role":")" + role + R"(","material":"chrome","file":")" +
@@ -180,7 +180,7 @@ TEST_CASE("cages load as optics and as objects and count the same") {
     CHECK(spot.meshes[0].object.uvs.size() == 5856);
 }
 
-TEST_CASE("an object inherits the materials of its MTL") {
+TEST_CASE("an object inherits the materials of its MTL", "[scene]") {
     const std::string folder = scratch_dir("scene_mtl");
     std::ofstream(folder + "/a.obj")
         << "mtllib a.mtl\n" + kQuad +

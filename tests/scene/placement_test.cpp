@@ -32,7 +32,7 @@ std::string primitive_with(const std::string& primitive, const std::string& tran
 
 }  // namespace
 
-TEST_CASE("scale before rotate before translate") {
+TEST_CASE("scale before rotate before translate", "[scene]") {
     const double half = std::sqrt(0.5);
     const Transform t = make_transform({10, 0, 0}, {0, 0, 3 * half, 3 * half},
                                        {2, 1, 1});  // a quarter turn about Z, not unit
@@ -41,7 +41,8 @@ TEST_CASE("scale before rotate before translate") {
     CHECK(map_point(*make_transform(columns), {1, 1, 5}) == Vec3(2, 4, 5));
 }
 
-TEST_CASE("law: composition is one map after the other and normals stay at right angles to what they were") {
+TEST_CASE("law: composition is one map after the other and normals stay at right angles to what they were",
+          "[scene][law]") {
     std::mt19937 random(1);
     for (int i = 0; i < 300; ++i) {
         const Transform a = random_transform(random), b = random_transform(random);
@@ -59,7 +60,7 @@ TEST_CASE("law: composition is one map after the other and normals stay at right
     }
 }
 
-TEST_CASE("a mirroring transform reverses faces after their first corner") {
+TEST_CASE("a mirroring transform reverses faces after their first corner", "[scene]") {
     PolygonMesh mesh;
     mesh.cage.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     mesh.cage.face_vertex_counts = {4};
@@ -74,7 +75,7 @@ TEST_CASE("a mirroring transform reverses faces after their first corner") {
     CHECK(object.triangles == std::vector<IdTriple>{{0, 3, 2}, {0, 2, 1}});
 }
 
-TEST_CASE("similarities and no other maps are known as such") {
+TEST_CASE("similarities and no other maps are known as such", "[scene]") {
     std::mt19937 random(2);
     for (int i = 0; i < 200; ++i) {
         const double factor = std::pow(10, 4 * uniform(random));
@@ -87,7 +88,7 @@ TEST_CASE("similarities and no other maps are known as such") {
     }
 }
 
-TEST_CASE("primitives move and turn and grow") {
+TEST_CASE("primitives move and turn and grow", "[scene]") {
     const auto load = [](const std::string& primitive, const std::string& transform) {
         return *load_text(kRoom, {{"/meshes/1", primitive_with(primitive, transform)}}).meshes[1].primitive;
     };
@@ -112,7 +113,7 @@ TEST_CASE("primitives move and turn and grow") {
     CHECK(tube.height == 3);
 }
 
-TEST_CASE("what a scene holds is counted") {
+TEST_CASE("what a scene holds is counted", "[scene]") {
     const SceneInfo info = make_scene_info(load_text(kRoom));
     CHECK(info.cameras == std::vector<std::string>{"main", "rays"});
     CHECK(info.objects == 1);

@@ -22,7 +22,8 @@ TEST_CASE("a point is three numbers within bounds", "[scene]") {
     }
 }
 
-TEST_CASE("a file of points may begin with a header and names the line that is no point", "[scene]") {
+TEST_CASE("a file of points may begin with a header and names the line that is no point",
+          "[scene][bad-input]") {
     const std::string folder = scratch_dir("scene_points"), file = folder + "/points.csv";
     // Whether reading throws with these words, after the file's name.
     const auto refuses = [&](const std::string& words) {

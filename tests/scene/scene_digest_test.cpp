@@ -128,7 +128,7 @@ std::vector<Change> changes_of_shapes() {
 
 }  // namespace
 
-TEST_CASE("the digest of a scene differs after every change") {
+TEST_CASE("the digest of a scene differs after every change", "[scene]") {
     std::set<std::string> digests{scene_digest(full_scene())};
     std::vector<Change> changes = changes_of_looks();
     for (const Change& change : changes_of_shapes()) changes.push_back(change);
@@ -141,7 +141,7 @@ TEST_CASE("the digest of a scene differs after every change") {
     CHECK(digests.size() == changes.size() + 1);
 }
 
-TEST_CASE("the digest of a scene does not tell where it came from") {
+TEST_CASE("the digest of a scene does not tell where it came from", "[scene]") {
     const std::string digest = scene_digest(load_text(kRoom));
     CHECK(scene_digest(load_text(kRoom)) == digest);
     Scene scene = load_text(kRoom);

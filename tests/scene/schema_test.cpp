@@ -16,7 +16,7 @@
 using namespace trilens;
 using namespace trilens_test;
 
-TEST_CASE("every example loads without warnings that matter") {
+TEST_CASE("every example loads without warnings that matter", "[scene]") {
     CHECK(scene_examples().size() >= 3);
     for (const SceneExample& example : scene_examples()) {
         INFO(example.name);
@@ -62,7 +62,7 @@ void collect(const nlohmann::json& value, const std::string& pointer, std::vecto
 
 }  // namespace
 
-TEST_CASE("the schema accepts the good and refuses the broken") {
+TEST_CASE("the schema accepts the good and refuses the broken", "[scene][bad-input][oracle]") {
     Validator validator;
     CHECK(validator.accepts(parse(kRoom)));
     for (const SceneExample& example : scene_examples()) {
@@ -85,7 +85,8 @@ TEST_CASE("the schema accepts the good and refuses the broken") {
     CHECK_FALSE(broken("/extras", {{"free", 1}}));
 }
 
-TEST_CASE("law: what loads is what the schema accepts but for what a schema cannot say") {
+TEST_CASE("law: what loads is what the schema accepts but for what a schema cannot say",
+          "[scene][oracle][law]") {
     Validator validator;
     std::vector<std::string> pointers;
     collect(parse(kRoom), "", pointers);
@@ -119,7 +120,7 @@ TEST_CASE("law: what loads is what the schema accepts but for what a schema cann
     CHECK(accepted_by_both > 50);
 }
 #else
-TEST_CASE("the schema accepts the good and refuses the broken") {
+TEST_CASE("the schema accepts the good and refuses the broken", "[scene][bad-input][oracle]") {
     TRILENS_SKIP("needs valijson");
 }
 #endif

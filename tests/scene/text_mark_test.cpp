@@ -34,7 +34,7 @@ std::string refusal(Read&& read) {
 
 }  // namespace
 
-TEST_CASE("only a mark at the very start is taken off") {
+TEST_CASE("only a mark at the very start is taken off", "[scene]") {
     CHECK(utf8_text(kTextMark + "a" + kTextMark, "f") == "a" + kTextMark);
     CHECK(utf8_text(kTextMark, "f").empty());
     CHECK(utf8_text("", "f").empty());
@@ -44,7 +44,7 @@ TEST_CASE("only a mark at the very start is taken off") {
         CHECK(refusal([&] { utf8_text(mark + "a", "f"); }) == "f: " + kRefused);
 }
 
-TEST_CASE("an OBJ keeps its first vertex behind a byte order mark") {
+TEST_CASE("an OBJ keeps its first vertex behind a byte order mark", "[scene]") {
     const ObjFile plain = parse_obj(kTriangle, "a.obj"), marked = parse_obj(kTextMark + kTriangle, "a.obj");
     CHECK(marked.mesh.cage.points == plain.mesh.cage.points);
     CHECK(marked.mesh.cage.face_vertex_indices == plain.mesh.cage.face_vertex_indices);
@@ -53,14 +53,14 @@ TEST_CASE("an OBJ keeps its first vertex behind a byte order mark") {
         CHECK(refusal([&] { parse_obj(utf16(kTriangle, big), "a.obj"); }) == "a.obj: " + kRefused);
 }
 
-TEST_CASE("a scene file loads behind a byte order mark, and its errors keep their columns") {
+TEST_CASE("a scene file loads behind a byte order mark, and its errors keep their columns", "[scene]") {
     CHECK(load_text(kTextMark + kRoom).resolved == load_text(kRoom).resolved);
     CHECK(error_of(kTextMark + "{,}") == error_of("{,}"));
     CHECK(error_of(kTextMark) == "room.json: is empty");
     for (const bool big : {false, true}) CHECK(error_of(utf16(kRoom, big)) == "room.json: " + kRefused);
 }
 
-TEST_CASE("a glTF file loads behind a byte order mark") {
+TEST_CASE("a glTF file loads behind a byte order mark", "[scene]") {
     const std::string folder = scratch_dir("scene_marks"), file = folder + "/a.gltf";
     const std::string text = R"({"asset":{"version":"2.0"},"nodes":[],"scenes":[{"nodes":[]}]})";
     std::ofstream(file) << kTextMark + text;

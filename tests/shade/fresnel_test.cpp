@@ -30,7 +30,8 @@ double reflected_parallel(double in, double out) {
 
 }  // namespace
 
-TEST_CASE("reflectance: 4 percent for glass head on, all at grazing, sums of tangents and sines between") {
+TEST_CASE("reflectance: 4 percent for glass head on, all at grazing, sums of tangents and sines between",
+          "[shade][law]") {
     CHECK(fresnel_reflectance(1, 1 / 1.5) == Approx(0.04).epsilon(1e-14));
     CHECK(fresnel_reflectance(1, 1.5) == Approx(0.04).epsilon(1e-14));
     CHECK(fresnel_reflectance(1, 1 / 1.33) == Approx(std::pow(0.33 / 2.33, 2)).epsilon(1e-13));
@@ -50,7 +51,7 @@ TEST_CASE("reflectance: 4 percent for glass head on, all at grazing, sums of tan
     }
 }
 
-TEST_CASE("at Brewster's angle the part parallel to the plane of incidence is not reflected") {
+TEST_CASE("at Brewster's angle the part parallel to the plane of incidence is not reflected", "[shade]") {
     for (const double ior : {1.1, 1.33, 1.5, 2.4}) {
         const double brewster = std::atan(ior), out = M_PI / 2 - brewster;
         const double perpendicular = reflected_perpendicular(brewster, out);
@@ -59,7 +60,7 @@ TEST_CASE("at Brewster's angle the part parallel to the plane of incidence is no
     }
 }
 
-TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy") {
+TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy", "[shade][law]") {
     // Transmitted intensity from the amplitudes of transmission, weighted by index and cosine.
     Drawn draw;
     for (int i = 0; i < 2000; ++i) {
@@ -73,7 +74,7 @@ TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy") {
     }
 }
 
-TEST_CASE("the interface reflects alike from both sides") {
+TEST_CASE("the interface reflects alike from both sides", "[shade][law]") {
     Drawn draw;
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0, 1.5);
@@ -85,7 +86,7 @@ TEST_CASE("the interface reflects alike from both sides") {
     }
 }
 
-TEST_CASE("total internal reflection reflects all, from the critical angle on") {
+TEST_CASE("total internal reflection reflects all, from the critical angle on", "[shade]") {
     for (const double ior : {1.1, 1.33, 1.5, 2.4}) {
         const double critical = std::asin(1 / ior);
         CHECK(fresnel_reflectance(std::cos(critical + 1e-9), ior) == 1);
@@ -94,7 +95,8 @@ TEST_CASE("total internal reflection reflects all, from the critical angle on") 
     }
 }
 
-TEST_CASE("glass reflects all only beyond the critical angle, from inside: not at grazing from outside") {
+TEST_CASE("glass reflects all only beyond the critical angle, from inside: not at grazing from outside",
+          "[shade]") {
     CHECK_FALSE(is_beyond_critical(0, 1 / 1.5));
     CHECK_FALSE(is_beyond_critical(0, 1));
     CHECK_FALSE(is_beyond_critical(1, 1.5));
@@ -103,7 +105,7 @@ TEST_CASE("glass reflects all only beyond the critical angle, from inside: not a
     CHECK_FALSE(is_beyond_critical(critical * (1 + 1e-9), 1.5));
 }
 
-TEST_CASE("without Fresnel glass passes everything on at grazing too, and so to its tint") {
+TEST_CASE("without Fresnel glass passes everything on at grazing too, and so to its tint", "[shade][law]") {
     Material glass;
     glass.transmission_factor = 1;
     glass.ior = 1.1;

@@ -88,7 +88,7 @@ bool same(const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-TEST_CASE("rays shaded together have the colours that they have alone", "[shade]") {
+TEST_CASE("rays shaded together have the colours that they have alone", "[shade][oracle]") {
     Random random{std::mt19937(8)};
     int lit = 0, background = 0;
     for (int trial = 0; trial < 400; ++trial) {

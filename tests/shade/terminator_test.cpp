@@ -178,7 +178,7 @@ TEST_CASE("a lifted shadow ray starts where a sphere's tangent planes say", "[sh
     }
 }
 
-TEST_CASE("a triangle without corner normals starts its shadow rays as it always did", "[shade]") {
+TEST_CASE("a triangle without corner normals starts its shadow rays as it always did", "[shade][law]") {
     std::mt19937 random(42);
     for (int trial = 0; trial < 2000; ++trial) {
         Body body;

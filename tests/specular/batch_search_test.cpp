@@ -56,7 +56,7 @@ std::vector<Vec3> scattered(Draw& draw, int count, double low, double high) {
 
 }  // namespace
 
-TEST_CASE("many points in one search have each the list that it has alone") {
+TEST_CASE("many points in one search have each the list that it has alone", "[specular][oracle]") {
     Draw draw(81);
     const CubeSphere sphere(Vec3(0), 1);
     const SpecularSearcher searcher(sphere);
@@ -88,7 +88,8 @@ TEST_CASE("many points in one search have each the list that it has alone") {
     CHECK(room.images > 2000);
 }
 
-TEST_CASE("points on caustics, on the surface and on one another have the lists that they have alone") {
+TEST_CASE("points on caustics, on the surface and on one another have the lists that they have alone",
+          "[specular][oracle]") {
     const CubeSphere sphere(Vec3(0), 1);
     const SpecularSearcher searcher(sphere);
     SpecularQuery query;
@@ -119,7 +120,8 @@ TEST_CASE("points on caustics, on the surface and on one another have the lists 
     CHECK(compare(in_bowl, query, around).different == 0);
 }
 
-TEST_CASE("points that a sphere lights, shades or hides have the lists that they have alone") {
+TEST_CASE("points that a sphere lights, shades or hides have the lists that they have alone",
+          "[specular][oracle]") {
     Draw draw(88);
     const CubeSphere sphere({0.1, -0.2, 0.3}, 0.7);
     const SpecularSearcher searcher(sphere);
@@ -142,7 +144,7 @@ TEST_CASE("points that a sphere lights, shades or hides have the lists that they
     }
 }
 
-TEST_CASE("the order of the points changes no list") {
+TEST_CASE("the order of the points changes no list", "[specular][law]") {
     Draw draw(83);
     const CubeSphere sphere(Vec3(0), 1);
     const SpecularSearcher searcher(sphere);
@@ -154,7 +156,7 @@ TEST_CASE("the order of the points changes no list") {
     for (std::size_t p = 0; p < points.size(); ++p) CHECK(same_list(there[p], back[points.size() - 1 - p]));
 }
 
-TEST_CASE("points are halved by their coordinates alone, and their ball holds them") {
+TEST_CASE("points are halved by their coordinates alone, and their ball holds them", "[specular]") {
     Draw draw(84);
     for (int round = 0; round < 300; ++round) {
         const int count = 2 + round % 40, kinds = 1 + round % 5;

@@ -94,7 +94,7 @@ void check(const Count& count) {
 
 }  // namespace
 
-TEST_CASE("a ball of points is excluded from no cell in which one of them has its image") {
+TEST_CASE("a ball of points is excluded from no cell in which one of them has its image", "[specular][law]") {
     Draw draw(71);
     SpecularQuery mirror;
     mirror.camera = camera_at({0.4, 2.5, 1.5}, Vec3(0));
@@ -120,7 +120,7 @@ TEST_CASE("a ball of points is excluded from no cell in which one of them has it
     check(exclude_images(draw, CubeSphere(Vec3(0), 1), room, 20000));
 }
 
-TEST_CASE("a ball that may touch the piece, or holds the eye's place, excludes nothing") {
+TEST_CASE("a ball that may touch the piece, or holds the eye's place, excludes nothing", "[specular][law]") {
     SpecularQuery query;
     query.camera = camera_at({0, 0, 4}, Vec3(0));
     query.point = {0, 0, 1.5};
@@ -132,7 +132,8 @@ TEST_CASE("a ball that may touch the piece, or holds the eye's place, excludes n
     CHECK(!test_place(query, around, eye_view(query, around), 0.1).empty);
 }
 
-TEST_CASE("where the Newton operator shrinks a cell there is one zero of the law at most") {
+TEST_CASE("where the Newton operator shrinks a cell there is one zero of the law at most",
+          "[specular][oracle][law]") {
     // Pairs of images of one point in a room's mirror sphere, and cells that hold both.
     Draw draw(72);
     const CubeSphere sphere(Vec3(0), 1);

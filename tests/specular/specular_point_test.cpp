@@ -24,7 +24,7 @@ double mirror_miss(const LinearCamera& camera, const Vec3& position, const Vec3&
 
 }  // namespace
 
-TEST_CASE("images in a mirror sphere are the solutions of Alhazen's problem") {
+TEST_CASE("images in a mirror sphere are the solutions of Alhazen's problem", "[specular][oracle]") {
     Draw draw(11);
     std::size_t all = 0, in_rooms = 0, missed = 0;
     for (int round = 0; round < 400; ++round) {
@@ -74,7 +74,8 @@ TEST_CASE("images in a mirror sphere are the solutions of Alhazen's problem") {
     CHECK(missed <= all / 50);
 }
 
-TEST_CASE("a flat mirror shows the virtual image, or nothing where that lies outside the mirror") {
+TEST_CASE("a flat mirror shows the virtual image, or nothing where that lies outside the mirror",
+          "[specular]") {
     Draw draw(12);
     int seen = 0;
     for (int round = 0; round < 500; ++round) {
@@ -101,7 +102,7 @@ TEST_CASE("a flat mirror shows the virtual image, or nothing where that lies out
     CHECK(seen > 100);
 }
 
-TEST_CASE("a flat water surface shows points where Snell's law puts them") {
+TEST_CASE("a flat water surface shows points where Snell's law puts them", "[specular][oracle]") {
     Draw draw(13);
     for (int round = 0; round < 500; ++round) {
         const double size = draw.log_uniform(1e-4, 1e4), half = 100 * size;
@@ -136,7 +137,7 @@ TEST_CASE("a flat water surface shows points where Snell's law puts them") {
     }
 }
 
-TEST_CASE("equal indices: refraction is a straight line through the surface") {
+TEST_CASE("equal indices: refraction is a straight line through the surface", "[specular]") {
     Draw draw(14);
     const CubeSphere sphere(Vec3(0), 1);
     for (int round = 0; round < 100; ++round) {
@@ -152,7 +153,7 @@ TEST_CASE("equal indices: refraction is a straight line through the surface") {
     }
 }
 
-TEST_CASE("a parallel camera sees a sphere's and a paraboloid's images by the mirror law") {
+TEST_CASE("a parallel camera sees a sphere's and a paraboloid's images by the mirror law", "[specular]") {
     Draw draw(15);
     const CubeSphere sphere(Vec3(0.2, -0.1, 0.3), 1.5);
     const Patch bowl(Vec3(0), 2, 0.3);
@@ -186,7 +187,8 @@ TEST_CASE("a parallel camera sees a sphere's and a paraboloid's images by the mi
     }
 }
 
-TEST_CASE("parallel rays along a paraboloid's axis image every point of the bowl to its focus") {
+TEST_CASE("parallel rays along a paraboloid's axis image every point of the bowl to its focus",
+          "[specular][law]") {
     const double bend = 0.4;
     const Patch bowl(Vec3(0), 1, bend);
     SpecularQuery query;
@@ -199,7 +201,7 @@ TEST_CASE("parallel rays along a paraboloid's axis image every point of the bowl
     }
 }
 
-TEST_CASE("overridden normals obey the mirror law, not Fermat's principle") {
+TEST_CASE("overridden normals obey the mirror law, not Fermat's principle", "[specular]") {
     // A plane whose normals point away from a centre far below: the thesis' sphere on a plane.
     struct BorrowedPlane : Patch {
         Vec3 away_from{0, 0, -3};
@@ -235,7 +237,7 @@ TEST_CASE("overridden normals obey the mirror law, not Fermat's principle") {
     CHECK(seen > 150);
 }
 
-TEST_CASE("few iterations from a near start, and the residual tells the truth") {
+TEST_CASE("few iterations from a near start, and the residual tells the truth", "[specular]") {
     Draw draw(17);
     const CubeSphere sphere(Vec3(0), 1);
     int most = 0;
@@ -256,7 +258,7 @@ TEST_CASE("few iterations from a near start, and the residual tells the truth") 
     CHECK(most <= 8);
 }
 
-TEST_CASE("an image on the edge between two faces is found from both and counted once") {
+TEST_CASE("an image on the edge between two faces is found from both and counted once", "[specular][law]") {
     const CubeSphere sphere(Vec3(0), 1);
     const Vec3 on_edge = normalize(Vec3(1, 1, 0.2));
     SpecularQuery query;
@@ -268,7 +270,7 @@ TEST_CASE("an image on the edge between two faces is found from both and counted
     CHECK(length(images[0].position - on_edge) < 1e-12);
 }
 
-TEST_CASE("images are the same only on one side of one crossing") {
+TEST_CASE("images are the same only on one side of one crossing", "[specular]") {
     SpecularPoint image;
     image.pixel = {10, 20};
     image.distance = 5;
@@ -285,7 +287,7 @@ TEST_CASE("images are the same only on one side of one crossing") {
     CHECK(std::none_of(distinct.begin(), distinct.end(), [](const auto& p) { return p.residual > 5e-15; }));
 }
 
-TEST_CASE("starts cover square and triangular domains") {
+TEST_CASE("starts cover square and triangular domains", "[specular][law]") {
     struct Triangle : Patch {
         Triangle() : Patch(Vec3(0), 1, 0) {}
         FaceDomain domain(Id) const override { return FaceDomain::kTriangle; }

@@ -73,7 +73,7 @@ struct SearchTally {
 
 }  // namespace
 
-TEST_CASE("the search lists exactly the solutions of Alhazen's problem") {
+TEST_CASE("the search lists exactly the solutions of Alhazen's problem", "[specular][oracle]") {
     Draw draw(31);
     SearchTally tally;
     std::array<int, 5> by_count{};
@@ -106,7 +106,8 @@ TEST_CASE("the search lists exactly the solutions of Alhazen's problem") {
     CHECK(by_count[3] + by_count[4] > 20);
 }
 
-TEST_CASE("the search lists exactly the refractions that a scan of all angles finds in a glass sphere") {
+TEST_CASE("the search lists exactly the refractions that a scan of all angles finds in a glass sphere",
+          "[specular][oracle]") {
     Draw draw(32);
     const CubeSphere sphere(Vec3(0), 1);
     const SpecularSearcher searcher(sphere);
@@ -140,7 +141,7 @@ TEST_CASE("the search lists exactly the refractions that a scan of all angles fi
     CHECK(several > 10);
 }
 
-TEST_CASE("the search finds the one image in a flat mirror and the one through flat water") {
+TEST_CASE("the search finds the one image in a flat mirror and the one through flat water", "[specular]") {
     Draw draw(33);
     SearchTally mirror_tally, water_tally;
     for (int round = 0; round < 300; ++round) {
@@ -181,7 +182,8 @@ TEST_CASE("the search finds the one image in a flat mirror and the one through f
     }
 }
 
-TEST_CASE("the search says that it cannot know: at a focus, on the surface, at an eye on the surface") {
+TEST_CASE("the search says that it cannot know: at a focus, on the surface, at an eye on the surface",
+          "[specular]") {
     const double bend = 0.4;
     const Patch bowl(Vec3(0), 1, bend);
     SearchLimits limits;
@@ -205,7 +207,7 @@ TEST_CASE("the search says that it cannot know: at a focus, on the surface, at a
     CHECK(!find_specular_points(bowl, query).complete);
 }
 
-TEST_CASE("near a caustic the search lists both images or says that it cannot know") {
+TEST_CASE("near a caustic the search lists both images or says that it cannot know", "[specular]") {
     // Along the axis of a mirror sphere the images away from the axis meet those on it at the caustic's cusp.
     const CubeSphere sphere(Vec3(0), 1);
     const SpecularSearcher searcher(sphere);
@@ -230,7 +232,7 @@ TEST_CASE("near a caustic the search lists both images or says that it cannot kn
     CHECK(kinds > 1);
 }
 
-TEST_CASE("without bounds, or with borrowed normals, a list is never called complete") {
+TEST_CASE("without bounds, or with borrowed normals, a list is never called complete", "[specular][law]") {
     struct NoBounds : CubeSphere {
         NoBounds() : CubeSphere(Vec3(0), 1) {}
         std::unique_ptr<const SurfaceBounder> make_bounder() const override { return nullptr; }
@@ -256,7 +258,7 @@ TEST_CASE("without bounds, or with borrowed normals, a list is never called comp
     CHECK(!back.images[0].front);
 }
 
-TEST_CASE("searches from many threads give the same lists") {
+TEST_CASE("searches from many threads give the same lists", "[specular][law]") {
     Draw draw(35);
     const CubeSphere sphere(Vec3(0), 1);
     const SpecularSearcher searcher(sphere);

@@ -63,7 +63,7 @@ void compare(Draw& draw, double nearest, double furthest, SphereTally& tally) {
 
 }  // namespace
 
-TEST_CASE("the zeros that are said of a sphere are those of Alhazen's problem") {
+TEST_CASE("the zeros that are said of a sphere are those of Alhazen's problem", "[specular][oracle]") {
     Draw draw(87);
     SphereTally near, wide, inside;
     for (int round = 0; round < 300; ++round) compare(draw, 1.001, 6, near);
@@ -81,7 +81,7 @@ TEST_CASE("the zeros that are said of a sphere are those of Alhazen's problem") 
     CHECK(wide.shaded > 200);
 }
 
-TEST_CASE("of a sphere nothing is said where the way to the point grazes it or ends on it") {
+TEST_CASE("of a sphere nothing is said where the way to the point grazes it or ends on it", "[specular]") {
     const Vec3 eye(0, 0, 4);
     PointLanes points;
     const double edge = 1 / std::sqrt(1 - 1.0 / 16);  // where the ray that touches the sphere meets z = 0

@@ -46,7 +46,7 @@ TestResult only(const SuiteParams& params, const SuiteCallbacks& callbacks) {
 
 }  // namespace
 
-TEST_CASE("what does not repeat is refused, and the stored picture stays", "[suite]") {
+TEST_CASE("what does not repeat is refused, and the stored picture stays", "[suite][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("suite_repeat");
     write_test(folder, R"({ "against": "golden" })");
     std::atomic<int> calls = 0;
@@ -68,7 +68,7 @@ TEST_CASE("what does not repeat is refused, and the stored picture stays", "[sui
     CHECK(only(params, still).update == "unchanged");
 }
 
-TEST_CASE("NaN, a lost channel and another size are broken whatever the limits", "[suite]") {
+TEST_CASE("NaN, a lost channel and another size are broken whatever the limits", "[suite][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("suite_always");
     write_test(folder, R"({ "against": "golden", "max": { "rmse": 1000 } })");
     SuiteParams params;

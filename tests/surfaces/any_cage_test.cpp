@@ -117,7 +117,7 @@ bool is_sound(const SurfaceGrid& grid) {
 
 }  // namespace
 
-TEST_CASE("What cannot be used is refused with its place", "[surfaces]") {
+TEST_CASE("What cannot be used is refused with its place", "[surfaces][bad-input]") {
     CHECK(refusal(cube()).empty());
     CHECK(refusal(Cage{}) == "box.obj: faceVertexCounts: the cage has no faces");
 
@@ -195,7 +195,7 @@ TEST_CASE("What is repaired or left out is said", "[surfaces]") {
     CHECK(said.empty());
 }
 
-TEST_CASE("Random faces of random vertices have sound surfaces and grids", "[surfaces]") {
+TEST_CASE("Random faces of random vertices have sound surfaces and grids", "[surfaces][law]") {
     std::mt19937 random(20);
     int usable = 0;
     for (int i = 0; i < 400; ++i) {

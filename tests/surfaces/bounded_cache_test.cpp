@@ -34,7 +34,7 @@ std::size_t table_bytes(std::size_t keys) {
 
 }  // namespace
 
-TEST_CASE("Values that fit are made once, and stay", "[surfaces]") {
+TEST_CASE("Values that fit are made once, and stay", "[surfaces][law]") {
     Cache cache(100, {1000, 0});
     std::atomic<int> made = 0;
     CHECK(cache.bytes() == table_bytes(100));
@@ -44,7 +44,7 @@ TEST_CASE("Values that fit are made once, and stay", "[surfaces]") {
     CHECK(cache.bytes() == 1000 + table_bytes(100));
 }
 
-TEST_CASE("Of the values that do not fit the latest ones stay", "[surfaces]") {
+TEST_CASE("Of the values that do not fit the latest ones stay", "[surfaces][law]") {
     constexpr std::size_t kKeys = 6400;
     Cache cache(kKeys, {100, 64 * 50});  // ten of size 10 for good; of each 64th part of the keys five
     std::atomic<int> made = 0;

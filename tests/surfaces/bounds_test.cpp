@@ -124,7 +124,7 @@ Cage octahedron() {
 
 }  // namespace
 
-TEST_CASE("no point of a primitive lies outside its bounds") {
+TEST_CASE("no point of a primitive lies outside its bounds", "[surfaces][law]") {
     for (const Primitive::Type type : kBoundedTypes) {
         const auto surface = make_primitive_surface(primitive_of(type));
         const Outside outside = points_outside(*surface, 1 + static_cast<unsigned>(type), 4000);
@@ -134,7 +134,7 @@ TEST_CASE("no point of a primitive lies outside its bounds") {
     }
 }
 
-TEST_CASE("no point of a limit surface lies outside its bounds") {
+TEST_CASE("no point of a limit surface lies outside its bounds", "[surfaces][law]") {
     unsigned seed = 10;
     auto cages = small_cages();
     cages.emplace_back("octahedron", octahedron());
@@ -146,7 +146,7 @@ TEST_CASE("no point of a limit surface lies outside its bounds") {
     }
 }
 
-TEST_CASE("no point of the outside data's cages lies outside its bounds") {
+TEST_CASE("no point of the outside data's cages lies outside its bounds", "[surfaces][law]") {
     TRILENS_NEEDS_DATA("cages");
     unsigned seed = 100;
     for (const std::string& name : cage_files()) {
@@ -157,7 +157,7 @@ TEST_CASE("no point of the outside data's cages lies outside its bounds") {
     }
 }
 
-TEST_CASE("bounds shrink at least in proportion to the box") {
+TEST_CASE("bounds shrink at least in proportion to the box", "[surfaces][law]") {
     auto cages = small_cages();
     cages.emplace_back("octahedron", octahedron());
     std::vector<std::pair<std::string, std::unique_ptr<Surface>>> surfaces;
@@ -192,7 +192,8 @@ TEST_CASE("bounds shrink at least in proportion to the box") {
     }
 }
 
-TEST_CASE("second derivatives of limit surfaces are the first ones' derivatives, in turned triangles too") {
+TEST_CASE("second derivatives of limit surfaces are the first ones' derivatives, in turned triangles too",
+          "[surfaces]") {
     Boxes boxes(78);
     for (const auto& cage : {octahedron(), cube()}) {
         const auto surface = make_limit_surface(cage, "cage", {});

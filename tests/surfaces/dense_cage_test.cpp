@@ -72,7 +72,7 @@ constexpr std::array<Vec2, 4> kCorners = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Ve
 
 }  // namespace
 
-TEST_CASE("A cage of 20,480 triangles is evaluated everywhere in less than 500 MB", "[surfaces]") {
+TEST_CASE("A cage of 20,480 triangles is evaluated everywhere in less than 500 MB", "[surfaces][law]") {
     const Cage cage = bumpy_sphere(5);
     REQUIRE(cage.face_vertex_counts.size() == 20480);
     constexpr double kMost = 500e6;
@@ -114,7 +114,7 @@ TEST_CASE("A cage of 20,480 triangles is evaluated everywhere in less than 500 M
     CHECK(static_cast<double>(surface->bytes_held()) < kMost);
 }
 
-TEST_CASE("What would not fit is refused with the estimate and what to do", "[surfaces]") {
+TEST_CASE("What would not fit is refused with the estimate and what to do", "[surfaces][bad-input]") {
     const std::string dense = refusal(bumpy_sphere(4), 200e6);
     CAPTURE(dense);
     CHECK(dense.rfind("dense: the limit surface of 5120 faces needs about 0.56", 0) == 0);
@@ -133,7 +133,7 @@ TEST_CASE("What would not fit is refused with the estimate and what to do", "[su
     CHECK(refusal(linear, 1e9).empty());
 }
 
-TEST_CASE("What is not refused holds no more than the memory that it was given", "[surfaces]") {
+TEST_CASE("What is not refused holds no more than the memory that it was given", "[surfaces][bad-input]") {
     for (const auto& [name, cage] : small_cages()) {
         CAPTURE(name);
         // The least memory that is accepted is the estimate.

@@ -72,7 +72,8 @@ Comparison compare_with_reference(const Cage& cage, int levels) {
 
 }  // namespace
 
-TEST_CASE("A limit surface is what a second implementation of subdivision converges to", "[surfaces]") {
+TEST_CASE("A limit surface is what a second implementation of subdivision converges to",
+          "[surfaces][oracle][law]") {
     for (const auto& [name, cage] : small_cages()) {
         CAPTURE(name);
         const Comparison result = compare_with_reference(cage, 3);
@@ -82,7 +83,8 @@ TEST_CASE("A limit surface is what a second implementation of subdivision conver
     }
 }
 
-TEST_CASE("Limit surfaces at vertices of 2 to 12 faces are what subdivision converges to", "[surfaces]") {
+TEST_CASE("Limit surfaces at vertices of 2 to 12 faces are what subdivision converges to",
+          "[surfaces][law]") {
     for (const auto& [name, cage] : made_cages()) {
         CAPTURE(name);
         const Comparison result = compare_with_reference(cage, 3);
@@ -92,7 +94,8 @@ TEST_CASE("Limit surfaces at vertices of 2 to 12 faces are what subdivision conv
     }
 }
 
-TEST_CASE("The limit surfaces of the shapes on file are what subdivision converges to", "[surfaces]") {
+TEST_CASE("The limit surfaces of the shapes on file are what subdivision converges to",
+          "[surfaces][law][golden]") {
     TRILENS_NEEDS_DATA("cages/catmark_cube.obj");
     for (const std::string& name : cage_files()) {
         CAPTURE(name);
@@ -161,7 +164,7 @@ TEST_CASE("Parameters outside the domain are clamped to it", "[surfaces]") {
     CHECK(length(triangle->eval(0, {1, 1}).position - triangle->eval(0, {0.5, 0.5}).position) < 1e-15);
 }
 
-TEST_CASE("A limit surface scales, moves and turns with its cage", "[surfaces]") {
+TEST_CASE("A limit surface scales, moves and turns with its cage", "[surfaces][law]") {
     const Cage cage = prism(5);
     const auto surface = quiet_cage(cage);
     const Mat3 turn(Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 1, 0));
@@ -209,7 +212,7 @@ TEST_CASE("Where derivatives vanish the normal comes from nearby", "[surfaces]")
     CHECK(quiet_cage(line)->eval(0, {0.25, 0.5}).normal == Vec3(0));
 }
 
-TEST_CASE("Holes have no faces and change nothing else", "[surfaces]") {
+TEST_CASE("Holes have no faces and change nothing else", "[surfaces][law]") {
     Cage holed = cube();
     holed.hole_indices = {2};
     const auto with = quiet_cage(holed), without = quiet_cage(cube());
@@ -219,7 +222,7 @@ TEST_CASE("Holes have no faces and change nothing else", "[surfaces]") {
               without->eval(face < 2 ? face : face + 1, {0.3, 0.8}).position);
 }
 
-TEST_CASE("the first order is the same bit for bit without the second", "[surfaces]") {
+TEST_CASE("the first order is the same bit for bit without the second", "[surfaces][law]") {
     std::mt19937 random(29);
     std::uniform_real_distribution<double> anywhere(0, 1), exponent(-9, -2);
     for (const auto& [name, cage] : made_cages()) {

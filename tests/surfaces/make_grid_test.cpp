@@ -117,7 +117,7 @@ TEST_CASE("Grids have no cracks and no T-junctions", "[surfaces]") {
         }
 }
 
-TEST_CASE("Grids of the shapes on file have no cracks", "[surfaces]") {
+TEST_CASE("Grids of the shapes on file have no cracks", "[surfaces][golden]") {
     TRILENS_NEEDS_DATA("cages/catmark_cube.obj");
     for (const std::string& name : cage_files())
         for (int n : {1, 4}) {
@@ -258,7 +258,7 @@ TEST_CASE("Squares are cut along the shorter diagonal", "[surfaces]") {
     CHECK_FALSE(first_cut(0.5));
 }
 
-TEST_CASE("A grid is the same for any number of threads", "[surfaces]") {
+TEST_CASE("A grid is the same for any number of threads", "[surfaces][law]") {
     const auto surface = quietly(prism(5));
     const SurfaceGrid all = make_grid(*surface, 6);
     set_thread_count(1);

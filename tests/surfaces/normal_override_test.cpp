@@ -28,7 +28,7 @@ NormalField sphere_field(const Vec3& center) {
 
 }  // namespace
 
-TEST_CASE("a grid and its exact surface borrow the same normals") {
+TEST_CASE("a grid and its exact surface borrow the same normals", "[surfaces]") {
     const auto sphere = std::make_shared<const CubeSphere>(Vec3(0.1, 0.2, 0.3), 1.5);
     for (const NormalField& field : {NormalField{}, sphere_field({0, 0.5, 0}), noise_field(7, 0.2, 3)}) {
         SurfaceGrid grid = regular_grid(*sphere, 4);
@@ -53,7 +53,7 @@ TEST_CASE("a grid and its exact surface borrow the same normals") {
     }
 }
 
-TEST_CASE("normals stay unit and on the surface's side, whatever the amplitude") {
+TEST_CASE("normals stay unit and on the surface's side, whatever the amplitude", "[surfaces][law]") {
     Draw draw(41);
     for (int round = 0; round < 5000; ++round) {
         const double size = draw.log_uniform(1e-4, 1e4);
@@ -71,7 +71,7 @@ TEST_CASE("normals stay unit and on the surface's side, whatever the amplitude")
     }
 }
 
-TEST_CASE("noise is smooth, depends on its seed, and has its amplitude and scale") {
+TEST_CASE("noise is smooth, depends on its seed, and has its amplitude and scale", "[surfaces][law]") {
     Draw draw(42);
     const Vec3 up(0, 0, 1);
     double mean_square = 0, largest_step = 0, mean_x = 0, differ = 0;
@@ -95,7 +95,7 @@ TEST_CASE("noise is smooth, depends on its seed, and has its amplitude and scale
     CHECK(differ > 0.02);
 }
 
-TEST_CASE("noise is continuous with its slope across the lattice") {
+TEST_CASE("noise is continuous with its slope across the lattice", "[surfaces]") {
     Draw draw(43);
     const NormalField field = noise_field(11, 0.5, 1);
     const Vec3 up(0, 0, 1);
@@ -109,7 +109,7 @@ TEST_CASE("noise is continuous with its slope across the lattice") {
     }
 }
 
-TEST_CASE("closed-form hits carry the borrowed normal") {
+TEST_CASE("closed-form hits carry the borrowed normal", "[surfaces]") {
     // A surface whose only ray is a fixed answer: what is passed on is what counts here.
     struct Fixed : Patch {
         Fixed() : Patch(Vec3(0), 1, 0) {}
@@ -131,7 +131,7 @@ TEST_CASE("closed-form hits carry the borrowed normal") {
     CHECK_FALSE(surface->intersect({{0.5, 0.25, 3}, {0, 0, 1}}, 0).has_value());
 }
 
-TEST_CASE("where there is no normal there is none to tilt, but a sphere's") {
+TEST_CASE("where there is no normal there is none to tilt, but a sphere's", "[surfaces]") {
     CHECK(eval_normal(noise_field(1, 1, 1), {0.3, 0.4, 0.5}, Vec3(0)) == Vec3(0));
     CHECK(eval_normal({}, {0.3, 0.4, 0.5}, Vec3(0)) == Vec3(0));
     CHECK(eval_normal(sphere_field(Vec3(0)), {0, 0, 2}, Vec3(0)) == Vec3(0, 0, 1));

@@ -101,7 +101,8 @@ Vec2 random_uv(std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("Points of primitives satisfy the equation, with its normal and derivatives", "[surfaces]") {
+TEST_CASE("Points of primitives satisfy the equation, with its normal and derivatives",
+          "[surfaces][oracle]") {
     std::mt19937 random(3);
     for (Type type : kTypes)
         for (double scale : {1e-4, 1e-2, 1.0, 1e2, 1e4}) {
@@ -136,7 +137,7 @@ TEST_CASE("Points of primitives satisfy the equation, with its normal and deriva
         }
 }
 
-TEST_CASE("The faces of a primitive cover it once", "[surfaces]") {
+TEST_CASE("The faces of a primitive cover it once", "[surfaces][law]") {
     std::mt19937 random(4);
     for (Type type : kTypes) {
         CAPTURE(static_cast<int>(type));
@@ -291,7 +292,7 @@ TEST_CASE("Rays along the axis, through the rim's plane and along the surface", 
     CHECK(plane->intersect({{0.5, 1, -0.5}, {0, -1, 0}}, 0)->point.normal == Vec3(0, 1, 0));
 }
 
-TEST_CASE("Grids of primitives close, and their points satisfy the equation", "[surfaces]") {
+TEST_CASE("Grids of primitives close, and their points satisfy the equation", "[surfaces][oracle]") {
     std::mt19937 random(6);
     for (int n : {1, 4, 9}) {
         CHECK(
@@ -307,7 +308,7 @@ TEST_CASE("Grids of primitives close, and their points satisfy the equation", "[
     }
 }
 
-TEST_CASE("Primitives without a size or a frame are refused", "[surfaces]") {
+TEST_CASE("Primitives without a size or a frame are refused", "[surfaces][bad-input]") {
     Primitive bad;
     bad.radius = 0;
     CHECK_THROWS_AS(make_primitive_surface(bad), InputError);

@@ -50,7 +50,7 @@ struct FakeEngines : FakeSweep {
 
 }  // namespace
 
-TEST_CASE("sweep: each group of runs has its own order, along the axis that orders") {
+TEST_CASE("sweep: each group of runs has its own order, along the axis that orders", "[sweep]") {
     FakeEngines fake(trilens_test::scratch_dir("axes_groups"));
     const SweepSummary summary = fake.run();
     REQUIRE(summary.runs.size() == 8);
@@ -73,7 +73,7 @@ TEST_CASE("sweep: each group of runs has its own order, along the axis that orde
     CHECK(csv.find("classic_n0008,") != std::string::npos);
 }
 
-TEST_CASE("sweep: a line per group in one plot, as SVG and PDF") {
+TEST_CASE("sweep: a line per group in one plot, as SVG and PDF", "[sweep]") {
     FakeEngines fake(trilens_test::scratch_dir("axes_plots"));
     fake.run();
     const std::string plots = fake.params.folder + "/plots/reflect_disp_mean_px";
@@ -90,7 +90,7 @@ TEST_CASE("sweep: a line per group in one plot, as SVG and PDF") {
     CHECK(latex.find("\\toprule") != std::string::npos);
 }
 
-TEST_CASE("sweep: at most eight lines share a plot; two axes of numbers make a map") {
+TEST_CASE("sweep: at most eight lines share a plot; two axes of numbers make a map", "[sweep]") {
     std::vector<RunGroup> groups;
     for (const char* engine : {"exact", "classic", "facets"})
         for (int spp = 1; spp <= 5; ++spp)
@@ -112,7 +112,7 @@ TEST_CASE("sweep: at most eight lines share a plot; two axes of numbers make a m
     CHECK(cells == 6 + 48);  // and the scale
 }
 
-TEST_CASE("sweep: several runs at once give what one after the other gives, each once") {
+TEST_CASE("sweep: several runs at once give what one after the other gives, each once", "[sweep]") {
     FakeEngines one(trilens_test::scratch_dir("axes_one")), many(trilens_test::scratch_dir("axes_many"));
     one.run();
     many.params.jobs = 4;
@@ -137,14 +137,14 @@ TEST_CASE("sweep: several runs at once give what one after the other gives, each
           std::string::npos);
 }
 
-TEST_CASE("sweep: a failure stops all workers, and is what comes out") {
+TEST_CASE("sweep: a failure stops all workers, and is what comes out", "[sweep]") {
     FakeEngines fake(trilens_test::scratch_dir("axes_stop"));
     fake.params.jobs = 3;
     fake.before_render = [](int) { throw std::logic_error("bug"); };
     CHECK_THROWS_AS(fake.run(), std::logic_error);
 }
 
-TEST_CASE("sweep: only as many runs are at work as fit into memory") {
+TEST_CASE("sweep: only as many runs are at work as fit into memory", "[sweep]") {
     FakeEngines fake(trilens_test::scratch_dir("axes_memory"));
     fake.params.jobs = 4;
     fake.params.memory_limit = 100;
@@ -160,7 +160,7 @@ TEST_CASE("sweep: only as many runs are at work as fit into memory") {
     CHECK(available_memory().value() > 1e6);
 }
 
-TEST_CASE("sweep: repeats give a median and a spread, and leave the first drawing out") {
+TEST_CASE("sweep: repeats give a median and a spread, and leave the first drawing out", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("axes_repeats"), {1});
     fake.params.repeats = 3;
     int calls = 0;
@@ -178,7 +178,8 @@ TEST_CASE("sweep: repeats give a median and a spread, and leave the first drawin
     CHECK(metrics.at("threads") >= 1);
 }
 
-TEST_CASE("sweep: a truth that was damaged is traced again, one of half its bytes too") {
+TEST_CASE("sweep: a truth that was damaged is traced again, one of half its bytes too",
+          "[sweep][bad-input]") {
     FakeSweep fake(trilens_test::scratch_dir("axes_truth"), {1, 2});
     const SweepSummary summary = fake.run();
     const std::string file = truth_file(fake.params.folder, summary.runs[0].plan.truth);
@@ -195,7 +196,7 @@ TEST_CASE("sweep: a truth that was damaged is traced again, one of half its byte
     CHECK(hash_text(read_whole_file(file).value()) != hash_text(bytes));
 }
 
-TEST_CASE("sweep: a clock that jumps changes nothing, foreign files stay where they are") {
+TEST_CASE("sweep: a clock that jumps changes nothing, foreign files stay where they are", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("axes_clock"), {1, 2});
     fake.before_render = [](int n) {
         if (n == 2) throw ComputationError("fails");
@@ -215,7 +216,7 @@ TEST_CASE("sweep: a clock that jumps changes nothing, foreign files stay where t
     CHECK(read_whole_file(foreign) == "mine");
 }
 
-TEST_CASE("sweep: folders of one axis, as they were once written, are read") {
+TEST_CASE("sweep: folders of one axis, as they were once written, are read", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("axes_old"), {1, 2});
     fake.run();
     const std::string folder = fake.params.folder;

@@ -47,7 +47,7 @@ std::vector<std::string> ids(const SweepAxes& axes) {
 
 }  // namespace
 
-TEST_CASE("sweep: axes of whole numbers") {
+TEST_CASE("sweep: axes of whole numbers", "[sweep]") {
     using Values = std::vector<double>;
     CHECK(parse_axis("resolution=1,2,4,8").kind.name == "resolution");
     CHECK(numbers("resolution=1,2,4,8") == Values{1, 2, 4, 8});
@@ -64,7 +64,7 @@ TEST_CASE("sweep: axes of whole numbers") {
     CHECK(texts("resolution=1,16") == std::vector<std::string>{"1", "16"});
 }
 
-TEST_CASE("sweep: axes of other kinds") {
+TEST_CASE("sweep: axes of other kinds", "[sweep]") {
     CHECK(texts("engine=classic,exact") == std::vector<std::string>{"classic", "exact"});
     CHECK(numbers("size=64x48,32x24") == std::vector<double>{32 * 24, 64 * 48});
     CHECK(texts("size=64x48,32x24") == std::vector<std::string>{"32x24", "64x48"});
@@ -77,7 +77,7 @@ TEST_CASE("sweep: axes of other kinds") {
     CHECK(texts("scene=../a.json,b.json") == std::vector<std::string>{"../a.json", "b.json"});
 }
 
-TEST_CASE("sweep: axes that make no sense are refused, and the text is quoted") {
+TEST_CASE("sweep: axes that make no sense are refused, and the text is quoted", "[sweep][bad-input]") {
     const std::vector<std::string> bad = {"resolution=",
                                           "resolution=,",
                                           "resolution=1,",
@@ -123,7 +123,8 @@ TEST_CASE("sweep: axes that make no sense are refused, and the text is quoted") 
     CHECK_THROWS_AS(make_axis(kResolution, {"resolution", {}}, "here"), UsageError);
 }
 
-TEST_CASE("sweep: the product of axes runs through every combination, zipped ones go side by side") {
+TEST_CASE("sweep: the product of axes runs through every combination, zipped ones go side by side",
+          "[sweep]") {
     SweepAxes axes{{parse_axis("engine=exact,classic"), parse_axis("resolution=1,2,4")}, false};
     CHECK(ids(axes) == std::vector<std::string>{"exact_n0001", "exact_n0002", "exact_n0004", "classic_n0001",
                                                 "classic_n0002", "classic_n0004"});
@@ -137,7 +138,7 @@ TEST_CASE("sweep: the product of axes runs through every combination, zipped one
     CHECK_THROWS_AS(make_points(axes), UsageError);
 }
 
-TEST_CASE("sweep: two points of one name are refused with both of them") {
+TEST_CASE("sweep: two points of one name are refused with both of them", "[sweep][bad-input]") {
     const SweepAxes scenes{{parse_axis("scene=a/room.json,b/room.json")}, false};
     try {
         ids(scenes);
@@ -152,7 +153,7 @@ TEST_CASE("sweep: two points of one name are refused with both of them") {
     CHECK_THROWS_AS(ids(twice), UsageError);
 }
 
-TEST_CASE("sweep: names of runs are names of files, whatever the values hold") {
+TEST_CASE("sweep: names of runs are names of files, whatever the values hold", "[sweep][law]") {
     const SweepAxes axes{{parse_axis("/meshes/0/file=../a b.obj,/etc/passwd,..")}, false};
     for (const std::string& id : ids(axes)) {
         INFO(id);

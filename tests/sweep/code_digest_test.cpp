@@ -12,7 +12,8 @@
 
 using namespace trilens;
 
-TEST_CASE("sweep: this program's own code is among what is loaded, with its build id as the file has it") {
+TEST_CASE("sweep: this program's own code is among what is loaded, with its build id as the file has it",
+          "[sweep]") {
     const std::string digest = code_digest();
     const std::vector<LoadedCode> code = loaded_code();
     const auto is_ours = [](const LoadedCode& one) { return one.is_ours; };
@@ -29,7 +30,8 @@ TEST_CASE("sweep: this program's own code is among what is loaded, with its buil
     CHECK(code_digest().size() == 16);
 }
 
-TEST_CASE("sweep: the digest follows the build ids of the engine and its libraries, and nothing else") {
+TEST_CASE("sweep: the digest follows the build ids of the engine and its libraries, and nothing else",
+          "[sweep]") {
     const std::vector<LoadedCode> code = {{"/proc/self/exe", "a1", true},
                                           {"/usr/lib/libembree3.so.3", "b2", false},
                                           {"/usr/lib/libosdCPU.so.3", "c3", false},
@@ -49,7 +51,7 @@ TEST_CASE("sweep: the digest follows the build ids of the engine and its librari
     CHECK(digest_of_code(turned) == digest);
 }
 
-TEST_CASE("sweep: code without a build id is known by its bytes") {
+TEST_CASE("sweep: code without a build id is known by its bytes", "[sweep]") {
     const std::string folder = trilens_test::scratch_dir("code_digest");
     replace_text_file(folder + "/one", "machine code");
     replace_text_file(folder + "/copy", "machine code");

@@ -37,7 +37,7 @@ std::string comparable(const std::string& folder) {
 
 }  // namespace
 
-TEST_CASE("sweep: shards in folders of their own merge into what one machine gives") {
+TEST_CASE("sweep: shards in folders of their own merge into what one machine gives", "[sweep]") {
     const std::string home = trilens_test::scratch_dir("farm_merge");
     FakeSweep whole(home + "/whole", {1, 2, 4, 8, 16});
     whole.run();
@@ -58,7 +58,8 @@ TEST_CASE("sweep: shards in folders of their own merge into what one machine giv
     CHECK((more.renders == 1 && more.traces == 0));
 }
 
-TEST_CASE("sweep: only parts of one sweep and one build merge; what is damaged counts as missing") {
+TEST_CASE("sweep: only parts of one sweep and one build merge; what is damaged counts as missing",
+          "[sweep][bad-input]") {
     const std::string home = trilens_test::scratch_dir("farm_refused");
     FakeSweep one(home + "/one", {1, 2}), camera(home + "/camera", {1, 2}), build(home + "/build", {1, 2});
     one.run();
@@ -78,7 +79,7 @@ TEST_CASE("sweep: only parts of one sweep and one build merge; what is damaged c
     CHECK(load_sweep(home + "/all").count(RunState::kMissing) == 1);
 }
 
-TEST_CASE("sweep: scripts name every part once and quote what shells would read") {
+TEST_CASE("sweep: scripts name every part once and quote what shells would read", "[sweep]") {
     FarmRequest request;
     request.parts = 200;
     request.title = "it's a test";
@@ -106,7 +107,7 @@ TEST_CASE("sweep: scripts name every part once and quote what shells would read"
     CHECK(shell_quoted("/materials/0/ior=1.3,1.5") == "/materials/0/ior=1.3,1.5");
 }
 
-TEST_CASE("sweep: folders with blanks, quotes, % and $ come back from the scripts as they are") {
+TEST_CASE("sweep: folders with blanks, quotes, % and $ come back from the scripts as they are", "[sweep]") {
     const std::string home = trilens_test::scratch_dir("farm_names");
     FarmRequest request;
     request.parts = 2;
@@ -158,7 +159,8 @@ TEST_CASE("sweep: folders with blanks, quotes, % and $ come back from the script
     for (const std::string& system : farm_systems()) CHECK_THROWS_AS(text(system.c_str()), UsageError);
 }
 
-TEST_CASE("sweep: a sweep file says scenes, axes and truth; what it may not say is refused with its place") {
+TEST_CASE("sweep: a sweep file says scenes, axes and truth; what it may not say is refused with its place",
+          "[sweep][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("farm_file"), file = folder + "/sweep.json";
     replace_text_file(file, R"({ "scenes": ["a.json"], "truth": "facets", "zip": true, // a remark
         "over": [ {"axis": "resolution", "values": [1, 2, "4..8:x2"]}, {"axis": "/materials/0/ior", "values": "1..4:+1"},

@@ -93,7 +93,7 @@ int exit_code_of(pid_t child) {
 
 }  // namespace
 
-TEST_CASE("sweep: a folder of one sweep refuses another, names both, and stays as it is") {
+TEST_CASE("sweep: a folder of one sweep refuses another, names both, and stays as it is", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("folder_owner"), {1, 2});
     fake.params.subject.scene_name = "../one.json";
     fake.params.subject.scene_digest = "digest 1";
@@ -133,7 +133,8 @@ TEST_CASE("sweep: a folder of one sweep refuses another, names both, and stays a
     CHECK_THROWS_AS(fake.run(), UsageError);
 }
 
-TEST_CASE("sweep: the same sweep goes on in its folder: more values, an edited scene, a moved one") {
+TEST_CASE("sweep: the same sweep goes on in its folder: more values, an edited scene, a moved one",
+          "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("folder_same"), {1, 2});
     fake.params.subject.scene_name = "../one.json";
     fake.params.subject.scene_digest = "digest 1";
@@ -150,7 +151,7 @@ TEST_CASE("sweep: the same sweep goes on in its folder: more values, an edited s
     CHECK_NOTHROW(fake.run());
 }
 
-TEST_CASE("sweep: replacing removes what sweeps write, all of it and nothing else") {
+TEST_CASE("sweep: replacing removes what sweeps write, all of it and nothing else", "[sweep]") {
     const std::string folder = trilens_test::scratch_dir("folder_replace");
     replace_text_file(folder + "/runs.csv", "not a sweep's");
     clear_folder(folder);  // no manifest: not a sweep's
@@ -186,7 +187,7 @@ TEST_CASE("sweep: replacing removes what sweeps write, all of it and nothing els
     CHECK(fake.run().count(RunState::kDone) == 2);
 }
 
-TEST_CASE("sweep: a gallery's folder takes no sweep, and a sweep's folder no gallery") {
+TEST_CASE("sweep: a gallery's folder takes no sweep, and a sweep's folder no gallery", "[sweep]") {
     const std::string folder = trilens_test::scratch_dir("folder_gallery");
     FakeSweep below(folder + "/ball", {1});
     const SweepSummary summary = below.run();
@@ -203,7 +204,7 @@ TEST_CASE("sweep: a gallery's folder takes no sweep, and a sweep's folder no gal
     CHECK_THROWS_AS(write_sweep_gallery(folder + "/ball", std::vector<SweepSummary>{summary}), UsageError);
 }
 
-TEST_CASE("sweep: locks exclude, are shared, and end with their holder") {
+TEST_CASE("sweep: locks exclude, are shared, and end with their holder", "[sweep]") {
     const std::string file = trilens_test::scratch_dir("folder_locks") + "/lock";
     {
         const auto one = FileLock::try_lock(file, LockKind::kOne);
@@ -251,7 +252,8 @@ TEST_CASE("sweep: one process of several (started by the tests of shared folders
     CHECK(summary.count(RunState::kFailed) == 1);
 }
 
-TEST_CASE("sweep: processes at one folder at once do every run and the truth once, and all see the end") {
+TEST_CASE("sweep: processes at one folder at once do every run and the truth once, and all see the end",
+          "[sweep]") {
     const bool truth_per_run = GENERATE(false, true);
     const std::string folder = trilens_test::scratch_dir("folder_processes");
     std::vector<pid_t> children;
@@ -272,7 +274,8 @@ TEST_CASE("sweep: processes at one folder at once do every run and the truth onc
 }
 
 TEST_CASE(
-    "sweep: who sums up while a failed run is tried again sees the failure, and after it what came of it") {
+    "sweep: who sums up while a failed run is tried again sees the failure, and after it what came of it",
+    "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("folder_retry"), {1, 2});
     fake.before_render = [](int n) {
         if (n == 2) throw ComputationError("hard");
@@ -293,7 +296,7 @@ TEST_CASE(
     CHECK(after.error == (is_mended ? "" : "still hard"));
 }
 
-TEST_CASE("sweep: what a killed process was at is done by the next, which waits for nobody") {
+TEST_CASE("sweep: what a killed process was at is done by the next, which waits for nobody", "[sweep]") {
     const std::string folder = trilens_test::scratch_dir("folder_killed");
     const pid_t child = start_worker({folder, false, 2});
     wait_for_file(folder + "/hanging", child);
@@ -308,7 +311,8 @@ TEST_CASE("sweep: what a killed process was at is done by the next, which waits 
     CHECK((next.renders == 4 && next.traces == 0));
 }
 
-TEST_CASE("sweep: a truth of each run: traced at its n, kept by itself, and a failure of its run alone") {
+TEST_CASE("sweep: a truth of each run: traced at its n, kept by itself, and a failure of its run alone",
+          "[sweep][golden]") {
     FakeSweep fake(trilens_test::scratch_dir("folder_truths"), {2, 4, 8});
     fake.truth_per_run = true;
     std::vector<int> traced;

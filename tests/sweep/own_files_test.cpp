@@ -43,7 +43,8 @@ void check_untouched(const std::vector<std::string>& files) {
 
 }  // namespace
 
-TEST_CASE("sweep: files that it did not make stay: at the first run, at the next report, at --replace") {
+TEST_CASE("sweep: files that it did not make stay: at the first run, at the next report, at --replace",
+          "[sweep]") {
     const std::string folder = trilens_test::scratch_dir("own_files_stay");
     const std::vector<std::string> others = put_files_of_others(folder);
     FakeSweep fake(folder, {1, 2});
@@ -68,7 +69,7 @@ TEST_CASE("sweep: files that it did not make stay: at the first run, at the next
     CHECK(left == others.size() + 2);  // the locks
 }
 
-TEST_CASE("sweep: plots that a report no longer makes go, those of others stay") {
+TEST_CASE("sweep: plots that a report no longer makes go, those of others stay", "[sweep]") {
     const std::string folder = trilens_test::scratch_dir("own_files_plots");
     FakeSweep fake(folder, {1, 2});
     fake.run();
@@ -81,7 +82,8 @@ TEST_CASE("sweep: plots that a report no longer makes go, those of others stay")
     check_untouched({folder + "/plots/figure.svg"});
 }
 
-TEST_CASE("sweep: a file in the place of one of its own is refused before work, or kept by the report") {
+TEST_CASE("sweep: a file in the place of one of its own is refused before work, or kept by the report",
+          "[sweep][bad-input][golden]") {
     const std::string folder = trilens_test::scratch_dir("own_files_refused");
     FakeSweep fake(folder, {1, 2});
     SECTION("where the folder is no sweep's") {
@@ -128,7 +130,8 @@ TEST_CASE("sweep: a file in the place of one of its own is refused before work, 
     }
 }
 
-TEST_CASE("sweep: a manifest of something else is replaced where that is asked for, and nothing beside it") {
+TEST_CASE("sweep: a manifest of something else is replaced where that is asked for, and nothing beside it",
+          "[sweep]") {
     const std::string folder = trilens_test::scratch_dir("own_files_manifest");
     const std::vector<std::string> others = put_files_of_others(folder);
     replace_text_file(folder + "/summary.json", "mine");

@@ -12,7 +12,7 @@
 using namespace trilens;
 using namespace trilens_test;
 
-TEST_CASE("sweep: pictures lie beside the page where they would make it too large") {
+TEST_CASE("sweep: pictures lie beside the page where they would make it too large", "[sweep]") {
     FakeSweep fake(scratch_dir("sweep_large_page"), {1, 2, 4});
     const SweepSummary summary = fake.run();
     const std::filesystem::path beside = fake.params.folder + "/pictures";

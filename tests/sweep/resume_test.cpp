@@ -38,7 +38,7 @@ void damage(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("sweep: a second run renders nothing and writes the same tables") {
+TEST_CASE("sweep: a second run renders nothing and writes the same tables", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("resume_twice"), {1, 2, 4});
     CHECK(calls_of_run(fake) == Calls{3, 1});
     const std::string csv = read_whole_file(fake.params.folder + "/runs.csv").value();
@@ -48,7 +48,7 @@ TEST_CASE("sweep: a second run renders nothing and writes the same tables") {
     CHECK(read_whole_file(fake.params.folder + "/report.html") == html);
 }
 
-TEST_CASE("sweep: what changed is done again, and only that") {
+TEST_CASE("sweep: what changed is done again, and only that", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("resume_changed"), {1, 2, 4});
     fake.truth_key = "truth 1";
     const std::string runs = fake.params.folder + "/runs/";
@@ -107,7 +107,8 @@ TEST_CASE("sweep: what changed is done again, and only that") {
 
 TEST_CASE(
     "sweep: a run that fails is recorded with its message and code, the others go on, and it is tried "
-    "again") {
+    "again",
+    "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("resume_failing"), {1, 2, 4, 8});
     fake.before_render = [](int n) {
         if (n == 2) throw ComputationError("3 pixels <are> not finite");
@@ -131,7 +132,7 @@ TEST_CASE(
     CHECK(!fs::exists(fake.params.folder + "/runs/n0002/error.json"));
 }
 
-TEST_CASE("sweep: an image that cannot be compared is a failed run") {
+TEST_CASE("sweep: an image that cannot be compared is a failed run", "[sweep][bad-input]") {
     FakeSweep fake(trilens_test::scratch_dir("resume_incomparable"), {1, 2});
     const auto render = fake.render;
     fake.render = [render](int n) {
@@ -145,7 +146,7 @@ TEST_CASE("sweep: an image that cannot be compared is a failed run") {
     CHECK(summary.runs[1].state == RunState::kDone);
 }
 
-TEST_CASE("sweep: without a truth there is no sweep; a bug in a callback is not a failed run") {
+TEST_CASE("sweep: without a truth there is no sweep; a bug in a callback is not a failed run", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("resume_no_truth"), {1, 2});
     const auto trace = fake.trace;
     fake.trace = [](int) -> Image { throw ComputationError("no truth"); };
@@ -157,7 +158,8 @@ TEST_CASE("sweep: without a truth there is no sweep; a bug in a callback is not 
     CHECK(load_sweep(fake.params.folder).count(RunState::kMissing) == 2);
 }
 
-TEST_CASE("sweep: an interrupted sweep keeps what was finished, says so in its tables, and goes on later") {
+TEST_CASE("sweep: an interrupted sweep keeps what was finished, says so in its tables, and goes on later",
+          "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("resume_interrupted"), {1, 2, 4, 8});
     std::atomic<bool> cancel{false};
     fake.params.progress.cancel = &cancel;
@@ -181,7 +183,7 @@ TEST_CASE("sweep: an interrupted sweep keeps what was finished, says so in its t
     CHECK(calls_of_run(fake) == Calls{4 - static_cast<int>(finished), 0});
 }
 
-TEST_CASE("sweep: progress rises from 0 to 1, and every run is told once") {
+TEST_CASE("sweep: progress rises from 0 to 1, and every run is told once", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("resume_progress"), {1, 2, 4});
     std::vector<double> shares;
     std::vector<std::string> told;
@@ -194,7 +196,7 @@ TEST_CASE("sweep: progress rises from 0 to 1, and every run is told once") {
     CHECK(told == std::vector<std::string>{"n0001", "n0002", "n0004"});
 }
 
-TEST_CASE("sweep: shards in one folder add up to the sweep, and a plan alone runs nothing") {
+TEST_CASE("sweep: shards in one folder add up to the sweep, and a plan alone runs nothing", "[sweep]") {
     FakeSweep whole(trilens_test::scratch_dir("resume_whole"), {1, 2, 4, 8, 16});
     whole.run();
     FakeSweep fake(trilens_test::scratch_dir("resume_shards"), {1, 2, 4, 8, 16});

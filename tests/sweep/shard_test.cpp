@@ -21,7 +21,7 @@ Environment environment_of(const std::map<std::string, std::string>& variables) 
 
 }  // namespace
 
-TEST_CASE("sweep: shards cover every job exactly once") {
+TEST_CASE("sweep: shards cover every job exactly once", "[sweep][law]") {
     const Environment none = environment_of({});
     for (const int count : {1, 2, 3, 7}) {
         std::vector<int> owners(20, 0);
@@ -35,7 +35,7 @@ TEST_CASE("sweep: shards cover every job exactly once") {
         CHECK_THROWS_AS(parse_shard(bad, none), UsageError);
 }
 
-TEST_CASE("sweep: shards from a job array's variables") {
+TEST_CASE("sweep: shards from a job array's variables", "[sweep]") {
     const auto read = [](const std::map<std::string, std::string>& variables) {
         const Shard shard = parse_shard("auto", environment_of(variables));
         return std::vector<int>{shard.index, shard.count};

@@ -80,7 +80,7 @@ bool has_temporary_files(const std::string& folder) {
 
 }  // namespace
 
-TEST_CASE("sweep: the order, constant and needed n of a known law are found, per optic") {
+TEST_CASE("sweep: the order, constant and needed n of a known law are found, per optic", "[sweep]") {
     for (const double order : {1.0, 2.0, 2.7}) {
         FakeSweep fake(trilens_test::scratch_dir("sweep_order"), {1, 2, 4, 8}, order);
         const SweepSummary summary = fake.run();
@@ -101,7 +101,7 @@ TEST_CASE("sweep: the order, constant and needed n of a known law are found, per
     }
 }
 
-TEST_CASE("sweep: every file of the interface is there, and the pictures are what was rendered") {
+TEST_CASE("sweep: every file of the interface is there, and the pictures are what was rendered", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_files"), {1, 2, 4});
     const std::string folder = fake.params.folder;
     const SweepSummary summary = fake.run();
@@ -126,7 +126,8 @@ TEST_CASE("sweep: every file of the interface is there, and the pictures are wha
             CHECK_NOTHROW(trilens_test::read_xml(read_whole_file(plot.path().string()).value()));
 }
 
-TEST_CASE("sweep: runs.csv reads back to the numbers of the runs; words with commas and quotes survive") {
+TEST_CASE("sweep: runs.csv reads back to the numbers of the runs; words with commas and quotes survive",
+          "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_csv"), {1, 3});
     const SweepSummary summary = fake.run();
     const auto rows = read_csv(read_whole_file(fake.params.folder + "/runs.csv").value());
@@ -156,7 +157,8 @@ TEST_CASE("sweep: runs.csv reads back to the numbers of the runs; words with com
             CHECK(number(row["disp_mean_px"]) == Approx(2.9 / std::pow(number(row["n"]), 2)).epsilon(1e-3));
 }
 
-TEST_CASE("sweep: summary.json is JSON with the fields that scripts read, and knows no bare NaN") {
+TEST_CASE("sweep: summary.json is JSON with the fields that scripts read, and knows no bare NaN",
+          "[sweep][bad-input]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_summary"), {1, 2, 4});
     fake.run();
     const Json json = Json::parse(read_whole_file(fake.params.folder + "/summary.json").value());
@@ -176,7 +178,7 @@ TEST_CASE("sweep: summary.json is JSON with the fields that scripts read, and kn
     CHECK_THROWS(number_of_json("1"));
 }
 
-TEST_CASE("sweep: identical pictures give no order, an infinite PSNR, and a report all the same") {
+TEST_CASE("sweep: identical pictures give no order, an infinite PSNR, and a report all the same", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_identical"), {1, 2});
     fake.render = [](int) { return trilens_test::fake_image(0, 0); };
     const SweepSummary summary = fake.run();
@@ -196,7 +198,8 @@ TEST_CASE("sweep: identical pictures give no order, an infinite PSNR, and a repo
 }
 
 TEST_CASE(
-    "sweep: optics that share a name, or are called all, are told apart; one that nobody sees is warned of") {
+    "sweep: optics that share a name, or are called all, are told apart; one that nobody sees is warned of",
+    "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_names"), {1, 2});
     fake.optics = {{0, "all"}, {1, "all"}, {5, "hidden"}};
     const SweepSummary summary = fake.run();
@@ -207,7 +210,7 @@ TEST_CASE(
     CHECK(summary.runs[0].warnings[0].find("hidden") != std::string::npos);
 }
 
-TEST_CASE("sweep: runs that lose many pixels take no part in a fit") {
+TEST_CASE("sweep: runs that lose many pixels take no part in a fit", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_lost"), {1, 2, 4, 8});
     // At n = 1 half of the left optic is displaced out of its reach.
     fake.render = [](int n) { return trilens_test::fake_image(n == 1 ? 24 : 1.5 / (n * n), 3.0 / (n * n)); };
@@ -218,7 +221,8 @@ TEST_CASE("sweep: runs that lose many pixels take no part in a fit") {
     CHECK(left.order.value() == Approx(2).epsilon(1e-3));
 }
 
-TEST_CASE("sweep: runs whose picture misses much of what the truth shows take no part in a fit") {
+TEST_CASE("sweep: runs whose picture misses much of what the truth shows take no part in a fit",
+          "[sweep][oracle]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_missing"), {1, 2, 4, 8});
     // At n = 1 the left half of the left optic shows nothing; what it shows is where the law says.
     fake.render = [](int n) {
@@ -247,7 +251,7 @@ TEST_CASE("sweep: runs whose picture misses much of what the truth shows take no
     }
 }
 
-TEST_CASE("sweep: the report escapes, embeds every picture, and refers to nothing outside") {
+TEST_CASE("sweep: the report escapes, embeds every picture, and refers to nothing outside", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_report"), {1, 2});
     fake.run();
     const std::string html = read_whole_file(fake.params.folder + "/report.html").value();
@@ -262,7 +266,8 @@ TEST_CASE("sweep: the report escapes, embeds every picture, and refers to nothin
     CHECK(html.find("href=") == std::string::npos);
 }
 
-TEST_CASE("sweep: columns that are empty in every row are left out, and come back with their first value") {
+TEST_CASE("sweep: columns that are empty in every row are left out, and come back with their first value",
+          "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_columns"), {1, 2});
     const std::string file = fake.params.folder + "/runs.csv";
     fake.before_render = [](int) { throw ComputationError("none"); };
@@ -281,7 +286,7 @@ TEST_CASE("sweep: columns that are empty in every row are left out, and come bac
     }
 }
 
-TEST_CASE("sweep: no mean of displacement stands without what was measured and lost") {
+TEST_CASE("sweep: no mean of displacement stands without what was measured and lost", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_bare"), {1, 2, 4});
     // The top rows of the left optic show nothing: they are missing.
     fake.render = [](int n) {
@@ -317,7 +322,7 @@ TEST_CASE("sweep: no mean of displacement stands without what was measured and l
     CHECK(plot.find("of the pixels that were measured: 9") != std::string::npos);
 }
 
-TEST_CASE("sweep: each run's difference has a factor of its own, which it states") {
+TEST_CASE("sweep: each run's difference has a factor of its own, which it states", "[sweep]") {
     FakeSweep fake(trilens_test::scratch_dir("sweep_factors"), {1, 4, 16, 64});
     const SweepSummary summary = fake.run();
     const std::string html = read_whole_file(fake.params.folder + "/report.html").value();
@@ -330,8 +335,8 @@ TEST_CASE("sweep: each run's difference has a factor of its own, which it states
     }
 }
 
-TEST_CASE(
-    "sweep: of many runs the page has all, folded, with their pictures loaded when they are looked at") {
+TEST_CASE("sweep: of many runs the page has all, folded, with their pictures loaded when they are looked at",
+          "[sweep]") {
     std::vector<int> values;
     for (int n = 1; n <= 30; ++n) values.push_back(n);
     FakeSweep fake(trilens_test::scratch_dir("sweep_many"), values);
@@ -351,7 +356,8 @@ TEST_CASE(
     CHECK(!fs::exists(fake.params.folder + "/pictures"));
 }
 
-TEST_CASE("sweep: a folder that cannot be written is an OutputError, one without a plan an InputError") {
+TEST_CASE("sweep: a folder that cannot be written is an OutputError, one without a plan an InputError",
+          "[sweep][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("sweep_unwritable");
     replace_text_file(folder + "/file", "in the way");
     FakeSweep fake(folder + "/file/sweep", {1});

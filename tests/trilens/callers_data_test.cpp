@@ -30,7 +30,7 @@ PictureRequest picture_of(const FrameParams& frame, const EngineChoice& engine =
 
 }  // namespace
 
-TEST_CASE("numbers and texts that are none are refused or written", "[trilens]") {
+TEST_CASE("numbers and texts that are none are refused or written", "[trilens][bad-input]") {
     for (const double x : kOddNumbers) {
         for (const int n : kOddInts) {
             only_errors("fixed_text", [&] { fixed_text(x, n); });
@@ -106,7 +106,7 @@ TEST_CASE("numbers and texts that are none are refused or written", "[trilens]")
     set_threads(0);
 }
 
-TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens]") {
+TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens][bad-input]") {
     std::vector<Scene> all(1);
     const auto add = [&](const auto& change) { change(all.emplace_back(callers_scene())); };
     add([](Scene&) {});
@@ -169,7 +169,7 @@ TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens
     }
 }
 
-TEST_CASE("a renderer refuses requests that are none", "[trilens]") {
+TEST_CASE("a renderer refuses requests that are none", "[trilens][bad-input]") {
     const Warn quiet = [](const std::string&) {};
     Renderer renderer(callers_scene(), quiet);
     const std::string written = scratch_dir("renderer_requests") + "/a.exr";
@@ -211,7 +211,7 @@ TEST_CASE("a renderer refuses requests that are none", "[trilens]") {
     CHECK(renderer.scene().film.width == 16);
 }
 
-TEST_CASE("surfaces refuse cages, primitives and grids that are none", "[trilens]") {
+TEST_CASE("surfaces refuse cages, primitives and grids that are none", "[trilens][bad-input]") {
     const Warn quiet = [](const std::string&) {};
     Cage plain;
     plain.points = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -262,7 +262,7 @@ TEST_CASE("surfaces refuse cages, primitives and grids that are none", "[trilens
     only_errors("faces_front", [&] { faces_front(grid, grid.facets[0], Vec3(kNaN)); });
 }
 
-TEST_CASE("sweeps and suites refuse requests that are none", "[trilens]") {
+TEST_CASE("sweeps and suites refuse requests that are none", "[trilens][bad-input]") {
     const std::string folder = scratch_dir("callers_sweeps");
     for (const std::string& text : kOddTexts) {
         only_errors("parse_over", [&] { parse_over(text); });

@@ -5,7 +5,7 @@
 using namespace trilens;
 using namespace trilens_test;
 
-TEST_CASE("images that are none are refused by all that takes images", "[trilens]") {
+TEST_CASE("images that are none are refused by all that takes images", "[trilens][bad-input]") {
     const std::string folder = scratch_dir("callers_images");
     const Image good = small_image();
     for (const Image& odd : odd_images()) {

@@ -92,7 +92,8 @@ TEST_CASE("a picture that is written while it is drawn has the bytes of one that
     CHECK(std::distance(fs::directory_iterator(folder), {}) == 1);
 }
 
-TEST_CASE("a scene built in memory is drawn, and one that is none is refused with its place", "[trilens]") {
+TEST_CASE("a scene built in memory is drawn, and one that is none is refused with its place",
+          "[trilens][bad-input]") {
     const Picture picture = Renderer(small_scene()).draw({});
     CHECK(picture.statistics.optic_pixels > 100);
     CHECK(picture.image.width == 64);
@@ -128,7 +129,7 @@ TEST_CASE("a scene built in memory is drawn, and one that is none is refused wit
     }
 }
 
-TEST_CASE("requests that a scene cannot answer are refused", "[trilens]") {
+TEST_CASE("requests that a scene cannot answer are refused", "[trilens][bad-input]") {
     const Renderer renderer(small_scene());
     PictureRequest request;
     request.frame.camera = 3;
@@ -151,7 +152,7 @@ TEST_CASE("requests that a scene cannot answer are refused", "[trilens]") {
     CHECK_THROWS_AS(find_camera(scene, "mian"), UsageError);
 }
 
-TEST_CASE("images, grids and meshes that do not fit together are refused", "[trilens]") {
+TEST_CASE("images, grids and meshes that do not fit together are refused", "[trilens][bad-input]") {
     Image image = Renderer(small_scene()).draw({}).image;
     CHECK_NOTHROW(encode_image(image));
     const auto refused = [&](const std::function<void(Image&)>& change) {
@@ -236,7 +237,7 @@ TEST_CASE("the complete search lists whatever fine facets lead to, and more than
     }
 }
 
-TEST_CASE("mirrors cast their exact shadow, whatever their resolution", "[trilens]") {
+TEST_CASE("mirrors cast their exact shadow, whatever their resolution", "[trilens][law]") {
     // A sphere of radius 1 about (0, 1.5, 0) over the floor y = -1, lit from straight above: its shadow is
     // the disk of radius 1 about the origin.
     Scene scene = small_scene();

@@ -108,7 +108,7 @@ TEST_CASE("what is changed in a scene in memory is swept anew, also where its te
     CHECK_THROWS_AS(sweep.run(), UsageError);
 }
 
-TEST_CASE("a scene in memory that cannot be swept is named", "[trilens][sweep]") {
+TEST_CASE("a scene in memory that cannot be swept is named", "[trilens][sweep][bad-input]") {
     CountedSweep sweep(trilens_test::scratch_dir("memory_none"));
     Scene scene = parse_scene(example_text(), "", kSmall);
     std::erase_if(scene.meshes, [](const Mesh& mesh) { return mesh.role == Role::kOptic; });

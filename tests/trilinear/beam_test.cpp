@@ -37,7 +37,7 @@ Vec3 beam_point(Random& random, const TrilinearFacet& facet) {
 }  // namespace
 
 TEST_CASE("beam: what the cubic images is never turned away, for every kind of facet, size and place",
-          "[beam]") {
+          "[trilinear][beam][law]") {
     Random random(7);
     int imaged = 0;
     for (int trial = 0; trial < 60000; ++trial) {
@@ -58,7 +58,8 @@ TEST_CASE("beam: what the cubic images is never turned away, for every kind of f
     CHECK(imaged > 50000);
 }
 
-TEST_CASE("beam: of a fine mirror's points without an image nine in ten are turned away", "[beam]") {
+TEST_CASE("beam: of a fine mirror's points without an image nine in ten are turned away",
+          "[trilinear][beam]") {
     Random random(8);
     int none = 0, turned_away = 0;
     for (int trial = 0; trial < 2000; ++trial) {

@@ -45,7 +45,8 @@ const Curves kAllCurves[] = {Curves::kStraight, Curves::kSlices, Curves::kTessel
 
 }  // namespace
 
-TEST_CASE("clip: clipped outlines stay in the facet, and every vertex is seen where it says", "[clip]") {
+TEST_CASE("clip: clipped outlines stay in the facet, and every vertex is seen where it says",
+          "[trilinear][clip][law]") {
     Random random(1);
     int vertices = 0, on_border = 0;
     double worst = 0;
@@ -72,7 +73,8 @@ TEST_CASE("clip: clipped outlines stay in the facet, and every vertex is seen wh
     CHECK(worst < 1e-4);
 }
 
-TEST_CASE("clip: facets that share an edge cut the scene at the same points, bit by bit", "[clip]") {
+TEST_CASE("clip: facets that share an edge cut the scene at the same points, bit by bit",
+          "[trilinear][clip][law]") {
     Random random(2);
     int shared = 0;
     for (int trial = 0; trial < 6000; ++trial) {
@@ -108,7 +110,7 @@ TEST_CASE("clip: facets that share an edge cut the scene at the same points, bit
     CHECK(shared > 1000);
 }
 
-TEST_CASE("clip: triangles of a fan divide the facet without gap or overlap", "[clip]") {
+TEST_CASE("clip: triangles of a fan divide the facet without gap or overlap", "[trilinear][clip]") {
     // Exact arcs of a common edge are the same points, so the even-odd answer flips from one triangle to the
     // other.
     Random random(3);
@@ -136,7 +138,8 @@ TEST_CASE("clip: triangles of a fan divide the facet without gap or overlap", "[
     CHECK(covered > 5000);
 }
 
-TEST_CASE("clip: slices and tessellation approach the exact image as their number grows", "[clip]") {
+TEST_CASE("clip: slices and tessellation approach the exact image as their number grows",
+          "[trilinear][clip][law]") {
     for (const Curves curves : {Curves::kSlices, Curves::kTessellate}) {
         for (const Clip clip : {Clip::kScreen, Clip::kScene}) {
             double wrong[3] = {0, 0, 0};
@@ -171,7 +174,7 @@ TEST_CASE("clip: slices and tessellation approach the exact image as their numbe
     }
 }
 
-TEST_CASE("clip: scale and place of the world change nothing that is seen", "[clip]") {
+TEST_CASE("clip: scale and place of the world change nothing that is seen", "[trilinear][clip][law]") {
     Random random(5);
     for (int trial = 0; trial < 1500; ++trial) {
         TrilinearFacet facet =
@@ -194,7 +197,7 @@ TEST_CASE("clip: scale and place of the world change nothing that is seen", "[cl
     }
 }
 
-TEST_CASE("clip: degenerate scenes do no harm", "[clip]") {
+TEST_CASE("clip: degenerate scenes do no harm", "[trilinear][clip][bad-input]") {
     Random random(6);
     for (int trial = 0; trial < 3000; ++trial) {
         const TrilinearFacet facet =
@@ -246,7 +249,7 @@ TEST_CASE("clip: degenerate scenes do no harm", "[clip]") {
     }
 }
 
-TEST_CASE("tessellate: the pieces tile the triangle and share their corners", "[clip]") {
+TEST_CASE("tessellate: the pieces tile the triangle and share their corners", "[trilinear][clip]") {
     Random random(7);
     const SceneTriangle triangle{{random.in_box(1), random.in_box(1), random.in_box(1)}};
     const SceneTriangle turned{{triangle.corner[1], triangle.corner[0], random.in_box(1)}};

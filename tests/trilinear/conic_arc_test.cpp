@@ -53,7 +53,7 @@ void for_random_sections(std::uint64_t seed, int trials, const Visit& visit) {
 
 }  // namespace
 
-TEST_CASE("conic arcs: the conic is where rays meet the edge's line", "[conic_arc]") {
+TEST_CASE("conic arcs: the conic is where rays meet the edge's line", "[trilinear][conic_arc]") {
     Random random(1);
     double worst = 0;
     for (int trial = 0; trial < 20000; ++trial) {
@@ -71,7 +71,7 @@ TEST_CASE("conic arcs: the conic is where rays meet the edge's line", "[conic_ar
     CHECK(worst < 1e-9);
 }
 
-TEST_CASE("conic arcs: sampled points lie on the conic and on the edge's image", "[conic_arc]") {
+TEST_CASE("conic arcs: sampled points lie on the conic and on the edge's image", "[trilinear][conic_arc]") {
     int arcs = 0, most = 0, sections = 0;
     double worst_conic = 0, worst_far = 0, worst_place = 0, worst_join = 0;
     for_random_sections(
@@ -117,7 +117,7 @@ TEST_CASE("conic arcs: sampled points lie on the conic and on the edge's image",
     CHECK(worst_join == 0);
 }
 
-TEST_CASE("conic arcs: two triangles that share an edge get the same arcs", "[conic_arc]") {
+TEST_CASE("conic arcs: two triangles that share an edge get the same arcs", "[trilinear][conic_arc]") {
     for_random_sections(
         3, 500,
         [&](const Coplanarity& facet, const SceneTriangle& triangle, std::size_t edge, double t0, double t1) {
@@ -131,7 +131,8 @@ TEST_CASE("conic arcs: two triangles that share an edge get the same arcs", "[co
         });
 }
 
-TEST_CASE("conic arcs: halving converges to the curve, and the screen keeps it", "[conic_arc]") {
+TEST_CASE("conic arcs: halving converges to the curve, and the screen keeps it",
+          "[trilinear][conic_arc][law]") {
     const Mat3 screen(Vec3(10, 20, 1), Vec3(600, 40, 2), Vec3(100, 900, 3));
     for_random_sections(
         4, 300,

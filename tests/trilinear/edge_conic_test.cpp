@@ -29,7 +29,8 @@ AffineRays random_rays() {
 
 }  // namespace
 
-TEST_CASE("an edge conic is the signed volume between the ray and the edge, times the square of the weight") {
+TEST_CASE("an edge conic is the signed volume between the ray and the edge, times the square of the weight",
+          "[trilinear][oracle][law]") {
     for (int i = 0; i < 2000; ++i) {
         const double scale = std::exp(uniform(std::log(1e-4), std::log(1e4)));
         AffineRays rays = random_rays();
@@ -43,7 +44,7 @@ TEST_CASE("an edge conic is the signed volume between the ray and the edge, time
     }
 }
 
-TEST_CASE("an edge conic is antisymmetric to the last bit") {
+TEST_CASE("an edge conic is antisymmetric to the last bit", "[trilinear][law]") {
     for (int i = 0; i < 2000; ++i) {
         const LineQuadratic line = line_quadratic(random_rays());
         const Vec3 a = random_vector(3), b = random_vector(3);
@@ -52,7 +53,8 @@ TEST_CASE("an edge conic is antisymmetric to the last bit") {
     }
 }
 
-TEST_CASE("a triangle's conics have one sign where the ray's line meets it, and are its barycentrics") {
+TEST_CASE("a triangle's conics have one sign where the ray's line meets it, and are its barycentrics",
+          "[trilinear]") {
     for (int i = 0; i < 2000; ++i) {
         const AffineRays rays = random_rays();
         const double u = uniform(-1, 1), v = uniform(-1, 1), w = rays.weight_at(u, v);
@@ -74,7 +76,7 @@ TEST_CASE("a triangle's conics have one sign where the ray's line meets it, and 
     }
 }
 
-TEST_CASE("a pinhole's edge conics are lines") {
+TEST_CASE("a pinhole's edge conics are lines", "[trilinear]") {
     AffineRays rays = random_rays();
     const Vec3 eye = random_vector(1);
     rays.weight = {1, 0, 0};
@@ -86,7 +88,7 @@ TEST_CASE("a pinhole's edge conics are lines") {
     CHECK(conic.c[5] == 0);
 }
 
-TEST_CASE("the range over the square holds every value in it") {
+TEST_CASE("the range over the square holds every value in it", "[trilinear][law]") {
     for (int i = 0; i < 500; ++i) {
         EdgeConic conic;
         for (double& c : conic.c) c = uniform(-1, 1);

@@ -46,7 +46,7 @@ double determinant(const Pair& p, double t) {
 }  // namespace
 
 TEST_CASE("edge sweep: the coplanarity of a scene edge and a facet's edge is quadratic in t",
-          "[edge_sweep]") {
+          "[trilinear][edge_sweep]") {
     Random random(1);
     double worst = 0, third = 0;
     for (int trial = 0; trial < 10000; ++trial) {
@@ -64,7 +64,7 @@ TEST_CASE("edge sweep: the coplanarity of a scene edge and a facet's edge is qua
     CHECK(third < 1e-14);
 }
 
-TEST_CASE("edge sweep: a crossing lies on the scene edge and on the ray", "[edge_sweep]") {
+TEST_CASE("edge sweep: a crossing lies on the scene edge and on the ray", "[trilinear][edge_sweep]") {
     Random random(2);
     int planted = 0;
     for (int trial = 0; trial < 20000; ++trial) {
@@ -87,7 +87,7 @@ TEST_CASE("edge sweep: a crossing lies on the scene edge and on the ray", "[edge
     CHECK(planted >= 19990);
 }
 
-TEST_CASE("edge sweep: crossings are where the conic meets the facet's edge", "[edge_sweep]") {
+TEST_CASE("edge sweep: crossings are where the conic meets the facet's edge", "[trilinear][edge_sweep]") {
     // Independent: on the side w0 = 0 the conic is a quadratic in u alone.
     Random random(3);
     int compared = 0;
@@ -112,7 +112,7 @@ TEST_CASE("edge sweep: crossings are where the conic meets the facet's edge", "[
     CHECK(compared > 4000);
 }
 
-TEST_CASE("edge sweep: exchanging the ends of either edge changes no bit", "[edge_sweep]") {
+TEST_CASE("edge sweep: exchanging the ends of either edge changes no bit", "[trilinear][edge_sweep][law]") {
     Random random(4);
     for (int trial = 0; trial < 5000; ++trial) {
         const Pair p = random_pair(random, trial % 2 == 0);

@@ -20,7 +20,8 @@ std::vector<Vec3> random_points(Random& random, std::size_t count, double reach)
 
 }  // namespace
 
-TEST_CASE("mesh point images: the tree finds what every facet by itself finds", "[mesh_point_images]") {
+TEST_CASE("mesh point images: the tree finds what every facet by itself finds",
+          "[trilinear][mesh_point_images][oracle][law]") {
     Random random(1);
     for (const double scale : {1e-4, 1.0, 1e4}) {
         RayMesh mesh = sphere_mirror(scale * Vec3(0.3, 0, 1), scale * Vec3(0, 1, 4), 12, 9);
@@ -46,7 +47,8 @@ TEST_CASE("mesh point images: the tree finds what every facet by itself finds", 
     }
 }
 
-TEST_CASE("mesh point images: a sphere shows a point where the mirror law puts it", "[mesh_point_images]") {
+TEST_CASE("mesh point images: a sphere shows a point where the mirror law puts it",
+          "[trilinear][mesh_point_images]") {
     // A fine mesh converges to the sphere: the image's ray leaves the sphere near where the angles are equal.
     const Vec3 center(0, 0, 0), eye(0, 0, 4);
     const int n = 60;
@@ -76,7 +78,8 @@ TEST_CASE("mesh point images: a sphere shows a point where the mirror law puts i
     CHECK(seen > 150);
 }
 
-TEST_CASE("mesh point images: on shared edges and corners an image counts once", "[mesh_point_images]") {
+TEST_CASE("mesh point images: on shared edges and corners an image counts once",
+          "[trilinear][mesh_point_images]") {
     const RayMesh mesh = sphere_mirror(Vec3(0, 0, 0), Vec3(0, 0, 4), 10, 10);
     const MeshPointImages prepared(mesh);
     Random random(3);
@@ -97,7 +100,7 @@ TEST_CASE("mesh point images: on shared edges and corners an image counts once",
 }
 
 TEST_CASE("mesh point images: many points at once are the same, for any number of threads",
-          "[mesh_point_images]") {
+          "[trilinear][mesh_point_images][law]") {
     const MeshPointImages prepared(sphere_mirror(Vec3(0), Vec3(1, 2, 3), 10, 10));
     Random random(4);
     const std::vector<Vec3> points = random_points(random, 3000, 5);

@@ -184,11 +184,12 @@ void check_law(std::uint64_t seed, int pairs_per_kind, int points) {
 
 }  // namespace
 
-TEST_CASE("outlines: even-odd inside is what rays meet for every kind of facet and clip", "[outline]") {
+TEST_CASE("outlines: even-odd inside is what rays meet for every kind of facet and clip",
+          "[trilinear][outline][law]") {
     check_law(1, 400, 50);
 }
 
-TEST_CASE("outlines: cylinder mirrors and triangles along their axis", "[outline]") {
+TEST_CASE("outlines: cylinder mirrors and triangles along their axis", "[trilinear][outline]") {
     // A scene edge along the axis stays parallel to every parametric triangle: its image has one t.
     Random random(4);
     for (const bool turned : {false, true}) {
@@ -226,7 +227,7 @@ TEST_CASE("outlines: even-odd inside is what rays meet in many pairs", "[.long]"
     check_law(2, 20000, 100);
 }
 
-TEST_CASE("outlines: all fifteen configurations, with viewing plane and clipping", "[outline]") {
+TEST_CASE("outlines: all fifteen configurations, with viewing plane and clipping", "[trilinear][outline]") {
     Random random(3);
     std::map<std::string, int> seen, hits;
     const int wanted = 12;

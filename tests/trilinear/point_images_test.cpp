@@ -173,15 +173,16 @@ void brute_force(std::uint64_t seed, int trials, int samples) {
 
 }  // namespace
 
-TEST_CASE("point images: the cubic agrees with a dense sweep", "[point_images]") {
+TEST_CASE("point images: the cubic agrees with a dense sweep", "[trilinear][point_images][oracle]") {
     brute_force(1, 6000, 300);
 }
 
-TEST_CASE("point images: the cubic agrees with a dense sweep, 100,000 points", "[.long]") {
+TEST_CASE("point images: the cubic agrees with a dense sweep, 100,000 points", "[.long][oracle]") {
     brute_force(2, 100000, 1500);
 }
 
-TEST_CASE("point images: the precalculated cubic is the determinant", "[point_images]") {
+TEST_CASE("point images: the precalculated cubic is the determinant",
+          "[trilinear][point_images][bad-input][oracle]") {
     Random random(3);
     double worst = 0;
     for (int trial = 0; trial < 20000; ++trial) {
@@ -204,7 +205,8 @@ TEST_CASE("point images: the precalculated cubic is the determinant", "[point_im
     CHECK(worst < 1e-10);
 }
 
-TEST_CASE("point images: a pinhole images a point once, where perspective puts it", "[point_images]") {
+TEST_CASE("point images: a pinhole images a point once, where perspective puts it",
+          "[trilinear][point_images]") {
     Random random(4);
     for (int trial = 0; trial < 20000; ++trial) {
         const TrilinearFacet facet = random_facet(random, FacetKind::kPinhole);
@@ -221,7 +223,8 @@ TEST_CASE("point images: a pinhole images a point once, where perspective puts i
     }
 }
 
-TEST_CASE("point images: parallel rays image a point once, by projection along them", "[point_images]") {
+TEST_CASE("point images: parallel rays image a point once, by projection along them",
+          "[trilinear][point_images]") {
     Random random(5);
     for (int trial = 0; trial < 20000; ++trial) {
         const TrilinearFacet facet = random_facet(random, FacetKind::kParallel);
@@ -241,7 +244,7 @@ TEST_CASE("point images: parallel rays image a point once, by projection along t
 }
 
 TEST_CASE("point images: a flat mirror shows a point where its mirror image is seen from the eye",
-          "[point_images]") {
+          "[trilinear][point_images]") {
     Random random(6);
     int seen = 0;
     for (int trial = 0; trial < 20000; ++trial) {
@@ -276,7 +279,7 @@ TEST_CASE("point images: a flat mirror shows a point where its mirror image is s
     CHECK(seen > 1000);
 }
 
-TEST_CASE("point images: scale and place of the world do not matter", "[point_images]") {
+TEST_CASE("point images: scale and place of the world do not matter", "[trilinear][point_images][law]") {
     Random random(7);
     for (int trial = 0; trial < 5000; ++trial) {
         const TrilinearFacet facet = random_facet(random, FacetKind::kGeneral);
@@ -306,7 +309,7 @@ TEST_CASE("point images: scale and place of the world do not matter", "[point_im
     }
 }
 
-TEST_CASE("point images: a point on a border that two facets share is found", "[point_images]") {
+TEST_CASE("point images: a point on a border that two facets share is found", "[trilinear][point_images]") {
     Random random(8);
     for (int trial = 0; trial < 50000; ++trial) {
         const FacetKind kind = static_cast<FacetKind>(trial % static_cast<int>(FacetKind::kCount));
@@ -327,7 +330,7 @@ TEST_CASE("point images: a point on a border that two facets share is found", "[
     }
 }
 
-TEST_CASE("point images: degenerate facets have none", "[point_images]") {
+TEST_CASE("point images: degenerate facets have none", "[trilinear][point_images][bad-input]") {
     TrilinearFacet line;
     for (std::size_t k = 0; k < 3; ++k) line.corner[k] = {Vec3(static_cast<double>(k), 0, 0), Vec3(0, 0, 1)};
     CHECK(point_images(make_coplanarity(line), Vec3(0.5, 0, 1)).count == 0);

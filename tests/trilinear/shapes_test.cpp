@@ -63,7 +63,7 @@ void check_census(const std::map<std::string, int>& count) {
 
 }  // namespace
 
-TEST_CASE("shapes: all fifteen configurations of table 4.1 and no other", "[shapes]") {
+TEST_CASE("shapes: all fifteen configurations of table 4.1 and no other", "[trilinear][shapes]") {
     check_census(census(1, 60000));
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("shapes: the census of a million pairs", "[.long]") {
     check_census(census(2, 1000000));
 }
 
-TEST_CASE("shapes: the joining rule is what the sides of the scene vertices say", "[shapes]") {
+TEST_CASE("shapes: the joining rule is what the sides of the scene vertices say", "[trilinear][shapes]") {
     // Independent of joining: at each t the triangle is cut where its vertices lie on different sides;
     // between two roots the cut edges are those whose ends differ, and these are the edges a shape runs along
     // there.
@@ -103,7 +103,7 @@ TEST_CASE("shapes: the joining rule is what the sides of the scene vertices say"
     }
 }
 
-TEST_CASE("shapes: every vertex is where its ray meets its scene vertex", "[shapes]") {
+TEST_CASE("shapes: every vertex is where its ray meets its scene vertex", "[trilinear][shapes][law]") {
     Random random(4);
     double worst = 0;
     int vertices = 0;
@@ -133,7 +133,7 @@ TEST_CASE("shapes: every vertex is where its ray meets its scene vertex", "[shap
 }
 
 TEST_CASE("shapes: neighbouring triangles have the same vertices on their common edge, bit by bit",
-          "[shapes]") {
+          "[trilinear][shapes][law]") {
     Random random(5);
     for (int trial = 0; trial < 5000; ++trial) {
         const Coplanarity facet = make_coplanarity(random_facet(random, FacetKind::kGeneral));
@@ -160,7 +160,8 @@ TEST_CASE("shapes: neighbouring triangles have the same vertices on their common
     }
 }
 
-TEST_CASE("shapes: a pinhole makes one shape of three vertices, where perspective puts them", "[shapes]") {
+TEST_CASE("shapes: a pinhole makes one shape of three vertices, where perspective puts them",
+          "[trilinear][shapes]") {
     Random random(6);
     int seen = 0;
     for (int trial = 0; trial < 5000; ++trial) {
@@ -182,7 +183,7 @@ TEST_CASE("shapes: a pinhole makes one shape of three vertices, where perspectiv
     CHECK(seen == 15000);
 }
 
-TEST_CASE("view windows: a collapse is left out, and only there", "[view_plane]") {
+TEST_CASE("view windows: a collapse is left out, and only there", "[trilinear][view_plane]") {
     // Rays that converge in one point at t = 2 and spread again.
     TrilinearFacet facet;
     const Vec3 focus(0.3, 0.1, 2);
