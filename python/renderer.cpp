@@ -314,7 +314,7 @@ void bind_renderer(py::module_& module) {
         "change",
         [](Renderer& self, const Scene& scene, const py::object& warn) {
             Talk talk(py::none(), warn);
-            const KeptParts kept = talk.run([&] { return self.change(scene, talk.warner()); });
+            const SceneReuse kept = talk.run([&] { return self.change(scene, talk.warner()); });
             py::dict parts;
             parts["objects"] = kept.objects;
             parts["optics"] = kept.optics;

@@ -55,7 +55,7 @@ class FrameSequence {
 
     Json draw_frame(const Scene& scene, int frame, const std::string& output) {
         const Stopwatch watch;
-        KeptParts kept;
+        SceneReuse kept;
         if (renderer_)
             kept = renderer_->change(scene_of(scene, frame), once());
         else

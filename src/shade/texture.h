@@ -1,4 +1,4 @@
-// Looking up pictures: bilinear, repeated or wrapped around the sphere of directions.
+// ProbeContext up pictures: bilinear, repeated or wrapped around the sphere of directions.
 #pragma once
 
 #include "base/description/appearance.h"

@@ -70,7 +70,7 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-KeptParts Renderer::change(Scene scene, const Warn& warn) {
+SceneReuse Renderer::change(Scene scene, const Warn& warn) {
     check_scene(scene);
     const auto use = users_->change();
     return change_scene(*world_, std::move(scene), warn);

@@ -19,7 +19,7 @@
 #include "render/frame/request.h"
 #include "render/picture/explain.h"
 #include "render/project/project.h"
-#include "render/world/kept_parts.h"
+#include "render/world/scene_reuse.h"
 #include "scene/data/scene.h"
 #include "vector/caustic.h"
 #include "vector/fold_curves.h"
@@ -80,7 +80,7 @@ class Renderer {
     /// Goes on with another scene, as of an animation's next frame; what is built of meshes that are the same
     /// in both stays. Throws as the constructor does, and then nothing has changed; UsageError while another
     /// thread draws with this renderer, or is told to change it. Drawing throws UsageError meanwhile.
-    KeptParts change(Scene scene, const Warn& warn = {});
+    SceneReuse change(Scene scene, const Warn& warn = {});
 
     const Scene& scene() const;
     std::vector<OpticInfo> optics() const;

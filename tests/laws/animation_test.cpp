@@ -116,14 +116,14 @@ TEST_CASE("what does not move is kept, what does is built anew", "[laws][law][go
         renderer.draw({});
         return renderer.change(scene_at_frame(scene, 1));
     };
-    const KeptParts camera = kept_by(track("/cameras/0/yfov", key(0, "40") + "," + key(2, "50")));
+    const SceneReuse camera = kept_by(track("/cameras/0/yfov", key(0, "40") + "," + key(2, "50")));
     CHECK((camera.objects && camera.optics == 2));
-    const KeptParts object =
+    const SceneReuse object =
         kept_by(track("/meshes/2/transform/translate", key(0, "[0,0,0]") + "," + key(2, "[1,0,0]")));
     CHECK((!object.objects && object.optics == 2));
-    const KeptParts optic = kept_by(track("/meshes/1/points", key(0, kCube) + "," + key(2, kTaller)));
+    const SceneReuse optic = kept_by(track("/meshes/1/points", key(0, kCube) + "," + key(2, kTaller)));
     CHECK((optic.objects && optic.optics == 1));
-    const KeptParts light = kept_by(track("/lights/0/color", key(0, "[1,1,1]") + "," + key(2, "[0,0,0]")));
+    const SceneReuse light = kept_by(track("/lights/0/color", key(0, "[1,1,1]") + "," + key(2, "[0,0,0]")));
     CHECK((light.objects && light.optics == 2));
 }
 

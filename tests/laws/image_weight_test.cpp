@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "laws/worlds.h"
-#include "render/frame/surroundings.h"
+#include "render/frame/camera_media.h"
 #include "render/picture/explain.h"
 #include "render/picture/sample_colour.h"
 #include "render/project/project.h"

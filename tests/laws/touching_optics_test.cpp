@@ -99,7 +99,7 @@ TEST_CASE("a ball that lies on a slab, and glass on a mirror that is seen beside
 }
 
 TEST_CASE("a body in a body with one side in common is met there once", "[laws][law]") {
-    // Equal media would pass; the one of higher priority is felt behind the common side.
+    // Equal media would pass; the one of higher priority is active behind the common side.
     const std::string outer = box("outer", "glass", {-1, -1, -1}, {1, 1, 1});
     std::string inner = box("inner", "water", {-0.5, -0.5, 0}, {0.5, 0.5, 1});
     inner.insert(1, R"("priority":1,)");

@@ -45,36 +45,36 @@ void check_same(const std::vector<PathSegment>& a, const std::vector<PathSegment
     }
 }
 
-bool all_agree(const Look& centre, const std::vector<Look>& others) {
-    if (centre.state != LookState::kSeen) return false;
-    for (const Look& look : others) {
-        if (look.state != LookState::kSeen || look.front != centre.front) return false;
-        const auto match = matched(centre.segments, look.segments);
-        if (match.size() != centre.segments.size() || !covers(match, look.segments)) return false;
+bool all_agree(const PathProbe& centre, const std::vector<PathProbe>& others) {
+    if (centre.state != ProbeState::kSeen) return false;
+    for (const PathProbe& probe : others) {
+        if (probe.state != ProbeState::kSeen || probe.front != centre.front) return false;
+        const auto match = matched(centre.segments, probe.segments);
+        if (match.size() != centre.segments.size() || !covers(match, probe.segments)) return false;
     }
     return true;
 }
 
 /// What a part's corners, the middles of its edges and its centre see, all paths followed.
 struct FullLooks {
-    std::vector<Look> corners, middles;
-    Look centre;
+    std::vector<PathProbe> corners, middles;
+    PathProbe centre;
 };
-FullLooks full_looks(const Looking& looking, const FacetPart& part) {
+FullLooks full_looks(const ProbeContext& context, const FacetPart& part) {
     const auto between = [&](std::initializer_list<std::size_t> corners, double least_weight) {
         Chord chord{Vec3(0), Vec3(0), part.reach};
         const double share = 1.0 / static_cast<double>(corners.size());
         for (const std::size_t k : corners) {
-            chord.screen += share * part.corners[k].look->screen;
+            chord.screen += share * part.corners[k].probe->screen;
             chord.point += share * part.corners[k].chord;
         }
-        return look_through(looking, chord, {.side = part.side, .least_weight = least_weight});
+        return probe_chord(context, chord, {.side = part.side, .least_weight = least_weight});
     };
     const double fainter = kFainter * kLeastWeight;
     FullLooks full;
     for (const PartCorner& corner : part.corners) {
-        Look& look = full.corners.emplace_back(*corner.look);
-        follow_all(looking, look, fainter);
+        PathProbe& probe = full.corners.emplace_back(*corner.probe);
+        follow_all(context, probe, fainter);
     }
     full.middles = {between({1, 2}, fainter), between({2, 0}, fainter), between({0, 1}, fainter)};
     full.centre = between({0, 1, 2}, kLeastWeight);
@@ -83,20 +83,20 @@ FullLooks full_looks(const Looking& looking, const FacetPart& part) {
 
 }  // namespace
 
-TEST_CASE("a look's principal paths are the same whether others are followed or not", "[paths]") {
+TEST_CASE("a probe's principal paths are the same whether others are followed or not", "[paths]") {
     Stage stage;
     put_up_stage(stage);
-    const Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};
+    const ProbeContext context{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};
     Random random(71);
     std::size_t seen = 0, fainter = 0, refused = 0;
-    std::optional<Look> last;
+    std::optional<PathProbe> last;
     for (int i = 0; i < 400; ++i) {
         const Vec3 point(random.uniform(-1, 1), random.uniform(-1, 1), 0.2);
-        const Chord chord{looking.camera.screen(point), point, 1.5};
-        const Look all = look_through(looking, chord, {.least_weight = kFainter * kLeastWeight});
-        Look one = look_through(looking, chord, {.least_weight = kPrincipalOnly});
+        const Chord chord{context.camera.screen(point), point, 1.5};
+        const PathProbe all = probe_chord(context, chord, {.least_weight = kFainter * kLeastWeight});
+        PathProbe one = probe_chord(context, chord, {.least_weight = kPrincipalOnly});
         REQUIRE(all.state == one.state);
-        if (all.state != LookState::kSeen) continue;
+        if (all.state != ProbeState::kSeen) continue;
         ++seen;
         CHECK(one.principal_only);
         CHECK(std::all_of(one.segments.begin(), one.segments.end(),
@@ -110,7 +110,7 @@ TEST_CASE("a look's principal paths are the same whether others are followed or 
             CHECK((may || !agree));
             refused += !may;
         }
-        follow_all(looking, one, kFainter * kLeastWeight);
+        follow_all(context, one, kFainter * kLeastWeight);
         CHECK(!one.principal_only);
         check_same(one.segments, all.segments);
         last = all;
@@ -123,28 +123,28 @@ TEST_CASE("a look's principal paths are the same whether others are followed or 
 TEST_CASE("parts are projected where all paths agree, and traced only where they do not", "[paths][oracle]") {
     Stage stage;
     put_up_stage(stage);
-    const Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};
+    const ProbeContext context{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};
     const SurfaceGrid grid = make_grid(stage.surface(0), 4);
     DivideParams params;
     params.least_area = 8;
     params.most_levels = 5;
     std::size_t projected = 0, traced = 0, unproven = 0;
     for (const IdTriple& corners : grid.facets) {
-        std::array<Look, 3> looks;
+        std::array<PathProbe, 3> probes;
         FacetToDivide facet;
         bool faces_eye = true;
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3 point = grid.points[grid.corner_point[corners[k]]];
             const Place place{0, Vec2(0), point, normalize(point)};
-            looks[k] = look_at(looking, place, {.least_weight = kFainter * kLeastWeight});
-            facet.corners[k] = {corners[k], &looks[k], point};
-            faces_eye = faces_eye && looks[k].state == LookState::kSeen;
+            probes[k] = probe_point(context, place, {.least_weight = kFainter * kLeastWeight});
+            facet.corners[k] = {corners[k], &probes[k], point};
+            faces_eye = faces_eye && probes[k].state == ProbeState::kSeen;
         }
         if (!faces_eye) continue;
-        const DividedFacet divided = divide_facet(looking, facet, params);
+        const DividedFacet divided = divide_facet(context, facet, params);
         for (const FacetPart& part : divided.parts) {
-            const FullLooks full = full_looks(looking, part);
-            std::vector<Look> others = full.corners;
+            const FullLooks full = full_looks(context, part);
+            std::vector<PathProbe> others = full.corners;
             others.insert(others.end(), full.middles.begin(), full.middles.end());
             const bool agree = all_agree(full.centre, others);
             CHECK((agree || part.method == LeafMethod::kTraced));
@@ -156,8 +156,8 @@ TEST_CASE("parts are projected where all paths agree, and traced only where they
             ++projected;
             check_same(part.histories, full.centre.segments);
             for (std::size_t k = 0; k < 3; ++k) {
-                check_same(part.corners[k].look->segments, full.corners[k].segments);
-                check_same(part.inside[k].at.look->segments, full.middles[k].segments);
+                check_same(part.corners[k].probe->segments, full.corners[k].segments);
+                check_same(part.inside[k].at.probe->segments, full.middles[k].segments);
             }
         }
     }

@@ -72,7 +72,7 @@ TEST_CASE("a point's image in a ball is Alhazen's", "[paths][oracle]") {
     CHECK(found > 200);
 }
 
-TEST_CASE("flat mirrors image a point where it is mirrored to, with kappa 1", "[paths]") {
+TEST_CASE("flat mirrors image a point where it is mirrored to, with ray_scale 1", "[paths]") {
     Stage stage;
     const Primitive first = mirror_plane_at({0, 0, -3}, {0.05, 0.02, 1}, {1, 0, 0});
     const Primitive second = mirror_plane_at({4, 0, 0}, {-1, 0, 0.05}, {0, 1, 0});
@@ -82,14 +82,14 @@ TEST_CASE("flat mirrors image a point where it is mirrored to, with kappa 1", "[
     const auto one = image_over(chain_over(stage, eye, {0}), x, Vec3(0, 0, -1));
     REQUIRE(one);
     CHECK(length(one->eye_direction - normalize(mirrored_in(first, x) - eye)) < 1e-9);
-    CHECK(one->kappa() == Approx(1).margin(1e-12));
+    CHECK(one->ray_scale() == Approx(1).margin(1e-12));
 
     const Vec3 twice = mirrored_in(first, mirrored_in(second, x));
     const auto two = image_over(chain_over(stage, eye, {0, 1}), x, twice - eye + Vec3(0.2, -0.3, 0));
     REQUIRE(two);
     CHECK(length(two->eye_direction - normalize(twice - eye)) < 1e-9);
     CHECK(two->way + length(x - two->ray.origin) == Approx(length(twice - eye)).epsilon(1e-9));
-    CHECK(two->kappa() == Approx(1).margin(1e-12));
+    CHECK(two->ray_scale() == Approx(1).margin(1e-12));
 }
 
 TEST_CASE("a chain's ray turns as its derivatives say, with own normals and with differences of them",

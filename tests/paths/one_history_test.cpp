@@ -28,47 +28,47 @@ struct Counts {
     std::size_t rays = 0, other = 0, projected = 0, traced = 0;
 };
 
-Look look_between(const Looking& looking, const FacetPart& part, const Vec3& weights) {
+PathProbe look_between(const ProbeContext& context, const FacetPart& part, const Vec3& weights) {
     Chord chord{Vec3(0), Vec3(0), part.reach};
     for (std::size_t k = 0; k < 3; ++k) {
-        chord.screen += weights[static_cast<int>(k)] * part.corners[k].look->screen;
+        chord.screen += weights[static_cast<int>(k)] * part.corners[k].probe->screen;
         chord.point += weights[static_cast<int>(k)] * part.corners[k].chord;
     }
-    return look_through(looking, chord, {.side = part.side, .least_weight = kPrincipalOnly});
+    return probe_chord(context, chord, {.side = part.side, .least_weight = kPrincipalOnly});
 }
 
 /// Divides the facets of optic 0 that face the eye, and follows random rays within those that are drawn
 /// whole.
 void hold(const Stage& stage, const Vec3& eye, int n, Random& random, Counts& counts) {
-    const Looking looking{&stage.world, 0, &stage.surface(0), pinhole(eye)};
+    const ProbeContext context{&stage.world, 0, &stage.surface(0), pinhole(eye)};
     const SurfaceGrid grid = make_grid(stage.surface(0), n);
     DivideParams params;
     params.least_area = 4;
     params.most_levels = 4;
     for (std::size_t f = 0; f < grid.facets.size(); ++f) {
-        std::array<Look, 3> looks;
+        std::array<PathProbe, 3> probes;
         FacetToDivide facet;
         bool is_seen = true;
         for (std::size_t k = 0; k < 3; ++k) {
             const Id corner = grid.facets[f][k];
             const Vec3 point = grid.points[grid.corner_point[corner]];
             const Place place{grid.facet_face[f], grid.facet_uv[f][k], point, grid.corner_normal[corner]};
-            looks[k] = look_at(looking, place, {.least_weight = kFainter * kLeastWeight});
-            facet.corners[k] = {corner, &looks[k], point};
-            is_seen = is_seen && looks[k].state == LookState::kSeen;
+            probes[k] = probe_point(context, place, {.least_weight = kFainter * kLeastWeight});
+            facet.corners[k] = {corner, &probes[k], point};
+            is_seen = is_seen && probes[k].state == ProbeState::kSeen;
         }
         if (!is_seen) continue;
-        const DividedFacet divided = divide_facet(looking, facet, params);
+        const DividedFacet divided = divide_facet(context, facet, params);
         for (const FacetPart& part : divided.parts) {
             (part.method == LeafMethod::kProjected ? counts.projected : counts.traced) += 1;
             if (part.method != LeafMethod::kProjected || part.histories.empty()) continue;
-            const Look centre = look_between(looking, part, Vec3(1.0 / 3));
+            const PathProbe centre = look_between(context, part, Vec3(1.0 / 3));
             for (int i = 0; i < 6; ++i) {
                 const double a = std::sqrt(random.uniform(0, 1)), b = random.uniform(0, 1);
-                const Look look = look_between(looking, part, {1 - a, a * (1 - b), a * b});
+                const PathProbe probe = look_between(context, part, {1 - a, a * (1 - b), a * b});
                 ++counts.rays;
-                counts.other += look.state != LookState::kSeen || look.front != centre.front ||
-                                !same_principal(look.segments, centre.segments);
+                counts.other += probe.state != ProbeState::kSeen || probe.front != centre.front ||
+                                !same_principal(probe.segments, centre.segments);
             }
         }
     }

@@ -230,8 +230,8 @@ TEST_CASE("a facet's rays do not depend on what was asked for before", "[paths][
     Stage stage;
     put_up(stage);
     const SurfaceGrid grid = make_grid(stage.surface(0), 3);
-    const Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})};
-    OpticPaths at_once(looking, grid, DivideParams{}), one_by_one(looking, grid, DivideParams{});
+    const ProbeContext context{&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})};
+    OpticPaths at_once(context, grid, DivideParams{}), one_by_one(context, grid, DivideParams{});
     std::vector<Id> facets = all_facets(at_once);
     at_once.prepare(facets);
     std::reverse(facets.begin(), facets.end());
@@ -257,11 +257,11 @@ TEST_CASE("facets whose paths there is no room for are traced, the same ones wha
     Stage stage;
     put_up(stage);
     const SurfaceGrid grid = make_grid(stage.surface(0), 6);
-    const Looking looking{&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})};
+    const ProbeContext context{&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})};
     DivideParams tight;
     tight.most_bytes = 1u << 18;
-    OpticPaths roomy(looking, grid, DivideParams{}), at_once(looking, grid, tight),
-        one_by_one(looking, grid, tight);
+    OpticPaths roomy(context, grid, DivideParams{}), at_once(context, grid, tight),
+        one_by_one(context, grid, tight);
     std::vector<Id> facets = all_facets(at_once);
     roomy.prepare(facets);
     at_once.prepare(facets);
@@ -286,7 +286,7 @@ TEST_CASE("facets whose paths there is no room for are traced, the same ones wha
     CHECK(traced >= at_once.crowded_out());
 }
 
-TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times kappa", "[paths]") {
+TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times ray_scale", "[paths]") {
     Stage stage;
     put_up(stage);
     const Vec3 eye(0.3, 0.2, 5);
@@ -320,7 +320,7 @@ TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times ka
     CHECK(compared > 100);
 }
 
-TEST_CASE("flat plates and flat mirrors have kappa 1", "[paths]") {
+TEST_CASE("flat plates and flat mirrors have ray_scale 1", "[paths]") {
     Random random(54);
     Stage stage;
     const Primitive mirror = plane_at({0, 0, 2}, {0.2, 0.1, 1}, {1, 0, -0.2});
@@ -329,23 +329,23 @@ TEST_CASE("flat plates and flat mirrors have kappa 1", "[paths]") {
     const Vec3 eye(0.2, 0.4, 1.5);
     std::size_t seen = 0;
     for (int i = 0; i < 100; ++i) {
-        const Looking looking{&stage.world, plate, &stage.surface(plate), camera_at(eye)};
+        const ProbeContext context{&stage.world, plate, &stage.surface(plate), camera_at(eye)};
         Place place{0, {random.uniform(0, 1), random.uniform(0, 1)}};  // the side at z = 0
         const SurfacePoint at = stage.surface(plate).eval(place.face, place.uv);
         place.point = at.position;
         place.normal = at.normal;
-        Look look = look_at(looking, place, {});
-        REQUIRE(look.state == LookState::kSeen);
-        set_kappa(looking, look);
-        for (std::size_t s = 0; s < look.segments.size(); ++s) {
-            if (!look.segments[s].ends || look.kappa[s] == 0) continue;
-            const std::vector<Step> steps = steps_to(look.segments, static_cast<Id>(s));
-            // In glass the bundle is narrower; all that left it has kappa 1 again.
-            if (look.segments[s].medium != kNone) continue;
+        PathProbe probe = probe_point(context, place, {});
+        REQUIRE(probe.state == ProbeState::kSeen);
+        set_ray_scale(context, probe);
+        for (std::size_t s = 0; s < probe.segments.size(); ++s) {
+            if (!probe.segments[s].ends || probe.ray_scale[s] == 0) continue;
+            const std::vector<Step> steps = steps_to(probe.segments, static_cast<Id>(s));
+            // In glass the bundle is narrower; all that left it has the ray scale 1 again.
+            if (probe.segments[s].medium != kNone) continue;
             // The sides of the plate are no part of a flat plate.
             if (steps.size() > 4) continue;
-            INFO("steps " << steps.size() << ", eye " << length(look.incident));
-            CHECK(look.kappa[s] == Approx(1).margin(2e-3));
+            INFO("steps " << steps.size() << ", eye " << length(probe.incident));
+            CHECK(probe.ray_scale[s] == Approx(1).margin(2e-3));
             ++seen;
         }
     }

@@ -22,28 +22,28 @@ double largest(const Vec3& v) {
 
 /// One point of a leaf, seen along one of its histories.
 struct LeafPoint {
-    const Looking& looking;
+    const ProbeContext& context;
     const PathNode& node;
     Id facet = kNone;  // of the node's mesh
-    const Look& look;
-    std::optional<Look>& closer;  // the look with those beside it, once some history wanted them
+    const PathProbe& probe;
+    std::optional<PathProbe>& closer;  // the probe with those beside it, once some history wanted them
     std::size_t segment = 0;
     const DivideParams& params;
 
     double displacement(const Vec3& weights, const Ray& ray, const Hit& hit) const {
-        if (!params.estimates) return predicted_displacement({looking, look, segment, ray, hit});
+        if (!params.estimates) return predicted_displacement({context, probe, segment, ray, hit});
         const double estimate =
-            estimated_displacement({node.mesh, facet, weights, look.segments[segment].ray, hit});
+            estimated_displacement({node.mesh, facet, weights, probe.segments[segment].ray, hit});
         if (estimate <= params.max_error / kSure) return estimate;
         if (!closer) {
-            closer = look;  // others may look at the same
-            set_beside(looking, *closer);
+            closer = probe;  // others may look at the same
+            probe_offsets(context, *closer);
         }
-        return predicted_displacement({looking, *closer, segment, ray, hit});
+        return predicted_displacement({context, *closer, segment, ray, hit});
     }
 
     double predicted(const Vec3& weights) const {
-        const PathSegment& exact = look.segments[segment];
+        const PathSegment& exact = probe.segments[segment];
         const IdTriple& corner = node.mesh.facets[facet];
         const Ray ray = interpolated_ray(node.mesh, facet, weights);
         const Hit hit = params.objects->first_hit(ray);
@@ -64,29 +64,29 @@ struct LeafPoint {
 double OpticPaths::predicted(const FittedLeaf& open) const {
     const FacetPart& part = *open.part;
     double most = 0;
-    std::array<std::optional<Look>, kInsideWeights.size()> closer_inside;
-    std::array<std::optional<Look>, 3> closer_corner;
+    std::array<std::optional<PathProbe>, kInsideWeights.size()> closer_inside;
+    std::array<std::optional<PathProbe>, 3> closer_corner;
     for (std::size_t h = 0; h < part.histories.size() && !(most > params_.max_error); ++h) {
         const PathNode& node = nodes_[part.node[h]];
         const Id facet = part.node_facet[h];
         const IdTriple& corners = node.mesh.facets[facet];
-        const auto look_at_point = [&](const Look& look, std::optional<Look>& closer,
-                                       const std::vector<std::size_t>& segment, Vec3 weights) {
+        const auto probe_facet_point = [&](const PathProbe& probe, std::optional<PathProbe>& closer,
+                                           const std::vector<std::size_t>& segment, Vec3 weights) {
             if (segment.empty()) return;
             for (std::size_t k = 0; k < 3; ++k)
                 weights[static_cast<int>(k)] *=
-                    part.corners[k].look->screen.z / node.mesh.screen[corners[k]].z;
-            const LeafPoint point{looking_, node, facet, look, closer, segment[h], params_};
+                    part.corners[k].probe->screen.z / node.mesh.screen[corners[k]].z;
+            const LeafPoint point{context_, node, facet, probe, closer, segment[h], params_};
             most = std::max(most, point.predicted(weights / (weights.x + weights.y + weights.z)));
         };
         for (std::size_t i = 0; i < part.inside.size(); ++i)
-            look_at_point(*part.inside[i].at.look, closer_inside[i], part.inside[i].segment,
-                          kInsideWeights[i]);
+            probe_facet_point(*part.inside[i].at.probe, closer_inside[i], part.inside[i].segment,
+                              kInsideWeights[i]);
         if (!params_.fit) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             Vec3 weights(0);
             weights[static_cast<int>(k)] = 1;
-            look_at_point(*part.corners[k].look, closer_corner[k], part.segment[k], weights);
+            probe_facet_point(*part.corners[k].probe, closer_corner[k], part.segment[k], weights);
         }
     }
     return most;
@@ -110,7 +110,7 @@ void OpticPaths::divide_batch_by_error(std::vector<FittedLeaf> open) {
         parallel_for(open.size(), kLeavesPerTask, [&](std::size_t from, std::size_t to) {
             for (std::size_t i = from; i < to; ++i) {
                 error[i] = predicted(open[i]);
-                if (error[i] > params_.max_error) divided[i] = divide_part(looking_, *open[i].part, params_);
+                if (error[i] > params_.max_error) divided[i] = divide_part(context_, *open[i].part, params_);
             }
         });
         set_kappas(divided);

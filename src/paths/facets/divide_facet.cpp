@@ -8,7 +8,7 @@
 
 #include "paths/facets/film_reach.h"
 #include "paths/facets/one_history.h"
-#include "paths/probe/facet_looks.h"
+#include "paths/probe/probe_cache.h"
 #include "paths/probe/same_histories.h"
 
 namespace trilens {
@@ -18,13 +18,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Divider {
   public:
-    Divider(const Looking& looking, LookSide side, double reach, const DivideParams& params)
-        : looking_(looking),
+    Divider(const ProbeContext& context, ProbeSide side, double reach, const DivideParams& params)
+        : context_(context),
           side_(side),
           params_(params),
           reach_(reach),
-          looks_(looking, {side, reach, !params.estimates}) {
-        mirror_ = looking.world->optics[looking.optic].mirror;
+          probes_(context, {side, reach, !params.estimates}) {
+        mirror_ = context.world->optics[context.optic].mirror;
     }
     DividedFacet divide(const std::array<PartCorner, 3>& from);
     DividedFacet divide_on(const FacetPart& part);
@@ -35,7 +35,7 @@ class Divider {
     using Inside = std::array<FacetPoint, 4>;  // the edges' middles, opposite to the corners, and the centre
 
     static FacetPoint point_of(const PartCorner& corner) {
-        return {corner.look, corner.look->screen, corner.chord, corner.shared};
+        return {corner.probe, corner.probe->screen, corner.chord, corner.shared};
     }
     void divide(Id cell, const Triangle& corners, int level);
     void split(Id cell, const Triangle& corners, const Inside& inside, int level);
@@ -47,7 +47,7 @@ class Divider {
     bool layered(const Triangle& corners, std::span<const FacetPoint> inside, int level);
     bool divide_plain(Id cell, const Triangle& corners);
     void trace(Id cell, const Triangle& corners, int level);
-    bool look_inside(const Triangle& corners, Inside& inside, int level);
+    bool probe_inside(const Triangle& corners, Inside& inside, int level);
     /// False where no fainter paths at these points could make project() true. A mirror's are all principal.
     bool may_project(std::span<const FacetPoint> points) const { return mirror_ || may_agree(points); }
     DividedFacet take();
@@ -55,12 +55,12 @@ class Divider {
     void end(Id cell, FacetPart part);
     FacetPart part_of(const Triangle& corners, int level) const;
 
-    const Looking& looking_;
-    LookSide side_ = LookSide::kFront;
+    const ProbeContext& context_;
+    ProbeSide side_ = ProbeSide::kFront;
     const DivideParams& params_;
     double reach_ = 0;
     bool mirror_ = true;
-    FacetLooks looks_;
+    ProbeCache probes_;
     DividedFacet divided_;
     FacetPart projected_;  // what `project` found
 };
@@ -71,27 +71,27 @@ FacetPart Divider::part_of(const Triangle& corners, int level) const {
     part.reach = reach_;
     part.side = side_;
     for (std::size_t k = 0; k < 3; ++k)
-        part.corners[k] = {corners[k].shared, corners[k].look, corners[k].chord};
+        part.corners[k] = {corners[k].shared, corners[k].probe, corners[k].chord};
     return part;
 }
 
 /// A mirror that shows no other optic there has rays beyond its silhouette too: the mirror law goes on.
 bool Divider::mirror_alone(const Triangle& corners, std::span<const FacetPoint> inside) const {
     if (!mirror_) return false;
-    const auto alone = [](const Look& look) {
-        return look.state != LookState::kSeen || (look.segments.size() == 1 && look.segments[0].ends);
+    const auto alone = [](const PathProbe& probe) {
+        return probe.state != ProbeState::kSeen || (probe.segments.size() == 1 && probe.segments[0].ends);
     };
     return std::all_of(corners.begin(), corners.end(),
                        [&](const FacetPoint& corner) {
-                           return corner.look->state != LookState::kMissed && alone(*corner.look);
+                           return corner.probe->state != ProbeState::kMissed && alone(*corner.probe);
                        }) &&
            std::all_of(inside.begin(), inside.end(),
-                       [&](const FacetPoint& point) { return alone(*point.look); });
+                       [&](const FacetPoint& point) { return alone(*point.probe); });
 }
 
 /// The optic that the path over a mirror goes on to; kNone: to none.
-Id next_of(const Look& look) {
-    for (const PathSegment& segment : look.segments)
+Id next_of(const PathProbe& probe) {
+    for (const PathSegment& segment : probe.segments)
         if (segment.parent == 0) return segment.step.optic;
     return kNone;
 }
@@ -99,23 +99,24 @@ Id next_of(const Look& look) {
 /// The first reflection alone, in projected_.
 void Divider::project_mirror(const Triangle& corners) {
     PathSegment segment;
-    segment.step = {looking_.optic, Event::kReflect};
-    segment.medium = felt_body(*looking_.world, looking_.camera.media(corners[0].screen));
+    segment.step = {context_.optic, Event::kReflect};
+    segment.medium = active_medium(*context_.world, context_.camera.media(corners[0].screen));
     projected_.histories = {segment};
     for (std::size_t k = 0; k < 3; ++k)
-        if (corners[k].look->state == LookState::kSeen) projected_.segment[k] = {0};
+        if (corners[k].probe->state == ProbeState::kSeen) projected_.segment[k] = {0};
     for (PartInside& point : projected_.inside)
-        if (point.at.look->state == LookState::kSeen) point.segment = {0};
+        if (point.at.probe->state == ProbeState::kSeen) point.segment = {0};
 }
 
-/// Whether the layers over this mirror show what the exact paths meet next, wherever they were looked at.
+/// Whether the nested optics over this mirror show what the exact paths meet next, wherever they were looked
+/// at.
 bool Divider::layered(const Triangle& corners, std::span<const FacetPoint> inside, int level) {
-    if (!params_.layers_agree || level > 0 || !mirror_) return false;
+    if (!params_.nested_agree || level > 0 || !mirror_) return false;
     const auto agrees = [&](const FacetPoint& point) {
-        const Look& look = *point.look;
-        if (look.state != LookState::kSeen) return true;
-        return !look.segments.empty() && look.screen.z > 0 &&
-               params_.layers_agree(Vec2(look.screen) / look.screen.z, next_of(look));
+        const PathProbe& probe = *point.probe;
+        if (probe.state != ProbeState::kSeen) return true;
+        return !probe.segments.empty() && probe.screen.z > 0 &&
+               params_.nested_agree(Vec2(probe.screen) / probe.screen.z, next_of(probe));
     };
     if (!std::all_of(corners.begin(), corners.end(), agrees) ||
         !std::all_of(inside.begin(), inside.end(), agrees))
@@ -123,15 +124,15 @@ bool Divider::layered(const Triangle& corners, std::span<const FacetPoint> insid
     projected_ = part_of(corners, level);
     projected_.layered = true;
     for (const FacetPoint& point : inside)
-        projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
+        projected_.inside.push_back({{kNone, point.probe, point.chord}, {}});
     project_mirror(corners);
     return is_proven(corners);
 }
 
-/// Whether projected_ has one history all over, as far as layers do not draw the others.
+/// Whether projected_ has one history all over, as far as nested optics do not draw the others.
 bool Divider::is_proven(const Triangle& corners) const {
-    HistoryProof proof{looking_, projected_, {}, side_ == LookSide::kNearest};
-    if (projected_.layered && params_.layer_covers) {
+    HistoryProof proof{context_, projected_, {}, side_ == ProbeSide::kNearest};
+    if (projected_.layered && params_.nested_covers) {
         // Half its size farther than the part reaches, and a pixel.
         Vec2 low(kInfinity), high(-kInfinity);
         for (const FacetPoint& corner : corners) {
@@ -141,7 +142,7 @@ bool Divider::is_proven(const Triangle& corners) const {
         }
         const Vec2 room = 0.5 * (high - low) + 1.0;
         proof.drawn_over = [this, low = low - room, high = high + room](Id optic) {
-            return params_.layer_covers(optic, low, high);
+            return params_.nested_covers(optic, low, high);
         };
     }
     return has_one_history(proof);
@@ -150,7 +151,7 @@ bool Divider::is_proven(const Triangle& corners) const {
 /// Whether the camera's rays jump within the part.
 bool Divider::has_break(const Triangle& corners) const {
     for (int axis = 0; axis < 2; ++axis)
-        for (const double at : looking_.camera.breaks[static_cast<std::size_t>(axis)]) {
+        for (const double at : context_.camera.breaks[static_cast<std::size_t>(axis)]) {
             int before = 0, behind = 0;
             for (const FacetPoint& corner : corners) {
                 before += corner.screen[axis] < at * corner.screen.z;
@@ -165,23 +166,23 @@ bool Divider::project(const Triangle& corners, std::span<const FacetPoint> insid
     if (has_break(corners)) return false;
     projected_ = part_of(corners, level);
     for (const FacetPoint& point : inside)
-        projected_.inside.push_back({{kNone, point.look, point.chord}, {}});
-    if (!looking_.world->reflect && mirror_) return true;
+        projected_.inside.push_back({{kNone, point.probe, point.chord}, {}});
+    if (!context_.world->reflect && mirror_) return true;
     if (mirror_alone(corners, inside)) {
         project_mirror(corners);
         return is_proven(corners);
     }
-    const Look& centre = inside.empty() ? *corners[0].look : *inside.back().look;
-    if (centre.state != LookState::kSeen) return false;
-    const auto agrees = [&](const Look& look, std::vector<std::size_t>& match) {
-        if (look.state != LookState::kSeen || look.front != centre.front) return false;
-        match = matched(centre.segments, look.segments);
-        return match.size() == centre.segments.size() && covers(match, look.segments);
+    const PathProbe& centre = inside.empty() ? *corners[0].probe : *inside.back().probe;
+    if (centre.state != ProbeState::kSeen) return false;
+    const auto agrees = [&](const PathProbe& probe, std::vector<std::size_t>& match) {
+        if (probe.state != ProbeState::kSeen || probe.front != centre.front) return false;
+        match = matched(centre.segments, probe.segments);
+        return match.size() == centre.segments.size() && covers(match, probe.segments);
     };
     for (PartInside& point : projected_.inside)
-        if (!agrees(*point.at.look, point.segment)) return false;
+        if (!agrees(*point.at.probe, point.segment)) return false;
     for (std::size_t k = 0; k < 3; ++k)
-        if (!agrees(*corners[k].look, projected_.segment[k])) return false;
+        if (!agrees(*corners[k].probe, projected_.segment[k])) return false;
     projected_.histories = centre.segments;
     return is_proven(corners);
 }
@@ -211,27 +212,27 @@ bool Divider::is_least(const Triangle& corners, int level) const {
 
 /// Whether projected_ stands for the part. Sets the centre, and has all paths followed, where the principal
 /// ones leave that open.
-bool Divider::look_inside(const Triangle& corners, Inside& inside, int level) {
+bool Divider::probe_inside(const Triangle& corners, Inside& inside, int level) {
     const auto& [a, b, c, centre] = inside;
     if (!may_project(std::array{corners[0], corners[1], corners[2], a, b, c})) return false;
-    inside[3] = looks_.between({&corners[0], &corners[1], &corners[2]});
+    inside[3] = probes_.between({&corners[0], &corners[1], &corners[2]});
     if (!may_project(std::array{corners[0], centre})) return false;
     for (const FacetPoint& point : {corners[0], corners[1], corners[2], a, b, c})
-        looks_.follow_all_at(point, kFainter * kLeastWeight);
-    looks_.follow_all_at(centre, kLeastWeight);
+        probes_.follow_all_at(point, kFainter * kLeastWeight);
+    probes_.follow_all_at(centre, kLeastWeight);
     return layered(corners, inside, level) || project(corners, inside, level);
 }
 
 void Divider::divide(Id cell, const Triangle& corners, int level) {
     // Nobody sees what is off the film.
     if (level > 0 &&
-        !may_reach_film({corners[0].screen, corners[1].screen, corners[2].screen}, looking_.camera.film))
+        !may_reach_film({corners[0].screen, corners[1].screen, corners[2].screen}, context_.camera.film))
         return trace(cell, corners, level);
     // Nobody looks into a part that would be traced anyway.
     if (is_least(corners, level) && !may_project(corners)) return trace(cell, corners, level);
-    Inside inside{looks_.middle_of(corners[1], corners[2]), looks_.middle_of(corners[2], corners[0]),
-                  looks_.middle_of(corners[0], corners[1])};
-    if (look_inside(corners, inside, level)) return end(cell, std::move(projected_));
+    Inside inside{probes_.middle_of(corners[1], corners[2]), probes_.middle_of(corners[2], corners[0]),
+                  probes_.middle_of(corners[0], corners[1])};
+    if (probe_inside(corners, inside, level)) return end(cell, std::move(projected_));
     split(cell, corners, inside, level);
 }
 
@@ -265,8 +266,8 @@ void Divider::split(Id cell, const Triangle& corners, const Inside& inside, int 
 }
 
 DividedFacet Divider::take() {
-    divided_.looks = std::move(looks_.looks());
-    divided_.cut = looks_.cut();
+    divided_.probes = std::move(probes_.probes());
+    divided_.cut = probes_.cut();
     return std::move(divided_);
 }
 
@@ -275,9 +276,9 @@ DividedFacet Divider::divide(const std::array<PartCorner, 3>& from) {
     bool has_normals = true;
     for (std::size_t k = 0; k < 3; ++k) {
         corners[k] = point_of(from[k]);
-        const bool missed = from[k].look->state == LookState::kMissed;
-        has_normals = has_normals && (missed || from[k].look->place.normal != Vec3(0));
-        looks_.note(from[k].look->cut);
+        const bool missed = from[k].probe->state == ProbeState::kMissed;
+        has_normals = has_normals && (missed || from[k].probe->place.normal != Vec3(0));
+        probes_.note(from[k].probe->cut);
     }
     divided_.cells.resize(1);
     if (!has_normals)
@@ -299,11 +300,12 @@ DividedFacet Divider::divide_on(const FacetPart& part) {
 
 }  // namespace
 
-DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, const DivideParams& params) {
+DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet,
+                          const DivideParams& params) {
     double reach = facet.reach;
     for (std::size_t k = 0; k < 3 && facet.reach == 0; ++k)
         reach = std::max(reach, length(facet.corners[k].chord - facet.corners[(k + 1) % 3].chord));
-    return Divider(looking, facet.side, reach, params).divide(facet.corners);
+    return Divider(context, facet.side, reach, params).divide(facet.corners);
 }
 
 DividedFacet traced_facet(const std::array<Vec3, 3>& screen) {
@@ -315,8 +317,8 @@ DividedFacet traced_facet(const std::array<Vec3, 3>& screen) {
     return divided;
 }
 
-DividedFacet divide_part(const Looking& looking, const FacetPart& part, const DivideParams& params) {
-    return Divider(looking, part.side, part.reach, params).divide_on(part);
+DividedFacet divide_part(const ProbeContext& context, const FacetPart& part, const DivideParams& params) {
+    return Divider(context, part.side, part.reach, params).divide_on(part);
 }
 
 }  // namespace trilens

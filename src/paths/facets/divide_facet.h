@@ -12,14 +12,14 @@ namespace trilens {
 /// A corner of a part of a facet.
 struct PartCorner {
     Id shared = kNone;  // a number that the facet's neighbours know it by; kNone: this facet's alone
-    Look* look = nullptr;
+    PathProbe* probe = nullptr;
     Vec3 chord{0};  // the point on the facet's plane, world
 };
 
 /// A point between the corners of a part that was looked at.
 struct PartInside {
     PartCorner at;                     // never shared
-    std::vector<std::size_t> segment;  // per history: of the look's; empty where it is not seen
+    std::vector<std::size_t> segment;  // per history: of the probe's; empty where it is not seen
 };
 
 /// A leaf before it has a number.
@@ -34,7 +34,7 @@ struct FacetPart {
     std::array<PartCorner, 3> corners;
     std::array<std::vector<std::size_t>, 3> segment;  // per corner and history: of the corner's look; empty
                                                       // for a corner that is turned away from the eye
-    LookSide side = LookSide::kFront;                 // the one that the facet shows
+    ProbeSide side = ProbeSide::kFront;               // the one that the facet shows
     double reach = 0;  // how far the surface may be from the facet's plane: the facet's longest edge
     std::vector<PartInside>
         inside;  // of kProjected: the edges' middles, opposite to the corners, and the centre
@@ -52,14 +52,14 @@ struct DividedFacet {
     };
     std::vector<Cell> cells;
     std::vector<FacetPart> parts;
-    std::deque<Look> looks;  // at points that are no corners of the grid
-    CutPaths cut;            // the most at any point
+    std::deque<PathProbe> probes;  // at points that are no corners of the grid
+    CutPaths cut;                  // the most at any point
 };
 
 /// A facet to divide.
 struct FacetToDivide {
     std::array<PartCorner, 3> corners;
-    LookSide side = LookSide::kFront;  // that it shows
+    ProbeSide side = ProbeSide::kFront;  // that it shows
     double reach = 0;  // how far the surface may lie from the facet; 0: as far as the longest edge is long
 };
 
@@ -81,7 +81,8 @@ inline Vec3 child_weights(const Vec3& weights, int child) {
 /// the limit at the centre is found there too.
 inline constexpr double kFainter = 1.0 / 8;
 
-DividedFacet divide_facet(const Looking& looking, const FacetToDivide& facet, const DivideParams& params);
+DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet,
+                          const DivideParams& params);
 
 /// A facet that is traced, no part of it looked at; by its corners' homogeneous screen positions.
 DividedFacet traced_facet(const std::array<Vec3, 3>& screen);
@@ -89,6 +90,6 @@ DividedFacet traced_facet(const std::array<Vec3, 3>& screen);
 /// A projected part divided in four, and on where their histories differ: cells[0] is the part, and has
 /// children. One that is too small is a traced part instead. What the part's corners point to must live as
 /// long as the result.
-DividedFacet divide_part(const Looking& looking, const FacetPart& part, const DivideParams& params);
+DividedFacet divide_part(const ProbeContext& context, const FacetPart& part, const DivideParams& params);
 
 }  // namespace trilens

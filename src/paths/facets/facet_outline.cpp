@@ -16,19 +16,19 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams params)
-    : looking_(std::move(looking)), grid_(&grid), params_(std::move(params)) {
+OpticPaths::OpticPaths(ProbeContext context, const SurfaceGrid& grid, DivideParams params)
+    : context_(std::move(context)), grid_(&grid), params_(std::move(params)) {
     set_places(grid);
     outline_.screen.reserve(places_.size());
     for (const Place& place : places_) {
-        outline_.screen.push_back(looking_.camera.screen(place.point));
-        incident_.push_back(looking_.camera.ray(outline_.screen.back(), place.point).direction);
+        outline_.screen.push_back(context_.camera.screen(place.point));
+        incident_.push_back(context_.camera.ray(outline_.screen.back(), place.point).direction);
     }
 }
 
-OpticPaths::OpticPaths(Looking looking, const SurfaceGrid& grid, std::span<const CornerView> views,
+OpticPaths::OpticPaths(ProbeContext context, const SurfaceGrid& grid, std::span<const CornerView> views,
                        DivideParams params)
-    : looking_(std::move(looking)), grid_(&grid), params_(std::move(params)) {
+    : context_(std::move(context)), grid_(&grid), params_(std::move(params)) {
     set_places(grid);
     for (const CornerView& view : views) {
         outline_.screen.push_back(view.screen);
@@ -46,36 +46,36 @@ void OpticPaths::set_places(const SurfaceGrid& grid) {
         }
     outline_.rays.resize(places_.size());
     outline_.facets = grid.facets;
-    corner_looks_.resize(2 * places_.size());
+    corner_probes_.resize(2 * places_.size());
     cells_.resize(grid.facets.size());
     prepared_.resize(grid.facets.size());
 }
 
 void OpticPaths::set_film_corner(Id corner, const Vec2& pixel) {
     // A point at the surface's depth first; where the ray meets the surface, that point.
-    const Vec3 at = looking_.camera.affine ? Vec3(pixel, 1) : Vec3(pixel * window_.depth, window_.depth);
-    Chord chord{at, looking_.camera.point(at), 2 * window_.reach};
-    auto look = std::make_unique<Look>(
-        look_through(looking_, chord, {.side = LookSide::kNearest, .least_weight = kFainter * kLeastWeight}));
-    if (!params_.estimates) set_beside(looking_, *look);
-    if (look->state != LookState::kMissed) {
-        chord.point = look->place.point;
-        if (!looking_.camera.affine) chord.screen = look->screen = looking_.camera.screen(chord.point);
-        set_corner_kappa(looking_, *look);
+    const Vec3 at = context_.camera.affine ? Vec3(pixel, 1) : Vec3(pixel * window_.depth, window_.depth);
+    Chord chord{at, context_.camera.point(at), 2 * window_.reach};
+    auto probe = std::make_unique<PathProbe>(
+        probe_chord(context_, chord, {.side = ProbeSide::kNearest, .least_weight = kFainter * kLeastWeight}));
+    if (!params_.estimates) probe_offsets(context_, *probe);
+    if (probe->state != ProbeState::kMissed) {
+        chord.point = probe->place.point;
+        if (!context_.camera.affine) chord.screen = probe->screen = context_.camera.screen(chord.point);
+        set_corner_ray_scale(context_, *probe);
     }
     places_[corner].point = chord.point;
     outline_.screen[corner] = chord.screen;
-    corner_looks_[2 * corner + 1] = std::move(look);
+    corner_probes_[2 * corner + 1] = std::move(probe);
 }
 
-OpticPaths::OpticPaths(Looking looking, const FilmWindow& window, DivideParams params)
-    : looking_(std::move(looking)), window_(window), params_(std::move(params)) {
+OpticPaths::OpticPaths(ProbeContext context, const FilmWindow& window, DivideParams params)
+    : context_(std::move(context)), window_(window), params_(std::move(params)) {
     const Id n = static_cast<Id>(window.n), side = n + 1;
     const std::size_t corners = static_cast<std::size_t>(side) * side;
     places_.resize(corners);
     outline_.rays.resize(corners);
     outline_.screen.resize(corners);
-    corner_looks_.resize(2 * corners);
+    corner_probes_.resize(2 * corners);
     parallel_for(corners, kOutlinesPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t c = from; c < to; ++c) {
             const Vec2 share(static_cast<double>(c % side) / n, static_cast<double>(c / side) / n);
@@ -100,8 +100,8 @@ Id OpticPaths::film_facet(const Vec2& pixel) const {
     return static_cast<Id>(2 * (j * window_.n + i) + (above ? 1 : 0));
 }
 
-OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
-    : looking_(std::move(looking)), grid_(first.grid), ends_first_(true) {
+OpticPaths::OpticPaths(ProbeContext context, const FirstPaths& first)
+    : context_(std::move(context)), grid_(first.grid), ends_first_(true) {
     const SurfaceGrid& grid = *first.grid;
     const RayMesh *const reflection = first.reflection, *const refraction = first.refraction;
     outline_.facets = grid.facets;
@@ -117,12 +117,12 @@ OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
         leaves_.push_back({static_cast<Id>(f)});
         cells_[f].leaf = static_cast<Id>(f);
     }
-    const Media around = looking_.camera.media(Vec3(0));
+    const Media around = context_.camera.media(Vec3(0));
     const auto add = [&](const RayMesh& mesh, Event event, const Media& media) -> PathNode& {
         PathSegment segment;
-        segment.step = {looking_.optic, event};
+        segment.step = {context_.optic, event};
         segment.path = event == Event::kReflect ? Path::kReflect : Path::kRefract;
-        segment.medium = felt_body(*looking_.world, media);
+        segment.medium = active_medium(*context_.world, media);
         PathNode& node = nodes_[node_of(kNone, segment)];
         node.mesh = mesh;
         node.leaves.resize(facets);
@@ -138,10 +138,10 @@ OpticPaths::OpticPaths(Looking looking, const FirstPaths& first)
     if (!refraction) return;
     // Facets seen from the front show what is in the glass, those seen from behind what is outside.
     for (const bool into : {true, false}) {
-        const std::optional<MediaSides> sides = sides_of(around, looking_.optic, into);
+        const std::optional<MediaSides> sides = sides_of(around, context_.optic, into);
         if (!sides) continue;
         const bool is_interface =
-            felt_glass(*looking_.world, sides->before) != felt_glass(*looking_.world, sides->after);
+            felt_glass(*context_.world, sides->before) != felt_glass(*context_.world, sides->after);
         PathNode& node = add(*refraction, is_interface ? Event::kTransmit : Event::kPass, sides->after);
         for (std::size_t f = 0; f < facets; ++f)
             if (shows_front(static_cast<Id>(f)) != into) node.mesh.facets[f] = {kNone, kNone, kNone};

@@ -19,12 +19,12 @@ bool OpticPaths::shows_front(Id facet) const {
     return !grid_ || faces_front(*grid_, grid_->facets[facet], incident_[grid_->facets[facet][0]]);
 }
 
-void OpticPaths::look_at_corners(std::span<const Id> facets) {
+void OpticPaths::probe_corners(std::span<const Id> facets) {
     std::vector<Id> wanted;  // corner and side
     for (const Id f : facets)
         for (const Id corner : outline_.facets[f]) {
             const Id key = 2 * corner + (shows_front(f) ? 1 : 0);
-            if (!corner_looks_[key]) wanted.push_back(key);
+            if (!corner_probes_[key]) wanted.push_back(key);
         }
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
@@ -32,12 +32,12 @@ void OpticPaths::look_at_corners(std::span<const Id> facets) {
         for (std::size_t i = from; i < to; ++i) {
             const bool front = wanted[i] % 2 == 1;
             const Id corner = wanted[i] / 2;
-            auto look = std::make_unique<Look>(look_at(looking_, places_[corner],
-                                                       {outline_.screen[corner], incident_[corner]},
-                                                       {.side = front ? LookSide::kFront : LookSide::kBack,
-                                                        .least_weight = kFainter * kLeastWeight}));
-            if (!params_.estimates) set_beside(looking_, *look);
-            corner_looks_[wanted[i]] = std::move(look);
+            auto probe = std::make_unique<PathProbe>(
+                probe_point(context_, places_[corner], {outline_.screen[corner], incident_[corner]},
+                            {.side = front ? ProbeSide::kFront : ProbeSide::kBack,
+                             .least_weight = kFainter * kLeastWeight}));
+            if (!params_.estimates) probe_offsets(context_, *probe);
+            corner_probes_[wanted[i]] = std::move(probe);
         }
     });
 }
@@ -47,17 +47,17 @@ void OpticPaths::set_kappas(std::span<const DividedFacet> divided) const {
     const auto is_later = [](const PathSegment& history) {
         return history.parent != kNone || history.step.event != Event::kReflect;
     };
-    std::vector<Look*> wanted;
+    std::vector<PathProbe*> wanted;
     for (const DividedFacet& facet : divided)
         for (const FacetPart& part : facet.parts) {
             if (std::none_of(part.histories.begin(), part.histories.end(), is_later)) continue;
             for (const PartCorner& corner : part.corners)
-                if (corner.look->kappa.empty()) wanted.push_back(corner.look);
+                if (corner.probe->ray_scale.empty()) wanted.push_back(corner.probe);
         }
     std::sort(wanted.begin(), wanted.end(), std::less<>());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
     parallel_for(wanted.size(), kCornersPerTask, [&](std::size_t from, std::size_t to) {
-        for (std::size_t i = from; i < to; ++i) set_corner_kappa(looking_, *wanted[i]);
+        for (std::size_t i = from; i < to; ++i) set_corner_ray_scale(context_, *wanted[i]);
     });
 }
 
@@ -66,7 +66,7 @@ bool OpticPaths::on_film(Id facet) const {
     const std::array<Vec3, 3> screen{outline_.screen[corner[0]], outline_.screen[corner[1]],
                                      outline_.screen[corner[2]]};
     const bool has_image = std::all_of(screen.begin(), screen.end(), [](const Vec3& s) { return s.z != 0; });
-    return has_image && may_reach_film(screen, looking_.camera.film);
+    return has_image && may_reach_film(screen, context_.camera.film);
 }
 
 /// Those of `facets` that are not known, and those that are fitted with them; ascending.
@@ -102,15 +102,15 @@ void OpticPaths::keep_room() {
     if (shown.size() <= kFew && params_.most_bytes >= DivideParams().most_bytes) return;
     for (std::size_t i = 0; i < shown.size(); i += std::max<std::size_t>(1, shown.size() / kSample))
         sample.push_back(shown[i]);
-    look_at_corners(sample);
-    double bytes = 0, looks = 0;
+    probe_corners(sample);
+    double bytes = 0, probes = 0;
     for (const Id f : sample)
         for (const Id corner : outline_.facets[f]) {
-            const Look& look = *corner_looks_[2 * corner + (shows_front(f) ? 1 : 0)];
-            bytes += static_cast<double>(sizeof(Look) + look.segments.size() * sizeof(PathSegment));
-            looks += 1;
+            const PathProbe& probe = *corner_probes_[2 * corner + (shows_front(f) ? 1 : 0)];
+            bytes += static_cast<double>(sizeof(PathProbe) + probe.segments.size() * sizeof(PathSegment));
+            probes += 1;
         }
-    const double room = static_cast<double>(params_.most_bytes) * looks / std::max(1.0, 4.5 * bytes);
+    const double room = static_cast<double>(params_.most_bytes) * probes / std::max(1.0, 4.5 * bytes);
     for (std::size_t i = 0; i < shown.size(); ++i) has_room_[shown[i]] = static_cast<double>(i) < room;
     crowded_out_ = static_cast<std::size_t>(std::count(has_room_.begin(), has_room_.end(), 0));
 }
@@ -128,7 +128,7 @@ void OpticPaths::prepare(std::span<const Id> facets) {
     std::vector<Id> projected;
     std::copy_if(fresh.begin(), fresh.end(), std::back_inserter(projected),
                  [&](Id f) { return has_room_[f]; });
-    look_at_corners(projected);
+    probe_corners(projected);
 
     std::vector<DividedFacet> divided(fresh.size());
     parallel_for(fresh.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
@@ -141,13 +141,13 @@ void OpticPaths::prepare(std::span<const Id> facets) {
                 continue;
             }
             const bool front = shows_front(fresh[i]);
-            facet.side = !grid_ ? LookSide::kNearest : front ? LookSide::kFront : LookSide::kBack;
+            facet.side = !grid_ ? ProbeSide::kNearest : front ? ProbeSide::kFront : ProbeSide::kBack;
             facet.reach = grid_ ? 0 : 2 * window_.reach;
             for (std::size_t k = 0; k < 3; ++k) {
                 const Id key = 2 * corners[k] + (front ? 1 : 0);
-                facet.corners[k] = {key, corner_looks_[key].get(), places_[corners[k]].point};
+                facet.corners[k] = {key, corner_probes_[key].get(), places_[corners[k]].point};
             }
-            divided[i] = divide_facet(looking_, facet, params_);
+            divided[i] = divide_facet(context_, facet, params_);
         }
     });
     set_kappas(divided);

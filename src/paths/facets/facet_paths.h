@@ -13,7 +13,7 @@
 
 #include "base/raymesh/corner_view.h"
 #include "base/raymesh/ray_mesh.h"
-#include "paths/probe/look.h"
+#include "paths/probe/path_probe.h"
 
 namespace trilens {
 
@@ -28,7 +28,7 @@ struct PathLeaf {
     LeafMethod method = LeafMethod::kProjected;
     Vec3 centre{0};        // of kTraced: homogeneous screen position
     double predicted = 0;  // of kProjected: displacement in pixels, where an error is asked for
-    bool layered = false;  // of kProjected: optics seen in this one are layers that lie over it
+    bool layered = false;  // of kProjected: optics seen in this one lie over it as nested optics
     // Of kProjected: the most of each colour's light behind the first optic that no node carries, at any of
     // its corners: paths too faint to be followed, or so faint at the others that none stands for them.
     Vec3 faint{0};
@@ -72,11 +72,11 @@ struct DivideParams {
     const Tracer* objects = nullptr;  // for the prediction: what is seen
     bool fit = false;                 // corner rays of whole facets are fitted
     // Of a mirror: whether a pixel from which the exact path goes on to optic `next` (kNone: to none) shows
-    // that optic's layer. Facets on which it does are not divided. Unset: there are no layers.
-    std::function<bool(const Vec2& pixel, Id next)> layers_agree = {};
-    // Of a mirror with layers: whether that optic is drawn as a layer somewhere within these bounds on the
-    // film, in pixels.
-    std::function<bool(Id optic, const Vec2& low, const Vec2& high)> layer_covers = {};
+    // that optic as nested. Facets on which it does are not divided. Unset: there are no nested optics.
+    std::function<bool(const Vec2& pixel, Id next)> nested_agree = {};
+    // Of a mirror with nested optics: whether that optic is drawn as a nested optic somewhere within these
+    // bounds on the film, in pixels.
+    std::function<bool(Id optic, const Vec2& low, const Vec2& high)> nested_covers = {};
 };
 
 struct DividedFacet;
@@ -114,24 +114,24 @@ struct FirstPaths {
 class OpticPaths {
   public:
     /// `grid` must live longer.
-    OpticPaths(Looking looking, const SurfaceGrid& grid, DivideParams params);
+    OpticPaths(ProbeContext context, const SurfaceGrid& grid, DivideParams params);
 
     /// The same where it is known how the camera sees each corner of the grid. Facets with a corner of w = 0
     /// have no image and may not be asked for.
-    OpticPaths(Looking looking, const SurfaceGrid& grid, std::span<const CornerView> views,
+    OpticPaths(ProbeContext context, const SurfaceGrid& grid, std::span<const CornerView> views,
                DivideParams params);
 
     /// Facets on the film instead (thesis 7.2.2): n x n squares of two facets each over a window, whose
     /// corner rays are the camera's exact ones, whatever the surface. A sample's facet is then the one that
     /// it lies in: film_facet.
-    OpticPaths(Looking looking, const FilmWindow& window, DivideParams params);
+    OpticPaths(ProbeContext context, const FilmWindow& window, DivideParams params);
 
     /// The facet of the film at a place within the window; places outside count as on its border.
     Id film_facet(const Vec2& pixel) const;
     bool is_on_film() const { return window_.n > 0; }
 
     /// Paths that end after the first optic (thesis 7.2.1, 7.3.1). No exact ray is followed.
-    OpticPaths(Looking looking, const FirstPaths& first);
+    OpticPaths(ProbeContext context, const FirstPaths& first);
 
     /// Works out these facets, those that are known already among them. Same leaves, rays and histories
     /// whatever was asked before; only their numbers differ.
@@ -154,7 +154,7 @@ class OpticPaths {
     std::size_t projected_count() const { return projected_count_; }
     /// Facets that are traced for want of room (DivideParams::most_bytes).
     std::size_t crowded_out() const { return crowded_out_; }
-    const Looking& looking() const { return looking_; }
+    const ProbeContext& context() const { return context_; }
 
   private:
     struct Cell {
@@ -166,7 +166,7 @@ class OpticPaths {
     bool on_film(Id facet) const;
     std::vector<Id> wanted_facets(std::span<const Id> facets);
     void set_film_corner(Id corner, const Vec2& pixel);
-    void look_at_corners(std::span<const Id> facets);
+    void probe_corners(std::span<const Id> facets);
     void set_kappas(std::span<const DividedFacet> divided) const;
     void append(Id facet, Id cell, DividedFacet& divided);
     void append_part(Id leaf, FacetPart& part);
@@ -177,16 +177,16 @@ class OpticPaths {
     Id node_of(Id parent, const PathSegment& segment);
     bool touches_object(const FacetPart& part, std::size_t history) const;
 
-    Looking looking_;
+    ProbeContext context_;
     const SurfaceGrid* grid_ = nullptr;  // null on the film
     FilmWindow window_;
     DivideParams params_;
     RayMesh outline_;
-    std::vector<Vec3> incident_;                       // per corner of the grid: the camera's ray there
-    std::vector<Place> places_;                        // per corner; on the film the point alone: the facet's
-    std::vector<std::unique_ptr<Look>> corner_looks_;  // per grid corner and side, where asked for
-    std::vector<Cell> cells_;                          // one per facet, then parts
-    std::vector<char> has_room_;                       // one per facet, once they are counted
+    std::vector<Vec3> incident_;  // per corner of the grid: the camera's ray there
+    std::vector<Place> places_;   // per corner; on the film the point alone: the facet's
+    std::vector<std::unique_ptr<PathProbe>> corner_probes_;  // per grid corner and side, where asked for
+    std::vector<Cell> cells_;                                // one per facet, then parts
+    std::vector<char> has_room_;                             // one per facet, once they are counted
     std::size_t crowded_out_ = 0;
     std::vector<char> prepared_;
     std::vector<PathLeaf> leaves_;

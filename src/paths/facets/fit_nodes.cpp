@@ -26,7 +26,7 @@ struct NodeFacet {
     IdTriple corners;
 
     const PathSegment& at_corner(std::size_t k) const {
-        return part.corners[k].look->segments[part.segment[k][history]];
+        return part.corners[k].probe->segments[part.segment[k][history]];
     }
     bool is_first_reflection() const { return node.parent == kNone && node.step.event == Event::kReflect; }
 
@@ -35,7 +35,7 @@ struct NodeFacet {
         std::array<Vec3, 3> screen;
         double w = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            screen[k] = part.corners[k].look->screen;
+            screen[k] = part.corners[k].probe->screen;
             w += weights[static_cast<int>(k)] * screen[k].z;
         }
         return std::fabs(triple(screen[0], screen[1], screen[2])) / (w * w * w);
@@ -45,16 +45,16 @@ struct NodeFacet {
     Vec3 of_node(const Vec3& weights) const {
         Vec3 own;
         for (std::size_t k = 0; k < 3; ++k)
-            own[static_cast<int>(k)] = weights[static_cast<int>(k)] * part.corners[k].look->screen.z /
+            own[static_cast<int>(k)] = weights[static_cast<int>(k)] * part.corners[k].probe->screen.z /
                                        node.mesh.screen[corners[k]].z;
         return own / (own.x + own.y + own.z);
     }
 
-    double kappa(const Vec3& own) const {
+    double ray_scale(const Vec3& own) const {
         double sum = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Look& look = *part.corners[k].look;
-            const double plain = length(look.incident) * farther(look, at_corner(k), node.unfolds);
+            const PathProbe& probe = *part.corners[k].probe;
+            const double plain = length(probe.incident) * farther(probe, at_corner(k), node.unfolds);
             sum += own[static_cast<int>(k)] * length(node.mesh.rays[corners[k]].direction) / plain;
         }
         return sum;
@@ -70,12 +70,12 @@ struct NodeFacet {
         for (std::size_t i = 0; i < part.inside.size(); ++i) {
             const PartInside& inside = part.inside[i];
             if (inside.segment.empty()) continue;
-            const Look& look = *inside.at.look;
-            const PathSegment& segment = look.segments[inside.segment[history]];
+            const PathProbe& probe = *inside.at.probe;
+            const PathSegment& segment = probe.segments[inside.segment[history]];
             const Vec3 own = of_node(kInsideWeights[i]);
             const NodeCorner exact = is_first_reflection()
-                                         ? first_reflection(look, &segment)
-                                         : later_corner(look, segment, kappa(own), node.unfolds);
+                                         ? first_reflection(probe, &segment)
+                                         : later_corner(probe, segment, ray_scale(own), node.unfolds);
             samples.push_back({corners, own, (i < 3 ? kAtMiddle : kAtCentre) * density(kInsideWeights[i]),
                                value_of(exact.ray, exact.next)});
         }
@@ -84,7 +84,7 @@ struct NodeFacet {
 
 bool takes_part(const FacetPart& part) {
     return std::all_of(part.corners.begin(), part.corners.end(), [](const PartCorner& corner) {
-        return corner.look->state == LookState::kSeen && corner.look->screen.z > 0;
+        return corner.probe->state == ProbeState::kSeen && corner.probe->screen.z > 0;
     });
 }
 

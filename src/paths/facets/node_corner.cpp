@@ -4,23 +4,23 @@
 
 namespace trilens {
 
-NodeCorner first_reflection(const Look& look, const PathSegment* segment) {
+NodeCorner first_reflection(const PathProbe& probe, const PathSegment* segment) {
     NodeCorner corner;
-    corner.ray = {look.place.point, mirrored(look.incident, look.place.normal)};
-    corner.screen = look.screen;
-    if (segment) corner.next = segment->next / length(look.incident);
+    corner.ray = {probe.place.point, mirrored(probe.incident, probe.place.normal)};
+    corner.screen = probe.screen;
+    if (segment) corner.next = segment->next / length(probe.incident);
     return corner;
 }
 
-double farther(const Look& look, const PathSegment& segment, bool unfolds) {
-    return unfolds ? segment.way / length(look.incident) : 1;
+double farther(const PathProbe& probe, const PathSegment& segment, bool unfolds) {
+    return unfolds ? segment.way / length(probe.incident) : 1;
 }
 
-NodeCorner later_corner(const Look& look, const PathSegment& segment, double kappa, bool unfolds) {
-    const double factor = farther(look, segment, unfolds);
-    const double size = length(look.incident) * factor * kappa;
+NodeCorner later_corner(const PathProbe& probe, const PathSegment& segment, double ray_scale, bool unfolds) {
+    const double factor = farther(probe, segment, unfolds);
+    const double size = length(probe.incident) * factor * ray_scale;
     return {{segment.ray.origin, size * segment.ray.direction},
-            factor * look.screen,
+            factor * probe.screen,
             segment.next / size,
             segment.weight};
 }

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "paths/probe/look.h"
+#include "paths/probe/path_probe.h"
 
 namespace trilens {
 
@@ -16,13 +16,13 @@ struct NodeCorner {
 
 /// The first reflection: the mirrored ray as long as the eye ray, which keeps a flat mirror exact. Beyond the
 /// silhouette, where there is no segment (null), the mirror law goes on.
-NodeCorner first_reflection(const Look& look, const PathSegment* segment);
+NodeCorner first_reflection(const PathProbe& probe, const PathSegment* segment);
 
 /// How much farther the chord lies whose weights hold: after reflections alone the one seen in the mirrors,
 /// farther away by the way between them, so that flat mirrors stay exact; else 1.
-double farther(const Look& look, const PathSegment& segment, bool unfolds);
+double farther(const PathProbe& probe, const PathSegment& segment, bool unfolds);
 
-/// A later segment's ray, as long as the eye ray times kappa and what `farther` says.
-NodeCorner later_corner(const Look& look, const PathSegment& segment, double kappa, bool unfolds);
+/// A later segment's ray, as long as the eye ray times the ray scale and what `farther` says.
+NodeCorner later_corner(const PathProbe& probe, const PathSegment& segment, double ray_scale, bool unfolds);
 
 }  // namespace trilens

@@ -23,8 +23,8 @@ double largest_of(const Vec3& v) {
 }
 
 /// The segment of history h at a point of the part; null where it is not seen.
-const PathSegment* segment_at(const Look* look, const std::vector<std::size_t>& match, std::size_t h) {
-    return look && h < match.size() ? &look->segments[match[h]] : nullptr;
+const PathSegment* segment_at(const PathProbe* probe, const std::vector<std::size_t>& match, std::size_t h) {
+    return probe && h < match.size() ? &probe->segments[match[h]] : nullptr;
 }
 
 /// One history's last stretch at all points of a part.
@@ -53,10 +53,10 @@ struct Stretch {
 Stretch stretch_of(const FacetPart& part, std::size_t h) {
     Stretch stretch;
     for (std::size_t k = 0; k < 3; ++k)
-        stretch.corner[k] = segment_at(part.corners[k].look, part.segment[k], h);
+        stretch.corner[k] = segment_at(part.corners[k].probe, part.segment[k], h);
     for (std::size_t i = 0; i < part.inside.size(); ++i)
         (i < 3 ? stretch.middle[i] : stretch.centre) =
-            segment_at(part.inside[i].at.look, part.inside[i].segment, h);
+            segment_at(part.inside[i].at.probe, part.inside[i].segment, h);
     return stretch;
 }
 
@@ -102,7 +102,7 @@ Interval heights(const Beam::Plane& plane, const Beam::Piece& piece) {
 
 class Prover {
   public:
-    explicit Prover(const HistoryProof& proof) : proof_(proof), world_(*proof.looking.world) {}
+    explicit Prover(const HistoryProof& proof) : proof_(proof), world_(*proof.context.world) {}
     bool prove();
 
   private:
@@ -152,14 +152,14 @@ int Prover::side_at(Id history, Id optic) const {
     }
     const PathOptic& asked = world_.optics[optic];
     if (!asked.mirror) {
-        const auto holds = [&](const PartCorner& corner) { return corner.look->around.holds(optic); };
+        const auto holds = [&](const PartCorner& corner) { return corner.probe->around.holds(optic); };
         const auto inside = std::count_if(part.corners.begin(), part.corners.end(), holds);
         return inside == 0 ? 1 : inside == 3 ? -1 : 0;
     }
     // Nothing goes through a mirror: it is as for the camera's rays.
     const Box box = asked.patches().bounds();
     for (const PartCorner& corner : part.corners)
-        if (box.holds(corner.look->place.point - corner.look->incident)) return 0;
+        if (box.holds(corner.probe->place.point - corner.probe->incident)) return 0;
     return 1;
 }
 
@@ -240,8 +240,8 @@ Id Prover::next_optic_of(std::size_t h) const {
 bool Prover::is_clear(std::size_t h, const Stretch& stretch) const {
     const PathSegment& history = proof_.part.histories[h];
     const auto turned = [&](std::size_t k) {
-        const Look& look = *proof_.part.corners[k].look;
-        return Ray{look.place.point, normalize_or_zero(mirrored(look.incident, look.place.normal))};
+        const PathProbe& probe = *proof_.part.corners[k].probe;
+        return Ray{probe.place.point, normalize_or_zero(mirrored(probe.incident, probe.place.normal))};
     };
     const auto rays = stretch.each<Ray>([](const PathSegment& one) { return one.ray; }, turned);
     const std::optional<Beam> beam = Beam::around(rays);
@@ -273,28 +273,30 @@ bool Prover::is_clear(std::size_t h, const Stretch& stretch) const {
 bool Prover::camera_arrives() const {
     PartSamples<Ray> rays;
     PartSamples<Vec3> hits;
-    const auto ray_to = [](const Look& look) { return Ray{look.place.point - look.incident, look.incident}; };
+    const auto ray_to = [](const PathProbe& probe) {
+        return Ray{probe.place.point - probe.incident, probe.incident};
+    };
     const FacetPart& part = proof_.part;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Look& look = *part.corners[k].look;
-        if (look.state != LookState::kSeen) return false;
-        rays.corner[k] = ray_to(look);
-        hits.corner[k] = look.place.point;
+        const PathProbe& probe = *part.corners[k].probe;
+        if (probe.state != ProbeState::kSeen) return false;
+        rays.corner[k] = ray_to(probe);
+        hits.corner[k] = probe.place.point;
     }
     if (part.inside.size() == 4) {
         rays.middle.emplace(), hits.middle.emplace();
         for (std::size_t i = 0; i < 4; ++i) {
-            const Look& look = *part.inside[i].at.look;
-            if (look.state != LookState::kSeen) return false;
-            (i < 3 ? (*rays.middle)[i] : rays.centre.emplace()) = ray_to(look);
-            (i < 3 ? (*hits.middle)[i] : hits.centre.emplace()) = look.place.point;
+            const PathProbe& probe = *part.inside[i].at.probe;
+            if (probe.state != ProbeState::kSeen) return false;
+            (i < 3 ? (*rays.middle)[i] : rays.centre.emplace()) = ray_to(probe);
+            (i < 3 ? (*hits.middle)[i] : hits.centre.emplace()) = probe.place.point;
         }
     }
     const std::optional<Beam> beam = Beam::around(rays);
     if (!beam) return false;
     Flight flight{*beam};
     flight.arrives = true;
-    flight.to = proof_.looking.optic;
+    flight.to = proof_.context.optic;
     flight.end = beam->plane_through(hits);
     int arriving = 0;
     return misses(flight, flight.to, arriving) && (arriving != 0 || !world_.optics[flight.to].patches);

@@ -9,7 +9,7 @@ namespace trilens {
 
 /// What is asked about a part of a facet.
 struct HistoryProof {
-    const Looking& looking;
+    const ProbeContext& context;
     const FacetPart& part;  // projected: with its histories, corners and what was looked at inside
     /// Whether an optic that the first reflection may meet is drawn over it, wherever it is met. Unset: none
     /// is.

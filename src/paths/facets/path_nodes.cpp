@@ -11,18 +11,18 @@
 namespace trilens {
 namespace {
 
-/// What a part's histories leave out of the light behind the first optic. Layers have their own.
+/// What a part's histories leave out of the light behind the first optic. Nested optics have their own.
 Vec3 faint_light(const FacetPart& part) {
     Vec3 most(0);
     if (part.method != LeafMethod::kProjected || part.layered) return most;
     for (std::size_t k = 0; k < 3; ++k) {
         if (part.segment[k].empty()) continue;
-        const Look& look = *part.corners[k].look;
-        std::vector<char> carried(look.segments.size(), 0);
+        const PathProbe& probe = *part.corners[k].probe;
+        std::vector<char> carried(probe.segments.size(), 0);
         for (const std::size_t s : part.segment[k]) carried[s] = 1;
-        std::array<Vec3, 2> left{look.cut.faint_behind, look.cut.faint_behind};  // by the first event
-        for (std::size_t s = 0; s < look.segments.size(); ++s) {
-            const PathSegment& segment = look.segments[s];
+        std::array<Vec3, 2> left{probe.cut.faint_behind, probe.cut.faint_behind};  // by the first event
+        for (std::size_t s = 0; s < probe.segments.size(); ++s) {
+            const PathSegment& segment = probe.segments[s];
             if (!carried[s] && (segment.parent == kNone || carried[segment.parent]))
                 left[segment.path == Path::kRefract] += segment.weight;
         }
@@ -72,7 +72,7 @@ Id OpticPaths::node_of(Id parent, const PathSegment& segment) {
     node.path = segment.path;
     node.colours = segment.colours;
     node.medium = segment.medium;
-    node.unfolds = segment.step.event != Event::kTransmit && !looking_.camera.parallel;
+    node.unfolds = segment.step.event != Event::kTransmit && !context_.camera.parallel;
     if (parent != kNone) {
         node.unfolds = node.unfolds && nodes_[parent].unfolds;
         node.step_count = static_cast<std::uint16_t>(nodes_[parent].step_count + 1);
@@ -93,20 +93,20 @@ void OpticPaths::append_part(Id leaf, FacetPart& part) {
         PathNode& node = nodes_[node_index[h]];
         const bool first = node.parent == kNone && node.step.event == Event::kReflect;
 
-        // Kappa of corners where it is not known: the others' mean.
-        std::array<double, 3> kappa{0, 0, 0};
+        // the ray scale of corners where it is not known: the others' mean.
+        std::array<double, 3> ray_scale{0, 0, 0};
         double sum = 0, known = 0;
         for (std::size_t k = 0; k < 3 && !first; ++k) {
-            kappa[k] = part.corners[k].look->kappa[part.segment[k][h]];
-            sum += kappa[k];
-            known += kappa[k] > 0;
+            ray_scale[k] = part.corners[k].probe->ray_scale[part.segment[k][h]];
+            sum += ray_scale[k];
+            known += ray_scale[k] > 0;
         }
         IdTriple facet{};
         for (std::size_t k = 0; k < 3; ++k) {
-            const Look& look = *part.corners[k].look;
+            const PathProbe& probe = *part.corners[k].probe;
             const bool seen = !part.segment[k].empty();
-            const PathSegment* segment = seen ? &look.segments[part.segment[k][h]] : nullptr;
-            const bool guessed = !first && kappa[k] == 0;
+            const PathSegment* segment = seen ? &probe.segments[part.segment[k][h]] : nullptr;
+            const bool guessed = !first && ray_scale[k] == 0;
             const Id shared = guessed || alone ? kNone : part.corners[k].shared;
             if (shared != kNone) {
                 const auto found = corner_of_node_[node_index[h]].find(shared);
@@ -117,14 +117,14 @@ void OpticPaths::append_part(Id leaf, FacetPart& part) {
             }
             const double mean = known > 0 ? sum / known : 1;
             const NodeCorner corner =
-                first ? first_reflection(look, segment)
-                      : later_corner(look, *segment, guessed ? mean : kappa[k], node.unfolds);
+                first ? first_reflection(probe, segment)
+                      : later_corner(probe, *segment, guessed ? mean : ray_scale[k], node.unfolds);
             facet[k] = static_cast<Id>(node.mesh.rays.size());
             node.mesh.rays.push_back(corner.ray);
             node.mesh.screen.push_back(corner.screen);
             node.next.push_back(corner.next);
             node.weight.push_back(corner.weight);
-            node.farther.push_back(first ? 1 : farther(look, *segment, node.unfolds));
+            node.farther.push_back(first ? 1 : farther(probe, *segment, node.unfolds));
             if (shared != kNone) corner_of_node_[node_index[h]].insert({shared, facet[k]});
         }
         part.node_facet[h] = static_cast<Id>(node.mesh.facets.size());
@@ -142,7 +142,7 @@ bool OpticPaths::touches_object(const FacetPart& part, std::size_t history) cons
     if (!params_.objects || part.histories[history].ends || part.inside.empty()) return false;
     const PartInside& middle = part.inside.back();
     if (middle.segment.empty()) return false;
-    const PathSegment& exact = middle.at.look->segments[middle.segment[history]];
+    const PathSegment& exact = middle.at.probe->segments[middle.segment[history]];
     const Hit hit = params_.objects->first_hit(exact.ray);
     return hit.seen() && std::fabs(hit.t - exact.next) <= kTouching * exact.next;
 }

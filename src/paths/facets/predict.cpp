@@ -29,9 +29,9 @@ double length_of(const Vec2& shift) {
 }  // namespace
 
 double predicted_displacement(const PredictedRay& predicted) {
-    const PathSegment& exact = predicted.look.segments[predicted.segment];
+    const PathSegment& exact = predicted.probe.segments[predicted.segment];
     const Ray& truth = exact.ray;
-    const std::vector<Beside>& side = predicted.look.beside;
+    const std::vector<OffsetProbe>& side = predicted.probe.beside;
     if (side.size() != 2 || !side[0].segments[predicted.segment] || !side[1].segments[predicted.segment])
         return kNoError;
 

@@ -3,15 +3,15 @@
 
 #include "base/raymesh/ray_mesh.h"
 #include "intersect/tracer.h"
-#include "paths/probe/look.h"
+#include "paths/probe/path_probe.h"
 
 namespace trilens {
 
 /// A facet's ray beside the exact one, through the same point of the film.
 struct PredictedRay {
-    const Looking& looking;
-    const Look& look;         // kSeen, with its places beside
-    std::size_t segment = 0;  // of the look
+    const ProbeContext& context;
+    const PathProbe& probe;   // kSeen, with its places beside
+    std::size_t segment = 0;  // of the probe
     Ray ray;                  // what the facet has there, not unit
     Hit hit;                  // what it meets there first, before the next optic; unset: the environment
 };

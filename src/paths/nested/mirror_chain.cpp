@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/util/check.h"
-#include "paths/probe/kappa.h"
+#include "paths/probe/ray_scale.h"
 #include "reflect/mirror.h"
 
 namespace trilens {
@@ -107,8 +107,8 @@ std::optional<Vec2> step_against(const ChainRay& of, const Vec3& point) {
 
 }  // namespace
 
-double ChainRay::kappa() const {
-    return kappa_of(1, std::fabs(triple(ray.direction, direction_along[0], direction_along[1])));
+double ChainRay::ray_scale() const {
+    return ray_scale_of(1, std::fabs(triple(ray.direction, direction_along[0], direction_along[1])));
 }
 
 std::optional<ChainRay> chain_ray(const MirrorChain& chain, const Vec3& eye_direction) {

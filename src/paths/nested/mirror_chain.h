@@ -38,7 +38,7 @@ struct ChainRay {
 
     /// The cube root of the solid angle that a bundle has at the eye over that on this ray (mathematics,
     /// section 6), within 1/50 and 50; 1 over flat mirrors.
-    double kappa() const;
+    double ray_scale() const;
 };
 
 /// The ray that leaves the chain for a direction of the eye, any length; none where it misses a mirror.

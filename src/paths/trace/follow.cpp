@@ -117,7 +117,7 @@ void Follower::run(const Pending& from) {
     segment.principal = from.principal;
     segment.colours = from.branch.colours;
     segment.depth = from.depth;
-    segment.medium = felt_body(world_, from.branch.media);
+    segment.medium = active_medium(world_, from.branch.media);
     segment.ray = {from.point, from.branch.direction};
     segment.way = from.way;
     segment.weight = from.weight;
@@ -201,7 +201,7 @@ std::optional<NextOptic> meet(const PathWorld& world, Id optic, const LeavingRay
 
 /// Among optics that are met at the same place.
 int turn_of(const PathWorld& world, const NextOptic& next) {
-    return turn_at_place(world.optics[next.meeting.optic].mirror, next.meeting.front);
+    return coincident_order(world.optics[next.meeting.optic].mirror, next.meeting.front);
 }
 
 /// The branch that a segment took; null where there is none.
@@ -252,7 +252,7 @@ std::vector<std::optional<PathSegment>> repeat_paths(const PathWorld& world, con
         segment.way = from.way;
         segment.weight =
             segment.parent == kNone ? first_weight(segment.colours) : from.weight * branch->weight;
-        segment.medium = felt_body(world, branch->media);
+        segment.medium = active_medium(world, branch->media);
         segment.turned = std::fabs(dot(from.meeting.incoming, from.meeting.normal));
         segment.refraction = branch->refraction;
         if (!segment.ends) {

@@ -104,7 +104,7 @@ struct LeavingRay {
 
 /// Among optics that are met at the same place the one with the least comes first: mirrors, then bodies that
 /// the ray comes into by their front, then those that it leaves.
-constexpr int turn_at_place(bool mirror, bool front) {
+constexpr int coincident_order(bool mirror, bool front) {
     return mirror ? 0 : front ? 1 : 2;
 }
 

@@ -28,7 +28,7 @@ Vec3 first_weight(const HistoryQuery& query, const PathStart& start) {
     for (const Branch& branch : branches(*query.world, start.first, start.around, kAllColours))
         if (branch.step == begin.step && branch.colours == begin.colours)
             return branch.weight *
-                   body_transmittance(*query.world, felt_body(*query.world, start.around), start.way);
+                   body_transmittance(*query.world, active_medium(*query.world, start.around), start.way);
     return Vec3(0);
 }
 

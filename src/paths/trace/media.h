@@ -1,4 +1,4 @@
-// The bodies of glass that a ray is inside of, and which of them it feels.
+// Nested dielectrics: the interior list of a ray, and its active medium.
 #pragma once
 
 #include <array>
@@ -42,7 +42,7 @@ struct Media {
     /// last entered among equals; kNone: air. `priority(optic)` gives an optic's.
     /// Source: Schmidt and Budge, Simple Nested Dielectrics in Ray Traced Images, JGT 2002.
     template <typename Priority>
-    Id felt(const Priority& priority) const {
+    Id active(const Priority& priority) const {
         Id best = kNone;
         for (int i = 0; i < count; ++i) {
             const Id one = optic[static_cast<std::size_t>(i)];

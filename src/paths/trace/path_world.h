@@ -34,13 +34,13 @@ struct PathWorld {
     const Tracer* objects = nullptr;      // that optics may lie on, see follow_paths; null: none
 };
 
-/// The body whose glass is felt inside of these; kNone: air.
-inline Id felt_body(const PathWorld& world, const Media& media) {
-    return media.felt([&](Id optic) { return world.optics[optic].priority; });
+/// The body whose glass is active inside of these; kNone: air.
+inline Id active_medium(const PathWorld& world, const Media& media) {
+    return media.active([&](Id optic) { return world.optics[optic].priority; });
 }
 /// Its material; null: air.
 inline const Material* felt_glass(const PathWorld& world, const Media& media) {
-    const Id body = felt_body(world, media);
+    const Id body = active_medium(world, media);
     return body == kNone ? nullptr : world.optics[body].material;
 }
 

@@ -47,8 +47,8 @@ double least_change(const FacetWeights& weights, const Vec3& e) {
     return std::sqrt(std::max(0.0, (xx + yy - std::hypot(xx - yy, 2 * xy)) / 2));
 }
 
-/// The ray's hit of the triangle's plane. Beside the triangle, where coarse outlines reach, or behind the
-/// ray's origin: the triangle's point with the nearest barycentrics, at the depth of its foot on the ray.
+/// The ray's hit of the triangle's plane. Beside the triangle, where coarse outlines reach, or behind
+/// the ray's origin: the triangle's point with the nearest barycentrics, at the depth of its foot on the ray.
 LineHit hit_on_triangle(const TrilinearFacet& facet, const SceneTriangle& triangle, const Vec3& weights) {
     const std::optional<ImageVertex> hit = plane_hit(facet, triangle, weights);
     const bool beside =

@@ -6,7 +6,7 @@
 #include "base/util/nearest.h"
 #include "render/engines/facet_engine.h"
 #include "render/engines/limit_engine.h"
-#include "render/frame/surroundings.h"
+#include "render/frame/camera_media.h"
 
 namespace trilens {
 
@@ -15,14 +15,14 @@ FacetViews make_views(const World& world, const FrameParams& frame, const Engine
     prepare_shadows(world);
     if (engine.engine == Engine::kLimitTruth) {
         CameraRays camera = make_camera_rays(world.scene, frame.camera);
-        warn_of_surroundings(world, surroundings_of(world, camera), warn);
+        warn_of_unsure_media(world, camera_media_of(world, camera), warn);
         return {make_limit_viewer(world, std::move(camera)), {}};
     }
     FrameParams params = frame;
     if (engine.engine == Engine::kEnvironment || engine.engine == Engine::kPlanar)
         params.rays = CornerRays::kInterpolated;
     Frame placed = make_frame(world, params, warn);
-    warn_of_surroundings(world, placed.surroundings, warn);
+    warn_of_unsure_media(world, placed.camera_media, warn);
     return make_facet_views(world, std::move(placed), engine);
 }
 

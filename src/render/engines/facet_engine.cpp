@@ -7,7 +7,7 @@
 #include "base/raymesh/rasterize.h"
 #include "base/util/parallel.h"
 #include "projector/classic/classic.h"
-#include "render/engines/optic_ends.h"
+#include "render/engines/path_ends.h"
 #include "render/engines/rim_samples.h"
 #include "render/engines/trace_samples.h"
 #include "render/frame/optic_window.h"
@@ -48,9 +48,9 @@ struct FacetViewer {
     std::vector<DrawMesh> draw_optics;  // each optic's facets
     std::vector<SampleGrid> windows;    // where they may be seen
     bool redraws_direct = false;        // draw_objects is another engine than draw_first
-    std::optional<LayerStage> stage;
-    std::vector<std::unique_ptr<SeenLayers>> layers;  // per optic; null: it has none
-    std::vector<std::unique_ptr<OpticPaths>> paths;   // per optic
+    std::optional<NestedStage> stage;
+    std::vector<std::unique_ptr<NestedOptics>> nested;  // per optic; null: it has none
+    std::vector<std::unique_ptr<OpticPaths>> paths;     // per optic
     OpticRims rims;
 
     void operator()(const SampleGrid& grid, SampleViews& views) const;
@@ -67,7 +67,7 @@ struct FacetViewer {
     void meet_optic(std::size_t index, const Hit& hit, std::size_t sample, SampleViews& views) const;
     void view_rims(const SampleGrid& grid, SampleViews& views) const;
     void trace_each(std::span<const Id> samples, const SampleGrid& grid, SampleViews& views,
-                    std::vector<OpticEnds>& ends) const;
+                    std::vector<PathEnds>& ends) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void describe_optic(std::size_t index, const Hit& hit, SampleView& view, OpticView& on_optic) const;
 };
@@ -130,9 +130,10 @@ void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid
 bool FacetViewer::comes_first(std::size_t index, const Hit& hit, const SampleViews& views,
                               const SampleView& view) const {
     const SurfaceGrid& grid = frame.optics[index].facets->grid();
-    const int own = turn_at_place(world->optics[index].mirror,
-                                  faces_front(grid, grid.facets[hit.triangle], view.ray.direction));
-    const int other = turn_at_place(world->optics[view.optic].mirror, views.on_optic(view).incidence.front);
+    const int own = coincident_order(world->optics[index].mirror,
+                                     faces_front(grid, grid.facets[hit.triangle], view.ray.direction));
+    const int other =
+        coincident_order(world->optics[view.optic].mirror, views.on_optic(view).incidence.front);
     return own < other || (own == other && index < view.optic);
 }
 
@@ -216,29 +217,29 @@ void FacetViewer::redraw_direct(const FacetSamples& owned, const SampleGrid& gri
 
 /// The ends of samples that no facet speaks for, by the optic that their exact rays meet first.
 void FacetViewer::trace_each(std::span<const Id> samples, const SampleGrid& grid, SampleViews& views,
-                             std::vector<OpticEnds>& ends) const {
+                             std::vector<PathEnds>& ends) const {
     decide_traced({*world, frame, rims, reach()}, grid, samples, views);
     std::vector<std::vector<Id>> of_optic(frame.optics.size());
     for (const Id s : samples) of_optic[views.samples[s].optic].push_back(s);
     for (std::size_t i = 0; i < of_optic.size(); ++i)
-        trace_samples({*world, static_cast<Id>(i), paths[i]->looking().camera, grid}, of_optic[i], views,
+        trace_samples({*world, static_cast<Id>(i), paths[i]->context().camera, grid}, of_optic[i], views,
                       ends[i]);
 }
 
 void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     const FacetSamples owned = rasterize_facets(frame.camera.mesh, grid);
     view_objects(owned, grid, views);
-    set_surroundings(frame.surroundings, views);
+    set_initial_media(frame.camera_media, views);
     for (std::size_t i = 0; i < frame.optics.size(); ++i) view_optic(i, owned, grid, views);
     view_rims(grid, views);
     if (redraws_direct) redraw_direct(owned, grid, views);
     count_from_eye(frame.camera, views.samples);
-    std::vector<OpticEnds> ends;
+    std::vector<PathEnds> ends;
     ends.reserve(frame.optics.size());
     std::vector<Id> traced;
     for (std::size_t i = 0; i < frame.optics.size(); ++i)
         ends.push_back(draw_optic_paths({*world, static_cast<Id>(i), draw_paths, frame.optics[i],
-                                         layers[i].get(), grid, part_in(grid, windows[i])},
+                                         nested[i].get(), grid, part_in(grid, windows[i])},
                                         *paths[i], views, traced));
     trace_each(traced, grid, views, ends);
     collect_ends(std::move(ends), views);
@@ -255,12 +256,12 @@ FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice&
     auto viewer = std::make_shared<FacetViewer>();
     viewer->world = &world;
     viewer->frame = std::move(frame);
-    if (follows_paths(engine.engine)) viewer->stage = make_layer_stage(world, viewer->frame);
+    if (follows_paths(engine.engine)) viewer->stage = make_nested_stage(world, viewer->frame);
     for (std::size_t i = 0; i < viewer->frame.optics.size(); ++i) {
-        viewer->layers.push_back(viewer->stage ? make_seen_layers(world, viewer->frame, *viewer->stage, i)
+        viewer->nested.push_back(viewer->stage ? make_nested_optics(world, viewer->frame, *viewer->stage, i)
                                                : nullptr);
         viewer->paths.push_back(follows_paths(engine.engine)
-                                    ? make_optic_paths(world, viewer->frame, i, viewer->layers[i].get())
+                                    ? make_optic_paths(world, viewer->frame, i, viewer->nested[i].get())
                                     : make_approximate_paths(world, viewer->frame, i, engine.engine));
     }
     const bool has_limit = viewer->frame.max_error > 0 && follows_paths(engine.engine);

@@ -10,7 +10,7 @@ FirstSurface first_surface(const PathWorld& world, const Tracer& objects, const 
     first.object = objects.first_hit(ray);
     if (first.object.seen() && first.object.t > reach) first.object = {};
     const auto turn = [&](std::size_t optic, const SurfaceHit& hit) {
-        return turn_at_place(world.optics[optic].mirror, dot(hit.point.normal, ray.direction) <= 0);
+        return coincident_order(world.optics[optic].mirror, dot(hit.point.normal, ray.direction) <= 0);
     };
     const auto comes_first = [&](std::size_t optic, const SurfaceHit& hit) {
         if (first.optic == kNone) return true;

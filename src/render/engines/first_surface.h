@@ -16,8 +16,8 @@ struct FirstSurface {
 };
 
 /// Along `ray` (world frame, any length) up to t = reach. Of optics that touch where it meets them the one
-/// whose turn it is (turn_at_place); an object on which a body of glass lies comes before the body's surface,
-/// met from inside.
+/// whose turn it is (coincident_order); an object on which a body of glass lies comes before the body's
+/// surface, met from inside.
 FirstSurface first_surface(const PathWorld& world, const Tracer& objects, const Ray& ray, double reach);
 
 }  // namespace trilens

@@ -6,7 +6,7 @@
 #include "base/util/parallel.h"
 #include "render/engines/first_surface.h"
 #include "render/engines/follow_sample.h"
-#include "render/frame/surroundings.h"
+#include "render/frame/camera_media.h"
 #include "render/world/geometry.h"
 
 namespace trilens {
@@ -25,7 +25,7 @@ struct LimitViewer {
     CameraRays camera;
     const PathWorld* paths = nullptr;
     const Tracer* objects = nullptr;
-    Surroundings surroundings;
+    CameraMedia camera_media;
 
     void operator()(const SampleGrid& grid, SampleViews& views) const;
 
@@ -61,7 +61,7 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
                             [&](Id s, const Ray& ray) { views.samples[s].ray = ray; });
     }
 
-    set_surroundings(surroundings, views);
+    set_initial_media(camera_media, views);
     const std::size_t count = owned.sample.size();
     std::vector<Found> found((count + kSamplesPerTask - 1) / kSamplesPerTask);
     const auto samples_of = [&](std::size_t task) {
@@ -90,7 +90,7 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
 Viewer make_limit_viewer(const World& world, CameraRays camera) {
     auto viewer = std::make_shared<LimitViewer>();
     viewer->world = &world;
-    viewer->surroundings = surroundings_of(world, camera);
+    viewer->camera_media = camera_media_of(world, camera);
     viewer->camera = std::move(camera);
     viewer->objects = &object_tracer(world);
     viewer->paths = &path_world(world);

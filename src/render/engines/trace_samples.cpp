@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kTracedPerTask = 256;
 
 /// The camera's ray where it passes the exact surface by, at the rim of a facet: it goes straight on.
-void pass_by(const World& world, const SampleView& view, OpticEnds& out) {
+void pass_by(const World& world, const SampleView& view, PathEnds& out) {
     PathEnd end;
     end.path = Path::kReflect;
     end.first_step = out.steps.size();
@@ -31,12 +31,12 @@ Ray traced_ray(const PathCamera& camera, const Vec2& pixel, const Ray& of_facets
 }  // namespace
 
 void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samples, SampleViews& views,
-                   OpticEnds& out) {
+                   PathEnds& out) {
     const PathWorld& world = path_world(params.world);
-    std::vector<OpticEnds> found((samples.size() + kTracedPerTask - 1) / kTracedPerTask);
+    std::vector<PathEnds> found((samples.size() + kTracedPerTask - 1) / kTracedPerTask);
     parallel_for(found.size(), 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t task = from; task < to; ++task) {
-            OpticEnds& own = found[task];
+            PathEnds& own = found[task];
             const std::size_t last = std::min(samples.size(), (task + 1) * kTracedPerTask);
             for (std::size_t i = task * kTracedPerTask; i < last; ++i) {
                 SampleView& view = views.samples[samples[i]];
@@ -57,7 +57,7 @@ void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samp
             }
         }
     });
-    for (OpticEnds& own : found) {
+    for (PathEnds& own : found) {
         for (PathEnd& end : own.ends) end.first_step += out.steps.size();
         out.ends.insert(out.ends.end(), own.ends.begin(), own.ends.end());
         out.sample.insert(out.sample.end(), own.sample.begin(), own.sample.end());

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "paths/probe/look.h"
-#include "render/engines/node_drawer.h"
+#include "paths/probe/path_probe.h"
+#include "render/engines/history_drawer.h"
 #include "render/frame/views.h"
 #include "render/world/world.h"
 
@@ -21,6 +21,6 @@ struct TraceSamplesParams {
 /// followed. Where the camera is not linear their rays are its exact ones, as in the truth, not those of its
 /// facets; one that passes the exact surface by goes straight on.
 void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samples, SampleViews& views,
-                   OpticEnds& out);
+                   PathEnds& out);
 
 }  // namespace trilens

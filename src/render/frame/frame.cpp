@@ -37,7 +37,7 @@ FramedOptic frame_optic(const World& world, std::size_t index, const Frame& fram
             std::make_shared<FilmGrid>(make_film_grid(framed.facets->grid(), *camera.model, camera.film));
     }
     const auto add = [&](Path path) {
-        const double ior = relative_ior(world, index, frame.surroundings.fixed);
+        const double ior = relative_ior(world, index, frame.camera_media.fixed);
         framed.paths.push_back(
             camera.linear ? make_path_mesh(path, framed.facets->grid(), *camera.linear, ior)
                           : make_path_mesh(path, framed.film_grid->grid, framed.film_grid->views, ior));
@@ -54,12 +54,12 @@ std::string reason_for_none(const World& world, const Frame& frame, std::size_t 
     if (frame.max_error > 0) return "an error is asked for";
     if (frame.optics[optic].grid == GridKind::kScreen) return "its facets lie on the film";
     if (!frame.camera.linear || frame.camera.linear->parallel) return "the camera has no one eye";
-    if (!frame.surroundings.none()) return "the camera may be in glass";
+    if (!frame.camera_media.none()) return "the camera may be in glass";
     if (settings.max_depth < 1 || !settings.reflect) return "paths end before them";
     return {};
 }
 
-void warn_of_no_layers(const World& world, const Frame& frame, const Warn& warn) {
+void warn_of_no_nested_optics(const World& world, const Frame& frame, const Warn& warn) {
     if (!warn || world.optics.size() < 2) return;
     for (std::size_t i = 0; i < world.optics.size(); ++i)
         if (const std::string why = reason_for_none(world, frame, i); !why.empty())
@@ -80,7 +80,7 @@ CornerRays optic_rays(const World& world, std::size_t optic, const FrameParams& 
 Frame make_frame(const World& world, CameraRays camera, const FrameParams& params, const Warn& warn) {
     Frame frame;
     frame.camera = std::move(camera);
-    frame.surroundings = surroundings_of(world, frame.camera);
+    frame.camera_media = camera_media_of(world, frame.camera);
     frame.max_error = params.max_error.value_or(world.scene.render.max_error);
     check_facet_count(world, params.resolution);
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
@@ -96,7 +96,7 @@ Frame make_frame(const World& world, CameraRays camera, const FrameParams& param
                  " facets lie across a pole of the camera or reach where it has no image; what they reflect "
                  "or refract is not drawn");
     }
-    if (params.layered.value_or(false)) warn_of_no_layers(world, frame, warn);
+    if (params.layered.value_or(false)) warn_of_no_nested_optics(world, frame, warn);
     return frame;
 }
 
@@ -144,11 +144,11 @@ namespace {
 
 /// What the rays through a screen position start in; unset where all start in air.
 std::function<Media(const Vec3&)> media_at(const Frame& frame) {
-    if (frame.surroundings.none()) return {};
+    if (frame.camera_media.none()) return {};
     return [&frame](const Vec3& screen) {
-        if (!frame.surroundings.world) return frame.surroundings.fixed;
+        if (!frame.camera_media.by_ray) return frame.camera_media.fixed;
         const auto ray = screen.z > 0 ? exact_ray(frame.camera, Vec2(screen) / screen.z) : std::nullopt;
-        return ray ? frame.surroundings.of(*ray) : Media();
+        return ray ? frame.camera_media.of(*ray) : Media();
     };
 }
 
@@ -206,11 +206,11 @@ SeenGrid seen_grid(const Frame& frame, const FramedOptic& framed) {
 }  // namespace
 
 std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
-                                             const SeenLayers* layers) {
+                                             const NestedOptics* nested) {
     const FramedOptic& framed = frame.optics[optic];
     const bool for_error = frame.max_error > 0 && frame.max_error != kAnyError;
     const SeenGrid seen = seen_grid(frame, framed);
-    Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
+    ProbeContext context{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
     const Vec2 film(world.scene.film.width, world.scene.film.height);
     DivideParams params;
     params.fit = framed.rays == CornerRays::kFitted;
@@ -219,30 +219,30 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
     params.max_error =
         frame.max_error > 0 ? frame.max_error : believable_error(framed.resolution, world.scene.film.height);
     if (for_error) params.most_levels = kMostLevelsForError;
-    if (layers) {
-        params.layers_agree = [layers](const Vec2& pixel, Id next) { return layers->agree(pixel, next); };
-        params.layer_covers = [layers](Id other, const Vec2& low, const Vec2& high) {
-            return layers->may_cover(other, low, high);
+    if (nested) {
+        params.nested_agree = [nested](const Vec2& pixel, Id next) { return nested->agree(pixel, next); };
+        params.nested_covers = [nested](Id other, const Vec2& low, const Vec2& high) {
+            return nested->may_cover(other, low, high);
         };
     }
     // A camera that is not linear has paths by facets on the film: there its rays are exact.
     if (framed.grid == GridKind::kScreen || framed.model) {
         const FilmWindow window = film_window(world, framed, seen.views);
-        looking.camera = path_camera(frame.camera, window.depth);
-        looking.camera.film = film;
-        looking.camera.around = media_at(frame);
-        return std::make_unique<OpticPaths>(looking, window, params);
+        context.camera = path_camera(frame.camera, window.depth);
+        context.camera.film = film;
+        context.camera.around = media_at(frame);
+        return std::make_unique<OpticPaths>(context, window, params);
     }
-    looking.camera = path_camera(*frame.camera.linear);
-    looking.camera.film = film;
-    looking.camera.around = media_at(frame);
-    return std::make_unique<OpticPaths>(looking, *seen.grid, params);
+    context.camera = path_camera(*frame.camera.linear);
+    context.camera.film = film;
+    context.camera.around = media_at(frame);
+    return std::make_unique<OpticPaths>(context, *seen.grid, params);
 }
 
-std::optional<LayerStage> make_layer_stage(const World& world, const Frame& frame) {
-    if (!frame.camera.linear || frame.camera.linear->parallel || !frame.surroundings.none())
+std::optional<NestedStage> make_nested_stage(const World& world, const Frame& frame) {
+    if (!frame.camera.linear || frame.camera.linear->parallel || !frame.camera_media.none())
         return std::nullopt;
-    LayerStage stage;
+    NestedStage stage;
     stage.world = path_world(world);
     for (std::size_t i = 0; i < world.optics.size(); ++i)
         stage.optics.push_back(
@@ -256,24 +256,24 @@ std::optional<LayerStage> make_layer_stage(const World& world, const Frame& fram
     return stage;
 }
 
-std::unique_ptr<SeenLayers> make_seen_layers(const World& world, const Frame& frame, const LayerStage& stage,
-                                             std::size_t optic) {
+std::unique_ptr<NestedOptics> make_nested_optics(const World& world, const Frame& frame,
+                                                 const NestedStage& stage, std::size_t optic) {
     const FramedOptic& framed = frame.optics[optic];
     if (!framed.layered || world.optics.size() < 2 || !reason_for_none(world, frame, optic).empty())
         return nullptr;
     std::vector<Vec3> towards;
     for (const Vec3& point : framed.facets->grid().points) towards.push_back(point - stage.eye);
-    auto layers =
-        std::make_unique<SeenLayers>(stage, std::vector<Id>{static_cast<Id>(optic)}, std::move(towards));
-    layers->set_room(stage.camera.film.x * stage.camera.film.y);
-    return layers;
+    auto nested =
+        std::make_unique<NestedOptics>(stage, std::vector<Id>{static_cast<Id>(optic)}, std::move(towards));
+    nested->set_room(stage.camera.film.x * stage.camera.film.y);
+    return nested;
 }
 
 std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,
                                                    Engine engine) {
     const FramedOptic& framed = frame.optics[optic];
     const SeenGrid seen = seen_grid(frame, framed);
-    const double ior = relative_ior(world, optic, frame.surroundings.fixed);
+    const double ior = relative_ior(world, optic, frame.camera_media.fixed);
     std::vector<PathMesh> meshes;
     for (const PathMesh& path : framed.paths)
         meshes.push_back(engine == Engine::kPlanar
@@ -284,10 +284,10 @@ std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Fra
             if (one.path == path) return &one.mesh;
         return nullptr;
     };
-    Looking looking{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
-    looking.camera.around = media_at(frame);
+    ProbeContext context{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
+    context.camera.around = media_at(frame);
     return std::make_unique<OpticPaths>(
-        looking, FirstPaths{seen.grid, seen.views, find(Path::kReflect), find(Path::kRefract)});
+        context, FirstPaths{seen.grid, seen.views, find(Path::kReflect), find(Path::kRefract)});
 }
 
 const RayMesh* find_path(const FramedOptic& optic, Path path) {

@@ -7,11 +7,11 @@
 
 #include "paths/facets/facet_paths.h"
 #include "paths/first/corner_rays.h"
-#include "paths/nested/seen_layers.h"
+#include "paths/nested/nested_optics.h"
+#include "render/frame/camera_media.h"
 #include "render/frame/camera_rays.h"
 #include "render/frame/film_grid.h"
 #include "render/frame/request.h"
-#include "render/frame/surroundings.h"
 #include "render/world/geometry.h"
 
 namespace trilens {
@@ -31,12 +31,12 @@ struct FramedOptic {
     /// The grid's facet that a facet of the RayMeshes is.
     Id grid_facet(Id f) const { return film_grid ? film_grid->original[f] : f; }
     CornerRays rays = CornerRays::kInterpolated;
-    bool layered = false;  // optics seen in it are layers where they can be
+    bool layered = false;  // optics seen in it are nested optics where they can be
 };
 
 struct Frame {
     CameraRays camera;
-    Surroundings surroundings;        // of the camera
+    CameraMedia camera_media;         // of the camera
     std::vector<FramedOptic> optics;  // as World::optics
     double max_error = 0;             // as RenderSettings, or kAnyError
 };
@@ -56,17 +56,17 @@ PathCamera path_camera(const LinearCamera& camera);
 PathCamera path_camera(const CameraRays& camera, double depth);
 
 /// The paths over an optic's facets, as far as the scene has them followed. The frame must live longer, and
-/// `layers`: what is seen in the optic as layers by history; null: nothing.
+/// `nested optics`: what is seen in the optic as nested optics; null: nothing.
 std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
-                                             const SeenLayers* layers = nullptr);
+                                             const NestedOptics* nested = nullptr);
 
-/// What all layers of this camera have in common; none where it has no eye in air.
-std::optional<LayerStage> make_layer_stage(const World& world, const Frame& frame);
+/// What all nested optics of this camera have in common; none where it has no eye in air.
+std::optional<NestedStage> make_nested_stage(const World& world, const Frame& frame);
 
-/// What is seen in an optic, as layers; null where it has none: it is glass, or alone, its facets lie on the
-/// film, an error is asked for, or it is not to have them. `stage` must live longer.
-std::unique_ptr<SeenLayers> make_seen_layers(const World& world, const Frame& frame, const LayerStage& stage,
-                                             std::size_t optic);
+/// What is seen in an optic, as nested optics; null where it has none: it is glass, or alone, its facets lie
+/// on the film, an error is asked for, or it is not to have them. `stage` must live longer.
+std::unique_ptr<NestedOptics> make_nested_optics(const World& world, const Frame& frame,
+                                                 const NestedStage& stage, std::size_t optic);
 
 /// The paths as one of the usual approximations has them: kEnvironment or kPlanar.
 std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,

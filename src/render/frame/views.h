@@ -23,7 +23,7 @@ struct SampleView {
     bool traced = false;      // its own paths were followed, those of no facet
     bool unsure = false;      // the exact surfaces may come in another order than the facets
     std::uint8_t level = 0;   // how often its facet was divided
-    std::uint8_t layers = 0;  // layers of optics seen in optics that lie over its facet
+    std::uint8_t nested = 0;  // nested optics that lie over its facet
 };
 
 /// More of a sample that shows an optic.

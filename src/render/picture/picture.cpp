@@ -11,7 +11,7 @@
 #include "base/util/version.h"
 #include "paths/trace/follow.h"
 #include "render/engines/engine.h"
-#include "render/picture/layers.h"
+#include "render/picture/band_renderer.h"
 #include "scene/read/named_files.h"
 
 namespace trilens {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "render/frame/surroundings.h"
+#include "render/frame/camera_media.h"
 
 namespace trilens {
 namespace {

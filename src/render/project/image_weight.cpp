@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/frame/surroundings.h"
+#include "render/frame/camera_media.h"
 #include "shade/optic_weights.h"
 #include "shade/shade.h"
 
@@ -25,7 +25,7 @@ double incidence_cosine(Path path, const Vec3& in, const Vec3& out, double eta) 
 
 Vec3 weight_over_one(const World& world, const Frame& frame, const OneEventWay& way) {
     const Optic& optic = world.optics[way.optic];
-    const Media around = frame.surroundings.none() ? Media() : frame.surroundings.of(way.view);
+    const Media around = frame.camera_media.none() ? Media() : frame.camera_media.of(way.view);
     const Vec3 to_optic = way.from - way.view.origin, on = way.point - way.from;
     const Vec3 in = normalize_or_zero(way.view.direction), out = normalize_or_zero(on);
     const Material* before = glass_around(world, around);
@@ -44,8 +44,8 @@ Vec3 weight_over_one(const World& world, const Frame& frame, const OneEventWay& 
 }
 
 Vec3 weight_of_direct(const World& world, const Frame& frame, const Ray& view, double way) {
-    if (frame.surroundings.none()) return Vec3(1);
-    return transmittance(glass_around(world, frame.surroundings.of(view)), way);
+    if (frame.camera_media.none()) return Vec3(1);
+    return transmittance(glass_around(world, frame.camera_media.of(view)), way);
 }
 
 }  // namespace trilens

@@ -39,10 +39,10 @@ bool same_image(const SeveralOpticsImage& a, const SeveralOpticsImage& b) {
 }
 
 /// Whether the optic itself hides a point of it from the camera. `size`: the optic's, for parallel rays.
-bool is_hidden(const Looking& looking, const Vec3& screen, const Vec3& point, double size) {
-    Ray ray = looking.camera.ray(screen, point);
-    if (looking.camera.parallel) ray = {point - size * ray.direction, size * ray.direction};
-    const std::optional<SurfaceHit> hit = looking.world->optics[looking.optic].tracer->first_hit(ray);
+bool is_hidden(const ProbeContext& context, const Vec3& screen, const Vec3& point, double size) {
+    Ray ray = context.camera.ray(screen, point);
+    if (context.camera.parallel) ray = {point - size * ray.direction, size * ray.direction};
+    const std::optional<SurfaceHit> hit = context.world->optics[context.optic].tracer->first_hit(ray);
     return hit && hit->t < 1 - kPathFreeShare;
 }
 
@@ -54,7 +54,7 @@ std::vector<char> hidden_corners(const OpticPaths& paths, const SurfaceGrid& gri
         for (const Id corner : grid.facets[f]) wanted[corner] = 1;
     parallel_for(hidden.size(), kPathFacetsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t c = from; c < to; ++c)
-            hidden[c] = wanted[c] && is_hidden(paths.looking(), paths.outline().screen[c],
+            hidden[c] = wanted[c] && is_hidden(paths.context(), paths.outline().screen[c],
                                                grid.points[grid.corner_point[c]], size);
     });
     return hidden;
@@ -66,7 +66,7 @@ bool is_middle_hidden(const OpticPaths& paths, const SurfaceGrid& grid, Id facet
         screen += paths.outline().screen[corner] / 3.0;
         middle += grid.points[grid.corner_point[corner]] / 3.0;
     }
-    return is_hidden(paths.looking(), screen, middle, size);
+    return is_hidden(paths.context(), screen, middle, size);
 }
 
 /// The facets that may lie on the film and that the camera may see: it sees a corner or the middle.
@@ -102,8 +102,8 @@ HistoryQuery history_query(const World& world, const Frame& frame, const std::ve
     query.camera_ray = [&camera = frame.camera](const Vec2& pixel) {
         return exact_ray(camera, pixel).value_or(Ray{});
     };
-    if (!frame.surroundings.none())
-        query.around = [&frame](const Ray& ray) { return frame.surroundings.of(ray); };
+    if (!frame.camera_media.none())
+        query.around = [&frame](const Ray& ray) { return frame.camera_media.of(ray); };
     for (std::size_t i = 0; i < steps.size(); ++i) {
         PathSegment segment;
         segment.parent = i == 0 ? kNone : static_cast<Id>(i - 1);
@@ -188,7 +188,7 @@ void SeveralOpticsImages::add_lone_rays() {
 
 std::vector<PathSegment> SeveralOpticsImages::followed_from(const Vec2& pixel) const {
     const PathWorld& world = path_world(world_);
-    const Id optic = paths_->looking().optic;
+    const Id optic = paths_->context().optic;
     const Ray ray = history_query(world_, frame_, {}, {}).camera_ray(pixel);
     const std::optional<SurfaceHit> hit = world.optics[optic].tracer->first_hit(ray);
     if (!hit) return {};
@@ -196,7 +196,7 @@ std::vector<PathSegment> SeveralOpticsImages::followed_from(const Vec2& pixel) c
     return follow_paths(world, {{optic, incoming, hit->point.position, hit->point.normal,
                                  dot(incoming, hit->point.normal) <= 0},
                                 hit->t * length(ray.direction),
-                                frame_.surroundings.of(ray)})
+                                frame_.camera_media.of(ray)})
         .segments;
 }
 

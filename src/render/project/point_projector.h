@@ -7,9 +7,9 @@
 
 #include "render/frame/facet_lookup.h"
 #include "render/project/facet_images.h"
+#include "render/project/occlusion.h"
 #include "render/project/path_images.h"
 #include "render/project/project.h"
-#include "render/project/sightlines.h"
 #include "specular/specular_search.h"
 
 namespace trilens {
@@ -58,7 +58,7 @@ class PointProjector {
     ProjectRequest request_;
     Frame frame_;
     const CameraRays& camera_ = frame_.camera;
-    const Sightlines sight_;
+    const OcclusionQueries sight_;
     std::unique_ptr<MeshPointImages> camera_mesh_;             // of a camera that is not linear
     std::vector<std::unique_ptr<SpecularSearcher>> searcher_;  // per optic; kComplete
     std::vector<FacetLookup> facets_at_;                       // per optic; kComplete

@@ -161,13 +161,13 @@ std::unique_ptr<World> make_world(Scene scene, const Warn& warn) {
     return world;
 }
 
-KeptParts change_scene(World& world, Scene scene, const Warn& warn) {
+SceneReuse change_scene(World& world, Scene scene, const Warn& warn) {
     if (world.mesh_digests.empty()) world.mesh_digests = digests_of(world.scene);
     std::vector<std::string> digests = digests_of(scene);
     const auto is_kept = [&](std::size_t mesh) {
         return mesh < world.mesh_digests.size() && digests[mesh] == world.mesh_digests[mesh];
     };
-    KeptParts kept;
+    SceneReuse kept;
     kept.objects = digests.size() == world.mesh_digests.size();
     std::vector<Optic> optics;
     std::vector<Id> kept_optics;

@@ -7,7 +7,7 @@
 
 #include "base/raymesh/surface.h"
 #include "base/util/progress.h"
-#include "render/world/kept_parts.h"
+#include "render/world/scene_reuse.h"
 #include "scene/data/scene.h"
 #include "shade/shade.h"
 
@@ -46,7 +46,7 @@ std::unique_ptr<World> make_world(Scene scene, const Warn& warn);
 
 /// Gives the world another scene. Meshes that are the same in both, at the same index, keep what is built of
 /// them. Throws as make_world does, and then nothing has changed. Nobody may draw meanwhile.
-KeptParts change_scene(World& world, Scene scene, const Warn& warn);
+SceneReuse change_scene(World& world, Scene scene, const Warn& warn);
 
 /// The resolution of an optic's grid: `asked`, or its own where that is 0.
 inline int grid_resolution(const Optic& optic, int asked) {

@@ -17,11 +17,11 @@ struct CoveringFacet {
 
 /// Facets on the film, sorted into squares of it. Facets with a corner of w <= 0 cover nothing. Thread-safe
 /// to read.
-class LayerCover {
+class NestedCover {
   public:
-    LayerCover() = default;
+    NestedCover() = default;
     /// `outline`: screen positions and facets are asked, no rays. Must live longer. `covers`: per facet.
-    LayerCover(const RayMesh& outline, std::vector<char> covers);
+    NestedCover(const RayMesh& outline, std::vector<char> covers);
 
     /// The facet of least depth over a place; places on a facet's border belong to it, and of two equal ones
     /// the one of the lower number counts.

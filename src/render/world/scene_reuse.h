@@ -6,7 +6,7 @@
 namespace trilens {
 
 /// What of a world stayed as it was when its scene changed: with it stay the trees and grids built of it.
-struct KeptParts {
+struct SceneReuse {
     bool objects = false;    // all of them
     std::size_t optics = 0;  // how many, their surfaces, tracers and facets
 };

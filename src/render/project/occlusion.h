@@ -10,10 +10,10 @@ namespace trilens {
 
 /// Asks for segments from place to place, world frame. A segment is free if what it meets lies at its ends.
 /// Thread-safe to read; world and frame must live longer.
-class Sightlines {
+class OcclusionQueries {
   public:
     /// `exact`: optics are their exact surfaces, else the frame's facets.
-    Sightlines(const World& world, const Frame& frame, bool exact)
+    OcclusionQueries(const World& world, const Frame& frame, bool exact)
         : world_(world), frame_(frame), exact_(exact) {}
 
     bool is_free_of_objects(const Vec3& from, const Vec3& to) const;

@@ -1,5 +1,5 @@
 // Which layer is seen: the nearest over the chain that covers a place; and what is seen in that one.
-#include "paths/nested/seen_layers.h"
+#include "paths/nested/nested_optics.h"
 
 #include "paths/stage.h"
 #include "support/test.h"
@@ -28,7 +28,7 @@ PathCamera layers_camera_at(const Vec3& eye) {
 struct Layered {
     Stage stage;
     std::vector<SurfaceGrid> grids;
-    LayerStage layers;
+    NestedStage layers;
 
     void finish(const Vec3& eye, int n) {
         grids.reserve(stage.world.optics.size());
@@ -40,10 +40,10 @@ struct Layered {
         layers.eye = eye;
         layers.camera = layers_camera_at(eye);
     }
-    SeenLayers seen_in(Id mirror) const {
+    NestedOptics seen_in(Id mirror) const {
         std::vector<Vec3> towards;
         for (const Vec3& point : grids[mirror].points) towards.push_back(point - layers.eye);
-        return SeenLayers(layers, {mirror}, towards);
+        return NestedOptics(layers, {mirror}, towards);
     }
     /// The optics of the exact path of a pixel over the mirror alone, that one left out.
     std::optional<std::vector<Id>> exact(Id mirror, const Vec2& pixel) const {
@@ -62,7 +62,7 @@ struct Layered {
 struct Shown {
     std::size_t any = 0, other = 0, deeper = 0, deeper_other = 0;
 };
-Shown compare(const Layered& layered, SeenLayers& seen, Id mirror, int step) {
+Shown compare(const Layered& layered, NestedOptics& seen, Id mirror, int step) {
     seen.build();
     for (const auto& layer : seen.all())
         if (layer->deeper()) layer->deeper()->build();
@@ -74,14 +74,14 @@ Shown compare(const Layered& layered, SeenLayers& seen, Id mirror, int step) {
             if (!exact) continue;
             const auto there = seen.at(pixel);
             const Id next = exact->empty() ? kNone : exact->front();
-            const Id drawn = there ? seen.all()[there->layer]->optic() : kNone;
+            const Id drawn = there ? seen.all()[there->optic]->optic() : kNone;
             shown.any += next != kNone || drawn != kNone;
             shown.other += next != drawn;
-            if (next == kNone || next != drawn || !seen.all()[there->layer]->deeper()) continue;
-            const SeenLayers& behind = *seen.all()[there->layer]->deeper();
+            if (next == kNone || next != drawn || !seen.all()[there->optic]->deeper()) continue;
+            const NestedOptics& behind = *seen.all()[there->optic]->deeper();
             const auto then = behind.at(pixel);
             const Id after = exact->size() < 2 ? kNone : (*exact)[1];
-            const Id drawn_after = then ? behind.all()[then->layer]->optic() : kNone;
+            const Id drawn_after = then ? behind.all()[then->optic]->optic() : kNone;
             shown.deeper += after != kNone || drawn_after != kNone;
             shown.deeper_other += after != drawn_after;
         }
@@ -102,7 +102,7 @@ TEST_CASE("of two balls behind one another a flat mirror shows the nearer, as ex
     layered.stage.add_ball({1.8, 0.3, -1.5}, 0.6, mirror_of());
     layered.stage.add_ball({2.2, 0.2, 0.4}, 0.7, mirror_of());
     layered.finish({-1.2, 0.1, 3}, 16);
-    SeenLayers seen = layered.seen_in(0);
+    NestedOptics seen = layered.seen_in(0);
     const Shown shown = compare(layered, seen, 0, 2);
     REQUIRE(seen.all().size() == 2);
     CHECK(shown.any > 300);
@@ -115,7 +115,7 @@ TEST_CASE("of two balls behind one another a flat mirror shows the nearer, as ex
             const Vec2 pixel(x + 0.5, y + 0.5);
             if (!seen.all()[0]->cover().at(pixel) || !seen.all()[1]->cover().at(pixel)) continue;
             ++both;
-            CHECK(seen.at(pixel)->layer == 0);
+            CHECK(seen.at(pixel)->optic == 0);
         }
     CHECK(both > 20);
 }
@@ -127,7 +127,7 @@ TEST_CASE("mirror balls show each other, and each other's images, where exact pa
         layered.stage.add_ball({-0.75, 0.1, 0}, 0.8, mirror_of());
         layered.stage.add_ball({1, -0.2, 0.3}, 0.65, mirror_of());
         layered.finish({0.35, 0.5, 3}, n);
-        SeenLayers seen = layered.seen_in(1);
+        NestedOptics seen = layered.seen_in(1);
         const Shown shown = compare(layered, seen, 1, 1);
         REQUIRE(seen.all().size() == 1);
         CHECK(shown.any > 1500);
@@ -147,7 +147,7 @@ TEST_CASE("layers and exact paths agree but at outlines, and a way that no layer
     layered.stage.add_ball({-0.75, 0.1, 0}, 0.8, mirror_of());
     layered.stage.add_ball({1, -0.2, 0.3}, 0.65, mirror_of());
     layered.finish({0.35, 0.5, 3}, 16);
-    SeenLayers seen = layered.seen_in(1);
+    NestedOptics seen = layered.seen_in(1);
     CHECK(seen.agree({300, 300}, kNone));  // none is worked out yet
     seen.build();
     std::size_t inside = 0, outside = 0;

@@ -1,4 +1,4 @@
-#include "render/project/sightlines.h"
+#include "render/project/occlusion.h"
 
 namespace trilens {
 namespace {
@@ -8,24 +8,24 @@ constexpr double kSightFreeShare = 1e-6;
 
 }  // namespace
 
-bool Sightlines::is_free_of_objects(const Vec3& from, const Vec3& to) const {
+bool OcclusionQueries::is_free_of_objects(const Vec3& from, const Vec3& to) const {
     return !object_tracer(world_).occluded({from, to - from}, kSightFreeShare, 1 - kSightFreeShare);
 }
 
-bool Sightlines::is_free_of_facets(const Ray& segment, std::size_t optic) const {
+bool OcclusionQueries::is_free_of_facets(const Ray& segment, std::size_t optic) const {
     return !frame_.optics[optic].facets->tracer().occluded(segment, kSightFreeShare, 1 - kSightFreeShare);
 }
 
-bool Sightlines::is_free_of_surface(const Ray& segment, std::size_t optic) const {
+bool OcclusionQueries::is_free_of_surface(const Ray& segment, std::size_t optic) const {
     return !limit_tracer(world_, optic).meets(segment, kSightFreeShare, 1 - kSightFreeShare);
 }
 
-bool Sightlines::is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const {
+bool OcclusionQueries::is_free_of_optic(const Vec3& from, const Vec3& to, std::size_t optic) const {
     const Ray segment{from, to - from};
     return exact_ ? is_free_of_surface(segment, optic) : is_free_of_facets(segment, optic);
 }
 
-bool Sightlines::sees(const Vec3& from, const Vec3& to, Id on_facet) const {
+bool OcclusionQueries::sees(const Vec3& from, const Vec3& to, Id on_facet) const {
     if (!is_free_of_objects(from, to)) return false;
     const Ray segment{from, to - from};
     for (std::size_t i = 0; i < world_.optics.size(); ++i)
@@ -33,7 +33,7 @@ bool Sightlines::sees(const Vec3& from, const Vec3& to, Id on_facet) const {
     return true;
 }
 
-bool Sightlines::goes_straight(const Vec3& from, const Vec3& to, Id on_facet) const {
+bool OcclusionQueries::goes_straight(const Vec3& from, const Vec3& to, Id on_facet) const {
     const Ray segment{from, to - from};
     for (std::size_t i = 0; i < world_.optics.size(); ++i)
         if (i == on_facet ? !is_free_of_facets(segment, i) : !is_free_of_surface(segment, i)) return false;

@@ -1,4 +1,4 @@
-#include "paths/nested/layer_cover.h"
+#include "paths/nested/nested_cover.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ Bounds bounds_of(const RayMesh& mesh, const IdTriple& corners) {
 
 }  // namespace
 
-LayerCover::LayerCover(const RayMesh& outline, std::vector<char> covers) : outline_(&outline) {
+NestedCover::NestedCover(const RayMesh& outline, std::vector<char> covers) : outline_(&outline) {
     const std::size_t facets = outline.facets.size();
     weights_.resize(facets);
     std::vector<Bounds> bounds(facets);
@@ -74,7 +74,7 @@ LayerCover::LayerCover(const RayMesh& outline, std::vector<char> covers) : outli
     each_square([&](std::size_t square, Id f) { facet_[next[square]++] = f; });
 }
 
-bool LayerCover::may_cover(const Vec2& low, const Vec2& high) const {
+bool NestedCover::may_cover(const Vec2& low, const Vec2& high) const {
     if (facet_.empty() || !(low.x <= high_.x && low.y <= high_.y && high.x >= low_.x && high.y >= low_.y))
         return false;
     const auto square = [&](double at, std::size_t count) {
@@ -87,11 +87,11 @@ bool LayerCover::may_cover(const Vec2& low, const Vec2& high) const {
     return false;
 }
 
-double LayerCover::area() const {
+double NestedCover::area() const {
     return (high_.x - low_.x) * (high_.y - low_.y);
 }
 
-std::optional<CoveringFacet> LayerCover::at(const Vec2& pixel) const {
+std::optional<CoveringFacet> NestedCover::at(const Vec2& pixel) const {
     if (facet_.empty() ||
         !(pixel.x >= low_.x && pixel.y >= low_.y && pixel.x <= high_.x && pixel.y <= high_.y))
         return std::nullopt;

@@ -1,6 +1,6 @@
 // The facet over a place of the film: the nearest of those that overlap there, found as a search through all
 // of them finds it.
-#include "paths/nested/layer_cover.h"
+#include "paths/nested/nested_cover.h"
 
 #include "intersect/random_scene.h"
 #include "support/test.h"
@@ -56,7 +56,7 @@ TEST_CASE("the nearest facet over a place is found", "[paths]") {
         covers.push_back(f % 10 != 3);
     }
     mesh.rays.resize(mesh.screen.size());
-    const LayerCover cover(mesh, covers);
+    const NestedCover cover(mesh, covers);
     CHECK(cover.area() > 200 * 100);
     std::size_t over = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -70,8 +70,8 @@ TEST_CASE("the nearest facet over a place is found", "[paths]") {
         CHECK(length(found->weights - wanted->weights) < 1e-9);
     }
     CHECK(over > 500);
-    CHECK(!LayerCover().at({1, 1}));
-    CHECK(!LayerCover(mesh, std::vector<char>(covers.size(), 0)).at({100, 50}));
+    CHECK(!NestedCover().at({1, 1}));
+    CHECK(!NestedCover(mesh, std::vector<char>(covers.size(), 0)).at({100, 50}));
 }
 
 TEST_CASE("no place between two facets that share an edge is left open", "[paths][law]") {
@@ -90,7 +90,7 @@ TEST_CASE("no place between two facets that share an edge is left open", "[paths
             mesh.facets.push_back({a, a + 10, a + 9});
         }
     mesh.rays.resize(mesh.screen.size());
-    const LayerCover cover(mesh, std::vector<char>(mesh.facets.size(), 1));
+    const NestedCover cover(mesh, std::vector<char>(mesh.facets.size(), 1));
     for (const IdTriple& facet : mesh.facets)
         for (std::size_t k = 0; k < 3; ++k)
             for (int i = 0; i <= 20; ++i) {

@@ -1,4 +1,4 @@
-#include "paths/trace/bodies_around.h"
+#include "paths/trace/enclosing_bodies.h"
 
 #include <algorithm>
 #include <array>
@@ -44,9 +44,9 @@ Media bodies_along(const PathWorld& world, const std::vector<Id>& asked, const R
     return nested(std::move(held));
 }
 
-BodiesAround bodies_around(const PathWorld& world, const std::vector<Id>& asked, const Vec3& point) {
+EnclosingBodies enclosing_bodies(const PathWorld& world, const std::vector<Id>& asked, const Vec3& point) {
     std::vector<Held> held;
-    BodiesAround around;
+    EnclosingBodies around;
     for (const Id body : asked) {
         if (world.optics[body].mirror) continue;
         double way = 0;

@@ -1,4 +1,4 @@
-#include "render/engines/optic_ends.h"
+#include "render/engines/path_ends.h"
 
 #include <algorithm>
 #include <map>
@@ -22,7 +22,7 @@ void for_each_sample(const SampleGrid& part, const SampleGrid& whole, const Body
 }
 
 /// The part's samples that see the optic by one of its facets, by facet of its paths.
-FacetSamples samples_by_facet(const OpticEndsParams& params, const OpticPaths& paths, const SampleGrid& grid,
+FacetSamples samples_by_facet(const PathEndsParams& params, const OpticPaths& paths, const SampleGrid& grid,
                               const SampleViews& views) {
     std::vector<Id> owner(params.part.size(), kNone);
     for_each_sample(params.part, grid, [&](std::size_t s, std::size_t of_grid) {
@@ -63,41 +63,41 @@ std::vector<Id> leaves_of_samples(const OpticPaths& paths, const FacetSamples& o
     return leaf;
 }
 
-/// What is drawn: an optic that the camera sees itself, or a layer.
+/// What is drawn: an optic that the camera sees itself, or a nested optic.
 struct Shown {
     OpticPaths& paths;
-    SeenLayers* layers = nullptr;  // what is seen in it; null: none is a layer
-    FacetSamples owned;            // by facet of its paths
-    std::uint8_t depth = 0;        // layers that it lies over
+    NestedOptics* nested = nullptr;  // what is seen in it; null: none is a nested optic
+    FacetSamples owned;              // by facet of its paths
+    std::uint8_t depth = 0;          // nested optics that it lies over
 };
 
-/// How the samples of a layer came to it.
-struct LayerSamples {
-    std::vector<Id> owner;           // per sample its facet; kNone: it does not see the layer
+/// How the samples of a nested optic came to it.
+struct NestedSamples {
+    std::vector<Id> owner;           // per sample its facet; kNone: it does not see the nested optic
     std::vector<Id> entry;           // per sample, where it has a facet: of the next two
-    std::vector<PathEnd> before;     // the ends that the layer takes the place of
-    std::vector<Incidence> arrival;  // at the layer's optic
+    std::vector<PathEnd> before;     // the ends that the nested optic takes the place of
+    std::vector<Incidence> arrival;  // at the nested optic
 };
 
 /// Draws an optic, and what is seen in it, and so on. Samples are those of the part.
 class ShownDrawer {
   public:
-    ShownDrawer(const OpticEndsParams& params, const SampleGrid& whole, SampleViews& views)
+    ShownDrawer(const PathEndsParams& params, const SampleGrid& whole, SampleViews& views)
         : params_(params), grid_(params.part), whole_(whole), views_(views) {}
 
     /// Appends the ends of all its samples, but for those to be traced.
-    void draw(const Shown& shown, OpticEnds& out);
+    void draw(const Shown& shown, PathEnds& out);
 
     const std::vector<Id>& traced() const { return traced_; }  // samples of the whole
 
   private:
     void note(const Shown& shown, const std::vector<Id>& leaf);
-    std::vector<LayerSamples> take_covered(const Shown& shown, const std::vector<Id>& leaf,
-                                           OpticEnds& own) const;
-    bool covers(const SeenLayer& layer, const CoveringFacet& at, const PathEnd& end) const;
-    void put_behind(const SeenLayer& layer, const LayerSamples& samples, OpticEnds& ends) const;
+    std::vector<NestedSamples> take_covered(const Shown& shown, const std::vector<Id>& leaf,
+                                            PathEnds& own) const;
+    bool covers(const NestedOptic& one, const CoveringFacet& at, const PathEnd& end) const;
+    void put_behind(const NestedOptic& one, const NestedSamples& samples, PathEnds& ends) const;
 
-    const OpticEndsParams& params_;
+    const PathEndsParams& params_;
     const SampleGrid &grid_, &whole_;
     SampleViews& views_;
     std::vector<Id> traced_;
@@ -110,7 +110,7 @@ void ShownDrawer::note(const Shown& shown, const std::vector<Id>& leaf) {
         SampleView& view = views_.samples[of_whole];
         OpticView& on_optic = views_.on_optic(view);
         if (shown.depth == 0) view.leaf = leaf[s];
-        view.layers = shown.depth;
+        view.nested = shown.depth;
         view.level = of_sample.level;
         on_optic.predicted = of_sample.predicted;
         on_optic.cut = most_cut(on_optic.cut, shown.paths.cut());
@@ -121,29 +121,29 @@ void ShownDrawer::note(const Shown& shown, const std::vector<Id>& leaf) {
     views_.crowded_out += shown.paths.crowded_out();
 }
 
-/// Whether what the ray meets lies no nearer than the layer's point there.
-bool ShownDrawer::covers(const SeenLayer& layer, const CoveringFacet& at, const PathEnd& end) const {
+/// Whether what the ray meets lies no nearer than the nested optic's point there.
+bool ShownDrawer::covers(const NestedOptic& one, const CoveringFacet& at, const PathEnd& end) const {
     const Vec3& d = end.ray.direction;
-    const double t = dot(layer.point(at) - end.ray.origin, d) / dot(d, d);
+    const double t = dot(one.point(at) - end.ray.origin, d) / dot(d, d);
     return !(end.hit.seen() && end.hit.t <= t * (1 + kTouch));
 }
 
-/// Takes the ends out that layers cover.
-std::vector<LayerSamples> ShownDrawer::take_covered(const Shown& shown, const std::vector<Id>& leaf,
-                                                    OpticEnds& own) const {
-    const auto& layers = shown.layers->all();
-    std::vector<LayerSamples> taken(layers.size());
-    for (LayerSamples& one : taken) {
+/// Takes the ends out that nested optics cover.
+std::vector<NestedSamples> ShownDrawer::take_covered(const Shown& shown, const std::vector<Id>& leaf,
+                                                     PathEnds& own) const {
+    const auto& nested = shown.nested->all();
+    std::vector<NestedSamples> taken(nested.size());
+    for (NestedSamples& one : taken) {
         one.owner.assign(grid_.size(), kNone);
         one.entry.resize(grid_.size());
     }
-    std::vector<std::optional<LayerThere>> covered(own.ends.size());
+    std::vector<std::optional<NestedPlace>> covered(own.ends.size());
     parallel_for(own.ends.size(), kEndsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const Id s = own.sample[i];
             if (!shown.paths.leaves()[leaf[s]].layered) continue;
-            const std::optional<LayerThere> there = shown.layers->at(grid_.position(s));
-            if (there && covers(*layers[there->layer], there->facet, own.ends[i])) covered[i] = there;
+            const std::optional<NestedPlace> there = shown.nested->at(grid_.position(s));
+            if (there && covers(*nested[there->optic], there->facet, own.ends[i])) covered[i] = there;
         }
     });
     std::size_t kept = 0;
@@ -154,20 +154,20 @@ std::vector<LayerSamples> ShownDrawer::take_covered(const Shown& shown, const st
             continue;
         }
         const CoveringFacet& at = covered[i]->facet;
-        LayerSamples& samples = taken[covered[i]->layer];
+        NestedSamples& samples = taken[covered[i]->optic];
         samples.owner[own.sample[i]] = at.facet;
         samples.entry[own.sample[i]] = static_cast<Id>(samples.before.size());
         samples.before.push_back(own.ends[i]);
-        samples.arrival.push_back(layers[covered[i]->layer]->arrival(at));
+        samples.arrival.push_back(nested[covered[i]->optic]->arrival(at));
     }
     own.ends.resize(kept);
     own.sample.resize(kept);
     return taken;
 }
 
-/// Makes ends over a layer's optic ends over the mirror that it is seen in.
-void ShownDrawer::put_behind(const SeenLayer& layer, const LayerSamples& samples, OpticEnds& ends) const {
-    const Id optic = layer.optic();
+/// Makes ends over a nested optic ends over the mirror that it is seen in.
+void ShownDrawer::put_behind(const NestedOptic& one, const NestedSamples& samples, PathEnds& ends) const {
+    const Id optic = one.optic();
     const Material& material = params_.world.scene.materials[params_.world.optics[optic].material];
     std::vector<Step> steps;
     std::map<std::size_t, std::size_t> moved;  // first step before and now
@@ -176,7 +176,7 @@ void ShownDrawer::put_behind(const SeenLayer& layer, const LayerSamples& samples
         const Id entry = samples.entry[ends.sample[i]];
         const auto [found, added] = moved.insert({end.first_step, steps.size()});
         if (added) {
-            steps.push_back({layer.chain().back(), Event::kReflect});
+            steps.push_back({one.chain().back(), Event::kReflect});
             const auto own = ends.steps.begin() + static_cast<std::ptrdiff_t>(end.first_step);
             steps.insert(steps.end(), own, own + end.step_count);
         }
@@ -188,7 +188,7 @@ void ShownDrawer::put_behind(const SeenLayer& layer, const LayerSamples& samples
         const bool reflected = end.path == Path::kReflect;
         end.weight *= came.weight * (reflected ? weights.reflect : weights.refract);
         // Through glass light goes on where it can.
-        if (reflected && !layer.is_mirror())
+        if (reflected && !one.is_mirror())
             end.principal = end.principal && reflects_totally(material, arrival);
         end.principal = end.principal && came.principal;
         end.path = came.path;
@@ -197,7 +197,7 @@ void ShownDrawer::put_behind(const SeenLayer& layer, const LayerSamples& samples
     ends.steps = std::move(steps);
 }
 
-void append(OpticEnds from, OpticEnds& to) {
+void append(PathEnds from, PathEnds& to) {
     if (to.ends.empty()) {
         to = std::move(from);
         return;
@@ -210,26 +210,26 @@ void append(OpticEnds from, OpticEnds& to) {
     to.steps.insert(to.steps.end(), from.steps.begin(), from.steps.end());
 }
 
-void ShownDrawer::draw(const Shown& shown, OpticEnds& out) {
+void ShownDrawer::draw(const Shown& shown, PathEnds& out) {
     const std::vector<Id> seen = seen_facets(shown.owned);
     if (seen.empty()) return;
-    if (shown.layers) shown.layers->build();
+    if (shown.nested) shown.nested->build();
     shown.paths.prepare(seen);
     const std::vector<Id> leaf = leaves_of_samples(shown.paths, shown.owned, grid_);
-    OpticEnds own;
-    NodeDrawer drawer(params_.draw, shown.paths, grid_, leaf);
+    PathEnds own;
+    HistoryDrawer drawer(params_.draw, shown.paths, grid_, leaf);
     for (const Id node : shown.paths.nodes_in_order()) drawer.draw(node, own);
     note(shown, leaf);
-    if (shown.layers && !shown.layers->all().empty()) {
-        const std::vector<LayerSamples> taken = take_covered(shown, leaf, own);
+    if (shown.nested && !shown.nested->all().empty()) {
+        const std::vector<NestedSamples> taken = take_covered(shown, leaf, own);
         for (std::size_t l = 0; l < taken.size(); ++l) {
-            SeenLayer& layer = *shown.layers->all()[l];
-            OpticEnds behind;
-            draw({layer.paths(), layer.deeper(),
-                  group_by_facet(taken[l].owner, layer.paths().outline().facets.size()),
+            NestedOptic& one = *shown.nested->all()[l];
+            PathEnds behind;
+            draw({one.paths(), one.deeper(),
+                  group_by_facet(taken[l].owner, one.paths().outline().facets.size()),
                   static_cast<std::uint8_t>(shown.depth + 1)},
                  behind);
-            put_behind(layer, taken[l], behind);
+            put_behind(one, taken[l], behind);
             append(std::move(behind), own);
         }
     }
@@ -238,13 +238,13 @@ void ShownDrawer::draw(const Shown& shown, OpticEnds& out) {
 
 }  // namespace
 
-OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, SampleViews& views,
-                           std::vector<Id>& traced) {
+PathEnds draw_optic_paths(const PathEndsParams& params, OpticPaths& paths, SampleViews& views,
+                          std::vector<Id>& traced) {
     const SampleGrid& grid = params.grid;
-    OpticEnds out;
+    PathEnds out;
     if (params.part.size() == 0) return out;
     ShownDrawer drawer(params, grid, views);
-    drawer.draw({paths, params.layers, samples_by_facet(params, paths, grid, views)}, out);
+    drawer.draw({paths, params.nested, samples_by_facet(params, paths, grid, views)}, out);
     for (Id& s : out.sample) s = static_cast<Id>(params.part.sample_in(grid, s));
     traced.insert(traced.end(), drawer.traced().begin(), drawer.traced().end());
     // Those at the outline were given to the optic without one of its facets.
@@ -255,11 +255,11 @@ OpticEnds draw_optic_paths(const OpticEndsParams& params, OpticPaths& paths, Sam
     return out;
 }
 
-void collect_ends(std::vector<OpticEnds> optics, SampleViews& views) {
+void collect_ends(std::vector<PathEnds> optics, SampleViews& views) {
     constexpr std::size_t kUnplaced = ~std::size_t{0};
     std::size_t total = 0;
     bool alone = true;  // each end is its sample's only one
-    for (const OpticEnds& one : optics) {
+    for (const PathEnds& one : optics) {
         total += one.ends.size();
         for (const Id s : one.sample) {
             OpticView& view = views.of_optics[s];
@@ -276,7 +276,7 @@ void collect_ends(std::vector<OpticEnds> optics, SampleViews& views) {
     }
     views.ends.resize(total);
     std::size_t placed = 0;
-    for (const OpticEnds& one : optics) {
+    for (const PathEnds& one : optics) {
         const std::size_t steps = views.steps.size();
         views.steps.insert(views.steps.end(), one.steps.begin(), one.steps.end());
         for (std::size_t i = 0; i < one.ends.size(); ++i) {

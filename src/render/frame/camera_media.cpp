@@ -1,11 +1,11 @@
-#include "render/frame/surroundings.h"
+#include "render/frame/camera_media.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/math/box.h"
 #include "base/util/parallel.h"
-#include "paths/trace/bodies_around.h"
+#include "paths/trace/enclosing_bodies.h"
 #include "render/world/geometry.h"
 #include "surfaces/surfaces.h"
 
@@ -48,14 +48,14 @@ const Material* glass_of(const World& world, Id optic) {
     return optic == kNone ? nullptr : &world.scene.materials[world.optics[optic].material];
 }
 
-Id felt(const World& world, const Media& media) {
-    return media.felt([&](Id optic) { return world.scene.meshes[world.optics[optic].mesh].priority; });
+Id active(const World& world, const Media& media) {
+    return media.active([&](Id optic) { return world.scene.meshes[world.optics[optic].mesh].priority; });
 }
 
 }  // namespace
 
-Media Surroundings::of(const Ray& ray) const {
-    if (!world) return fixed;
+Media CameraMedia::of(const Ray& ray) const {
+    if (!by_ray) return fixed;
     std::vector<Id> asked;
     for (std::size_t i = 0; i < near.size(); ++i)
         if (holds(boxes[i], ray.origin)) asked.push_back(near[i]);
@@ -63,8 +63,8 @@ Media Surroundings::of(const Ray& ray) const {
     return bodies_along(path_world(*world), asked, {ray.origin, normalize_or_zero(ray.direction)});
 }
 
-Surroundings surroundings_of(const World& world, const CameraRays& camera) {
-    Surroundings around;
+CameraMedia camera_media_of(const World& world, const CameraRays& camera) {
+    CameraMedia around;
     const std::optional<Vec3> eye = eye_of(camera);
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
         if (world.optics[i].mirror) continue;
@@ -76,15 +76,16 @@ Surroundings surroundings_of(const World& world, const CameraRays& camera) {
     if (around.near.empty()) return around;
     if (!eye) {
         around.world = &world;
+        around.by_ray = true;
         return around;
     }
-    BodiesAround found = bodies_around(path_world(world), around.near, *eye);
+    EnclosingBodies found = enclosing_bodies(path_world(world), around.near, *eye);
     around.fixed = found.media;
     around.unsure = std::move(found.unsure);
     return around;
 }
 
-void warn_of_surroundings(const World& world, const Surroundings& around, const Warn& warn) {
+void warn_of_unsure_media(const World& world, const CameraMedia& around, const Warn& warn) {
     if (!warn) return;
     const auto bodies = std::count_if(world.optics.begin(), world.optics.end(),
                                       [](const Optic& optic) { return !optic.mirror; });
@@ -95,9 +96,9 @@ void warn_of_surroundings(const World& world, const Surroundings& around, const 
              (around.fixed.holds(optic) ? "inside" : "outside"));
 }
 
-void set_surroundings(const Surroundings& around, SampleViews& views) {
+void set_initial_media(const CameraMedia& around, SampleViews& views) {
     if (around.none()) return;
-    if (!around.world) {
+    if (!around.by_ray) {
         views.around = {around.fixed};
         for (SampleView& view : views.samples) view.around = 0;
         return;
@@ -122,7 +123,7 @@ Vec3 light_of_view(const World& world, const SampleViews& views, const SampleVie
 }
 
 const Material* glass_around(const World& world, const Media& around) {
-    return glass_of(world, felt(world, around));
+    return glass_of(world, active(world, around));
 }
 
 GlassInterface interface_of(const World& world, Id optic, const Media& around, bool front) {
@@ -131,7 +132,7 @@ GlassInterface interface_of(const World& world, Id optic, const Media& around, b
     if (around.count == 0) return {front ? nullptr : own, front ? own : nullptr, tint};
     const std::optional<MediaSides> sides = sides_of(around, optic, front);
     if (!sides) return {own, own, tint};  // light lost: nothing is drawn there
-    return {glass_of(world, felt(world, sides->before)), glass_of(world, felt(world, sides->after)), tint};
+    return {glass_of(world, active(world, sides->before)), glass_of(world, active(world, sides->after)), tint};
 }
 
 OpticWeights first_weights(const World& world, const SampleViews& views, const SampleView& view) {

@@ -12,28 +12,29 @@
 namespace trilens {
 
 /// The media that a camera's rays start in.
-struct Surroundings {
-    const World* world = nullptr;  // set where each ray is to be asked by itself
+struct CameraMedia {
+    const World* world = nullptr;
+    bool by_ray = false;           // each ray has its own: `of` asks it
     std::vector<Id> near;          // optics of glass that may hold where some ray starts
     std::vector<Box> boxes;        // of these; nothing of them lies outside
-    Media fixed;                   // of all rays where `world` is not set
-    std::vector<Id> unsure;        // bodies that hold the eye in some directions only; see BodiesAround
+    Media fixed;                   // of all rays where not by_ray
+    std::vector<Id> unsure;        // bodies that hold the eye in some directions only; see EnclosingBodies
 
     /// Whether rays start in air, all of them.
-    bool none() const { return !world && fixed.count == 0; }
+    bool none() const { return !by_ray && fixed.count == 0; }
     /// What this ray of the camera starts in.
     Media of(const Ray& ray) const;
 };
 
 /// Where all rays of the camera start at its eye, one answer for all. Where they do not (parallel rays, a
 /// near plane that cuts, moving eyes) each ray is asked where it itself meets bodies first.
-Surroundings surroundings_of(const World& world, const CameraRays& camera);
+CameraMedia camera_media_of(const World& world, const CameraRays& camera);
 
 /// Warns where it cannot be told for sure what the eye is inside of.
-void warn_of_surroundings(const World& world, const Surroundings& around, const Warn& warn);
+void warn_of_unsure_media(const World& world, const CameraMedia& around, const Warn& warn);
 
 /// Sets what each sample's ray starts in.
-void set_surroundings(const Surroundings& around, SampleViews& views);
+void set_initial_media(const CameraMedia& around, SampleViews& views);
 
 /// What is left of the light on the way from where the camera's ray starts to what the sample shows first.
 Vec3 light_of_view(const World& world, const SampleViews& views, const SampleView& view);
@@ -48,7 +49,7 @@ const Material* glass_around(const World& world, const Media& around);
 GlassInterface interface_of(const World& world, Id optic, const Media& around, bool front);
 
 /// The refractive index of an optic's glass over that around it, for rays from a camera with these
-/// surroundings; as make_refraction has it.
+/// media; as make_refraction has it.
 double relative_ior(const World& world, std::size_t optic, const Media& around);
 
 }  // namespace trilens

@@ -1,4 +1,4 @@
-#include "render/picture/layers.h"
+#include "render/picture/band_renderer.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "render/frame/surroundings.h"
+#include "render/frame/camera_media.h"
 #include "render/picture/channels.h"
 #include "render/picture/pixel_filter.h"
 
@@ -159,7 +159,7 @@ void count(const World& world, const SampleViews& middle, const SampleView& view
     ++counts.optic_pixels;
     counts.pixels_without_ray += lacks_ray(world, middle, view);
     counts.traced_pixels += view.traced;
-    counts.layered_pixels += !view.traced && view.layers > 0;
+    counts.layered_pixels += !view.traced && view.nested > 0;
     counts.subdivided_pixels += !view.traced && view.level > 0;
     counts.faint_light = std::max(counts.faint_light, of_worst_colour(on_optic.cut.faint));
     counts.predicted_error = std::max(counts.predicted_error, on_optic.predicted);

@@ -33,7 +33,7 @@ struct PathCamera {
 };
 
 /// Who looks at which optic of what world; what is pointed to must live longer.
-struct Looking {
+struct ProbeContext {
     const PathWorld* world = nullptr;
     Id optic = kNone;  // index into PathWorld::optics
     const Surface* surface = nullptr;
@@ -50,20 +50,20 @@ struct Place {
 
 /// kSeen: there are paths. kTurned: the surface is turned away from the ray (a facet's corner behind the
 /// silhouette). kMissed: the camera's ray meets no surface there.
-enum class LookState : std::uint8_t { kSeen, kTurned, kMissed };
+enum class ProbeState : std::uint8_t { kSeen, kTurned, kMissed };
 
-/// The paths of a look once more, from a place a small step away on the surface; none where they have another
-/// history there.
-struct Beside {
+/// The paths of a probe once more, from a place a small step away on the surface; none where they have
+/// another history there.
+struct OffsetProbe {
     Place place;
     Vec3 incident{
-        0};        // the camera's ray there, as Look has it; where it is not linear, from the look's origin
-    Vec2 step{0};  // from the look's place on the film, pixels
+        0};  // the camera's ray there, as PathProbe has it; where it is not linear, from the probe's origin
+    Vec2 step{0};  // from the probe's place on the film, pixels
     std::vector<std::optional<PathSegment>> segments;
 };
 
-struct Look {
-    LookState state = LookState::kMissed;
+struct PathProbe {
+    ProbeState state = ProbeState::kMissed;
     Vec3 screen{0};     // homogeneous
     Vec3 incident{0};   // the camera's ray to the point, not unit: the eye-to-point length
     bool front = true;  // it looks at the surface's front
@@ -72,29 +72,30 @@ struct Look {
     std::vector<PathSegment> segments;  // of kSeen
     bool principal_only = false;        // of its paths none but the principal ones were followed
     CutPaths cut;                       // of those that were
-    std::vector<Beside>
-        beside;  // two, where set_beside was asked: along u and along v, or where the camera is
+    std::vector<OffsetProbe>
+        beside;  // two, where probe_offsets was asked: along u and along v, or where the camera is
                  // not linear along the film's x and y; fewer where the surface ends; else none
-    std::vector<double> kappa;  // per segment; see set_kappa; 0: unknown
+    std::vector<double> ray_scale;  // per segment; see set_ray_scale; 0: unknown
 };
 
 /// Which side of the surface is looked at. kNearest: the one that the ray meets first.
-enum class LookSide : std::uint8_t { kFront, kBack, kNearest };
+enum class ProbeSide : std::uint8_t { kFront, kBack, kNearest };
 
 /// As a least weight: the principal paths alone are followed. follow_all() may follow the others later.
 inline constexpr double kPrincipalOnly = std::numeric_limits<double>::infinity();
 
 /// A side to look at, and how faint paths are followed.
-struct LookParams {
-    LookSide side = LookSide::kFront;
+struct ProbeParams {
+    ProbeSide side = ProbeSide::kFront;
     double least_weight = kLeastWeight;
 };
 
 /// The paths from a place that is known to lie on the surface, and which the camera sees so. Not for
 /// kNearest.
-Look look_at(const Looking& looking, const Place& place, const CornerView& view, const LookParams& params);
+PathProbe probe_point(const ProbeContext& context, const Place& place, const CornerView& view,
+                      const ProbeParams& params);
 /// The same where the camera is to be asked how it sees the place.
-Look look_at(const Looking& looking, const Place& place, const LookParams& params);
+PathProbe probe_point(const ProbeContext& context, const Place& place, const ProbeParams& params);
 
 /// The paths of the camera's ray through a facet's point `chord` (world) on the screen at `screen`: where it
 /// meets the surface within `reach` of that point (world units), on that side; kMissed where it does not.
@@ -103,23 +104,24 @@ struct Chord {
     Vec3 point{0};
     double reach = 0;
 };
-Look look_through(const Looking& looking, const Chord& chord, const LookParams& params);
+PathProbe probe_chord(const ProbeContext& context, const Chord& chord, const ProbeParams& params);
 
-/// Follows all paths of a look of which the principal ones alone were followed, down to `least_weight`.
-void follow_all(const Looking& looking, Look& look, double least_weight);
+/// Follows all paths of a probe of which the principal ones alone were followed, down to `least_weight`.
+void follow_all(const ProbeContext& context, PathProbe& probe, double least_weight);
 
-/// Follows the paths of a look once more from two places beside it.
-void set_beside(const Looking& looking, Look& look);
+/// Follows the paths of a probe once more from two places beside it.
+void probe_offsets(const ProbeContext& context, PathProbe& probe);
 
-/// Sets kappa of each segment: the cube root of the solid angle that a bundle of the camera's rays has before
-/// the first optic over that which it has on the segment, by differences of exact rays on the surface;
-/// solid angles near zero, of grazing bundles and of those that the optics make parallel, are softened by
-/// 0.15 (mathematics, section 6, softens the first alone). A corner ray is the better for being the eye
-/// length times kappa long: the directions' second derivatives then have no part along the direction.
-void set_kappa(const Looking& looking, Look& look);
+/// Sets the ray scale of each segment: the cube root of the solid angle that a bundle of the camera's rays
+/// has before the first optic over that which it has on the segment, by differences of exact rays on the
+/// surface; solid angles near zero, of grazing bundles and of those that the optics make parallel, are
+/// softened by 0.15 (mathematics, section 6, softens the first alone). A corner ray is the better for being
+/// the eye length times the ray scale long: the directions' second derivatives then have no part along the
+/// direction.
+void set_ray_scale(const ProbeContext& context, PathProbe& probe);
 
-/// The same for a corner of the grid, whose kappa is 1 where nothing follows a first reflection: that needs
-/// none.
-void set_corner_kappa(const Looking& looking, Look& look);
+/// The same for a corner of the grid, whose ray scale is 1 where nothing follows a first reflection: that
+/// needs none.
+void set_corner_ray_scale(const ProbeContext& context, PathProbe& probe);
 
 }  // namespace trilens

@@ -15,13 +15,13 @@ namespace trilens {
 Media bodies_along(const PathWorld& world, const std::vector<Id>& asked, const Ray& ray);
 
 /// What rays from a point start in.
-struct BodiesAround {
+struct EnclosingBodies {
     Media media;
     std::vector<Id> unsure;  // bodies that some directions say hold the point, and others say do not
 };
 
 /// By the vote of several directions, more than half of them: for a surface that is closed, and whose normals
 /// point out of it, they agree.
-BodiesAround bodies_around(const PathWorld& world, const std::vector<Id>& asked, const Vec3& point);
+EnclosingBodies enclosing_bodies(const PathWorld& world, const std::vector<Id>& asked, const Vec3& point);
 
 }  // namespace trilens

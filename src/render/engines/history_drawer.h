@@ -18,22 +18,22 @@ inline constexpr double kTouch = 1e-9;
 using DrawMesh = std::function<void(const RayMesh&, const FacetSamples&, const SampleGrid&, std::span<Hit>)>;
 
 /// The ends of samples, one history after the other.
-struct OpticEnds {
+struct PathEnds {
     std::vector<PathEnd> ends;
     std::vector<Id> sample;   // of each end
     std::vector<Step> steps;  // PathEnd::first_step counts here
 };
 
 /// One history drawn: for each sample of it what it sees, and whether its path goes on.
-class NodeDrawer {
+class HistoryDrawer {
   public:
     /// `leaf`: per sample; kNone: it is not drawn. All must live longer.
-    NodeDrawer(const DrawMesh& draw_mesh, const OpticPaths& paths, const SampleGrid& grid,
-               const std::vector<Id>& leaf)
+    HistoryDrawer(const DrawMesh& draw_mesh, const OpticPaths& paths, const SampleGrid& grid,
+                  const std::vector<Id>& leaf)
         : draw_mesh_(draw_mesh), paths_(paths), grid_(grid), leaf_(leaf), goes_on_(paths.nodes().size()) {}
 
     /// Parents first.
-    void draw(Id node, OpticEnds& out);
+    void draw(Id node, PathEnds& out);
 
   private:
     std::vector<Id> owners(const PathNode& node) const;

@@ -1,9 +1,9 @@
-#include "paths/nested/seen_layers.h"
+#include "paths/nested/nested_optics.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "paths/nested/layer_images.h"
+#include "paths/nested/nested_images.h"
 
 namespace trilens {
 namespace {
@@ -21,7 +21,7 @@ Vec2 film_pixel(const Vec3& screen) {
 
 }  // namespace
 
-MirrorChain mirror_chain(const LayerStage& stage, std::span<const Id> chain) {
+MirrorChain mirror_chain(const NestedStage& stage, std::span<const Id> chain) {
     MirrorChain mirrors{stage.eye, {}};
     for (const Id optic : chain)
         mirrors.mirrors.push_back(
@@ -29,16 +29,16 @@ MirrorChain mirror_chain(const LayerStage& stage, std::span<const Id> chain) {
     return mirrors;
 }
 
-SeenLayers::SeenLayers(const LayerStage& stage, std::vector<Id> chain, std::vector<Vec3> towards)
+NestedOptics::NestedOptics(const NestedStage& stage, std::vector<Id> chain, std::vector<Vec3> towards)
     : stage_(stage), chain_(std::move(chain)), towards_(std::move(towards)) {}
 
-SeenLayers::~SeenLayers() = default;
+NestedOptics::~NestedOptics() = default;
 
-void SeenLayers::build() {
+void NestedOptics::build() {
     if (built_) return;
     built_ = true;
     const MirrorChain mirrors = mirror_chain(stage_, chain_);
-    if (std::none_of(stage_.optics.begin(), stage_.optics.end(), [&](const LayerOptic& one) {
+    if (std::none_of(stage_.optics.begin(), stage_.optics.end(), [&](const NestedSurface& one) {
             return static_cast<double>(one.grid->points.size()) <= room_;
         }))
         return;
@@ -49,32 +49,32 @@ void SeenLayers::build() {
         auto images = grid_images(mirrors, starts, grid);
         if (std::none_of(images.begin(), images.end(), [](const auto& one) { return one.has_value(); }))
             continue;
-        auto layer = std::make_unique<SeenLayer>(stage_, chain_, optic, std::move(images));
-        if (layer->cover().area() < kLeastArea || layer->cover().facet_size() < kLeastFacet) continue;
-        layers_.push_back(std::move(layer));
+        auto one = std::make_unique<NestedOptic>(stage_, chain_, optic, std::move(images));
+        if (one->cover().area() < kLeastArea || one->cover().facet_size() < kLeastFacet) continue;
+        nested_.push_back(std::move(one));
     }
 }
 
-std::optional<LayerThere> SeenLayers::at(const Vec2& pixel) const {
-    std::optional<LayerThere> best;
-    for (std::size_t l = 0; l < layers_.size(); ++l) {
-        const std::optional<CoveringFacet> facet = layers_[l]->cover().at(pixel);
+std::optional<NestedPlace> NestedOptics::at(const Vec2& pixel) const {
+    std::optional<NestedPlace> best;
+    for (std::size_t l = 0; l < nested_.size(); ++l) {
+        const std::optional<CoveringFacet> facet = nested_[l]->cover().at(pixel);
         if (facet && (!best || facet->depth < best->facet.depth)) best = {l, *facet};
     }
     return best;
 }
 
-bool SeenLayers::agree(const Vec2& pixel, Id next) const {
+bool NestedOptics::agree(const Vec2& pixel, Id next) const {
     const auto shown = [&](const Vec2& at_pixel) {
-        const std::optional<LayerThere> there = at(at_pixel);
-        return there ? layers_[there->layer]->optic() : kNone;
+        const std::optional<NestedPlace> there = at(at_pixel);
+        return there ? nested_[there->optic]->optic() : kNone;
     };
     const Id here = shown(pixel);
     if (here == next) return true;
     double reach = kLeastOutline;
-    for (const std::unique_ptr<SeenLayer>& layer : layers_)
-        if (layer->optic() == here || layer->optic() == next)
-            reach = std::max(reach, kOutlineShare * layer->cover().facet_size());
+    for (const std::unique_ptr<NestedOptic>& one : nested_)
+        if (one->optic() == here || one->optic() == next)
+            reach = std::max(reach, kOutlineShare * one->cover().facet_size());
     const double aslant = reach * 0.70710678;
     for (const Vec2& by :
          {Vec2(reach, 0), Vec2(-reach, 0), Vec2(0, reach), Vec2(0, -reach), Vec2(aslant, aslant),
@@ -83,14 +83,14 @@ bool SeenLayers::agree(const Vec2& pixel, Id next) const {
     return false;
 }
 
-bool SeenLayers::may_cover(Id optic, const Vec2& low, const Vec2& high) const {
-    return std::any_of(layers_.begin(), layers_.end(), [&](const std::unique_ptr<SeenLayer>& layer) {
-        return layer->optic() == optic && layer->cover().may_cover(low, high);
+bool NestedOptics::may_cover(Id optic, const Vec2& low, const Vec2& high) const {
+    return std::any_of(nested_.begin(), nested_.end(), [&](const std::unique_ptr<NestedOptic>& one) {
+        return one->optic() == optic && one->cover().may_cover(low, high);
     });
 }
 
-SeenLayer::SeenLayer(const LayerStage& stage, std::vector<Id> chain, Id optic,
-                     std::vector<std::optional<ChainRay>> images)
+NestedOptic::NestedOptic(const NestedStage& stage, std::vector<Id> chain, Id optic,
+                         std::vector<std::optional<ChainRay>> images)
     : stage_(stage),
       chain_(std::move(chain)),
       optic_(optic),
@@ -112,31 +112,31 @@ SeenLayer::SeenLayer(const LayerStage& stage, std::vector<Id> chain, Id optic,
         std::vector<Vec3> towards;
         for (const std::optional<ChainRay>& image : images_)
             if (image) towards.push_back(image->eye_direction);
-        deeper_ = std::make_unique<SeenLayers>(stage, std::move(longer), std::move(towards));
-        divide.layers_agree = [layers = deeper_.get()](const Vec2& pixel, Id next) {
-            return layers->agree(pixel, next);
+        deeper_ = std::make_unique<NestedOptics>(stage, std::move(longer), std::move(towards));
+        divide.nested_agree = [nested = deeper_.get()](const Vec2& pixel, Id next) {
+            return nested->agree(pixel, next);
         };
-        divide.layer_covers = [layers = deeper_.get()](Id seen, const Vec2& low, const Vec2& high) {
-            return layers->may_cover(seen, low, high);
+        divide.nested_covers = [nested = deeper_.get()](Id seen, const Vec2& low, const Vec2& high) {
+            return nested->may_cover(seen, low, high);
         };
     }
-    paths_ = std::make_unique<OpticPaths>(Looking{&world_, optic, stage.optics[optic].surface, make_camera()},
-                                          own, views_, divide);
-    cover_ = LayerCover(paths_->outline(), unfolded_facets());
+    paths_ = std::make_unique<OpticPaths>(
+        ProbeContext{&world_, optic, stage.optics[optic].surface, make_camera()}, own, views_, divide);
+    cover_ = NestedCover(paths_->outline(), unfolded_facets());
     if (deeper_) deeper_->set_room(cover_.area());
 }
 
-SeenLayer::~SeenLayer() = default;
+NestedOptic::~NestedOptic() = default;
 
-/// As long as the unfolded way times kappa; the depth that of the point seen in flat mirrors.
-CornerView SeenLayer::view_of(const ChainRay& ray, const Vec3& point) const {
+/// As long as the unfolded way times the ray scale; the depth that of the point seen in flat mirrors.
+CornerView NestedOptic::view_of(const ChainRay& ray, const Vec3& point) const {
     const double whole = ray.way + dot(point - ray.ray.origin, ray.ray.direction);
     return {(whole / ray.first_way) * stage_.camera.screen(ray.first),
-            whole * ray.kappa() * ray.ray.direction};
+            whole * ray.ray_scale() * ray.ray.direction};
 }
 
 /// Facets whose image is turned as an odd or even number of mirrors turns it: no fold lies between.
-std::vector<char> SeenLayer::unfolded_facets() const {
+std::vector<char> NestedOptic::unfolded_facets() const {
     const Vec3 origin = stage_.camera.screen(stage_.eye);
     const double turned = triple(stage_.camera.screen(stage_.eye + Vec3(1, 0, 0)) - origin,
                                  stage_.camera.screen(stage_.eye + Vec3(0, 1, 0)) - origin,
@@ -157,7 +157,7 @@ std::vector<char> SeenLayer::unfolded_facets() const {
     return unfolded;
 }
 
-const ChainRay* SeenLayer::nearest_image(const Vec3& point) const {
+const ChainRay* NestedOptic::nearest_image(const Vec3& point) const {
     const ChainRay* nearest = nullptr;
     double least = 0;
     for (std::size_t p = 0; p < images_.size(); ++p) {
@@ -170,7 +170,7 @@ const ChainRay* SeenLayer::nearest_image(const Vec3& point) const {
     return nearest;
 }
 
-PathCamera SeenLayer::make_camera() const {
+PathCamera NestedOptic::make_camera() const {
     PathCamera camera;
     camera.film = stage_.camera.film;
     camera.screen = [this](const Vec3& point) {
@@ -184,13 +184,13 @@ PathCamera SeenLayer::make_camera() const {
         const std::optional<ChainRay> over = chain_ray(mirrors_, at - stage_.eye);
         if (!over) return Ray{};
         const double far = dot(chord - over->ray.origin, over->ray.direction);
-        const double size = (over->way + far) * over->kappa();
+        const double size = (over->way + far) * over->ray_scale();
         return Ray{over->ray.origin + (far - size) * over->ray.direction, size * over->ray.direction};
     };
     return camera;
 }
 
-Incidence SeenLayer::arrival(const CoveringFacet& at) const {
+Incidence NestedOptic::arrival(const CoveringFacet& at) const {
     const IdTriple& corner = grid().facets[at.facet];
     Vec3 incident(0), normal(0);
     for (int k = 0; k < 3; ++k) {
@@ -203,7 +203,7 @@ Incidence SeenLayer::arrival(const CoveringFacet& at) const {
     return {std::clamp(-dot(normalize_or_zero(incident), unit), 0.0, 1.0), front};
 }
 
-Vec3 SeenLayer::point(const CoveringFacet& at) const {
+Vec3 NestedOptic::point(const CoveringFacet& at) const {
     Vec3 sum(0);
     for (int k = 0; k < 3; ++k)
         sum += at.weights[k] *

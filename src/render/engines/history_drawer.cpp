@@ -1,4 +1,4 @@
-#include "render/engines/node_drawer.h"
+#include "render/engines/history_drawer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,7 @@ std::vector<std::size_t> first_ends(const FacetSamples& owned, const std::vector
 }  // namespace
 
 /// Whether what a sample sees lies before the next optic or on it: the path ends there.
-bool NodeDrawer::ends_before_next(Id index, Id facet, const Hit& hit, const Vec3& share) const {
+bool HistoryDrawer::ends_before_next(Id index, Id facet, const Hit& hit, const Vec3& share) const {
     const PathNode& node = paths_.nodes()[index];
     const IdTriple& corner = node.mesh.facets[facet];
     double next = 0;
@@ -76,7 +76,7 @@ bool NodeDrawer::ends_before_next(Id index, Id facet, const Hit& hit, const Vec3
 }
 
 /// Per sample the node's facet, if its path came as far as this node.
-std::vector<Id> NodeDrawer::owners(const PathNode& node) const {
+std::vector<Id> HistoryDrawer::owners(const PathNode& node) const {
     std::vector<Id> owner(grid_.size(), kNone);
     const std::vector<char>* parent = node.parent == kNone ? nullptr : &goes_on_[node.parent];
     if (parent && parent->empty()) return owner;  // no sample came as far as the node before
@@ -93,7 +93,7 @@ std::vector<Id> NodeDrawer::owners(const PathNode& node) const {
 }
 
 /// Which of the owned samples end here; those whose path goes on are marked.
-std::vector<char> NodeDrawer::find_ends(Id index, const FacetSamples& owned, std::span<const Hit> hits) {
+std::vector<char> HistoryDrawer::find_ends(Id index, const FacetSamples& owned, std::span<const Hit> hits) {
     const PathNode& node = paths_.nodes()[index];
     std::vector<char>& goes_on = goes_on_[index];
     goes_on.resize(grid_.size(), 0);
@@ -116,7 +116,7 @@ std::vector<char> NodeDrawer::find_ends(Id index, const FacetSamples& owned, std
 }
 
 /// Sets the end of a sample over a facet of the node, all but its steps.
-void NodeDrawer::set_end(Id index, Id facet, const Vec3& share, PathEnd& end) const {
+void HistoryDrawer::set_end(Id index, Id facet, const Vec3& share, PathEnd& end) const {
     const PathNode& node = paths_.nodes()[index];
     const IdTriple& corner = node.mesh.facets[facet];
     end.path = node.path;
@@ -137,7 +137,7 @@ void NodeDrawer::set_end(Id index, Id facet, const Vec3& share, PathEnd& end) co
     if (end.hit.seen()) end.magnification = magnification(node.mesh, facet, share, end.hit.t);
 }
 
-void NodeDrawer::draw(Id index, OpticEnds& out) {
+void HistoryDrawer::draw(Id index, PathEnds& out) {
     const PathNode& node = paths_.nodes()[index];
     const FacetSamples owned = group_by_facet(owners(node), node.mesh.facets.size());
     if (owned.sample.empty()) return;

@@ -1,4 +1,4 @@
-// The looks at a facet's points while it is divided: no point twice, and no more of its paths than are
+// The probes of a facet's points while it is divided: no point twice, and no more of its paths than are
 // needed.
 #pragma once
 
@@ -9,51 +9,52 @@
 #include <span>
 #include <utility>
 
-#include "paths/probe/look.h"
+#include "paths/probe/path_probe.h"
 
 namespace trilens {
 
 /// A point of a facet. `screen` homogeneous, `chord` on the facet's plane, world.
 struct FacetPoint {
-    Look* look = nullptr;
+    PathProbe* probe = nullptr;
     Vec3 screen{0}, chord{0};
     Id shared = kNone;  // see PartCorner
 };
 
 /// How a facet's points are looked at.
-struct FacetLooksParams {
-    LookSide side = LookSide::kFront;
+struct ProbeCacheParams {
+    ProbeSide side = ProbeSide::kFront;
     double reach = 0;     // see Chord
-    bool beside = false;  // set_beside() where all paths are followed
+    bool beside = false;  // probe_offsets() where all paths are followed
 };
 
-/// Makes looks and keeps them. `looking` must live longer.
-class FacetLooks {
+/// Makes probes and keeps them. `context` must live longer.
+class ProbeCache {
   public:
-    FacetLooks(const Looking& looking, const FacetLooksParams& params) : looking_(looking), params_(params) {}
+    ProbeCache(const ProbeContext& context, const ProbeCacheParams& params)
+        : context_(context), params_(params) {}
 
     /// The point with equal weights of these. Of the paths there the principal ones alone are followed.
     FacetPoint between(std::initializer_list<const FacetPoint*> points);
 
-    /// between() two, in whatever order; the same look each time.
+    /// between() two, in whatever order; the same probe each time.
     FacetPoint middle_of(const FacetPoint& a, const FacetPoint& b);
 
     /// Has all paths followed there, down to `least_weight`.
     void follow_all_at(const FacetPoint& point, double least_weight);
 
-    /// Counts what the paths left out at a look, which need not be one of these.
+    /// Counts what the paths left out at a probe, which need not be one of these.
     void note(const CutPaths& cut) { cut_ = most_cut(cut_, cut); }
 
-    /// The looks, at places that stay, and the most that any left out.
-    std::deque<Look>& looks() { return looks_; }
+    /// The probes, at places that stay, and the most that any left out.
+    std::deque<PathProbe>& probes() { return probes_; }
     const CutPaths& cut() const { return cut_; }
 
   private:
-    using Ends = std::pair<const Look*, const Look*>;
+    using Ends = std::pair<const PathProbe*, const PathProbe*>;
 
-    const Looking& looking_;
-    FacetLooksParams params_;
-    std::deque<Look> looks_;
+    const ProbeContext& context_;
+    ProbeCacheParams params_;
+    std::deque<PathProbe> probes_;
     CutPaths cut_;
     std::map<Ends, FacetPoint> middles_;  // of edges; nothing depends on the order
 };

@@ -94,7 +94,7 @@ LayerErrors errors_of(const World& world, const FrameParams& params, const Sampl
         ++found.samples;
         found.traced += view.traced;
         found.divided += !view.traced && view.level > 0;
-        found.layered += !view.traced && view.layers > 0;
+        found.layered += !view.traced && view.nested > 0;
         if (steps != exact) {
             ++found.wrong;
             continue;
@@ -198,10 +198,10 @@ void check_flat_layer(const std::string& material, int n) {
     for (std::size_t s = 0; s < in_mirror.samples.size(); ++s) {
         const SampleView &a = in_mirror.samples[s], &b = direct.samples[s];
         if (a.optic != 1 || a.traced) continue;
-        if (a.layers == 0) ball_only_there += b.optic == 0 && a.level == 0;
+        if (a.nested == 0) ball_only_there += b.optic == 0 && a.level == 0;
         // Parts of divided facets have corners of their own: the mirror divides facets through which it is
         // seen.
-        if (a.layers != 1 || b.traced || a.level > 0 || b.level > 0) continue;
+        if (a.nested != 1 || b.traced || a.level > 0 || b.level > 0) continue;
         const PathEnd* const here = in_mirror.find(a, Path::kReflect);
         const PathEnd* const there = direct.find(b, material == "glass" ? Path::kRefract : Path::kReflect);
         if (!here) continue;
@@ -273,7 +273,7 @@ TEST_CASE("projector and Embree see the same layers", "[laws][layers][oracle][la
     const auto balls = two_balls(8, 300);
     const SampleViews shown = views_of(*balls, layered(true), Engine::kExact);
     CHECK(std::count_if(shown.samples.begin(), shown.samples.end(),
-                        [](const SampleView& view) { return view.layers > 0; }) > 300);
+                        [](const SampleView& view) { return view.nested > 0; }) > 300);
     for (const int n : {3, 8}) {
         const Agreement a = compare_engines(*two_balls(n, 300));
         INFO("n = " << n << ": " << a.first_off_edge);

@@ -1,6 +1,6 @@
 // Rays that start inside of bodies: which bodies those are, and where the rays go, against concentric
 // spheres.
-#include "paths/trace/bodies_around.h"
+#include "paths/trace/enclosing_bodies.h"
 #include "intersect/random_scene.h"
 #include "paths/bodies.h"
 #include "paths/stage.h"
@@ -31,7 +31,7 @@ std::vector<Id> listed(const Media& media) {
 
 /// Where the path that is refracted everywhere goes, as the angle from -z towards -x; NaN: there is none.
 double turned(const Stage& stage, const Ray& ray, std::size_t steps) {
-    const Media around = bodies_around(stage.world, all(stage), ray.origin).media;
+    const Media around = enclosing_bodies(stage.world, all(stage), ray.origin).media;
     const auto first = next_optic(stage.world, {ray});
     REQUIRE(first.has_value());
     const FollowedPaths paths = follow_paths(stage.world, {first->meeting, first->distance, around});
@@ -57,13 +57,14 @@ TEST_CASE("from inside of a ball of glass a ray passes a ball of water as Bougue
     for (const double h : {0.0, 0.1, 0.2, 0.3, 0.4, 0.43}) {
         const double c = kGlass * h;
         const Ray between{{h, 0, 0.8}, {0, 0, -1}};
-        CHECK(listed(bodies_around(stage.world, all(stage), between.origin).media) == std::vector<Id>{glass});
+        CHECK(listed(enclosing_bodies(stage.world, all(stage), between.origin).media) ==
+              std::vector<Id>{glass});
         CHECK(turned(stage, between, 3) ==
               Approx(2 * turn_at(c, kInner, kGlass, kWater) + turn_at(c, 1, 1, kGlass)).margin(1e-9));
 
         // In the water: half the way.
         const Ray within{{h, 0, 0}, {0, 0, -1}};
-        const Media both = bodies_around(stage.world, all(stage), within.origin).media;
+        const Media both = enclosing_bodies(stage.world, all(stage), within.origin).media;
         CHECK(listed(both) == std::vector<Id>{glass, water});
         CHECK(listed(bodies_along(stage.world, all(stage), within)) == listed(both));
         const double inner = kWater * h;
@@ -81,7 +82,7 @@ TEST_CASE("the critical angle at a ball in the glass around the eye is that of t
         const Ray ray{{critical + off, 0, 0.8}, {0, 0, -1}};
         const auto first = next_optic(stage.world, {ray});
         REQUIRE(first->meeting.optic == water);
-        const Media around = bodies_around(stage.world, all(stage), ray.origin).media;
+        const Media around = enclosing_bodies(stage.world, all(stage), ray.origin).media;
         const FollowedPaths paths = follow_paths(stage.world, {first->meeting, first->distance, around});
         const bool enters = std::any_of(
             paths.segments.begin(), paths.segments.end(),
@@ -90,15 +91,15 @@ TEST_CASE("the critical angle at a ball in the glass around the eye is that of t
     }
 }
 
-TEST_CASE("of two bodies around the eye the one of higher priority is felt, and the other's skin is none",
+TEST_CASE("of two bodies around the eye the one of higher priority is active, and the other's skin is none",
           "[paths]") {
     Stage stage;
     const Id box = stage.add_body(make_box({-1, -1, -1}, {1, 1, 1}), glass_of(kGlass), 1);
     const Id ball = stage.add_ball(Vec3(0), 0.6, glass_of(kWater), 0);
     const Ray ray{{0.1, 0.05, 0.1}, normalize(Vec3(0.1, 0.2, -1))};
-    const Media around = bodies_around(stage.world, all(stage), ray.origin).media;
+    const Media around = enclosing_bodies(stage.world, all(stage), ray.origin).media;
     CHECK(listed(around) == std::vector<Id>{box, ball});
-    CHECK(felt_body(stage.world, around) == box);
+    CHECK(active_medium(stage.world, around) == box);
     const auto first = next_optic(stage.world, {ray});
     REQUIRE(first->meeting.optic == ball);
     const FollowedPaths paths = follow_paths(stage.world, {first->meeting, first->distance, around});
@@ -112,15 +113,15 @@ TEST_CASE("a place outside of bodies, in a hollow, or beside an open surface", "
     Stage stage;
     stage.add_ball(Vec3(0), 1, glass_of(kGlass));
     stage.add_ball({5, 0, 0}, 1, mirror_of());
-    const BodiesAround outside = bodies_around(stage.world, all(stage), {0, 0, 1.0001});
+    const EnclosingBodies outside = enclosing_bodies(stage.world, all(stage), {0, 0, 1.0001});
     CHECK(outside.media.count == 0);
     CHECK(outside.unsure.empty());
-    CHECK(bodies_around(stage.world, all(stage), {5, 0, 0}).media.count == 0);  // mirrors hold nothing
+    CHECK(enclosing_bodies(stage.world, all(stage), {5, 0, 0}).media.count == 0);  // mirrors hold nothing
 
     Stage open;
     const Id sheet = open.add_body(
         FlatBody({{Vec3(-5, -5, 0), Vec3(5, -5, 0), Vec3(5, 5, 0), Vec3(-5, 5, 0)}}), glass_of(kGlass));
-    const BodiesAround below = bodies_around(open.world, all(open), {0, 0, -1});
+    const EnclosingBodies below = enclosing_bodies(open.world, all(open), {0, 0, -1});
     CHECK(below.unsure == std::vector<Id>{sheet});
     CHECK(below.media.count == 0);
 }

@@ -1,4 +1,4 @@
-#include "paths/nested/layer_images.h"
+#include "paths/nested/nested_images.h"
 
 #include <algorithm>
 

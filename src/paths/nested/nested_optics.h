@@ -1,4 +1,4 @@
-// Optics seen in mirrors as layers by history: each one's own grid, imaged over the mirrors before it.
+// Nested optics: optics seen in mirrors, each with its own grid, imaged over the chain of mirrors before it.
 #pragma once
 
 #include <limits>
@@ -8,90 +8,90 @@
 #include <vector>
 
 #include "paths/facets/facet_paths.h"
-#include "paths/nested/layer_cover.h"
 #include "paths/nested/mirror_chain.h"
+#include "paths/nested/nested_cover.h"
 #include "shade/optic_weights.h"
 
 namespace trilens {
 
-/// An optic as a layer shows it; what is pointed to must live longer.
-struct LayerOptic {
+/// The surface of an optic that may be nested; what is pointed to must live longer.
+struct NestedSurface {
     const Surface* surface = nullptr;
     const SurfaceGrid* grid = nullptr;
     bool fit = false;         // its corner rays are fitted
     bool own_normals = true;  // see ChainMirror
 };
 
-/// What all layers of one camera have in common.
-struct LayerStage {
-    PathWorld world;                 // whole
-    std::vector<LayerOptic> optics;  // as PathWorld::optics
-    PathCamera camera;               // perspective, in air
-    Vec3 eye{0};                     // its centre, world
-    DivideParams divide;             // of facets that a layer's corners do not tell the truth about
+/// What all nested optics of one camera have in common.
+struct NestedStage {
+    PathWorld world;                    // whole
+    std::vector<NestedSurface> optics;  // as PathWorld::optics
+    PathCamera camera;                  // perspective, in air
+    Vec3 eye{0};                        // its centre, world
+    DivideParams divide;                // of facets that a nested optic's corners do not tell the truth about
 };
 
-class SeenLayer;
+class NestedOptic;
 
-/// A layer at a place of the film.
-struct LayerThere {
-    std::size_t layer = 0;  // of SeenLayers::all
+/// A nested optic at a place of the film.
+struct NestedPlace {
+    std::size_t optic = 0;  // of NestedOptics::all
     CoveringFacet facet;
 };
 
 /// The optics that are seen in the last mirror of a chain. A place of the film shows the one that covers it
 /// nearest, by the way over the chain.
-class SeenLayers {
+class NestedOptics {
   public:
     /// `chain`: the optics met, mirrors all. `towards`: directions of the eye that lead over it, to begin the
     /// search for images from.
-    SeenLayers(const LayerStage& stage, std::vector<Id> chain, std::vector<Vec3> towards);
-    ~SeenLayers();
+    NestedOptics(const NestedStage& stage, std::vector<Id> chain, std::vector<Vec3> towards);
+    ~NestedOptics();
 
-    /// Works out which optics are layers; once. An optic is none where it has no image over the chain, or a
-    /// very small one.
+    /// Works out which optics are nested optics; once. An optic is none where it has no image over the chain,
+    /// or a very small one.
     void build();
     /// How many pixels there are for them, before they are worked out: an optic whose grid has more points is
-    /// no layer, since to follow the pixels' own rays is less work.
+    /// no nested optic, since to follow the pixels' own rays is less work.
     void set_room(double pixels) { room_ = pixels; }
 
-    std::optional<LayerThere> at(const Vec2& pixel) const;
+    std::optional<NestedPlace> at(const Vec2& pixel) const;
 
-    /// Whether a place where the exact path goes on to `next` (kNone: to no optic) shows that optic's layer,
-    /// but for how far the outlines of facets lie from the exact ones.
+    /// Whether a place where the exact path goes on to `next` (kNone: to no optic) shows that optic's nested
+    /// optic, but for how far the outlines of facets lie from the exact ones.
     bool agree(const Vec2& pixel, Id next) const;
 
-    /// Whether an optic is a layer that covers something near this part of the film, in pixels.
+    /// Whether an optic is a nested optic that covers something near this part of the film, in pixels.
     bool may_cover(Id optic, const Vec2& low, const Vec2& high) const;
 
-    const std::vector<std::unique_ptr<SeenLayer>>& all() const { return layers_; }
+    const std::vector<std::unique_ptr<NestedOptic>>& all() const { return nested_; }
 
   private:
-    const LayerStage& stage_;
+    const NestedStage& stage_;
     std::vector<Id> chain_;
     std::vector<Vec3> towards_;
     double room_ = std::numeric_limits<double>::infinity();
     bool built_ = false;
-    std::vector<std::unique_ptr<SeenLayer>> layers_;
+    std::vector<std::unique_ptr<NestedOptic>> nested_;
 };
 
 /// One optic seen over a chain of mirrors: the RayMeshes that leave it, as OpticPaths has them for an optic
 /// that the camera sees itself.
-class SeenLayer {
+class NestedOptic {
   public:
     /// `images`: per point of the optic's grid the eye's ray over the chain to it, where there is one.
-    SeenLayer(const LayerStage& stage, std::vector<Id> chain, Id optic,
-              std::vector<std::optional<ChainRay>> images);
-    ~SeenLayer();
-    SeenLayer(const SeenLayer&) = delete;
-    SeenLayer& operator=(const SeenLayer&) = delete;
+    NestedOptic(const NestedStage& stage, std::vector<Id> chain, Id optic,
+                std::vector<std::optional<ChainRay>> images);
+    ~NestedOptic();
+    NestedOptic(const NestedOptic&) = delete;
+    NestedOptic& operator=(const NestedOptic&) = delete;
 
     Id optic() const { return optic_; }
     const std::vector<Id>& chain() const { return chain_; }
-    const LayerCover& cover() const { return cover_; }
+    const NestedCover& cover() const { return cover_; }
     OpticPaths& paths() { return *paths_; }
     /// What is seen in it; null where nothing is looked for: it is glass, or paths end there.
-    SeenLayers* deeper() { return deeper_.get(); }
+    NestedOptics* deeper() { return deeper_.get(); }
     const SurfaceGrid& grid() const { return *stage_.optics[optic_].grid; }
     bool is_mirror() const { return stage_.world.optics[optic_].mirror; }
     /// How the eye's ray arrives at a point of a facet: the side is the facet's own; the angle that of the
@@ -106,19 +106,19 @@ class SeenLayer {
     CornerView view_of(const ChainRay& ray, const Vec3& point) const;
     const ChainRay* nearest_image(const Vec3& point) const;
 
-    const LayerStage& stage_;
+    const NestedStage& stage_;
     std::vector<Id> chain_;
     Id optic_ = kNone;
     MirrorChain mirrors_;
     PathWorld world_;  // paths from here on
     std::vector<std::optional<ChainRay>> images_;
     std::vector<CornerView> views_;  // per corner; w = 0: no image
-    std::unique_ptr<SeenLayers> deeper_;
+    std::unique_ptr<NestedOptics> deeper_;
     std::unique_ptr<OpticPaths> paths_;
-    LayerCover cover_;
+    NestedCover cover_;
 };
 
 /// The chain's mirrors as rays meet them.
-MirrorChain mirror_chain(const LayerStage& stage, std::span<const Id> chain);
+MirrorChain mirror_chain(const NestedStage& stage, std::span<const Id> chain);
 
 }  // namespace trilens
