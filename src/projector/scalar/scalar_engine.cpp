@@ -43,7 +43,7 @@ std::optional<double> enter_box(const SampleRay& ray, const Box& box) {
 }
 
 /// A node of the tree that waits, and the smallest t at which the ray is in it.
-struct WaitingNode {
+struct OpenNode {
     Id node = 0;
     double enters = 0;
 };
@@ -66,7 +66,7 @@ struct RayWalk {
         for (std::size_t i = 0; i < scene.size(); ++i) offer(static_cast<Id>(i));
     }
 
-    void walk(std::vector<WaitingNode>& stack) {
+    void walk(std::vector<OpenNode>& stack) {
         const Bvh& bvh = scene.bvh();
         const auto push = [&](Id node) {
             const Box& box = bvh.nodes[node].box;
@@ -76,7 +76,7 @@ struct RayWalk {
         stack.clear();
         if (!bvh.nodes.empty()) push(0);
         while (!stack.empty()) {
-            const WaitingNode next = stack.back();
+            const OpenNode next = stack.back();
             stack.pop_back();
             if (next.enters * (1 - kTimeSlack) > first.limit()) continue;
             const BvhNode& node = bvh.nodes[next.node];
@@ -99,14 +99,14 @@ struct RayWalk {
     }
 };
 
-Hit see_first(RayWalk ray, bool cull, std::vector<WaitingNode>& stack) {
+Hit see_first(RayWalk ray, bool cull, std::vector<OpenNode>& stack) {
     return cull ? ray.see([&] { ray.walk(stack); }) : ray.see([&] { ray.offer_all(); });
 }
 
 }  // namespace
 
 Hit first_hit_of(const PreparedScene::Data& scene, const SampleRay& ray, const Vec3& centre) {
-    std::vector<WaitingNode> stack;
+    std::vector<OpenNode> stack;
     return see_first({scene, ray, centre}, true, stack);
 }
 
@@ -120,7 +120,7 @@ void draw_scalar(const PreparedScene& scene, const RayMesh& mesh, const FacetSam
         if (weights.edge_on) continue;
         const FacetRays facet = make_facet_rays({mesh, static_cast<Id>(f), weights});
         parallel_for(samples.size(), kSamplesTogether, [&](std::size_t from, std::size_t to) {
-            std::vector<WaitingNode> stack;
+            std::vector<OpenNode> stack;
             for (std::size_t s = from; s < to; ++s) {
                 const SampleRay ray = facet.at(grid.position(samples[s]));
                 hits[samples[s]] = see_first({scene.data(), ray, facet.centre}, cull, stack);
