@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kSelfHit = 1e-9;
-constexpr std::size_t kFacetsPerTask = 256, kRaysPerTask = 64;
+constexpr std::size_t kFacetsPerTask = 256;
 
 // How many times farther than at the samples the surface may stray from a facet. A quadratic patch strays 4/3
 // as far inside a facet as at the middles of its edges; the rest is for terms of higher order.
@@ -308,14 +308,6 @@ Segments::Bits LimitTracer::occluded(const Segments& segments, Segments::Bits as
 double LimitTracer::self_hit_t_min(const Ray& ray) const {
     const double speed = length(ray.direction);
     return speed > 0 ? kSelfHit * data_->size / speed : 0;
-}
-
-void trace_limit(const LimitTracer& tracer, std::span<const Ray> rays, double t_min,
-                 std::span<std::optional<SurfaceHit>> hits) {
-    TRILENS_CHECK(hits.size() == rays.size(), "one hit per ray");
-    parallel_for(rays.size(), kRaysPerTask, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) hits[i] = tracer.first_hit(rays[i], t_min);
-    });
 }
 
 }  // namespace trilens

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "base/raymesh/segments.h"
@@ -53,10 +52,5 @@ class LimitTracer {
     struct Data;
     std::unique_ptr<Data> data_;
 };
-
-/// First hits of many rays in parallel: hits[i] = tracer.first_hit(rays[i], t_min). hits.size() ==
-/// rays.size().
-void trace_limit(const LimitTracer& tracer, std::span<const Ray> rays, double t_min,
-                 std::span<std::optional<SurfaceHit>> hits);
 
 }  // namespace trilens

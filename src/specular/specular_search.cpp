@@ -123,9 +123,4 @@ std::vector<SpecularSearch> SpecularSearcher::find_each_in_body(const SpecularQu
     return found;
 }
 
-SpecularSearch find_specular_points(const Surface& surface, const SpecularQuery& query,
-                                    const SearchLimits& limits) {
-    return SpecularSearcher(surface).find(query, limits);
-}
-
 }  // namespace trilens

@@ -67,8 +67,4 @@ class SpecularSearcher {
     const std::unique_ptr<Impl> impl_;
 };
 
-/// SpecularSearcher(surface).find(query, limits), for a single point.
-SpecularSearch find_specular_points(const Surface& surface, const SpecularQuery& query,
-                                    const SearchLimits& limits = {});
-
 }  // namespace trilens

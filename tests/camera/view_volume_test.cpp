@@ -7,6 +7,7 @@
 #include "base/util/error.h"
 #include "camera/camera.h"
 #include "camera/linear/perspective.h"
+#include "support/canonical_volume.h"
 #include "support/draw.h"
 #include "support/test.h"
 

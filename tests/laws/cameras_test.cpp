@@ -8,13 +8,13 @@
 
 #include "cli/command_line.h"
 #include "laws/worlds.h"
-#include "paths/trace/optic_ray.h"
 #include "render/engines/engine.h"
 #include "render/frame/camera_rays.h"
 #include "render/picture/picture.h"
 #include "render/project/project.h"
 #include "render/world/geometry.h"
 #include "scene/examples/examples.h"
+#include "support/optic_ray.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -16,6 +16,11 @@ using namespace trilens_test;
 
 namespace {
 
+SpecularSearch search_once(const Surface& surface, const SpecularQuery& query,
+                           const SearchLimits& limits = {}) {
+    return SpecularSearcher(surface).find(query, limits);
+}
+
 /// A place on the unit circle of the plane through the sphere's centre, the eye and the point.
 struct Section {
     Vec3 axis, side;
@@ -95,7 +100,7 @@ TEST_CASE("the search lists exactly the solutions of Alhazen's problem", "[specu
             std::vector<Vec3> expected;
             for (const Vec3& p : all)
                 if (screen_from_world(query.camera, p).z > 0) expected.push_back(p);
-            tally.add(find_specular_points(sphere, query), expected, size);
+            tally.add(search_once(sphere, query), expected, size);
         }
     }
     CHECK(tally.missing == 0);
@@ -159,7 +164,7 @@ TEST_CASE("the search finds the one image in a flat mirror and the one through f
         if (std::fmax(std::fabs(local.x), std::fabs(local.y)) < 1 &&
             screen_from_world(query.camera, hit).z > 0)
             expected.push_back(hit);
-        mirror_tally.add(find_specular_points(plane, query), expected, size);
+        mirror_tally.add(search_once(plane, query), expected, size);
 
         // Straight down, light is not bent: the image lies above the point, and there is one.
         query.event = SpecularEvent::kRefract;
@@ -172,7 +177,7 @@ TEST_CASE("the search finds the one image in a flat mirror and the one through f
         if (std::fmax(std::fabs(inside.x), std::fabs(inside.y)) < 1 &&
             screen_from_world(query.camera, above).z > 0)
             expected.push_back(above);
-        water_tally.add(find_specular_points(plane, query), expected, size);
+        water_tally.add(search_once(plane, query), expected, size);
     }
     for (const SearchTally& tally : {mirror_tally, water_tally}) {
         CHECK(tally.missing == 0);
@@ -191,20 +196,20 @@ TEST_CASE("the search says that it cannot know: at a focus, on the surface, at a
     SpecularQuery query;
     query.camera = make_orthographic({{{0, 0, 9}, {0, 0, 0}, {0, 1, 0}}, 4, 400, 400});
     query.point = Vec3(0, 0, 1 / (4 * bend));
-    const SpecularSearch focus = find_specular_points(bowl, query, limits);
+    const SpecularSearch focus = search_once(bowl, query, limits);
     CHECK(!focus.complete);
     CHECK(focus.undecided > 100);
     CHECK(!focus.images.empty());
 
     query.camera = camera_at({0.3, 0.2, 3}, Vec3(0));
     query.point = Vec3(0.25, 0.5, bend * 0.3125);
-    const SpecularSearch touching = find_specular_points(bowl, query);
+    const SpecularSearch touching = search_once(bowl, query);
     CHECK(!touching.complete);
     CHECK(touching.cells < limits.most_cells);
 
     query.camera = camera_at({0.25, 0.5, bend * 0.3125}, Vec3(0, 0, 2));
     query.point = Vec3(0.1, 0.2, 2);
-    CHECK(!find_specular_points(bowl, query).complete);
+    CHECK(!search_once(bowl, query).complete);
 }
 
 TEST_CASE("near a caustic the search lists both images or says that it cannot know", "[specular]") {
@@ -240,20 +245,20 @@ TEST_CASE("without bounds, or with borrowed normals, a list is never called comp
     SpecularQuery query;
     query.camera = camera_at({0, 0.5, 4}, Vec3(0));
     query.point = Vec3(2, 1, 3);
-    const SpecularSearch search = find_specular_points(NoBounds(), query);
+    const SpecularSearch search = search_once(NoBounds(), query);
     CHECK(!search.complete);
     CHECK(search.images.size() == 2);
     query.own_normals = false;
-    const SpecularSearch borrowed = find_specular_points(CubeSphere(Vec3(0), 1), query);
+    const SpecularSearch borrowed = search_once(CubeSphere(Vec3(0), 1), query);
     CHECK(!borrowed.complete);
     CHECK(borrowed.images.size() == 2);
     query.own_normals = true;
-    const SpecularSearch known = find_specular_points(CubeSphere(Vec3(0), 1), query);
+    const SpecularSearch known = search_once(CubeSphere(Vec3(0), 1), query);
     CHECK(known.complete);
     REQUIRE(known.images.size() == 2);
     CHECK(known.images[0].front);
     query.viewed = ViewedSide::kBack;
-    const SpecularSearch back = find_specular_points(CubeSphere(Vec3(0), 1), query);
+    const SpecularSearch back = search_once(CubeSphere(Vec3(0), 1), query);
     REQUIRE(back.images.size() == 1);
     CHECK(!back.images[0].front);
 }
