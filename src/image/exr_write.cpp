@@ -1,5 +1,5 @@
 // Images as whole OpenEXR files.
-#include "base/files/new_file.h"
+#include "base/files/atomic_file.h"
 #include "base/util/check.h"
 #include "image/exr_strips.h"
 #include "image/image_io.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/description/appearance.h"
+#include "base/description/texture.h"
 #include "base/image/image.h"
 
 namespace trilens {

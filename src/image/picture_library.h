@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/description/appearance.h"
+#include "base/description/texture.h"
 
 namespace trilens {
 

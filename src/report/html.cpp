@@ -1,7 +1,7 @@
 // A report as one HTML file: what was found, the plots, every run with its pictures, and how to do it again.
 #include "report/html.h"
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "report/text.h"
 
 namespace trilens {

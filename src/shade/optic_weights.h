@@ -2,7 +2,7 @@
 // engines.
 #pragma once
 
-#include "base/description/appearance.h"
+#include "base/description/material.h"
 
 namespace trilens {
 

@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "base/description/appearance.h"
+#include "base/description/light.h"
+#include "base/description/material.h"
 #include "base/raymesh/ray.h"
 #include "base/raymesh/segments.h"
 #include "base/raymesh/triangle_scene.h"

@@ -1,7 +1,7 @@
-// ProbeContext up pictures: bilinear, repeated or wrapped around the sphere of directions.
+// Texture look-up: bilinear, repeated or wrapped around the sphere of directions.
 #pragma once
 
-#include "base/description/appearance.h"
+#include "base/description/texture.h"
 
 namespace trilens {
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "base/math/halve_points.h"
+#include "base/math/spatial_split.h"
 #include "specular/point_packet.h"
 
 namespace trilens {

@@ -6,10 +6,10 @@
 #include <set>
 #include <utility>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "base/util/nearest.h"
+#include "base/util/suggestion.h"
 #include "suite/json.h"
 #include "suite/render_test.h"
 

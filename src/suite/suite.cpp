@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "base/util/run_on_threads.h"

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "image/image_io.h"

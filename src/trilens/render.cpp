@@ -4,7 +4,7 @@
 #include <mutex>
 #include <optional>
 
-#include "base/files/new_file.h"
+#include "base/files/atomic_file.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "image/exr_strips.h"

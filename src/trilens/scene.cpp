@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "base/util/error.h"
-#include "base/util/nearest.h"
+#include "base/util/suggestion.h"
 #include "image/image_io.h"
 #include "scene/read/named_files.h"
 #include "trilens/animation.h"

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/files/check_output.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "suite/suite.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "base/util/error.h"
-#include "base/util/nearest.h"
+#include "base/util/suggestion.h"
 
 namespace trilens {
 namespace {

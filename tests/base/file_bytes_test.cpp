@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/files.h"
-#include "base/files/new_file.h"
+#include "base/files/atomic_file.h"
 #include "base/util/error.h"
 #include "support/test.h"
 

@@ -4,7 +4,7 @@
 
 #include "base/math/side_of_edge.h"
 #include "base/raymesh/rasterize.h"
-#include "base/raymesh/row_cover.h"
+#include "base/raymesh/row_span.h"
 #include "projector/random_cases.h"
 #include "support/test.h"
 
@@ -159,7 +159,7 @@ TEST_CASE("most of a large facet's row is decided at its ends", "[base]") {
     const FacetEdges edges({Vec3(-5, -7, 1), Vec3(2500, 3, 1), Vec3(100, 2300, 1)}, 0, grid);
     std::size_t asked = 0, covered = 0;
     for (std::size_t row = 0; row < 1080; ++row) {
-        const RowCover cover = edges.cover(row, 0, 1920);
+        const RowSpan cover = edges.cover(row, 0, 1920);
         asked += cover.sure_begin - cover.begin + cover.end - cover.sure_end;
         covered += cover.sure_end - cover.sure_begin;
     }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "report/plot.h"
 #include "report/text.h"

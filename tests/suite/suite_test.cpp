@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "image/image_io.h"
 #include "suite/find_tests.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/hash.h"
 #include "report/xml.h"

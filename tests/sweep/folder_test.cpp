@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"

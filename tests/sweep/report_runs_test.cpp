@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "fake_scene.h"
 #include "report/html.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/hash.h"
 #include "image/image_io.h"

@@ -1,14 +1,19 @@
 #include "base/files/file_bytes.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
-#include "base/files/new_file.h"
+#include "base/files/atomic_file.h"
 #include "base/util/error.h"
 
 namespace trilens {
+
 std::string output_target(const std::string& file) {
     namespace fs = std::filesystem;
     constexpr int kMostLinks = 40;  // as the system has it; a longer chain is a circle
@@ -41,6 +46,64 @@ std::size_t readable_size(const std::string& file) {
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (error) throw InputError(file, "", "cannot be read: " + error.message());
     return static_cast<std::size_t>(size);
+}
+
+// Text files that are either the old ones or the new ones, never half of one.
+
+namespace fs = std::filesystem;
+
+void replace_text_file(const std::string& file, const std::string& text) {
+    replace_file(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+std::optional<std::string> read_whole_file(const std::string& file) {
+    std::error_code failure;
+    if (!fs::is_regular_file(file, failure)) return std::nullopt;
+    std::ifstream in(file, std::ios::binary);
+    if (!in) return std::nullopt;
+    // As much as it has now; it may grow or shrink meanwhile.
+    const std::uintmax_t size = fs::file_size(file, failure);
+    std::string text(failure ? 0 : static_cast<std::size_t>(size) + 1, '\0');
+    std::size_t filled = 0;
+    while (in) {
+        if (filled == text.size()) text.resize(2 * filled + 4096);
+        in.read(text.data() + filled, static_cast<std::streamsize>(text.size() - filled));
+        filled += static_cast<std::size_t>(in.gcount());
+    }
+    if (in.bad()) return std::nullopt;
+    text.resize(filled);
+    return text;
+}
+
+void make_folder(const std::string& folder) {
+    if (folder.empty()) return;
+    std::error_code failure;
+    fs::create_directories(folder, failure);
+    if (failure) throw OutputError(folder, "cannot be made: " + failure.message());
+    if (!fs::is_directory(folder, failure)) throw OutputError(folder, "is not a folder");
+}
+
+void remove_file(const std::string& file) {
+    std::error_code failure;
+    fs::remove(file, failure);
+    if (failure) throw OutputError(file, "cannot be removed: " + failure.message());
+}
+
+void check_writable(const std::string& file, const std::vector<std::string>& inputs) {
+    const std::filesystem::path path(file);
+    const std::filesystem::path folder =
+        path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    std::error_code code;
+    if (file.empty()) throw OutputError(file, "the output has no name");
+    if (!std::filesystem::is_directory(folder, code))
+        throw OutputError(file, "there is no folder " + folder.string());
+    if (std::filesystem::is_directory(path, code)) throw OutputError(file, "is a folder");
+    output_target(file);
+    for (const std::string& input : inputs)
+        if (std::filesystem::equivalent(path, input, code))
+            throw UsageError("the output " + file + " is the input " + input);
+    if (access(folder.c_str(), W_OK) != 0)
+        throw OutputError(file, "the folder " + folder.string() + " is not writable");
 }
 
 }  // namespace trilens

@@ -1,8 +1,11 @@
-// Whole files as bytes: written beside their name and renamed, with the reason where that fails.
+// Whole files read, and written in one step: beside their name, then renamed, so that a reader sees the old
+// file or the whole new one.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace trilens {
 
@@ -17,5 +20,22 @@ void replace_file(const std::string& file, std::span<const unsigned char> bytes)
 
 /// The size of a file that can be read. Throws InputError: missing, a folder, not permitted.
 std::size_t readable_size(const std::string& file);
+
+/// Makes `text` the content of `file` in one step. Throws OutputError.
+void replace_text_file(const std::string& file, const std::string& text);
+
+/// The bytes of `file`; none where it cannot be read.
+std::optional<std::string> read_whole_file(const std::string& file);
+
+/// Makes `folder` and what it lies in; the empty name is the current folder, which is there. Throws
+/// OutputError.
+void make_folder(const std::string& folder);
+
+/// Removes `file` where it exists. Throws OutputError.
+void remove_file(const std::string& file);
+
+/// Throws OutputError where a file of that name could not be created: its folder is missing or not writable,
+/// or the name is a folder, a device or a pipe; UsageError where it is one of the files that are read.
+void check_writable(const std::string& file, const std::vector<std::string>& inputs);
 
 }  // namespace trilens

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/math/side_of_edge.h"
-#include "base/raymesh/row_cover.h"
+#include "base/raymesh/row_span.h"
 #include "base/util/parallel.h"
 
 namespace trilens {
@@ -98,7 +98,7 @@ void fill_rows(const std::vector<ScreenFacet>& facets, const SampleGrid& grid, s
         const std::size_t end = std::min(last, facet.window.y1);
         for (std::size_t row = std::max(first, facet.window.y0); row < end; ++row) {
             const SampleRow samples(grid, row);
-            const RowCover cover = facet.edges.cover(row, facet.window.x0, facet.window.x1);
+            const RowSpan cover = facet.edges.cover(row, facet.window.x0, facet.window.x1);
             const auto ask = [&](std::size_t begin, std::size_t finish) {
                 for (std::size_t column = begin; column < finish; ++column) {
                     const std::size_t sample = samples.sample(column);

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "base/description/appearance.h"
+#include "base/description/material.h"
 #include "base/raymesh/surface.h"
 #include "intersect/limit_tracer.h"
 #include "intersect/patch_tree.h"

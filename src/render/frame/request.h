@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/description/corner_rays.h"
-#include "base/description/grid_kind.h"
+#include "base/description/optic_settings.h"
 #include "base/image/image.h"
 #include "projector/classic/classic_params.h"
 

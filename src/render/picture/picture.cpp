@@ -6,7 +6,7 @@
 
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "base/util/nearest.h"
+#include "base/util/suggestion.h"
 #include "base/util/stopwatch.h"
 #include "base/util/version.h"
 #include "paths/trace/follow.h"

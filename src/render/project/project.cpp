@@ -4,7 +4,7 @@
 #include <bit>
 #include <numeric>
 
-#include "base/math/halve_points.h"
+#include "base/math/spatial_split.h"
 #include "base/util/parallel.h"
 #include "render/project/point_projector.h"
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/description/appearance.h"
+#include "base/description/material.h"
 #include "base/description/cage.h"
 #include "base/util/ids.h"
 #include "scene/data/scene.h"

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "base/description/appearance.h"
 #include "base/description/cage.h"
 #include "base/description/camera_description.h"
-#include "base/description/corner_rays.h"
-#include "base/description/grid_kind.h"
+#include "base/description/light.h"
+#include "base/description/material.h"
+#include "base/description/optic_settings.h"
 #include "base/math/vec.h"
 #include "base/raymesh/triangle_scene.h"
 

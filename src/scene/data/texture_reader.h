@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "base/description/appearance.h"
+#include "base/description/texture.h"
 
 namespace trilens {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "base/util/check.h"
-#include "base/util/nearest.h"
+#include "base/util/suggestion.h"
 #include "scene/json/schema.h"
 
 namespace trilens {

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <vector>
 
-#include "base/util/nearest.h"
+#include "base/util/suggestion.h"
 #include "scene/json/json_check.h"
 
 namespace trilens {

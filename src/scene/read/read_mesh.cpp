@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/util/nearest.h"
+#include "base/util/suggestion.h"
 #include "scene/data/far_point.h"
 #include "scene/read/reading.h"
 

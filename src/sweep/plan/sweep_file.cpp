@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <map>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
-#include "base/util/nearest.h"
+#include "base/util/suggestion.h"
 #include "sweep/store/json.h"
 
 namespace trilens {

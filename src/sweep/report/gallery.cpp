@@ -4,7 +4,7 @@
 #include <optional>
 #include <system_error>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "report/html.h"
 #include "report/text.h"
 #include "sweep/report/fit_runs.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/format.h"
 #include "report/html.h"
 #include "sweep/report/plot_groups.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "sweep/store/file_lock.h"

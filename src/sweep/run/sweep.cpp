@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/check.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <sstream>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/hash.h"
 #include "base/util/stopwatch.h"

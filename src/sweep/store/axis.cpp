@@ -9,7 +9,7 @@
 
 #include "base/util/error.h"
 #include "base/util/hash.h"
-#include "base/util/nearest.h"
+#include "base/util/suggestion.h"
 #include "report/text.h"
 
 namespace trilens {

@@ -12,7 +12,7 @@
 #include <optional>
 #include <span>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/hash.h"
 

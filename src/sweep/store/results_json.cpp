@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "report/text.h"
 #include "sweep/store/json.h"

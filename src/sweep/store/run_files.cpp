@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/hash.h"
 #include "base/util/stopwatch.h"

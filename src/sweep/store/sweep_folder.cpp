@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/files/files.h"
+#include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "sweep/store/own_files.h"

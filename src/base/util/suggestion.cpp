@@ -1,5 +1,5 @@
 // Edit distance with swaps of neighbours (Damerau 1964, optimal string alignment), over lower-case letters.
-#include "base/util/nearest.h"
+#include "base/util/suggestion.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,4 +1,4 @@
-#include "base/math/halve_points.h"
+#include "base/math/spatial_split.h"
 
 #include <algorithm>
 #include <utility>

@@ -12,7 +12,7 @@ namespace trilens {
 /// Columns of samples, counted from the window's left: those in [sure_begin, sure_end) are covered beyond any
 /// rounding, those outside [begin, end) are not; the rest must be asked one by one.
 /// begin <= sure_begin <= sure_end <= end.
-struct RowCover {
+struct RowSpan {
     std::size_t begin = 0, sure_begin = 0, sure_end = 0, end = 0;
 };
 
@@ -25,7 +25,7 @@ class FacetEdges {
     FacetEdges(const std::array<Vec3, 3>& corner, int orientation, const SampleGrid& grid);
 
     /// Of the samples in columns [first, last) of this row.
-    RowCover cover(std::size_t row, std::size_t first, std::size_t last) const;
+    RowSpan cover(std::size_t row, std::size_t first, std::size_t last) const;
 
   private:
     const SampleGrid grid_;

@@ -1,4 +1,4 @@
-#include "base/raymesh/row_cover.h"
+#include "base/raymesh/row_span.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,8 +53,8 @@ FacetEdges::FacetEdges(const std::array<Vec3, 3>& corner, int orientation, const
     usable_ = sure_sign && ordinary;
 }
 
-RowCover FacetEdges::cover(std::size_t row, std::size_t first, std::size_t last) const {
-    RowCover cover{first, first, first, last};
+RowSpan FacetEdges::cover(std::size_t row, std::size_t first, std::size_t last) const {
+    RowSpan cover{first, first, first, last};
     if (!usable_) return cover;
     const double y = grid_.y0 + (static_cast<double>(row) + 0.5) / grid_.side;
     Columns sure{-INFINITY, INFINITY}, may = sure;

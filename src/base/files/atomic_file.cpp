@@ -1,4 +1,4 @@
-#include "base/files/new_file.h"
+#include "base/files/atomic_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>
