@@ -10,7 +10,7 @@
 #include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "base/util/stopwatch.h"
+#include "base/util/progress.h"
 #include "render/engines/engine.h"
 #include "report/plot.h"
 #include "trilens/render.h"

@@ -6,7 +6,7 @@
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
-#include "refract/snell.h"
+#include "refract/dielectric.h"
 
 namespace trilens {
 namespace {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/raymesh/facet_samples.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"

@@ -9,7 +9,6 @@
 #include "bench/race/times.h"
 #include "bench/race/view_collector.h"
 #include "render/engines/facet_engine.h"
-#include "render/frame/check_frame.h"
 #include "render/frame/frame.h"
 #include "render/picture/sample_colour.h"
 #include "render/world/world.h"

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/util/stopwatch.h"
+#include "base/util/progress.h"
 
 namespace trilens_bench {
 

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/raymesh/facet_samples.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "bench/race/race.h"

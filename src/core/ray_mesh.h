@@ -9,7 +9,6 @@
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/surface.h"
 #include "base/raymesh/triangle_scene.h"
-#include "base/raymesh/visible.h"
 #include "camera/linear/perspective.h"
 #include "trilinear/mesh_point_images.h"
 

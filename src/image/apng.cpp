@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "base/util/error.h"
-#include "image/png_chunk.h"
+#include "image/png_file.h"
 
 namespace trilens {
 namespace {

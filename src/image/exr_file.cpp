@@ -23,7 +23,7 @@
 #include "base/util/parallel.h"
 #include "image/exr_channels.h"
 #include "image/exr_unzip.h"
-#include "image/library_reason.h"
+#include "image/picture_library.h"
 
 namespace trilens {
 namespace {

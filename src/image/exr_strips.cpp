@@ -15,7 +15,7 @@
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "image/exr_chunk.h"
-#include "image/library_reason.h"
+#include "image/picture_library.h"
 
 namespace trilens {
 namespace {

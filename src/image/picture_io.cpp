@@ -14,7 +14,7 @@
 #include "image/image_io.h"
 #include "image/picture_library.h"
 #include "image/png_file.h"
-#include "image/srgb.h"
+#include "image/tone.h"
 
 namespace trilens {
 namespace {

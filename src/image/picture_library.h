@@ -1,5 +1,5 @@
-// The library of pictures other than OpenEXR and ordinary PNG, which is loaded when the first such picture is
-// met: OpenImageIO brings hundreds of libraries with it, and most commands need none of them.
+// The library of all other pictures, loaded when the first such picture is met: OpenImageIO brings hundreds
+// of libraries with it, and most commands need none of them.
 #pragma once
 
 #include <memory>
@@ -27,6 +27,10 @@ const PictureLibrary* picture_library(std::string& reason);
 
 /// The thread count of the library, now or once it is loaded; 0 means all.
 void set_picture_threads(int threads);
+
+/// A library's report as part of an Error's message: one line without a full stop; "unknown reason" where it
+/// is empty.
+std::string library_reason(const std::string& report);
 
 }  // namespace trilens
 

@@ -1,10 +1,14 @@
-// Ordinary PNG files, 8 bits and sRGB, without the large library of all pictures: THE door to libpng.
+// PNG files, 8 bits and sRGB, without the large library of all pictures: THE door to libpng; and the chunks
+// that they are made of (PNG, Third Edition, W3C, 5.3).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/description/texture.h"
@@ -30,5 +34,22 @@ std::optional<std::string> png_fault(const std::string& file);
 /// messages. Throws OutputError.
 std::vector<unsigned char> encode_stored_png(const std::string& name, int width, int height,
                                              std::span<const unsigned char> stored);
+
+using Bytes = std::vector<unsigned char>;
+
+inline constexpr std::array<unsigned char, 8> kPngSignature{0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a};
+
+struct PngChunk {
+    std::string_view type;
+    std::span<const unsigned char> data;
+};
+
+/// A number as PNG has it: the highest byte first.
+void put32(Bytes& bytes, std::uint32_t value);
+/// Of the first four bytes.
+std::uint32_t read32(std::span<const unsigned char> bytes);
+
+/// Adds the chunk, with length and checksum.
+void put_png_chunk(Bytes& file, const PngChunk& chunk);
 
 }  // namespace trilens

@@ -12,7 +12,7 @@
 #include "intersect/box_tree.h"
 #include "intersect/local_segments.h"
 #include "intersect/surface_newton.h"
-#include "intersect/triangle_near_origin.h"
+#include "intersect/triangle_hit.h"
 
 namespace trilens {
 namespace {

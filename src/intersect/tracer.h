@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 
-#include "base/raymesh/facet_samples.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/segments.h"

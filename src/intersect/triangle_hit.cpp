@@ -1,10 +1,12 @@
-// Watertight intersection in double: shear the ray onto an axis, then compare signed areas in two dimensions.
 #include "intersect/triangle_hit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace trilens {
+
+// Watertight intersection in double: shear the ray onto an axis, then compare signed areas in two dimensions.
 
 ShearedRay::ShearedRay(const Ray& ray) : origin_(ray.origin) {
     const Vec3 size = glm::abs(ray.direction);
@@ -46,6 +48,30 @@ bool has_no_area(const std::array<Vec3, 3>& corner) {
     const double area = length(cross(a, b)), bound = length(a) * length(b);
     // Four roundings of relative size epsilon go into each component of the cross product.
     return !(area > 4 * std::numeric_limits<double>::epsilon() * bound) || !std::isfinite(bound);
+}
+
+// The inside by areas, else the nearest of three edges.
+
+NearestToOrigin nearest_to_origin(const PlaneTriangle& p) {
+    const Vec3 areas(area_from_origin(p[1], p[2]), area_from_origin(p[2], p[0]),
+                     area_from_origin(p[0], p[1]));
+    const double sum = areas.x + areas.y + areas.z;
+    const Vec3 weights = areas / sum;
+    if (sum != 0 && weights.x >= 0 && weights.y >= 0 && weights.z >= 0) return {weights, 0};
+
+    NearestToOrigin best;
+    for (int k = 0; k < 3; ++k) {
+        const Vec2 a = p[k], edge = p[(k + 1) % 3] - a;
+        const double size_2 = dot(edge, edge);
+        const double share = size_2 > 0 ? std::clamp(-dot(a, edge) / size_2, 0.0, 1.0) : 0.0;
+        const double distance = length(a + share * edge);
+        if (distance < best.distance) {
+            best = {Vec3(0), distance};
+            best.weights[k] = 1 - share;
+            best.weights[(k + 1) % 3] = share;
+        }
+    }
+    return best;
 }
 
 }  // namespace trilens

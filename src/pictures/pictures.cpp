@@ -15,9 +15,8 @@
 #include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/version.h"
-#include "image/library_reason.h"
 #include "image/picture_library.h"
-#include "image/srgb.h"
+#include "image/tone.h"
 
 namespace trilens {
 namespace {

@@ -3,10 +3,9 @@
 
 #include <span>
 
-#include "base/raymesh/facet_samples.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
-#include "base/raymesh/visible.h"
+#include "base/raymesh/triangle_scene.h"
 #include "projector/scene/prepared_scene.h"
 
 namespace trilens {

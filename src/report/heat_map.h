@@ -1,11 +1,12 @@
-// A table of numbers as colours: one value per pair of settings.
+// Maps of values over two axes, in the colours of viridis.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "report/plot_drawing.h"
+#include "report/plot_style.h"
 
 namespace trilens {
 
@@ -21,5 +22,22 @@ struct HeatMapParams {
 /// is room; zero is the scale's low end, and a cell without a value is left white. The first value of y is
 /// below.
 PlotDrawing draw_heat_map(const HeatMapParams& params);
+
+using LinearRgb = std::array<float, 3>;  // linear Rec.709, 0..1
+
+/// Viridis (van der Walt and Smith, 2015), by Matt Zucker's polynomial of degree 6 (within 0.02); `share` is
+/// clamped to 0..1, NaN counts as 0.
+LinearRgb viridis(double share);
+
+/// The same colour for style sheets: "#440154".
+std::string viridis_hex(double share);
+
+/// A range of positive values shown on a logarithmic colour scale.
+struct ColourRange {
+    double lo = 0.01, hi = 10;
+
+    /// 0 at lo and below, 1 at hi and above.
+    double share(double value) const;
+};
 
 }  // namespace trilens

@@ -1,4 +1,3 @@
-// The frame of every HTML page that is written: one file, readable without scripts and without a network.
 #include "report/page.h"
 
 #include <cmath>
@@ -8,6 +7,9 @@
 #include "report/text.h"
 
 namespace trilens {
+
+// The frame of every HTML page that is written: one file, readable without scripts and without a network.
+
 namespace {
 
 constexpr const char* kStyle = R"(

@@ -1,13 +1,15 @@
-// The frame of every HTML page that is written: one file, readable without scripts and without a network.
+// A report as one self-contained HTML page.
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "report/facts.h"
 #include "report/pictures.h"
 
 namespace trilens {
+
+using Facts = std::vector<std::pair<std::string, std::string>>;
 
 /// A page around `body` (markup). The title is text.
 std::string html_page(const std::string& title, const std::string& body);

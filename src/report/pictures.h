@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/image/image.h"
-#include "report/colour_map.h"
+#include "report/heat_map.h"
 
 namespace trilens {
 

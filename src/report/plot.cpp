@@ -9,7 +9,6 @@
 #include <set>
 #include <utility>
 
-#include "report/plot_labels.h"
 #include "report/plot_scale.h"
 #include "report/plot_style.h"
 #include "report/text.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/math/vec.h"
-#include "report/plot_drawing.h"
+#include "report/plot_style.h"
 
 namespace trilens {
 

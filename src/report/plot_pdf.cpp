@@ -6,7 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include "report/plot_drawing.h"
 #include "report/plot_style.h"
 #include "report/text.h"
 

@@ -1,11 +1,13 @@
-// The colours and strokes of plots. Based on: Okabe and Ito, Color Universal Design, 2008; each series also
-// has a marker of its own, so that none needs colour to be told apart.
 #include "report/plot_style.h"
 
 #include <array>
 #include <utility>
 
 namespace trilens {
+
+// The colours and strokes of plots. Based on: Okabe and Ito, Color Universal Design, 2008; each series also
+// has a marker of its own, so that none needs colour to be told apart.
+
 namespace {
 
 constexpr std::array<const char*, kPlotColours> kLight = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",

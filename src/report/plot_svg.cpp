@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "report/plot_drawing.h"
 #include "report/plot_style.h"
 #include "report/text.h"
 

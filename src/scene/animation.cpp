@@ -12,7 +12,6 @@
 #include "scene/load.h"
 #include "scene/read/override.h"
 #include "scene/read/reading.h"
-#include "scene/read/resolved.h"
 
 namespace trilens {
 namespace {

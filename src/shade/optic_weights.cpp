@@ -1,6 +1,6 @@
 #include "shade/optic_weights.h"
 
-#include "shade/fresnel.h"
+#include "refract/dielectric.h"
 #include "shade/shade.h"
 
 namespace trilens {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/description/texture.h"
+#include "base/math/vec.h"
 
 namespace trilens {
 

@@ -1,16 +1,38 @@
 // Lazily refined tree of surface cells; per-camera terms are cached in each node.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "specular/cell_bounds.h"
 #include "specular/cell_bvh.h"
-#include "specular/node_pool.h"
 #include "specular/simd_bounds.h"
 
 namespace trilens {
+
+/// Grows one by one; forgets all at once and then uses the same memory again.
+template <typename T>
+class NodePool {
+  public:
+    T& add(const T& value) {
+        if (size_ == kChunk * chunks_.size()) chunks_.push_back(std::make_unique<T[]>(kChunk));
+        T& place = chunks_[size_ / kChunk][size_ % kChunk];
+        place = value;
+        ++size_;
+        return place;
+    }
+    void clear() { size_ = 0; }
+    std::size_t size() const { return size_; }
+
+  private:
+    static constexpr std::size_t kChunk = 64;
+
+    std::vector<std::unique_ptr<T[]>> chunks_;
+    std::size_t size_ = 0;
+};
 
 /// A group of faces or a cell, with what does not depend on the point.
 struct TreeNode {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/image/image.h"
-#include "measure/common/common_channels.h"
+#include "measure/common/comparable.h"
 #include "suite/render_test.h"
 
 namespace trilens {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "measure/common/common_channels.h"
+#include "measure/common/comparable.h"
 
 namespace trilens {
 

@@ -1,4 +1,4 @@
-// What became of a suite of regression tests.
+// Results of a suite of regression tests, and as JUnit XML, the way CI services read them.
 #pragma once
 
 #include <cstddef>
@@ -44,5 +44,9 @@ struct SuiteResult {
 
     std::size_t count(TestState state) const;
 };
+
+/// One <testsuite> with one <testcase> per test: <failure>, <error> or <skipped> with the reasons,
+/// <system-out> with notes and with what became of the reference. A class is the folder part of the name.
+std::string junit_xml(const SuiteResult& result, const std::string& title);
 
 }  // namespace trilens

@@ -1,6 +1,7 @@
-// One test of a suite: drawn, updated where that is asked for, judged.
+// One test of a suite: drawn, its stored picture updated where that is asked for, judged.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "report/pictures.h"
@@ -27,5 +28,12 @@ struct RunTestOptions {
 
 /// Reads and runs the test of a folder. Throws Interrupted alone: everything else is the test's error.
 TestOutcome run_test(const FoundTest& found, const SuiteCallbacks& callbacks, const RunTestOptions& options);
+
+/// Draws the stored picture of a test twice, each time from the scene's files, and stores it where it differs
+/// from the one that is there; the file is written beside its name and renamed. Returns what changed:
+/// "unchanged", "new", "changed: ..."; empty where the test has no stored picture, or another program makes
+/// it. Throws ComputationError, and leaves the old one, where the two pictures differ in any bit; InputError;
+/// OutputError.
+std::string update_reference(const RenderTest& test, const SuiteCallbacks& callbacks);
 
 }  // namespace trilens

@@ -11,10 +11,10 @@
 #include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
+#include "base/util/progress.h"
 #include "base/util/run_on_threads.h"
-#include "base/util/stopwatch.h"
 #include "suite/find_tests.h"
-#include "suite/junit.h"
+#include "suite/results.h"
 #include "suite/run_test.h"
 #include "suite/suite_page.h"
 

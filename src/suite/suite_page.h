@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/judge.h"
 #include "suite/run_test.h"
 
 namespace trilens {
@@ -16,5 +17,10 @@ inline constexpr std::size_t kMostPictureBytes = 40'000'000;
 std::string suite_html(const SuiteResult& result,
                        const std::map<std::string, std::vector<TestPictures>>& pictures,
                        const std::string& title);
+
+/// Reference and picture, and where they could be compared the difference of the colours, FLIP and the
+/// displacement of each layer; what cannot be shown is a caption that says why.
+TestPictures test_pictures(const std::string& against, const Image& reference, const Image& picture,
+                           const Judgement& judgement, const RenderTest& test);
 
 }  // namespace trilens

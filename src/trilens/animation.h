@@ -16,7 +16,7 @@
 
 #include "image/apng.h"
 #include "scene/animation.h"
-#include "scene/animation/frame_numbers.h"
+#include "scene/animation/animation_keys.h"
 
 namespace trilens {
 

@@ -9,7 +9,7 @@
 //             std::printf("%s moved by %g px\n", layer.layer.c_str(), layer.displacement->summary->mean);
 #pragma once
 
-#include "measure/common/common_channels.h"
+#include "measure/common/comparable.h"
 #include "measure/common/fit.h"
 #include "measure/compare.h"
 #include "measure/compare_layers.h"

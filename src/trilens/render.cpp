@@ -8,7 +8,6 @@
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "image/exr_strips.h"
-#include "render/frame/check_frame.h"
 #include "render/frame/frame.h"
 #include "render/picture/picture.h"
 #include "scene/data/check_scene.h"

@@ -19,11 +19,11 @@
 #include "render/frame/request.h"
 #include "render/picture/explain.h"
 #include "render/project/project.h"
-#include "render/world/scene_reuse.h"
+#include "render/world/world.h"
 #include "scene/data/scene.h"
 #include "vector/caustic.h"
+#include "vector/drawing.h"
 #include "vector/fold_curves.h"
-#include "vector/line_choice.h"
 
 namespace trilens {
 

@@ -16,7 +16,7 @@
 #include "scene/examples/examples.h"
 #include "scene/info.h"
 #include "scene/load.h"
-#include "scene/read/set_resolution.h"
+#include "scene/read/override.h"
 
 namespace trilens {
 

@@ -4,4 +4,4 @@
 //     std::printf("%g s\n", watch.seconds());
 #pragma once
 
-#include "base/util/stopwatch.h"
+#include "base/util/progress.h"

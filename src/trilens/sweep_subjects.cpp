@@ -5,7 +5,7 @@
 
 #include "base/util/error.h"
 #include "base/util/hash.h"
-#include "base/util/stopwatch.h"
+#include "base/util/progress.h"
 #include "scene/data/scene_digest.h"
 
 namespace trilens {

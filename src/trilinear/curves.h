@@ -1,12 +1,18 @@
-// The thesis' choices: how curved edges are drawn, and where images are cut (Vallance 2005, chapters 4 and 5).
+// Curved edges by straight pieces, as the thesis draws them: slices and tessellation (Vallance 2005,
+// section 4.5), and where images are cut (chapter 5).
 #pragma once
+
+#include <vector>
+
+#include "trilinear/scene_edge.h"
 
 namespace trilens {
 
 /// How curved edges between projected vertices are drawn.
 enum class Curves {
-    kStraight,    // as straight lines
-    kSlices,      // with points at further levels of t (section 4.5.2): `pieces` parts of each edge's stretch of t
+    kStraight,  // as straight lines
+    kSlices,  // with points at further levels of t (section 4.5.2): `pieces` parts of each edge's stretch of
+              // t
     kTessellate,  // the scene triangle as pieces^2 triangles, each straight (section 4.5.1)
     kArcs,        // along the exact conics, within `tolerance`
 };
@@ -18,5 +24,27 @@ enum class Clip {
     kScene,  // the scene's edges, where they cross the surfaces that the facet's edges sweep (section 5.2):
              // facets that share an edge share these points, so that pictures are continuous across them
 };
+
+/// From one t to another, which may be smaller.
+struct Stretch {
+    double from = 0, to = 0;
+};
+
+/// The ends, on one scene edge, of the slices at the levels of t that divide the stretch into `pieces` equal
+/// parts, in its order. The thesis divides what lies between the vertices of a whole shape; dividing each
+/// edge's own stretch gives both triangles that share the edge the same points, bit for bit, so that no gap
+/// opens between them.
+std::vector<ImageVertex> slice_ends(const Coplanarity& facet, const SceneTriangle& triangle, std::size_t edge,
+                                    Stretch stretch, int pieces);
+
+/// A piece of a scene triangle: its corners, and their barycentrics in the whole.
+struct TrianglePiece {
+    SceneTriangle triangle;
+    std::array<Vec3, 3> barycentric;
+};
+
+/// The triangle as pieces * pieces congruent ones. Points on an edge that two triangles share come out the
+/// same, bit by bit, for both.
+std::vector<TrianglePiece> tessellate(const SceneTriangle& triangle, int pieces);
 
 }  // namespace trilens

@@ -6,8 +6,7 @@
 
 #include "trilinear/clip.h"
 #include "trilinear/conic_arc.h"
-#include "trilinear/slices.h"
-#include "trilinear/tessellate.h"
+#include "trilinear/curves.h"
 #include "trilinear/view_plane.h"
 
 namespace trilens {

@@ -7,7 +7,7 @@
 
 #include "base/raymesh/check_data.h"
 #include "base/util/error.h"
-#include "camera/model/ray_spread.h"
+#include "camera/model/general_linear.h"
 #include "vector/ray_slopes.h"
 
 namespace trilens {

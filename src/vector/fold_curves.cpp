@@ -12,7 +12,6 @@
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "vector/ray_slopes.h"
-#include "vector/sample_lattice.h"
 
 namespace trilens {
 namespace {

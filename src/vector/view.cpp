@@ -5,14 +5,14 @@
 #include <functional>
 #include <optional>
 
-#include "base/raymesh/facet_samples.h"
 #include "base/raymesh/facets_around.h"
+#include "base/raymesh/sample_grid.h"
 #include "base/util/parallel.h"
 #include "trilinear/clip.h"
 #include "trilinear/conic_arc.h"
 #include "trilinear/outline.h"
 #include "trilinear/view_plane.h"
-#include "vector/sample_lattice.h"
+#include "vector/ray_slopes.h"
 
 namespace trilens {
 namespace {

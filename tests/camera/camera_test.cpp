@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "camera/model/film_mesh.h"
-#include "camera/model/ray_spread.h"
+#include "camera/model/general_linear.h"
 #include "every_camera.h"
 #include "support/draw.h"
 #include "support/test.h"

@@ -100,7 +100,7 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"tbb/", {"src/base/util/parallel.cpp"}},
     {"hwy/",
      {"src/base/math/double_lanes-inl.h", "src/projector/kernel", "src/measure/displacement/patch_batch.cpp",
-      "src/measure/common/weighted_sums.cpp", "src/measure/displacement/cell_descent.cpp",
+      "src/measure/common/weighted_sums.cpp", "src/measure/displacement/pyramid_query.cpp",
       "src/specular/simd_bounds.cpp", "src/specular/sphere_images.cpp", "src/shade/shade_batch.cpp",
       "src/intersect/local_segments.cpp"}},
     {"oneapi/", {}},

@@ -42,7 +42,7 @@ struct Truths {
 
     /// Whether the exact surface shows that point within a pixel of the pixel's middle. At the rim of a ball
     /// a pixel holds so much of the scene that displacements between pixels' middles say little.
-    bool show_nearby(const SeenPoint& seen, const std::string& layer) {
+    bool show_nearby(const FieldSample& seen, const std::string& layer) {
         if (!finer) finer = shipped_world(scene, 1, kFiner * width(), kFiner * height());
         LayerRequest window;
         const auto clamped = [](int at, int most) { return std::clamp(at, 0, most); };

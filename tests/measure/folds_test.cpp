@@ -21,7 +21,7 @@ constexpr int kSize = 120;
 
 std::vector<std::uint8_t> folds_of(const Field& field) {
     const Image image = image_of(kSize, kSize, field);
-    SeenField seen = make_seen_field(image, "reflect").value();
+    PositionField seen = make_seen_field(image, "reflect").value();
     link_neighbours(seen);
     return near_folds(seen);
 }

@@ -6,8 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "measure/displacement/likely_place.h"
-#include "measure/displacement/sliver.h"
+#include "measure/displacement/search_prior.h"
 #include "measure/plain_inversion.h"
 #include "measure/plain_patch.h"
 #include "measure/synthetic.h"
@@ -25,10 +24,10 @@ struct Best {
 };
 
 /// Every piece at every corner of a cell, by plain code.
-void try_pieces(const ImageFinder& finder, const SeenPoint& wanted, Vec2 cell, bool same, Best& best) {
-    const SeenField& field = finder.reference().field;
+void try_pieces(const ImageFinder& finder, const FieldSample& wanted, Vec2 cell, bool same, Best& best) {
+    const PositionField& field = finder.reference().field;
     const int column = static_cast<int>(cell.x), row = static_cast<int>(cell.y);
-    Piece piece = piece_of(wanted);
+    SurfaceId piece = piece_of(wanted);
     if (same) piece.primitive = wanted.primitive;
     for (int corner = 0; corner < 4; ++corner) {
         const int x = column + corner % 2, y = row + corner / 2;
@@ -46,7 +45,7 @@ void try_pieces(const ImageFinder& finder, const SeenPoint& wanted, Vec2 cell, b
     }
 }
 
-void try_cell(const ImageFinder& finder, const SeenPoint& wanted, Vec2 cell, Best& best) {
+void try_cell(const ImageFinder& finder, const FieldSample& wanted, Vec2 cell, Best& best) {
     if (!finder.reference().may_show(wanted.point, static_cast<int>(cell.x), static_cast<int>(cell.y)))
         return;
     best.tried = false;
@@ -55,8 +54,8 @@ void try_cell(const ImageFinder& finder, const SeenPoint& wanted, Vec2 cell, Bes
 }
 
 /// What ImageFinder::find says of one point, by trying every cell of the image.
-std::optional<Vec2> plain_find(const ImageFinder& finder, const SeenPoint& wanted, double reach) {
-    const SeenField& field = finder.reference().field;
+std::optional<Vec2> plain_find(const ImageFinder& finder, const FieldSample& wanted, double reach) {
+    const PositionField& field = finder.reference().field;
     const std::size_t here = field.index(wanted.column, wanted.row);
     const bool is_shown = field.shows(here, piece_of(wanted));
     if (is_shown && field.point(here) == wanted.point) return Vec2(0);
@@ -102,8 +101,8 @@ Image random_image(std::mt19937_64& random, int width, int height, double amount
     });
 }
 
-std::vector<SeenPoint> points_of(const SeenField& field) {
-    std::vector<SeenPoint> points;
+std::vector<FieldSample> points_of(const PositionField& field) {
+    std::vector<FieldSample> points;
     for (std::size_t i = 0; i < field.links.size(); ++i)
         if (field.sees(i)) points.push_back(field.seen_point(i));
     return points;
@@ -125,10 +124,10 @@ TEST_CASE("the image finder finds what trying every cell finds, to the last bit"
         const double amount = std::pow(10.0, std::uniform_real_distribution<double>(-3, 0.9)(random));
         const Image one = random_image(random, width, height, 0.0),
                     other = random_image(random, width, height, amount);
-        const FieldIndex reference(make_seen_field(one, "reflect").value()),
+        const FieldPyramid reference(make_seen_field(one, "reflect").value()),
             test(make_seen_field(other, "reflect").value());
         const ImageFinder finder(reference, test);
-        const std::vector<SeenPoint> wanted = points_of(test.field);
+        const std::vector<FieldSample> wanted = points_of(test.field);
         const double reach = trial % 3 ? std::numeric_limits<double>::infinity() : 4;
         const auto answers = finder.find(wanted, reach);
         REQUIRE(answers.size() == wanted.size());
@@ -154,15 +153,15 @@ TEST_CASE("patches are continued as in plain code, to the last bit", "[measure][
     for (int trial = 0; trial < 60; ++trial) {
         const double amount = std::pow(10.0, std::uniform_real_distribution<double>(-3, 1)(random));
         const Image one = random_image(random, 13, 12, amount), other = random_image(random, 13, 12, amount);
-        const FieldIndex index(make_seen_field(one, "reflect").value()),
+        const FieldPyramid index(make_seen_field(one, "reflect").value()),
             beside(make_seen_field(other, "reflect").value());
         for (int row = -1; row < 12; ++row)
             for (int column = -1; column < 13; ++column)
                 for (int corner = 0; corner < 4; ++corner) {
                     const int x = column + corner % 2, y = row + corner / 2;
                     if (!index.field.contains(x, y)) continue;
-                    const SeenPoint seen = index.field.seen_point(index.field.index(x, y));
-                    Piece piece = piece_of(seen);
+                    const FieldSample seen = index.field.seen_point(index.field.index(x, y));
+                    SurfaceId piece = piece_of(seen);
                     if (random() % 2) piece.primitive = seen.primitive;
                     const PatchPlace place{column, row, corner};
                     const auto patch = make_patch(index.field, beside.field, place, piece);
@@ -189,17 +188,17 @@ TEST_CASE("no patch of a cell answers for a point that the cell's reach does not
     for (int trial = 0; trial < 40; ++trial) {
         const double amount = std::pow(10.0, std::uniform_real_distribution<double>(-3, 1)(random));
         const Image one = random_image(random, 14, 11, amount), other = random_image(random, 14, 11, amount);
-        const FieldIndex index(make_seen_field(one, "reflect").value()),
+        const FieldPyramid index(make_seen_field(one, "reflect").value()),
             beside(make_seen_field(other, "reflect").value());
         for (int row = -1; row < 11; ++row)
             for (int column = -1; column < 14; ++column) {
-                const CellReach reach = reach_of_cell(index, beside.field, column, row);
+                const FieldCellBounds reach = reach_of_cell(index, beside.field, column, row);
                 for (int corner = 0; corner < 4; ++corner) {
                     const int x = column + corner % 2, y = row + corner / 2;
                     if (!index.field.contains(x, y)) continue;
-                    const SeenPoint seen = index.field.seen_point(index.field.index(x, y));
+                    const FieldSample seen = index.field.seen_point(index.field.index(x, y));
                     for (const bool whole : {false, true}) {
-                        Piece piece = piece_of(seen);
+                        SurfaceId piece = piece_of(seen);
                         if (!whole) piece.primitive = seen.primitive;
                         const auto patch =
                             make_patch(index.field, beside.field, {column, row, corner}, piece);
@@ -234,22 +233,22 @@ TEST_CASE("where a field's index says that a patch is whole, it is", "[measure][
     std::size_t whole = 0, triangles = 0;
     for (int trial = 0; trial < 40; ++trial) {
         const Image image = random_image(random, 17, 15, 1), other = random_image(random, 17, 15, 1);
-        const FieldIndex index(make_seen_field(image, "reflect").value()),
+        const FieldPyramid index(make_seen_field(image, "reflect").value()),
             beside(make_seen_field(other, "reflect").value());
         for (int row = -1; row < 15; ++row)
             for (int column = -1; column < 17; ++column) {
                 const std::uint8_t says = index.wholeness(column, row);
                 for (int corner = 0; says && corner < 4; ++corner) {
-                    const SeenPoint seen =
+                    const FieldSample seen =
                         index.field.seen_point(index.field.index(column + corner % 2, row + corner / 2));
-                    Piece piece = piece_of(seen);
+                    SurfaceId piece = piece_of(seen);
                     auto patch = make_patch(index.field, beside.field, {column, row, corner}, piece);
                     REQUIRE(patch);
                     CHECK(patch->measured == 0xffff);
                     ++whole;
                     piece.primitive = seen.primitive;
                     patch = make_patch(index.field, beside.field, {column, row, corner}, piece);
-                    if (says & FieldIndex::kWholeTriangle) {
+                    if (says & FieldPyramid::kWholeTriangle) {
                         REQUIRE(patch);
                         CHECK(patch->measured == 0xffff);
                         ++triangles;

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "measure/displacement/patch.h"
-#include "measure/displacement/patch_rules.h"
 
 namespace trilens_test {
 

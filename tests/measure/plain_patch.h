@@ -32,7 +32,8 @@ struct Neighbourhood {
 };
 
 /// Links never leave an object; whether they may leave a triangle is the piece's choice.
-inline Neighbourhood look_around(const SeenField& field, const PatchPlace& place, const Piece& piece) {
+inline Neighbourhood look_around(const PositionField& field, const PatchPlace& place,
+                                 const SurfaceId& piece) {
     Neighbourhood around;
     for (int node = 0; node < 16; ++node) {
         const int x = place.column - 1 + node % 4, y = place.row - 1 + node / 4;
@@ -40,8 +41,8 @@ inline Neighbourhood look_around(const SeenField& field, const PatchPlace& place
         const std::size_t i = field.index(x, y);
         if (!field.shows(i, piece)) continue;
         around.allowed |= bit(node);
-        if (field.links[i] & SeenField::kRight) around.right |= bit(node);
-        if (field.links[i] & SeenField::kDown) around.down |= bit(node);
+        if (field.links[i] & PositionField::kRight) around.right |= bit(node);
+        if (field.links[i] & PositionField::kDown) around.down |= bit(node);
     }
     around.right &= static_cast<std::uint16_t>(~kLastColumn);
     return around;
@@ -59,7 +60,7 @@ inline std::uint16_t flood(const Neighbourhood& around, std::uint16_t seeds) {
     return static_cast<std::uint16_t>(piece);
 }
 
-inline Nodes points_of(const SeenField& field, const PatchPlace& place, std::uint16_t mask) {
+inline Nodes points_of(const PositionField& field, const PatchPlace& place, std::uint16_t mask) {
     Nodes points{};
     for (int node = 0; node < 16; ++node) {
         if (has(mask, node))
@@ -138,7 +139,7 @@ inline void extrapolate(Nodes& nodes, std::uint16_t& known, std::uint16_t wanted
 /// Continues the patch to pixels where the other image sees the piece: there the difference of the two images
 /// is extrapolated, which is small and smooth where they nearly agree, however much the seen points
 /// themselves bend.
-inline void extend_alongside(const SeenField& other, const PatchPlace& place, const Piece& piece,
+inline void extend_alongside(const PositionField& other, const PatchPlace& place, const SurfaceId& piece,
                              Patch& patch) {
     const std::uint16_t sees = flood(look_around(other, place, piece), patch.measured);
     std::uint16_t known = patch.measured & sees;
@@ -154,8 +155,8 @@ inline void extend_alongside(const SeenField& other, const PatchPlace& place, co
     patch.supported |= known;
 }
 
-inline std::optional<Patch> plain_patch(const SeenField& field, const SeenField& other,
-                                        const PatchPlace& place, const Piece& piece) {
+inline std::optional<Patch> plain_patch(const PositionField& field, const PositionField& other,
+                                        const PatchPlace& place, const SurfaceId& piece) {
     const int seed = kCellCorner[static_cast<std::size_t>(place.corner)];
     Patch patch;
     patch.measured = flood(look_around(field, place, piece), bit(seed));

@@ -2,7 +2,7 @@
 #include "intersect/random_scene.h"
 #include "paths/bodies.h"
 #include "paths/stage.h"
-#include "shade/fresnel.h"
+#include "refract/dielectric.h"
 #include "shade/shade.h"
 #include "support/test.h"
 

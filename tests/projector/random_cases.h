@@ -5,7 +5,6 @@
 #include <random>
 #include <vector>
 
-#include "base/raymesh/facet_samples.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"

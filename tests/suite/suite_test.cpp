@@ -9,7 +9,7 @@
 #include "base/util/error.h"
 #include "image/image_io.h"
 #include "suite/find_tests.h"
-#include "suite/junit.h"
+#include "suite/results.h"
 #include "support/test.h"
 
 using namespace trilens;

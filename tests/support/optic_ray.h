@@ -6,7 +6,7 @@
 
 #include "base/raymesh/surface.h"
 #include "reflect/mirror.h"
-#include "refract/snell.h"
+#include "refract/dielectric.h"
 
 namespace trilens_test {
 

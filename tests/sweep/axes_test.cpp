@@ -18,7 +18,7 @@
 #include "sweep/report/fit_runs.h"
 #include "sweep/report/plot_groups.h"
 #include "sweep/report/sweep_plots.h"
-#include "sweep/run/memory_gate.h"
+#include "sweep/run/run_plan.h"
 #include "sweep/run/sweep.h"
 #include "sweep/store/json.h"
 #include "sweep/store/machine.h"

@@ -1,5 +1,5 @@
 // A sweep's folder may hold the files of others: they stay, whatever the sweep does.
-#include "sweep/store/own_files.h"
+#include "sweep/store/sweep_ownership.h"
 
 #include <filesystem>
 #include <string>

@@ -1,5 +1,5 @@
 // --shard: what is meant is read, all else is refused; shards cover the plan.
-#include "sweep/plan/shard.h"
+#include "sweep/plan/plan.h"
 
 #include <map>
 #include <string>

@@ -6,8 +6,8 @@
 
 #include "random_facets.h"
 #include "support/test.h"
+#include "trilinear/curves.h"
 #include "trilinear/outline.h"
-#include "trilinear/tessellate.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -1,4 +1,5 @@
-// A linear camera: one 3 x 4 map from the world to the homogeneous screen, and where its rays come from.
+// A linear camera, one 3 x 4 map from the world to the homogeneous screen, and how a camera sees one corner
+// of a grid.
 #pragma once
 
 #include "base/math/vec.h"
@@ -33,5 +34,12 @@ inline Vec3 incident_direction(const LinearCamera& camera, const Vec3& point) {
     if (!camera.parallel) return point - camera.eye;
     return camera.view_direction;
 }
+
+/// `screen`: homogeneous, as RayMesh::screen has it. `incident`: from the camera to the corner, not unit: the
+/// eye-to-corner length, or as incident_direction for parallel rays.
+struct CornerView {
+    Vec3 screen{0, 0, 1};
+    Vec3 incident{0};
+};
 
 }  // namespace trilens

@@ -1,7 +1,6 @@
 // Which facet of a RayMesh each sample of the film shows.
 #pragma once
 
-#include "base/raymesh/facet_samples.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 

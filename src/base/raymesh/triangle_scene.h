@@ -1,8 +1,10 @@
-// The scene as projector and truth see it: a structure of arrays of world-space triangles.
+// The scene as projector and truth see it, a structure of arrays of world-space triangles, and what a ray
+// sees of it.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "base/math/vec.h"
@@ -48,5 +50,15 @@ inline bool comes_before(double t, Id object, double than_t, Id than_object) {
     if (std::fabs(t - than_t) <= kDepthTie * std::fabs(std::min(t, than_t))) return object < than_object;
     return t < than_t;
 }
+
+/// The first triangle along a ray, not yet placed on it: an entry of a visibility buffer (Burns and Hunt,
+/// "The Visibility Buffer", JCGT 2013).
+struct Visible {
+    Id triangle = kNone;  // index into TriangleScene::triangles; kNone: nothing is seen
+    // Its t, in units of the ray's direction, lies between them; both infinite where nothing is seen.
+    float t_low = std::numeric_limits<float>::infinity(), t_high = std::numeric_limits<float>::infinity();
+
+    bool seen() const { return triangle != kNone; }
+};
 
 }  // namespace trilens

@@ -1,7 +1,8 @@
-// How long work says how far it is, and learns that it should stop.
+// How long work says how far it is, and learns that it should stop; seconds of wall-clock time.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <string>
 
@@ -20,5 +21,16 @@ struct Progress {
 
 /// Where rooms put what the user would want to know but what is no error.
 using Warn = std::function<void(const std::string& message)>;
+
+/// Runs from its construction on.
+class Stopwatch {
+  public:
+    double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 }  // namespace trilens

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/util/parallel.h"
-#include "camera/model/ray_spread.h"
+#include "camera/model/general_linear.h"
 
 namespace trilens {
 namespace {

@@ -1,4 +1,4 @@
-// When two images may be compared at all, and which of their pixels are.
+// When two images may be compared at all: which channels they share, and which of their pixels.
 #pragma once
 
 #include <cstdint>
@@ -35,5 +35,15 @@ std::string channel_of(const std::string& layer, const std::string& name);
 /// image has no channel of that name, the older "reflect.object" and "reflect.X". Whether the image has the
 /// channel is the caller's question.
 std::string seen_channel(const Image& image, const std::string& layer, const std::string& name);
+
+/// Two images with the same channels.
+struct CommonChannels {
+    Image reference, test;
+    std::vector<std::string> only_reference, only_test;  // what was left out of each, by name
+};
+
+/// Leaves out the channels that the other image does not have, or has in another type (float, id). Older
+/// names of what is seen are the newer ones ("reflect.object", "reflectID.object").
+CommonChannels keep_common_channels(Image reference, Image test);
 
 }  // namespace trilens

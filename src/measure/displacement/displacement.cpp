@@ -9,7 +9,7 @@
 #include "base/util/parallel.h"
 #include "measure/common/comparable.h"
 #include "measure/displacement/image_finder.h"
-#include "measure/displacement/other_image.h"
+#include "measure/displacement/outlier_rejection.h"
 #include "measure/displacement/reference_layers.h"
 
 namespace trilens {
@@ -33,7 +33,7 @@ Displacement nothing_shown(std::size_t pixels) {
 constexpr int kBand = 8;
 
 template <typename Visit>
-void for_each_in_band(const SeenField& field, const FieldWindow& window, int band, Visit&& visit) {
+void for_each_in_band(const PositionField& field, const FieldWindow& window, int band, Visit&& visit) {
     const int top = window.y0 + band * kBand, bottom = std::min(top + kBand, window.y1);
     for (int column = window.x0; column < window.x1; ++column)
         for (int row = top; row < bottom; ++row) visit(field.index(column, row));
@@ -43,14 +43,14 @@ void for_each_in_band(const SeenField& field, const FieldWindow& window, int ban
 /// to `reach` pixels away, at least the radius.
 Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8_t>& mask, double radius,
                          double reach) {
-    const SeenField& field = finder.test().field;
+    const PositionField& field = finder.test().field;
     Displacement result = nothing_shown(mask.size());
     std::vector<std::uint8_t> is_beyond(mask.size(), 0);
     const FieldWindow& shown = finder.test().shown;
     const std::size_t bands = static_cast<std::size_t>(shown.y1 - shown.y0 + kBand - 1) / kBand;
     const std::size_t grain = 1 + 8192 / static_cast<std::size_t>(kBand * std::max(1, shown.x1 - shown.x0));
     parallel_for(bands, grain, [&](std::size_t first, std::size_t last) {
-        std::vector<SeenPoint> wanted;
+        std::vector<FieldSample> wanted;
         std::vector<std::size_t> pixels;
         const auto look_for = [&](std::size_t i) {
             if (!mask[i] || !field.shows_layer(i)) return;
@@ -92,7 +92,8 @@ void collect_statistics(const std::vector<std::uint8_t>& near_fold, Displacement
 }
 
 /// Pixels that show the layer in one of the images or in both.
-std::size_t count_shown(const SeenField& one, const SeenField& other, const std::vector<std::uint8_t>& mask) {
+std::size_t count_shown(const PositionField& one, const PositionField& other,
+                        const std::vector<std::uint8_t>& mask) {
     std::atomic<std::size_t> shown = 0;
     parallel_for(mask.size(), 16384, [&](std::size_t first, std::size_t last) {
         std::size_t here = 0;
@@ -116,14 +117,14 @@ std::optional<Displacement> measure_displacement(const ReferenceLayers& referenc
                                                  const DisplacementOptions& options) {
     require_comparable(reference.image(), test);
     const std::vector<std::uint8_t> mask = compared_pixels(reference.image(), test, options.mask_object);
-    const std::optional<SeenField> reference_field = make_seen_field(reference.image(), layer);
-    std::optional<SeenField> test_field = make_seen_field(test, layer);
+    const std::optional<PositionField> reference_field = make_seen_field(reference.image(), layer);
+    std::optional<PositionField> test_field = make_seen_field(test, layer);
     if (!reference_field || !test_field) return std::nullopt;
     const std::size_t shown = count_shown(*reference_field, *test_field, mask);
     if (shown == 0) return nothing_shown(mask.size());
 
     std::shared_ptr<const ReferenceLayers::Layer> there;
-    std::optional<FieldIndex> here;
+    std::optional<FieldPyramid> here;
     run_side_by_side({[&] { there = reference.get(layer); }, [&] { here.emplace(*test_field); }});
     Displacement result;
     std::size_t missing = 0;

@@ -23,13 +23,13 @@ struct Cell {
 };
 
 /// Nothing where the cell's pixels are not one linked piece of an object.
-std::optional<Cell> cell_at(const SeenField& field, int column, int row) {
+std::optional<Cell> cell_at(const PositionField& field, int column, int row) {
     if (!field.contains(column, row) || !field.contains(column + 1, row + 1)) return std::nullopt;
     const std::size_t corner = field.index(column, row), below = field.index(column, row + 1);
-    const Piece piece{(*field.object)[corner], field.optic_of(corner), std::nullopt};
+    const SurfaceId piece{(*field.object)[corner], field.optic_of(corner), std::nullopt};
     for (const std::size_t i : {corner, corner + 1, below, below + 1})
         if (!field.shows(i, piece)) return std::nullopt;
-    constexpr std::uint8_t right = SeenField::kRight, down = SeenField::kDown;
+    constexpr std::uint8_t right = PositionField::kRight, down = PositionField::kDown;
     if ((field.links[corner] & right) == 0 || (field.links[corner] & down) == 0 ||
         (field.links[corner + 1] & down) == 0 || (field.links[below] & right) == 0)
         return std::nullopt;
@@ -57,7 +57,7 @@ bool are_opposed(const Cell& a, const Cell& b) {
 /// How many pixels after the cell, on its row (or column), the piece turns over: between cells each of which
 /// agrees with the one beyond it, for where pixels are too coarse for what they see, orientations change from
 /// cell to cell.
-std::optional<int> fold_after(const SeenField& field, int column, int row, bool on_row) {
+std::optional<int> fold_after(const PositionField& field, int column, int row, bool on_row) {
     const int right = on_row ? 1 : 0, down = on_row ? 0 : 1;
     const auto cell = [&](int step) { return cell_at(field, column + step * right, row + step * down); };
     const auto agree = [&](const std::optional<Cell>& a, const std::optional<Cell>& b) {
@@ -74,7 +74,7 @@ std::optional<int> fold_after(const SeenField& field, int column, int row, bool 
 
 }  // namespace
 
-std::vector<std::uint8_t> near_folds(const SeenField& field) {
+std::vector<std::uint8_t> near_folds(const PositionField& field) {
     std::vector<std::uint8_t> near(
         static_cast<std::size_t>(field.width) * static_cast<std::size_t>(field.height), 0);
     const auto mark = [&](int column, int row) {

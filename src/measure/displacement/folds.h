@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "measure/displacement/seen_field.h"
+#include "measure/displacement/position_field.h"
 
 namespace trilens {
 
@@ -15,7 +15,7 @@ namespace trilens {
 /// that a mean over the displacements d of many pixels falls like d log(1 / d), not like d. Creases where an
 /// object's normal turns by less than 120 degrees are no folds. Depends on this field alone, hence the same
 /// pixels for every test of one reference.
-std::vector<std::uint8_t> near_folds(const SeenField& field);
+std::vector<std::uint8_t> near_folds(const PositionField& field);
 
 inline constexpr int kFoldReach = 4;
 

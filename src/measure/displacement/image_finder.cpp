@@ -4,9 +4,9 @@
 #include <array>
 #include <bit>
 
-#include "measure/displacement/cell_descent.h"
 #include "measure/displacement/image_query.h"
 #include "measure/displacement/patch_batch.h"
+#include "measure/displacement/pyramid_query.h"
 
 namespace trilens {
 namespace {
@@ -71,7 +71,7 @@ class CandidateSearch {
         cells_.clear();
         find_cells(finder_.reference(), packet_, cells_);
         for (const CellOfMany& cell : cells_) {
-            const CellReach& reach = finder_.reach_of(cell.column, cell.row);
+            const FieldCellBounds& reach = finder_.reach_of(cell.column, cell.row);
             for (std::uint64_t left = held_by(reach, packet_, cell.points); left; left &= left - 1) {
                 const std::size_t point = static_cast<std::size_t>(std::countr_zero(left));
                 if (const auto candidate = waiting[point]->candidate(cell.column, cell.row))
@@ -95,15 +95,15 @@ class CandidateSearch {
 
 }  // namespace
 
-const CellReach& ImageFinder::reach_of(int column, int row) const {
-    constexpr std::uint8_t kNeedsNoOther = FieldIndex::kWhole | FieldIndex::kWholeTriangle;
+const FieldCellBounds& ImageFinder::reach_of(int column, int row) const {
+    constexpr std::uint8_t kNeedsNoOther = FieldPyramid::kWhole | FieldPyramid::kWholeTriangle;
     const bool is_kept = kept_ && reference_.wholeness(column, row) == kNeedsNoOther;
     return (is_kept ? *kept_ : reaches_).get(reference_.cell_number(column, row), [&] {
         return reach_of_cell(reference_, test_.field, column, row);
     });
 }
 
-std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const SeenPoint> wanted, double reach) const {
+std::vector<std::optional<Vec2>> ImageFinder::find(std::span<const FieldSample> wanted, double reach) const {
     std::vector<ImageQuery> queries(wanted.size());
     PatchCache patches(reference_, test_.field);
 

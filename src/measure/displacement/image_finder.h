@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/math/vec.h"
-#include "measure/displacement/cell_reach.h"
-#include "measure/displacement/field_index.h"
-#include "measure/displacement/seen_field.h"
+#include "measure/displacement/field_cell_bounds.h"
+#include "measure/displacement/field_pyramid.h"
+#include "measure/displacement/position_field.h"
 
 namespace trilens {
 
@@ -19,7 +19,8 @@ class ImageFinder {
   public:
     /// `test`: the field that points are looked for from; it guides the reference beyond its borders. `kept`:
     /// where given, bounds that depend on the reference alone, one for each of its cells, for many finders.
-    ImageFinder(const FieldIndex& reference, const FieldIndex& test, LazyValues<CellReach>* kept = nullptr)
+    ImageFinder(const FieldPyramid& reference, const FieldPyramid& test,
+                LazyValues<FieldCellBounds>* kept = nullptr)
         : reference_(reference), test_(test), kept_(kept), reaches_(reference.cell_count()) {}
 
     /// For each point that `test` sees, the screen vector from its pixel to the nearest place where the
@@ -28,18 +29,18 @@ class ImageFinder {
     /// shows nearly the point at the pixel or next to it, but cannot say where, a place farther away than the
     /// slopes there allow is another image of the point (a curved mirror may show it several times) and no
     /// answer. Points of neighbouring pixels are found fastest together; an answer does not depend on which.
-    std::vector<std::optional<Vec2>> find(std::span<const SeenPoint> wanted, double reach) const;
+    std::vector<std::optional<Vec2>> find(std::span<const FieldSample> wanted, double reach) const;
 
     /// The bounds of a cell of the reference, made when it is first asked for.
-    const CellReach& reach_of(int column, int row) const;
+    const FieldCellBounds& reach_of(int column, int row) const;
 
-    const FieldIndex& reference() const { return reference_; }
-    const FieldIndex& test() const { return test_; }
+    const FieldPyramid& reference() const { return reference_; }
+    const FieldPyramid& test() const { return test_; }
 
   private:
-    const FieldIndex &reference_, &test_;
-    LazyValues<CellReach>* kept_;
-    mutable LazyValues<CellReach> reaches_;
+    const FieldPyramid &reference_, &test_;
+    LazyValues<FieldCellBounds>* kept_;
+    mutable LazyValues<FieldCellBounds> reaches_;
 };
 
 }  // namespace trilens

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "measure/displacement/likely_place.h"
-#include "measure/displacement/sliver.h"
+#include "measure/displacement/search_prior.h"
 
 namespace trilens {
 namespace {
 
 /// The square of the distance from a pixel to a rectangle of the screen, both in pixel centres.
-double squared_distance_to(const SeenPoint& from, double x0, double y0, double x1, double y1) {
+double squared_distance_to(const FieldSample& from, double x0, double y0, double x1, double y1) {
     const double dx = std::max({x0 - from.column, from.column - x1, 0.0});
     const double dy = std::max({y0 - from.row, from.row - y1, 0.0});
     return dx * dx + dy * dy;
@@ -20,7 +19,7 @@ double squared_distance_to(const SeenPoint& from, double x0, double y0, double x
 constexpr double kMore = 1 + 1e-9;
 
 /// Whether the reference's own pixel belongs to a piece of the wanted object that is wide enough for a slope.
-bool has_patch(const ImageFinder& finder, const SeenPoint& wanted) {
+bool has_patch(const ImageFinder& finder, const FieldSample& wanted) {
     for (int corner = 0; corner < 4; ++corner) {
         const PatchPlace place{wanted.column - corner % 2, wanted.row - corner / 2, corner};
         if (finder.reference().wholeness(place.column, place.row) ||
@@ -32,7 +31,7 @@ bool has_patch(const ImageFinder& finder, const SeenPoint& wanted) {
 
 }  // namespace
 
-void ImageQuery::begin(const ImageFinder& finder, const SeenPoint& wanted, double reach,
+void ImageQuery::begin(const ImageFinder& finder, const FieldSample& wanted, double reach,
                        const std::optional<Vec2>& guess) {
     finder_ = &finder;
     wanted_ = wanted;
@@ -45,7 +44,7 @@ void ImageQuery::begin(const ImageFinder& finder, const SeenPoint& wanted, doubl
     any_ = true;
     cells_ = {};
 
-    const SeenField& field = finder.reference().field;
+    const PositionField& field = finder.reference().field;
     const std::size_t here = field.index(wanted.column, wanted.row);
     is_shown_ = field.shows(here, piece_of(wanted));
     if (is_shown_ && field.point(here) == wanted.point) {
@@ -124,7 +123,7 @@ bool ImageQuery::may_improve(double distance) const {
 /// The cell of the guess first: a good hit there leaves little to search.
 bool ImageQuery::begin_guess() {
     if (!guess_) return false;
-    const FieldIndex& index = finder_->reference();
+    const FieldPyramid& index = finder_->reference();
     const double x = std::floor(wanted_.column + guess_->x), y = std::floor(wanted_.row + guess_->y);
     if (!(x >= -1 && x < index.field.width && y >= -1 && y < index.field.height)) return false;
     const int column = static_cast<int>(x), row = static_cast<int>(y);
@@ -167,7 +166,7 @@ bool ImageQuery::begin_found_cell() {
 
 /// False where the cell has nothing of the wanted object.
 bool ImageQuery::begin_cell(int column, int row) {
-    const FieldIndex& index = finder_->reference();
+    const FieldPyramid& index = finder_->reference();
     if (index.wholeness(column, row) && !index.field.shows(index.field.index(column, row), piece_of(wanted_)))
         return false;
     column_ = column;
@@ -193,16 +192,16 @@ bool ImageQuery::next_patch(PatchBatch& batch, std::size_t lane, PatchCache& pat
 }
 
 bool ImageQuery::put_patch(int corner, PatchBatch& batch, std::size_t lane, PatchCache& patches) {
-    const FieldIndex& index = finder_->reference();
-    const SeenField& field = index.field;
+    const FieldPyramid& index = finder_->reference();
+    const PositionField& field = index.field;
     const int x = column_ + corner % 2, y = row_ + corner / 2;
     if ((tried_ >> kCellCorner[static_cast<std::size_t>(corner)]) & 1 || !field.contains(x, y)) return false;
-    Piece piece = piece_of(wanted_);
+    SurfaceId piece = piece_of(wanted_);
     if (same_primitive_) piece.primitive = wanted_.primitive;
     if (!field.shows(field.index(x, y), piece)) return false;
 
     const Vec2 from = glm::clamp(Vec2(wanted_.column - column_, wanted_.row - row_), Vec2(0), Vec2(1));
-    const std::uint8_t asked = same_primitive_ ? FieldIndex::kWholeTriangle : FieldIndex::kWhole;
+    const std::uint8_t asked = same_primitive_ ? FieldPyramid::kWholeTriangle : FieldPyramid::kWhole;
     if (index.wholeness(column_, row_) & asked) {
         any_ = true;
         tried_ = 0xffff;

@@ -9,6 +9,7 @@
 
 #include "base/math/vec.h"
 #include "measure/displacement/image_finder.h"
+#include "measure/displacement/patch.h"
 #include "measure/displacement/patch_batch.h"
 #include "measure/displacement/patch_cache.h"
 
@@ -25,7 +26,7 @@ struct CandidateCell {
 class ImageQuery {
   public:
     /// `guess`: a shift that is likely; it makes the search shorter, and changes nothing else.
-    void begin(const ImageFinder& finder, const SeenPoint& wanted, double reach,
+    void begin(const ImageFinder& finder, const FieldSample& wanted, double reach,
                const std::optional<Vec2>& guess);
 
     /// Puts the next patch into a lane of the batch; false at the end, and where it waits for cells.
@@ -36,7 +37,7 @@ class ImageQuery {
 
     /// All but those next to the pixel have to be looked through.
     bool waits_for_cells() const { return stage_ == Stage::kWaiting; }
-    const SeenPoint& wanted() const { return wanted_; }
+    const FieldSample& wanted() const { return wanted_; }
     /// Cells whose squared distance is more show nothing better.
     double squared_reach() const;
     /// The cell, if the point may be seen there and it has not been tried; nothing else.
@@ -62,7 +63,7 @@ class ImageQuery {
     bool put_patch(int corner, PatchBatch& batch, std::size_t lane, PatchCache& patches);
 
     const ImageFinder* finder_ = nullptr;
-    SeenPoint wanted_;
+    FieldSample wanted_;
     std::optional<Vec2> guess_;
     Stage stage_ = Stage::kEnd;
 

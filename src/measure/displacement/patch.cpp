@@ -27,7 +27,7 @@ struct Neighbourhood {
 };
 
 /// Links never leave an object; whether they may leave a triangle is the piece's choice.
-Neighbourhood look_around(const SeenField& field, const PatchPlace& place, const Piece& piece) {
+Neighbourhood look_around(const PositionField& field, const PatchPlace& place, const SurfaceId& piece) {
     Neighbourhood around;
     const int left = place.column - 1, top = place.row - 1;
     const int first = std::max(0, -left), last = std::min(4, field.width - left);
@@ -38,8 +38,8 @@ Neighbourhood look_around(const SeenField& field, const PatchPlace& place, const
             if (!field.shows_linked(i, piece)) continue;
             const std::uint16_t here = bit(a + 4 * b);
             around.allowed |= here;
-            if (field.links[i] & SeenField::kRight) around.right |= here;
-            if (field.links[i] & SeenField::kDown) around.down |= here;
+            if (field.links[i] & PositionField::kRight) around.right |= here;
+            if (field.links[i] & PositionField::kDown) around.down |= here;
         }
     }
     around.right &= static_cast<std::uint16_t>(~kLastColumn);
@@ -58,7 +58,7 @@ std::uint16_t flood(const Neighbourhood& around, std::uint16_t seeds) {
     return static_cast<std::uint16_t>(piece);
 }
 
-Nodes points_of(const SeenField& field, const PatchPlace& place, std::uint16_t mask) {
+Nodes points_of(const PositionField& field, const PatchPlace& place, std::uint16_t mask) {
     Nodes points{};
     for (int node = 0; node < 16; ++node) {
         if (has(mask, node))
@@ -183,7 +183,8 @@ void extrapolate(Nodes& nodes, std::uint16_t& known, std::uint16_t wanted, Kind 
 /// Continues the patch to pixels where the other image sees the piece: there the difference of the two images
 /// is extrapolated, which is small and smooth where they nearly agree, however much the seen points
 /// themselves bend.
-void extend_alongside(const SeenField& other, const PatchPlace& place, const Piece& piece, Patch& patch) {
+void extend_alongside(const PositionField& other, const PatchPlace& place, const SurfaceId& piece,
+                      Patch& patch) {
     const std::uint16_t sees = flood(look_around(other, place, piece), patch.measured);
     std::uint16_t known = patch.measured & sees;
     if (known == 0 || (sees & ~patch.measured) == 0) return;
@@ -200,8 +201,8 @@ void extend_alongside(const SeenField& other, const PatchPlace& place, const Pie
 
 }  // namespace
 
-std::optional<Patch> make_patch(const SeenField& field, const SeenField& other, const PatchPlace& place,
-                                const Piece& piece) {
+std::optional<Patch> make_patch(const PositionField& field, const PositionField& other,
+                                const PatchPlace& place, const SurfaceId& piece) {
     const int seed = kCellCorner[static_cast<std::size_t>(place.corner)];
     Patch patch;
     patch.measured = flood(look_around(field, place, piece), bit(seed));

@@ -1,14 +1,17 @@
-// A patch of a seen field: 4 x 4 pixels of one piece of surface round a cell, and its inversion.
+// A patch of a position field: 4 x 4 pixels of one piece of surface round a cell, and its
+// inversion.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include "base/math/box.h"
 #include "base/math/vec.h"
-#include "measure/displacement/seen_field.h"
+#include "measure/displacement/position_field.h"
 
 namespace trilens {
 
@@ -35,8 +38,8 @@ inline constexpr std::array<int, 4> kCellCorner = {5, 6, 9, 10};
 /// field of the same size, nearly the same picture), then by extrapolation; as the corner is measured, the
 /// cell reaches at most one pixel beyond the piece. Nothing where the corner does not show the piece, or the
 /// piece is too thin to have a slope.
-std::optional<Patch> make_patch(const SeenField& field, const SeenField& other, const PatchPlace& place,
-                                const Piece& piece);
+std::optional<Patch> make_patch(const PositionField& field, const PositionField& other,
+                                const PatchPlace& place, const SurfaceId& piece);
 
 /// Where a patch shows a point.
 struct PatchHit {
@@ -61,5 +64,15 @@ PatchHull hull_of(const Patch& patch);
 
 /// A box about the hull and what is as near to it.
 Box reach_of(const Patch& patch);
+
+/// Steps along the lines of a patch change so little that a cubic through them means something where a third
+/// difference is at most a quarter of the longest step (this is squared). A jump at a patch's end gives 1, a
+/// crease of 25 % gives a quarter.
+inline constexpr double kSmoothThird = 1.0 / 16;
+
+/// What may be left over where a patch comes closest to a point that lies on it: shares of the patch's own
+/// bends and of its shorter tangent, and the rounding of float positions, of the point's distance.
+inline constexpr double kBendShare = 0.5, kTangentShare = 0.05;
+inline constexpr double kRounding = 4.0 * std::numeric_limits<float>::epsilon();
 
 }  // namespace trilens

@@ -1,6 +1,6 @@
 #include "measure/displacement/patch_batch.h"
 
-#include "measure/displacement/patch_rules.h"
+#include "measure/displacement/patch.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "measure/displacement/patch_batch.cpp"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "measure/displacement/field_index.h"
+#include "measure/displacement/field_pyramid.h"
 #include "measure/displacement/patch.h"
 
 namespace trilens {
@@ -14,7 +14,7 @@ namespace trilens {
 class PatchCache {
   public:
     /// `other`: as make_patch has it. Both must outlive it.
-    PatchCache(const FieldIndex& index, const SeenField& other)
+    PatchCache(const FieldPyramid& index, const PositionField& other)
         : index_(index), other_(other), entries_(kEntries) {}
 
     /// make_patch of the piece that the corner of the cell shows, of its own triangle alone or whole. Stays
@@ -39,16 +39,16 @@ class PatchCache {
     };
 
     std::optional<Patch> make(const PatchPlace& place, bool is_triangle) const {
-        const SeenField& field = index_.field;
-        const SeenPoint seen =
+        const PositionField& field = index_.field;
+        const FieldSample seen =
             field.seen_point(field.index(place.column + place.corner % 2, place.row + place.corner / 2));
-        Piece piece{seen.object, seen.optic, std::nullopt};
+        SurfaceId piece{seen.object, seen.optic, std::nullopt};
         if (is_triangle) piece.primitive = seen.primitive;
         return make_patch(field, other_, place, piece);
     }
 
-    const FieldIndex& index_;
-    const SeenField& other_;
+    const FieldPyramid& index_;
+    const PositionField& other_;
     std::vector<Entry> entries_;
 };
 

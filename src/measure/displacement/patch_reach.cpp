@@ -5,7 +5,6 @@
 #include <cstddef>
 
 #include "measure/displacement/patch.h"
-#include "measure/displacement/patch_rules.h"
 
 namespace trilens {
 namespace {

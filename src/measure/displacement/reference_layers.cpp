@@ -14,11 +14,11 @@ std::shared_ptr<const ReferenceLayers::Layer> ReferenceLayers::get(const std::st
     std::shared_ptr<const Layer> made;
     // Others wait meanwhile: the loops in here must not take up their work.
     run_isolated([&] {
-        std::optional<SeenField> field = make_seen_field(image_, layer);
+        std::optional<PositionField> field = make_seen_field(image_, layer);
         if (!field) return;
-        FieldIndex index(std::move(*field));
+        FieldPyramid index(std::move(*field));
         std::vector<std::uint8_t> folds = near_folds(index.field);
-        auto reaches = std::make_unique<LazyValues<CellReach>>(index.cell_count());
+        auto reaches = std::make_unique<LazyValues<FieldCellBounds>>(index.cell_count());
         made = std::make_shared<const Layer>(Layer{std::move(index), std::move(folds), std::move(reaches)});
     });
     layers_.emplace(layer, made);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/image/image.h"
-#include "measure/displacement/cell_reach.h"
-#include "measure/displacement/field_index.h"
+#include "measure/displacement/field_cell_bounds.h"
+#include "measure/displacement/field_pyramid.h"
 #include "measure/pixel/flip.h"
 
 namespace trilens {
@@ -20,9 +20,9 @@ namespace trilens {
 class ReferenceLayers {
   public:
     struct Layer {
-        FieldIndex index;
-        std::vector<std::uint8_t> near_folds;            // of folds.h
-        std::unique_ptr<LazyValues<CellReach>> reaches;  // as ImageFinder keeps them
+        FieldPyramid index;
+        std::vector<std::uint8_t> near_folds;                  // of folds.h
+        std::unique_ptr<LazyValues<FieldCellBounds>> reaches;  // as ImageFinder keeps them
     };
 
     explicit ReferenceLayers(const Image& image) : image_(image) {}

@@ -13,7 +13,6 @@
 #include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "measure/pixel/flip_colour.h"
-#include "measure/pixel/picture_window.h"
 #include "measure/pixel/separable_filter.h"
 
 namespace trilens {

@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "base/raymesh/corner_view.h"
+#include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
 #include "paths/probe/path_probe.h"
 

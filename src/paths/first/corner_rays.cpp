@@ -5,8 +5,8 @@
 #include "base/util/check.h"
 #include "reflect/mirror.h"
 #include "reflect/reflection.h"
+#include "refract/dielectric.h"
 #include "refract/refraction.h"
-#include "refract/snell.h"
 
 namespace trilens {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/raymesh/corner_view.h"
+#include "base/raymesh/linear_camera.h"
 #include "paths/trace/follow.h"
 
 namespace trilens {

@@ -4,8 +4,7 @@
 
 #include "paths/trace/path_world.h"
 #include "reflect/mirror.h"
-#include "refract/snell.h"
-#include "shade/fresnel.h"
+#include "refract/dielectric.h"
 #include "shade/optic_weights.h"
 #include "shade/shade.h"
 

@@ -1,18 +1,85 @@
-// What paths run through: the optics' exact surfaces and what they are made of.
+// What paths are followed through: optics, objects, and nested dielectrics (a ray's interior list and its
+// active medium).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/description/material.h"
 #include "base/raymesh/surface.h"
+#include "base/util/ids.h"
 #include "intersect/limit_tracer.h"
 #include "intersect/patch_tree.h"
 #include "intersect/tracer.h"
-#include "paths/trace/media.h"
 #include "paths/trace/path.h"
 
 namespace trilens {
+
+/// Optics in the order in which the ray came into them. Plain data, small: a ray inside of more than kMost
+/// bodies at once cannot be told.
+struct Media {
+    static constexpr int kMost = 8;
+    std::array<Id, kMost> optic{};
+    std::uint8_t count = 0;
+
+    bool holds(Id asked) const {
+        for (int i = 0; i < count; ++i)
+            if (optic[static_cast<std::size_t>(i)] == asked) return true;
+        return false;
+    }
+    /// False where there is no room.
+    bool enter(Id entered) {
+        if (count == kMost) return false;
+        optic[count++] = entered;
+        return true;
+    }
+    /// Takes out the last entry of that optic, where it has one.
+    void leave(Id left) {
+        for (int i = count - 1; i >= 0; --i) {
+            if (optic[static_cast<std::size_t>(i)] != left) continue;
+            for (int k = i; k + 1 < count; ++k)
+                optic[static_cast<std::size_t>(k)] = optic[static_cast<std::size_t>(k) + 1];
+            --count;
+            return;
+        }
+    }
+
+    /// The body whose glass the ray runs in: of those that it is inside of the one of highest priority, the
+    /// last entered among equals; kNone: air. `priority(optic)` gives an optic's.
+    /// Source: Schmidt and Budge, Simple Nested Dielectrics in Ray Traced Images, JGT 2002.
+    template <typename Priority>
+    Id active(const Priority& priority) const {
+        Id best = kNone;
+        for (int i = 0; i < count; ++i) {
+            const Id one = optic[static_cast<std::size_t>(i)];
+            if (best == kNone || priority(one) >= priority(best)) best = one;
+        }
+        return best;
+    }
+};
+
+/// What a ray is inside of before and behind a surface.
+struct MediaSides {
+    Media before, after;
+};
+
+/// The sides of a body's surface for a ray that is inside of `media`; it comes to the body's front, from
+/// outside, or to its back. One that comes to the back of a body that it did not enter (an open surface)
+/// leaves it. None where the ray is inside of too many bodies to tell.
+inline std::optional<MediaSides> sides_of(const Media& media, Id body, bool front) {
+    MediaSides sides{media, media};
+    if (front) {
+        if (!sides.after.enter(body)) return std::nullopt;
+        return sides;
+    }
+    if (!media.holds(body) && !sides.before.enter(body)) return std::nullopt;
+    sides.after = sides.before;
+    sides.after.leave(body);
+    return sides;
+}
 
 /// One optic as paths meet it; what is pointed to must live longer.
 struct PathOptic {

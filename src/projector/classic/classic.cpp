@@ -1,5 +1,3 @@
-// The classic engine: every facet projects the triangles it may image, and fills their outlines into its own
-// samples.
 #include "projector/classic/classic.h"
 
 #include <algorithm>
@@ -18,6 +16,10 @@
 #include "trilinear/outline.h"
 
 namespace trilens {
+
+// The classic engine: every facet projects the triangles it may image, and fills their outlines into its own
+// samples.
+
 namespace {
 
 /// Outlines reach this far, in weights, over the facet's border, so that no sample on it is lost to rounding.

@@ -1,12 +1,43 @@
-// Whether one ray's line meets one triangle, and where: the decision that all engines share, bit for bit.
+// Watertight ray/triangle intersection by exact signs, where on the triangle the ray passes, and the first of
+// several hits: the decisions that all engines share, bit for bit.
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 
-#include "projector/exact/hit_point.h"
+#include "base/raymesh/triangle_scene.h"
+#include "projector/exact/facet_rays.h"
 
 namespace trilens {
+
+/// A line meets a triangle.
+struct LineHit {
+    double t = 0;         // any sign, or not a number
+    Vec2 barycentric{0};  // weights of the second and third corner
+};
+
+/// What hit_point() takes of a triangle: its first corner c, the edges e1 and e2 from there, and their
+/// product.
+struct TriangleFrame {
+    Vec3 corner{0}, e1{0}, turned{0};  // turned: -e2
+    Vec3 normal{0};                    // e1 x e2
+    double size = 0;                   // of e1 times that of e2, in the largest coordinate
+};
+
+/// `corner`: from the facet's centre.
+TriangleFrame triangle_frame(const std::array<Vec3, 3>& corner);
+
+/// Below this share of what it is made of, the denominator is not trusted: a sliver, or a triangle seen
+/// edge-on.
+inline constexpr double kLeastDeterminant = 0x1p-30;
+
+/// Where the ray passes: with s = W c - origin' and the ray times its weight W (origin' and direction',
+/// mathematics section 2), t = n . s / n . direction', and the weights of the second and third corner are
+/// -e2 . K and e1 . K, over W n . direction', with K = direction' x s (Moeller and Trumbore, Fast, Minimum
+/// Storage Ray/Triangle Intersection, 1997, around the normal). None where the value is not trusted, or is
+/// outside the triangle by its rounding. hit_points-inl.h repeats the operations, bit for bit.
+std::optional<LineHit> hit_point(const SampleRay& ray, const TriangleFrame& triangle);
 
 /// An edge conic (trilinear/edge_conic.h) further from zero than this share of its terms has the sign of the
 /// decision. With p = weight corner - origin', the conic is direction' . (p_a x p_b) / weight. Counting
@@ -21,5 +52,46 @@ inline constexpr double kDecisionErrorBound = 128 * 2.220446049250313e-16;
 /// where that says nothing, from the projection, as convex combinations: never outside the triangle, however
 /// thin it is.
 std::optional<LineHit> exact_hit(const SampleRay& ray, const std::array<Vec3, 3>& corner);
+
+/// Among the triangles whose t is within kDepthTie of the smallest, the one with the smallest rank. A rival
+/// may leave that band after it has driven out another that stays; `order_mattered` then asks for a second
+/// pass over the same triangles, which starts with the smallest t known and so is exact.
+class FirstHit {
+  public:
+    /// No triangle beyond this t can change the hit.
+    double limit() const { return nearest_ * (1 + kDepthTie); }
+
+    void offer(const LineHit& hit, Id triangle, Id rank) {
+        if (!(hit.t >= 0 && hit.t <= limit() && hit.t < kFar)) return;
+        if (hit.t < nearest_) nearest_ = hit.t;
+        if (winner_ != kNone && hit_.t <= limit()) {
+            contested_ = true;
+            if (rank_ < rank) return;
+        } else if (contested_) {
+            order_mattered_ = true;
+        }
+        winner_ = triangle;
+        rank_ = rank;
+        hit_ = hit;
+    }
+
+    bool order_mattered() const { return order_mattered_; }
+    void begin_second_pass() {
+        winner_ = kNone;
+        contested_ = order_mattered_ = false;
+    }
+
+    Id winner() const { return winner_; }  // kNone: nothing is hit
+    const LineHit& hit() const { return hit_; }
+
+  private:
+    static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+    double nearest_ = kFar;  // the smallest t
+    Id winner_ = kNone, rank_ = 0;
+    LineHit hit_;
+    bool contested_ = false;  // a triangle within the band of its time was turned away
+    bool order_mattered_ = false;
+};
 
 }  // namespace trilens

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-#include "projector/exact/hit_point.h"
+#include "projector/exact/exact_hit.h"
 #include "projector/kernel/setup-inl.h"
 #include "projector/scene/prepared_data.h"
 

@@ -11,7 +11,7 @@
 #include <bit>
 
 #include "base/util/check.h"
-#include "projector/exact/first_hit.h"
+#include "projector/exact/exact_hit.h"
 #include "projector/kernel/coverage-inl.h"
 #include "projector/kernel/write-inl.h"
 

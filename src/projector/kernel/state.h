@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "projector/exact/hit_point.h"
+#include "projector/exact/exact_hit.h"
 #include "projector/kernel/kernel.h"
 
 namespace trilens {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/util/parallel.h"
-#include "projector/exact/first_hit.h"
+#include "projector/exact/exact_hit.h"
 #include "projector/scene/prepared_data.h"
 
 namespace trilens {

@@ -4,7 +4,6 @@
 
 #include <span>
 
-#include "base/raymesh/facet_samples.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "projector/exact/facet_rays.h"

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "base/raymesh/facet_samples.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "projector/exact/facet_rays.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/raymesh/facet_samples.h"
+#include "base/raymesh/sample_grid.h"
 #include "paths/facets/facet_paths.h"
 #include "render/frame/views.h"
 

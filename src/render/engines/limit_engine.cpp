@@ -5,7 +5,7 @@
 #include "base/raymesh/rasterize.h"
 #include "base/util/parallel.h"
 #include "render/engines/first_surface.h"
-#include "render/engines/follow_sample.h"
+#include "render/engines/trace_samples.h"
 #include "render/frame/camera_media.h"
 #include "render/world/geometry.h"
 

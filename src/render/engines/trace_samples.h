@@ -1,9 +1,10 @@
-// Samples on an optic that no facet speaks for: their own rays, followed on the exact surfaces.
+// Ray traces samples on the exact surfaces: those that no facet speaks for, and the truth.
 #pragma once
 
 #include <vector>
 
 #include "paths/probe/path_probe.h"
+#include "paths/trace/follow.h"
 #include "render/engines/history_drawer.h"
 #include "render/frame/views.h"
 #include "render/world/world.h"
@@ -22,5 +23,24 @@ struct TraceSamplesParams {
 /// facets; one that passes the exact surface by goes straight on.
 void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samples, SampleViews& views,
                    PathEnds& out);
+
+/// Where a sample's ray meets its optic first.
+struct FirstHit {
+    SurfaceHit at;
+    Media around;  // what the ray starts in
+};
+
+/// Where what is found goes.
+struct SamplePaths {
+    OpticView& on_optic;  // its incidence, way and cut
+    std::vector<PathEnd>& ends;
+    std::vector<Step>& steps;
+};
+
+/// Appends the ends of all paths of a sample whose ray meets its optic (view.optic) there, with their steps.
+/// `first_step` of the ends counts in `steps`. The rays that leave carry the eye-to-surface length, as corner
+/// rays do.
+void follow_sample(const World& world, const FirstHit& first, const SampleView& view,
+                   const SamplePaths& found);
 
 }  // namespace trilens

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/math/box.h"
-#include "paths/trace/media.h"
+#include "paths/trace/path_world.h"
 #include "render/frame/camera_rays.h"
 #include "render/frame/request.h"
 #include "render/world/world.h"
@@ -14,11 +14,11 @@ namespace trilens {
 /// The media that a camera's rays start in.
 struct CameraMedia {
     const World* world = nullptr;
-    bool by_ray = false;           // each ray has its own: `of` asks it
-    std::vector<Id> near;          // optics of glass that may hold where some ray starts
-    std::vector<Box> boxes;        // of these; nothing of them lies outside
-    Media fixed;                   // of all rays where not by_ray
-    std::vector<Id> unsure;        // bodies that hold the eye in some directions only; see EnclosingBodies
+    bool by_ray = false;     // each ray has its own: `of` asks it
+    std::vector<Id> near;    // optics of glass that may hold where some ray starts
+    std::vector<Box> boxes;  // of these; nothing of them lies outside
+    Media fixed;             // of all rays where not by_ray
+    std::vector<Id> unsure;  // bodies that hold the eye in some directions only; see EnclosingBodies
 
     /// Whether rays start in air, all of them.
     bool none() const { return !by_ray && fixed.count == 0; }

@@ -1,13 +1,14 @@
-// A scene's camera, and the rays of samples.
+// A camera's exact rays, also those of an explicit RayMesh.
 #pragma once
 
+#include <memory>
 #include <span>
 
-#include "base/raymesh/facet_samples.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/util/parallel.h"
 #include "camera/camera.h"
+#include "camera/model/camera_model.h"
 #include "render/frame/views.h"
 #include "scene/data/scene.h"
 
@@ -41,5 +42,13 @@ FacetSamples set_exact_rays(const CameraModel& model, const SampleGrid& grid, st
 
 /// Adds the depth at which the camera's rays begin to the depths of what is seen.
 void count_from_eye(const CameraRays& camera, std::span<SampleView> views);
+
+/// The rays that the mesh interpolates are the camera's exact ones; a place without a facet has none. A point
+/// may have an image in every facet, so that surface grids have no place of their own on its film: `place` is
+/// none everywhere, `places` lists the images facet by facet. Screens are affine.
+std::shared_ptr<const CameraModel> make_ray_mesh_model(const RayMesh& mesh, const FilmSize& film);
+
+/// Whether a model is one of those.
+bool is_ray_mesh_model(const CameraModel& model);
 
 }  // namespace trilens

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/raymesh/corner_view.h"
+#include "base/raymesh/linear_camera.h"
 #include "base/raymesh/surface.h"
 #include "camera/model/camera_model.h"
 

@@ -1,5 +1,4 @@
 // What depends on a picture's camera and resolution: the camera's rays, and the RayMeshes that leave the
-// optics.
 #pragma once
 
 #include <memory>
@@ -13,6 +12,7 @@
 #include "render/frame/film_grid.h"
 #include "render/frame/request.h"
 #include "render/world/geometry.h"
+#include "render/world/world.h"
 
 namespace trilens {
 
@@ -74,5 +74,9 @@ std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Fra
 
 /// The mesh of this path, or null.
 const RayMesh* find_path(const FramedOptic& optic, Path path);
+
+/// Throws UsageError for a camera that the scene does not have, a resolution beyond 1..1024 (0: none is asked
+/// for), or a largest error beyond 0..kMostMaxError.
+void check_frame(const World& world, const FrameParams& frame);
 
 }  // namespace trilens

@@ -9,7 +9,7 @@
 
 #include "base/description/optic_settings.h"
 #include "base/image/image.h"
-#include "projector/classic/classic_params.h"
+#include "projector/classic/classic.h"
 
 namespace trilens {
 

@@ -6,8 +6,8 @@
 
 #include "base/util/error.h"
 #include "base/util/format.h"
+#include "base/util/progress.h"
 #include "base/util/suggestion.h"
-#include "base/util/stopwatch.h"
 #include "base/util/version.h"
 #include "paths/trace/follow.h"
 #include "render/engines/engine.h"

@@ -43,13 +43,13 @@ std::size_t count_without_area(const ObjectMesh& mesh);
 inline constexpr double kNoArea = 1e-14;
 
 /// Doubtful spots of a cage's topology.
-struct CageDoubts {
+struct CageDiagnostics {
     std::size_t boundary_edges = 0;      // with one face
     std::size_t non_manifold_edges = 0;  // with more than two faces, or two that disagree on its direction
     std::size_t repeated_corners = 0;    // faces that visit a point twice
     std::size_t unknown_creases = 0;     // crease pairs that are no edge
     std::size_t flat_faces = 0;          // faces without area
 };
-CageDoubts find_doubts(const Cage& cage);
+CageDiagnostics diagnose_cage(const Cage& cage);
 
 }  // namespace trilens

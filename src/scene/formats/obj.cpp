@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/util/error.h"
-#include "scene/formats/words.h"
+#include "scene/formats/line_scanner.h"
 #include "scene/json/files.h"
 
 namespace trilens {

@@ -1,13 +1,17 @@
-// Walks document and schema side by side along a JSON pointer (RFC 6901).
 #include "scene/read/override.h"
 
 #include <charconv>
 #include <vector>
 
+#include "base/util/error.h"
 #include "base/util/suggestion.h"
 #include "scene/json/json_check.h"
+#include "scene/read/reading.h"
 
 namespace trilens {
+
+// Walks document and schema side by side along a JSON pointer (RFC 6901).
+
 namespace {
 
 struct Target {
@@ -98,6 +102,32 @@ void apply(Json& scene, const Target& target) {
 
 void apply_overrides(Json& scene, std::span<const SceneOverride> overrides, const std::string& file) {
     for (const SceneOverride& change : overrides) apply(scene, {change, file});
+}
+
+Json resolved_json(const Scene& scene) {
+    const std::string title = scene_title(scene);
+    Json json = parse_json(scene.resolved, title);
+    if (const auto found = find_problem(json, scene_schema_json()))
+        throw InputError(title, found->place, found->message);
+    const auto count = [&](const char* key) { return json.contains(key) ? json.at(key).size() : 0; };
+    if (count("meshes") != scene.meshes.size() || count("cameras") != scene.cameras.size())
+        throw InputError(title, "", "its JSON has other meshes or cameras than the scene itself");
+    return json;
+}
+
+void set_resolution(Scene& scene, int resolution) {
+    if (resolution < 1 || resolution > kMaxResolution)
+        throw InputError(scene_title(scene), "/meshes",
+                         "a resolution of " + std::to_string(resolution) + " is not in 1.." +
+                             std::to_string(kMaxResolution));
+    Json resolved;
+    if (!scene.resolved.empty()) resolved = resolved_json(scene);
+    for (Mesh& mesh : scene.meshes)
+        if (mesh.role == Role::kOptic) mesh.resolution = resolution;
+    if (scene.resolved.empty() || scene.meshes.empty()) return;
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+        if (scene.meshes[m].role == Role::kOptic) resolved["meshes"][m]["resolution"] = resolution;
+    scene.resolved = resolved.dump();
 }
 
 }  // namespace trilens

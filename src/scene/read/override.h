@@ -1,9 +1,10 @@
-// `--set /json/pointer=VALUE`: changes a scene's JSON before it is checked.
+// Overrides: changes of a scene's JSON before it is checked, and the JSON that a scene keeps of itself.
 #pragma once
 
 #include <span>
 #include <string>
 
+#include "scene/data/scene.h"
 #include "scene/data/scene_override.h"
 #include "scene/json/json.h"
 
@@ -12,5 +13,13 @@ namespace trilens {
 /// Applies the overrides in order. A key that is missing but known to the scene schema is added, with the
 /// objects on the way to it. Throws InputError(file, pointer) where a pointer is malformed or names nothing.
 void apply_overrides(Json& scene, std::span<const SceneOverride> overrides, const std::string& file);
+
+/// Scene::resolved, which is not empty, as a document. Callers may have written it: throws InputError where
+/// it is no scene's, as the schema has it, or names other meshes or cameras than the scene has.
+Json resolved_json(const Scene& scene);
+
+/// Gives every optic this resolution, in the scene and in its resolved JSON. Throws InputError unless it is
+/// in 1..1024, or where Scene::resolved is no scene's JSON; then nothing has changed.
+void set_resolution(Scene& scene, int resolution);
 
 }  // namespace trilens

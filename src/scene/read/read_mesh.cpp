@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/util/suggestion.h"
-#include "scene/data/far_point.h"
+#include "scene/data/cage_diagnostics.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -92,7 +92,7 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     mesh.cage = std::move(polygons.cage);
     mesh.face_count = mesh.cage.face_vertex_counts.size();
 
-    const CageDoubts doubts = find_doubts(mesh.cage);
+    const CageDiagnostics doubts = diagnose_cage(mesh.cage);
     const bool glass = reading.scene.materials[mesh.material].transmission_factor == 1;
     warn_count(doubts.non_manifold_edges,
                "edges are not manifold: more than two faces meet there, or their windings disagree",

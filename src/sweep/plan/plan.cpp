@@ -1,7 +1,12 @@
 #include "sweep/plan/plan.h"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cstddef>
 #include <map>
+#include <optional>
+#include <string_view>
 
 #include "base/util/error.h"
 #include "base/util/hash.h"
@@ -57,6 +62,69 @@ std::vector<PlannedRun> make_plan(const SweepAxes& axes,
     std::vector<PlannedRun> plan;
     for (const Coordinates& point : points) plan.push_back(planned_run(axes, point, keys(point)));
     return plan;
+}
+
+// Which part of a plan one process does: the text of --shard.
+
+namespace {
+
+/// All of `text` as a whole number; none where it is not one or does not fit.
+std::optional<int> whole_number(std::string_view text) {
+    int value = 0;
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || end.ec != std::errc() || end.ptr != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+/// The variables of one kind of job array; null where it has none. The size is `last` or `count`.
+struct ArrayVariables {
+    const char *index, *first, *step, *last, *count;
+    int default_first;
+};
+
+constexpr std::array<ArrayVariables, 4> kArrays = {{
+    {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MIN", "SLURM_ARRAY_TASK_STEP", nullptr,
+     "SLURM_ARRAY_TASK_COUNT", 0},
+    {"SGE_TASK_ID", "SGE_TASK_FIRST", "SGE_TASK_STEPSIZE", "SGE_TASK_LAST", nullptr, 1},
+    {"LSB_JOBINDEX", nullptr, "LSB_JOBINDEX_STEP", "LSB_JOBINDEX_END", nullptr, 1},
+    {"GTEST_SHARD_INDEX", nullptr, nullptr, nullptr, "GTEST_TOTAL_SHARDS", 0},
+}};
+
+std::optional<int> variable(const Environment& environment, const char* name) {
+    const char* value = name ? environment(name) : nullptr;
+    return value ? whole_number(value) : std::nullopt;
+}
+
+Shard shard_from(const Environment& environment) {
+    for (const ArrayVariables& array : kArrays) {
+        const std::optional<int> index = variable(environment, array.index);
+        if (!index) continue;
+        const int first = variable(environment, array.first).value_or(array.default_first);
+        const int step = std::max(1, variable(environment, array.step).value_or(1));
+        const std::optional<int> last = variable(environment, array.last);
+        const int count = last ? (*last - first) / step + 1 : variable(environment, array.count).value_or(0);
+        const Shard shard{(*index - first) / step, count};
+        if (*index < first || shard.index >= shard.count)
+            throw UsageError(std::string("--shard auto: ") + array.index + "=" + std::to_string(*index) +
+                             " does not fit the array's size");
+        return shard;
+    }
+    throw UsageError(
+        "--shard auto: no job array's variables are set (SLURM_ARRAY_TASK_ID, SGE_TASK_ID, "
+        "LSB_JOBINDEX, GTEST_SHARD_INDEX)");
+}
+
+}  // namespace
+
+Shard parse_shard(const std::string& text, const Environment& environment) {
+    if (text == "auto") return shard_from(environment);
+    const std::size_t slash = text.find('/');
+    const auto index = whole_number(std::string_view(text).substr(0, slash));
+    const auto count =
+        slash == std::string::npos ? std::nullopt : whole_number(std::string_view(text).substr(slash + 1));
+    if (!index || !count || *index < 0 || *index >= *count)
+        throw UsageError("--shard " + text + ": is not i/n with 0 <= i < n, nor auto");
+    return {*index, *count};
 }
 
 }  // namespace trilens

@@ -8,7 +8,7 @@
 #include "report/html.h"
 #include "report/text.h"
 #include "sweep/report/fit_runs.h"
-#include "sweep/report/report_words.h"
+#include "sweep/report/report_text.h"
 #include "sweep/report/sweep_pictures.h"
 #include "sweep/report/sweep_plots.h"
 #include "sweep/store/results_json.h"

@@ -10,10 +10,10 @@
 #include "base/files/file_bytes.h"
 #include "base/util/format.h"
 #include "base/util/parallel.h"
-#include "sweep/report/report_words.h"
+#include "sweep/report/report_text.h"
 #include "sweep/report/sweep_pictures.h"
 #include "sweep/report/sweep_plots.h"
-#include "sweep/store/own_files.h"
+#include "sweep/store/sweep_ownership.h"
 
 namespace trilens {
 namespace {

@@ -1,10 +1,10 @@
-// The plots of a sweep: error along its axes, and what accuracy costs.
+// The plots of a sweep: error along its axes, what accuracy costs, maps over two axes.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "report/plot_drawing.h"
+#include "report/plot_style.h"
 #include "sweep/store/results.h"
 
 namespace trilens {
@@ -42,5 +42,10 @@ bool is_exact(const SweepFit& fit);
 
 /// "what mirrors show" for "reflect".
 std::string what_layer_shows(const std::string& layer);
+
+/// The mean displacement of what a layer shows over the first two axes of numbers with at least two values,
+/// one map per combination of the other axes (at most kMostPlotsOfAKind); none where there are no two such
+/// axes, or they are zipped, or nothing above zero was measured.
+std::vector<NamedPlot> make_heat_maps(const SweepSummary& summary, const std::string& layer);
 
 }  // namespace trilens

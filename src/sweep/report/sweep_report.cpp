@@ -11,11 +11,11 @@
 #include "report/html.h"
 #include "sweep/report/plot_groups.h"
 #include "sweep/report/report_runs.h"
-#include "sweep/report/report_words.h"
+#include "sweep/report/report_text.h"
 #include "sweep/report/sweep_plots.h"
 #include "sweep/store/file_lock.h"
-#include "sweep/store/own_files.h"
 #include "sweep/store/sweep_folder.h"
+#include "sweep/store/sweep_ownership.h"
 
 namespace trilens {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <map>
@@ -11,8 +12,7 @@
 
 #include "base/util/error.h"
 #include "base/util/run_on_threads.h"
-#include "sweep/run/do_run.h"
-#include "sweep/run/memory_gate.h"
+#include "sweep/run/run_one.h"
 #include "sweep/run/truth_store.h"
 #include "sweep/store/file_lock.h"
 #include "sweep/store/machine.h"
@@ -164,6 +164,24 @@ std::map<std::string, RunRecord> run_plan(const SweepParams& params, const Sweep
     if (workers.failure) std::rethrow_exception(workers.failure);
     params.progress(1);
     return std::move(workers.done);
+}
+
+MemoryGate::Visit MemoryGate::enter(double bytes, const Progress& progress) {
+    std::unique_lock guard(mutex_);
+    while (visitors_ > 0 && limit_ > 0 && inside_ + bytes > limit_) {
+        left_.wait_for(guard, std::chrono::milliseconds(100));
+        if (progress.cancelled()) throw Interrupted();
+    }
+    inside_ += bytes;
+    ++visitors_;
+    return {*this, bytes};
+}
+
+void MemoryGate::leave(double bytes) {
+    const std::lock_guard guard(mutex_);
+    inside_ -= bytes;
+    --visitors_;
+    left_.notify_all();
 }
 
 }  // namespace trilens

@@ -1,10 +1,13 @@
 // Does the runs of a plan: several at once, beside other processes, within memory.
 #pragma once
 
+#include <condition_variable>
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
+#include "base/util/progress.h"
 #include "sweep/run/sweep.h"
 
 namespace trilens {
@@ -17,5 +20,35 @@ class KeptPictures;
 std::map<std::string, RunRecord> run_plan(const SweepParams& params, const SweepCallbacks& callbacks,
                                           const std::vector<PlannedRun>& plan,
                                           KeptPictures* pictures = nullptr);
+
+class MemoryGate {
+  public:
+    /// `limit`: bytes; 0 or less: none.
+    explicit MemoryGate(double limit) : limit_(limit) {}
+
+    /// Inside from its construction on.
+    class Visit {
+      public:
+        Visit(MemoryGate& gate, double bytes) : gate_(gate), bytes_(bytes) {}
+        ~Visit() { gate_.leave(bytes_); }
+        Visit(const Visit&) = delete;
+        Visit& operator=(const Visit&) = delete;
+
+      private:
+        MemoryGate& gate_;
+        double bytes_;
+    };
+
+    /// Waits for room; who is alone is always let in. Throws Interrupted once `progress` says so.
+    Visit enter(double bytes, const Progress& progress);
+
+  private:
+    void leave(double bytes);
+
+    double limit_, inside_ = 0;
+    int visitors_ = 0;
+    std::mutex mutex_;
+    std::condition_variable left_;
+};
 
 }  // namespace trilens

@@ -14,7 +14,6 @@
 #include "base/image/image.h"
 #include "base/util/progress.h"
 #include "sweep/plan/plan.h"
-#include "sweep/plan/shard.h"
 #include "sweep/store/results.h"
 
 namespace trilens {

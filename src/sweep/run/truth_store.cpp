@@ -8,7 +8,7 @@
 #include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/hash.h"
-#include "base/util/stopwatch.h"
+#include "base/util/progress.h"
 #include "image/image_io.h"
 #include "report/text.h"
 #include "sweep/store/file_lock.h"

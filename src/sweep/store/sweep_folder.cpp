@@ -8,8 +8,8 @@
 #include "base/files/file_bytes.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "sweep/store/own_files.h"
 #include "sweep/store/results_json.h"
+#include "sweep/store/sweep_ownership.h"
 
 namespace trilens {
 namespace fs = std::filesystem;
