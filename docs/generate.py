@@ -521,10 +521,10 @@ def write_headers(folder, out):
 def copy_pages(out):
     """The pages that are written by hand, and what they show from other folders of the source."""
     shutil.copytree(DOCS / "figures", out / "figures", dirs_exist_ok=True)
-    figures.write(out / "figures")
-    for folder in ("results", "examples/python"):
+    figures.write(out / "generated")
+    for folder in ("results", "examples"):
         for file in (SOURCE / folder).rglob("*"):
-            if file.suffix in (".svg", ".jpg", ".png") and "out" not in file.relative_to(SOURCE).parts:
+            if file.suffix in (".svg", ".jpg", ".png", ".cpp") and "out" not in file.relative_to(SOURCE).parts:
                 target = out / file.relative_to(SOURCE)
                 target.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy2(file, target)
