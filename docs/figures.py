@@ -126,7 +126,7 @@ def draw_mirror(d, left, top, facets=4, labels=True):
 
 FACET_ORIGINS = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.1), (0.4, 0.9, 0.05))
 FACET_DIRECTIONS = ((-0.9, 0.7, 1.0), (0.5, -0.9, 0.9), (0.9, 0.6, 1.1))
-SCENE_TRIANGLE = ((-0.1, 0.3, 0.9), (1.25, -0.1, 0.8), (0.85, 0.95, 1.0))
+SCENE_TRIANGLE = ((-0.35, 0.45, 1.6), (1.7, -0.5, 1.4), (1.0, 1.25, 1.7))
 
 
 def facet_image(left, top, size):

@@ -294,7 +294,9 @@ def camera_pictures(program):
     for camera in cameras:
         kind = camera.get("type", "perspective")
         if kind not in shown:
-            words = ("--camera", camera["name"], "--size", "320x240")
+            # OpenCV's lens is given in pixels of the film.
+            size = () if kind == "opencv" else ("--size", "320x240")
+            words = ("--camera", camera["name"], *size)
             shown[kind] = (program.draw(f"camera-{kind}", text, *words), f"The example `cameras` by its camera \"{camera['name']}\"")
     context = SOURCE / "scenes/context.json"
     if "planarContext" not in shown and context.exists():
@@ -315,12 +317,14 @@ def surface_scene(program, mesh):
     return json.dumps(scene)
 
 
-CUBE = {"points": [[-0.9, 0.1, -0.9], [0.9, 0.1, -0.9], [0.9, 0.1, 0.9], [-0.9, 0.1, 0.9],
-                   [-0.9, 1.9, -0.9], [0.9, 1.9, -0.9], [0.9, 1.9, 0.9], [-0.9, 1.9, 0.9]],
-        "faceVertexCounts": [4] * 6,
-        "faceVertexIndices": [3, 2, 1, 0, 4, 7, 6, 5, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7]}
-TRIANGLES = {"points": [[0, 2.2, 0], [1.2, 1, 0], [0, 1, 1.2], [-1.2, 1, 0], [0, 1, -1.2], [0, 0.05, 0]],
-             "faceVertexCounts": [3] * 8, "subdivisionScheme": "loop",
+# Turned about Y, so that two sides show.
+TURNED = {"transform": {"rotate": [0, 0.3007, 0, 0.9537]}}
+CUBE = {"points": [[-0.8, 0.1, -0.8], [0.8, 0.1, -0.8], [0.8, 0.1, 0.8], [-0.8, 0.1, 0.8],
+                   [-0.8, 1.7, -0.8], [0.8, 1.7, -0.8], [0.8, 1.7, 0.8], [-0.8, 1.7, 0.8]],
+        "faceVertexCounts": [4] * 6, **TURNED,
+        "faceVertexIndices": [0, 1, 2, 3, 4, 7, 6, 5, 0, 4, 5, 1, 1, 5, 6, 2, 2, 6, 7, 3, 3, 7, 4, 0]}
+TRIANGLES = {"points": [[0, 3, 0], [1.7, 1.2, 0], [0, 1.2, 1.7], [-1.7, 1.2, 0], [0, 1.2, -1.7], [0, -0.6, 0]],
+             "faceVertexCounts": [3] * 8, "subdivisionScheme": "loop", **TURNED,
              "faceVertexIndices": [0, 2, 1, 0, 3, 2, 0, 4, 3, 0, 1, 4, 5, 1, 2, 5, 2, 3, 5, 3, 4, 5, 4, 1]}
 PRIMITIVES = {
     "sphere": {"type": "sphere", "center": [0, 1, 0]},

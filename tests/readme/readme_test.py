@@ -86,7 +86,7 @@ class Reader:
         for output, redirected in WRITTEN.findall(line):
             path = self.folder / (output or redirected)
             if output and "--print" not in line and path.is_dir():
-                if path.suffix != ".jsonl":
+                if "--shard" not in line:  # parts have their page when they are merged
                     pictures.require_file(path / "report.html")
             elif "--print" not in line:
                 pictures.require_file(path)
