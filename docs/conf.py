@@ -14,6 +14,8 @@ extensions = ["myst_parser"]
 myst_enable_extensions = ["deflist"]
 myst_heading_anchors = 4
 exclude_patterns = ["results/**/*.md"]
+# Options keep their two hyphens.
+smartquotes = False
 # Blocks without a language are commands and formulas.
 highlight_language = "none"
 

@@ -90,9 +90,9 @@ def roff_line(line):
 
 
 def manual_page(roff, names):
-    """(title, Markdown) of a manual page; what names another page links to it."""
-    title, out, lines, i = "", [], roff.split("\n"), 0
-    plain, name_part = False, False
+    """(what it is about, Markdown) of a manual page; what names another page links to it."""
+    out, lines, i = [], roff.split("\n"), 0
+    plain, name_part, about = False, False, ""
 
     def linked(text):
         found = re.match(r"\*\*(trilens[\w-]*)\*\*\((\d)\)", text)
@@ -102,12 +102,14 @@ def manual_page(roff, names):
         line = lines[i]
         i += 1
         if line.startswith(".TH "):
-            title = line.split()[1].replace("\\-", "-").lower()
-        elif line.startswith(".SH "):
+            continue
+        if line.startswith(".SH "):
             heading = line[4:].strip('" ')
             plain = name_part = False
             if heading == "NAME":
                 name_part = True
+            elif heading == "DESCRIPTION" and " ".join(lines[i:i + 3]).startswith(about):
+                i += lines[i:].index(next(one for one in lines[i:] if one.startswith(".SH")))  # says the name's words again
             else:
                 out.append(f"\n## {heading.capitalize()}\n")
         elif line.startswith((".TP", ".IP")):
@@ -127,12 +129,15 @@ def manual_page(roff, names):
         elif line in (".PP", ".br", ".P") or line.startswith(('.\\"', ".ad", ".nh", ".hy", ".RS", ".RE")):
             out.append("")
         elif line.strip():
+            if name_part:
+                about = (about + " " + re.sub(r"^trilens[\w -]* - ", "", line.replace("\\-", "-"))).strip()
+                continue
             if not plain and line.startswith((".BR ", ".B ")) and "(" in line:
                 line = re.sub(r"\.BR? (\S+) (\(1\)).*", r".BR \1 \2", line)
                 out.append(linked(roff_line(line)) + " ")
                 continue
-            out.append(re.sub(r"^trilens[\w ()-]* - ", "", line.replace("\\-", "-")) if plain or name_part else roff_line(line) + " ")
-    return title, "\n".join(out)
+            out.append(line.replace("\\-", "-").replace("\\e", "\\") if plain else roff_line(line) + " ")
+    return roff_text(about[:1].upper() + about[1:] + "."), "\n".join(out)
 
 
 def write_commands(program, out):
@@ -140,17 +145,16 @@ def write_commands(program, out):
     folder.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as made:
         program.text("man", "--all", made)
-        pages = {file.stem: file.read_text() for file in sorted(pathlib.Path(made).glob("*.1"))}
+        pages = {file.stem: file.read_text() for file in sorted(pathlib.Path(made).glob("*.1"), key=lambda one: one.stem)}
+    about = {}
     for name, roff in pages.items():
-        _, text = manual_page(roff, pages)
-        (folder / f"{name}.md").write_text(f"# {name.replace('-', ' ', 2)}\n\n{text}\n")
+        about[name], text = manual_page(roff, pages)
+        (folder / f"{name}.md").write_text(f"# {name.replace('-', ' ', 2)}\n\n{about[name]}\n\n{text}\n")
     listed = "\n".join(f"{name}" for name in pages)
-    about = {name: re.search(r"\.SH NAME\n(.*?)\n\.SH", roff, re.S)[1].replace("\n", " ").replace("\\-", "-").split(" - ", 1)[1]
-             for name, roff in pages.items()}
     (folder / "index.md").write_text(
         "# Commands\n\nWhat every command does, with all of its options, as `trilens help COMMAND` and the manual pages "
         "say it. These pages are made from the program itself. Each ends with the exit codes that scripts can rely on.\n\n"
-        + table(("command", "what it does"), [(f"[{n.replace('-', ' ', 2)}]({n}.md)", roff_text(about[n])) for n in pages])
+        + table(("command", "what it does"), [(f"[{n.replace('-', ' ', 2)}]({n}.md)", about[n]) for n in pages])
         + f"\n```{{toctree}}\n:hidden:\n\n{listed}\n```\n")
 
 
@@ -357,7 +361,9 @@ def write_scene_pages(program, out):
             if "properties" in one and name not in (*CAMERA_PARTS, *SURFACE_PARTS)]
     text = hand + "\n## A scene\n\n" + root.get("description", "") + "\n\n" + table(HEAD, schema.rows(root, required=root["required"]))
     for name in rest:
-        text += section(schema, name)
+        definition = schema.definitions[name]
+        text += section(schema, name) if not variants(definition) else (
+            f"\n## {definition['title'].capitalize()}\n\n{definition.get('description', '')}\n" + kinds_of(schema, name, {}))
     # Parts on the two other pages are linked there.
     where = {anchor_of(schema.definitions[name].get("title", name)): page
              for page, names in (("scene-cameras.md", CAMERA_PARTS), ("scene-surfaces.md", SURFACE_PARTS))

@@ -54,11 +54,10 @@ class Reader:
             self.problems.append(f"{where}: {error}")
         return ""
 
-    def start(self, command):
+    def start(self, command, shown):
         begin = time.monotonic()
         run = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, stdin=subprocess.DEVNULL,
                              env=self.environment)
-        shown = command[-1].split("\n")[-1 if self.variables else 0]
         self.log.append(f"{time.monotonic() - begin:6.1f} s  {shown}")
         self.ran += 1
         if run.returncode != 0:
@@ -77,7 +76,7 @@ class Reader:
             return ""
         # The machine's own folders stay as they are.
         command = command.replace("--prefix /usr/local", "--prefix installed")
-        out = self.start(["bash", "-euo", "pipefail", "-c", self.variables + command])
+        out = self.start(["bash", "-euo", "pipefail", "-c", self.variables + command], command.split("\n")[0])
         self.look_at_results(re.split(r"  #|<<'", command)[0], out)
         return out
 
@@ -126,7 +125,7 @@ class Reader:
             return
         code = "import sys; sys.path.insert(0, 'build/release/python')\n" + "\n".join(lines)
         (self.folder / "results/out").mkdir(parents=True, exist_ok=True)
-        if not self.start([sys.executable, "-B", "-c", code]).strip() and "print(" in code:
+        if not self.start([sys.executable, "-B", "-c", code], f"Python: {lines[2]}").strip() and "print(" in code:
             raise Wrong("prints nothing")
 
     def read(self, text):
