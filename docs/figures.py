@@ -222,7 +222,7 @@ def histories():
     second = add(first, inside, circle_hit(first, inside, centre, radius))
     d.path([first, second], INK, 2)
     normal = unit(add(centre, second, -1))
-    d.path([second, add(second, refracted(inside, normal, ior), 120)], RED, 2, arrow=True)
+    d.path([second, add(second, refracted(inside, normal, ior), 90)], RED, 2, arrow=True)
     back = reflected(inside, normal)
     third = add(second, back, circle_hit(second, back, centre, radius))
     d.path([second, third], INK, 2)
@@ -233,8 +233,8 @@ def histories():
         d.dot(at, BLUE)
         d.text((at[0] + (-18, 10, 2)[i], at[1] + (20, -8, 18)[i]), "abc"[i], 14, BLUE, bold=True)
     d.text((14, 58), "eye", 13)
-    d.lines((480, 60), "three histories of one optic:\n\na  reflected\n\na  entered, b  left\n\na  entered, b  reflected inside, c  left", 14)
-    d.lines((480, 240), "Each history is a RayMesh of its own:\nthe scene is projected through each,\nand the weights of light add up.", 14)
+    d.lines((480, 50), "three histories of one optic:\n\na  reflected\n\na  entered, b  left\n\na  entered, b  reflected inside, c  left", 14)
+    d.lines((480, 262), "Each history is a RayMesh of its own:\nthe scene is projected through each,\nand the weights of light add up.", 14)
     return d.svg()
 
 

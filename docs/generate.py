@@ -189,8 +189,9 @@ class Schema:
             least, most = node.get("minItems"), node.get("maxItems")
             count = f"{least} " if least == most and least else ""
             items = node.get("items", {})
-            if "$ref" not in items and items.get("type") == "array":
-                return f"list of {count}lists of {self.kind(items).removeprefix('list of ')}"
+            target = self.definitions.get(items.get("$ref", "").split("/")[-1], items)
+            if target.get("type") == "array":
+                return f"list of {count}lists of {self.kind(target).removeprefix('list of ')}"
             inner = self.kind(items)
             return f"list of {count}{inner}" if "`" in inner or inner.startswith("[") else f"list of {count}{plural(inner)}"
         words = {"integer": "integer", "number": "number", "string": "text", "boolean": "`true` or `false`", "object": "object"}
