@@ -419,7 +419,7 @@ def write_examples(program, out):
     for line in program.text("scene", "example", "list").strip().split("\n"):
         name, _, about = line.partition(": ")
         scene = program.text("scene", "example", name)
-        text += (f"\n### {name}\n\n{about[:1].upper() + about[1:]}.\n\n"
+        text += (f"\n### {name}\n\n{about[:1].upper() + about[1:].rstrip('.')}.\n\n"
                  f"![{about}]({program.draw('example-' + name, scene, '--size', '480x360', '--spp', '2')})\n")
     text += "\n## Of the folder scenes\n"
     for file in [*sorted((SOURCE / "scenes").glob("*.json")), *sorted((SOURCE / "scenes/cameras").glob("*.json")),
@@ -490,11 +490,23 @@ def write_python(folder, out):
             found = getattr(found, name, None)
         words = (getattr(found, "__doc__", None) or "").strip()
         words = re.sub(r"^\w+\(.*?\)( -> .*)?\n\n", "", words)
-        return re.sub(r"([*_<>`|])", r"\\\1", re.sub(r"\s+", " ", words))
+        return re.sub(r"([*_<>`|])", r"\\\1", words)
 
-    def signature(node):
+    def listed(text):
+        """A docstring's parameters as a list."""
+        text = re.sub(r"\n[ \t]+", " ", text)
+        text = re.sub(r"(?m)^(Raises|Returns) ", r"\n\1 ", text)
+        return re.sub(r"(?m)^((?:[\w\\]+(?:, )?)+: )", r"\n- \1", text)
+
+    def signature(node, width=10000):
         arguments = ast.unparse(node.args).replace("self, ", "").replace("self", "")
         returned = f" -> {ast.unparse(node.returns)}" if node.returns else ""
+        if len(node.name) + len(arguments) + len(returned) > width:
+            depth, broken = 0, ""
+            for letter in arguments:  # one argument a line; commas inside of brackets stay
+                depth += (letter in "[(") - (letter in "])")
+                broken += letter if letter != "," or depth else ",\n   "
+            arguments = f"\n    {broken}\n"
         return f"{node.name}({arguments}){returned}"
 
     text = ("# Python reference\n\nEvery public name of the module `trilens`, from its stub `__init__.pyi`, which editors and "
@@ -503,19 +515,21 @@ def write_python(folder, out):
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef)]
     text += "## Functions\n"
     for node in functions:
-        text += f"\n### {node.name}\n\n```python\n{signature(node)}\n```\n\n{doc(node.name)}\n"
+        text += f"\n### {node.name}\n\n```python\n{signature(node, 80)}\n```\n\n{listed(doc(node.name))}\n"
     text += "\n## Classes\n"
     for node in classes:
         bases = ", ".join(ast.unparse(base) for base in node.bases)
         text += f"\n### {node.name}\n\n{'A subclass of `' + bases + '`. ' if bases else ''}{doc(node.name)}\n\n"
-        rows = []
+        rows, methods = [], ""
         for member in node.body:
             if isinstance(member, ast.FunctionDef) and not (member.name.startswith("__") and member.name != "__getitem__"):
                 is_property = any(ast.unparse(one) == "property" for one in member.decorator_list)
-                shown = f"{member.name}: {ast.unparse(member.returns)}" if is_property else signature(member)
-                rows.append((f"`{shown}`", doc(node.name, member.name)))
-        if rows:
-            text += table(("member", "meaning"), rows)
+                if is_property:
+                    rows.append((f"`{member.name}: {ast.unparse(member.returns)}`", doc(node.name, member.name)))
+                else:
+                    methods += (f"\n#### {node.name}.{member.name}\n\n```python\n{signature(member, 80)}\n```\n\n"
+                                f"{listed(doc(node.name, member.name))}\n")
+        text += (table(("attribute", "meaning"), rows) if rows else "") + methods
     (out / "python-reference.md").write_text(text)
 
 
