@@ -24,7 +24,7 @@ from pages import Wrong
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 ELSEWHERE = re.compile(r"scripts/(\S+)")
 WRITTEN = re.compile(r"\s-o (\S+)|>\s*(\S+)")
-# Made by docs/generate.py; scripts/docs checks links to them.
+# Made by docs/generate/generate.py; scripts/docs checks links to them.
 GENERATED = re.compile(r"(scene-cameras|scene-surfaces|examples|python-reference|cpp-headers|laws|contributing)\.md$"
                        r"|commands/|tables/|generated/")
 

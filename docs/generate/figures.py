@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""Draws the figures that explain the ideas, as SVG: python3 docs/figures.py [FOLDER]
+"""Draws the figures that explain the ideas, as SVG: python3 docs/generate/figures.py [FOLDER]
 
 Every curve is computed, not drawn by hand: rays are reflected by the law of reflection, edges are imaged by solving for
 the place on the facet that sees each of their points. The README shows how-it-works.svg, which is kept in docs/figures
-(`docs/figures.py --check` says whether it is up to date); scripts/docs makes all of them in the built pages."""
+(`docs/generate/figures.py --check` says whether it is up to date); scripts/docs makes all of them in the built pages."""
 import html
 import math
 import pathlib
 import sys
 
-KEPT = pathlib.Path(__file__).resolve().parent / "figures/how-it-works.svg"
+KEPT = pathlib.Path(__file__).resolve().parents[1] / "figures/how-it-works.svg"
 INK, BLUE, RED, GREEN, GREY, ORANGE = "#222", "#2c5d8a", "#c0392b", "#2e7d4f", "#8795a1", "#b86e00"
 
 
@@ -297,7 +297,7 @@ def write(folder):
 if __name__ == "__main__":
     if sys.argv[1:] == ["--check"]:
         if not KEPT.exists() or KEPT.read_text() != how_it_works():
-            raise SystemExit("docs/figures/how-it-works.svg is not what docs/figures.py draws: run it")
+            raise SystemExit("docs/figures/how-it-works.svg is not what docs/generate/figures.py draws: run it")
     elif sys.argv[1:]:
         write(pathlib.Path(sys.argv[1]))
     else:
