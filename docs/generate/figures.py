@@ -167,7 +167,8 @@ def draw_displacement(d, left, top):
         d.path([(left, top + i * cell), (left + 6 * cell, top + i * cell)], "#dde3e8", 1)
     truth, shown = (left + 2.2 * cell, top + 3.6 * cell), (left + 3.6 * cell, top + 2.7 * cell)
     for at, colour, dash in ((truth, GREEN, ""), (shown, BLUE, "5 3")):
-        bow = [(at[0] + 0.55 * cell * s * s + 0.2 * cell * s, at[1] - 1.6 * cell * s) for s in (-1.4 + i * 0.05 for i in range(57))]
+        bow = [(at[0] + 0.55 * cell * s * s + 0.2 * cell * s, at[1] - 1.6 * cell * s)
+               for s in (-1.4 + i * 0.05 for i in range(57))]
         d.path(bow, colour, 2, dash=dash)
         d.dot(at, colour, 4.5)
     d.path([truth, shown], RED, 2, arrow=True)
@@ -182,7 +183,8 @@ def how_it_works():
     for i, title in enumerate(("1  Corner rays", "2  Projection in closed form", "3  Error in pixels")):
         d.text((20 + 340 * i, 30), title, 17, BLUE, bold=True)
     draw_mirror(d, 10, -10)
-    d.lines((20, 350), "The mirror becomes a grid of facets. At each\ncorner stands the ray that the mirror reflects.", 13)
+    d.lines((20, 350),
+            "The mirror becomes a grid of facets. At each\ncorner stands the ray that the mirror reflects.", 13)
     draw_facet(d, 390, 70, 215, labels=False)
     d.lines((360, 350), "Inside a facet rays are interpolated; a scene\nedge shows as a conic, exactly.", 13)
     draw_displacement(d, 715, 90)
@@ -193,15 +195,24 @@ def how_it_works():
 def ray_mesh():
     d = Drawing(760, 340)
     draw_mirror(d, 0, 0)
-    d.lines((370, 60), "red: corners of the facets, on the mirror\nblack: facets, flat between their corners\nblue: corner rays, as the exact mirror sends them", 14)
-    d.lines((370, 170), "The facets with their corner rays are a RayMesh.\nNeighbours share corners, so that what they\nshow is continuous. Between the corners\norigin and direction are interpolated.", 14)
+    d.lines((370, 60),
+            "red: corners of the facets, on the mirror\nblack: facets, flat between their corners\n"
+            "blue: corner rays, as the exact mirror sends them", 14)
+    d.lines((370, 170),
+            "The facets with their corner rays are a RayMesh.\nNeighbours share corners, so that what they\n"
+            "show is continuous. Between the corners\norigin and direction are interpolated.", 14)
     return d.svg()
 
 
 def facet():
     d = Drawing(760, 330)
     draw_facet(d, 40, 30, 250)
-    d.lines((360, 70), "One facet on the film. Through it a triangle of the\nscene shows as the filled shape.\n\nEach of its three straight edges is seen as an arc of\na conic (red, green, blue). At a pixel the signs of\nthree quadratic forms tell whether the triangle\ncovers it; their ratios say where on the triangle.", 14)
+    d.lines((360, 70),
+            "One facet on the film. Through it a triangle of the\nscene shows as the filled shape.\n\n"
+            "Each of its three straight edges is seen as an arc of\n"
+            "a conic (red, green, blue). At a pixel the signs of\n"
+            "three quadratic forms tell whether the triangle\n"
+            "covers it; their ratios say where on the triangle.", 14)
     return d.svg()
 
 
@@ -233,8 +244,12 @@ def histories():
         d.dot(at, BLUE)
         d.text((at[0] + (-18, 10, 2)[i], at[1] + (20, -8, 18)[i]), "abc"[i], 14, BLUE, bold=True)
     d.text((14, 58), "eye", 13)
-    d.lines((480, 50), "three histories of one optic:\n\na  reflected\n\na  entered, b  left\n\na  entered, b  reflected inside, c  left", 14)
-    d.lines((480, 262), "Each history is a RayMesh of its own:\nthe scene is projected through each,\nand the weights of light add up.", 14)
+    d.lines((480, 50),
+            "three histories of one optic:\n\na  reflected\n\na  entered, b  left\n\n"
+            "a  entered, b  reflected inside, c  left", 14)
+    d.lines((480, 262),
+            "Each history is a RayMesh of its own:\nthe scene is projected through each,\n"
+            "and the weights of light add up.", 14)
     return d.svg()
 
 
@@ -273,14 +288,21 @@ def nested():
         d.path([at, target], BLUE, 1.2)
         d.dot(target, ORANGE)
         d.dot(at, RED)
-    d.lines((560, 60), "orange: corners of A's\nown grid\n\nred: where B shows each\nof them, exactly\n\nSeen in B, A is a nested\noptic: its grid is laid\nover what B shows\nwithout it.", 14)
+    d.lines((560, 60),
+            "orange: corners of A's\nown grid\n\nred: where B shows each\nof them, exactly\n\n"
+            "Seen in B, A is a nested\noptic: its grid is laid\nover what B shows\nwithout it.", 14)
     return d.svg()
 
 
 def displacement():
     d = Drawing(760, 260)
     draw_displacement(d, 30, 25)
-    d.lines((300, 60), "The truth shows a point of the scene at the green place,\nthe picture at the blue one. The distance is the displacement,\nin pixels, measured for each pixel of what optics show.\n\nColours would tell little: where an edge lies a tenth of a\npixel off, the pixels on it differ by all there is.", 14)
+    d.lines((300, 60),
+            "The truth shows a point of the scene at the green place,\n"
+            "the picture at the blue one. The distance is the displacement,\n"
+            "in pixels, measured for each pixel of what optics show.\n\n"
+            "Colours would tell little: where an edge lies a tenth of a\n"
+            "pixel off, the pixels on it differ by all there is.", 14)
     return d.svg()
 
 

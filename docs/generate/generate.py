@@ -63,29 +63,34 @@ def write_results(out):
         (folder / f"{name}.md").write_text(f"---\norphan: true\n---\n\n# {title}\n\n{intro}\n\n" + table(head, rows))
 
     rows = csv_rows(results / "max-error.csv")
-    page("max-error", "What --max-error 0.5 does", "By scene: displacement in pixels (99th percentile, mean, largest), the "
+    page("max-error", "What --max-error 0.5 does",
+         "By scene: displacement in pixels (99th percentile, mean, largest), the "
          "share of traced pixels, facets and seconds, and the uniform grid of the same 99th percentile. Made by "
          "`bench/max_error.py`.", rows[0], rows[1:])
     rows = csv_rows(results / "reference/convergence.csv")
-    page("convergence", "Convergence of every scene", "Displacement over n at 160 x 120 pixels, with corner rays that are exact "
-         "(interpolated) and fitted. Every run of the tests measures it anew. Made by `scripts/reference-results`.", rows[0], rows[1:])
+    page("convergence", "Convergence of every scene",
+         "Displacement over n at 160 x 120 pixels, with corner rays that are exact (interpolated) and fitted. Every run of the "
+         "tests measures it anew. Made by `scripts/reference-results`.", rows[0], rows[1:])
     rows = csv_rows(results / "fitted-rays.csv")
     kept = [rows[0].index(name) for name in ("scene", "way", "n", "layer", "mean", "p99", "max", "pixels", "lost", "facets")]
-    page("fitted-rays", "Fitted rays, exact corner rays, flat facets, environment maps", "Displacement in pixels of a film of "
+    page("fitted-rays", "Fitted rays, exact corner rays, flat facets, environment maps",
+         "Displacement in pixels of a film of "
          "320 x 240. Made by `bench_fitted`, drawn by `bench/fitted_plot.py`.", [rows[0][k] for k in kept],
          [[row[k] for k in kept] for row in rows[1:]])
-    lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in (results / "kernel/table.md").read_text().split("\n")
-             if line.startswith("|")]
-    kept = [lines[0].index(name) for name in ("workload", "triangles", "n", "film", "threads", "isa", "visible", "written", "whole",
-                                              "samples per facet")]
+    lines = [[cell.strip() for cell in line.strip("|").split("|")]
+             for line in (results / "kernel/table.md").read_text().split("\n") if line.startswith("|")]
+    kept = [lines[0].index(name) for name in ("workload", "triangles", "n", "film", "threads", "isa", "visible", "written",
+                                              "whole", "samples per facet")]
     page("kernel", "The projector against Embree, all rows", "Embree's time over the projector's, on the same rays: "
          "`visible`, which triangle each sample sees; `written`, a hit for every sample; `whole`, trees, rays and samples too. "
-         "Above 1 the projector is faster. Made by `scripts/bench`.", [lines[0][k] for k in kept], [[line[k] for k in kept] for line in lines[2:]])
+         "Above 1 the projector is faster. Made by `scripts/bench`.", [lines[0][k] for k in kept],
+         [[line[k] for k in kept] for line in lines[2:]])
     for name, title, intro in (("table", "Whole commands", "Seconds and memory of whole commands."),
                                ("profile", "Where the time goes", "Shares of the processor's time of one `render`.")):
         text = "\n".join(re.sub(r"\|[^|]*\|$", "|", line) if name == "table" else line
                          for line in (results / f"frame/{name}.md").read_text().strip().split("\n"))
-        (folder / f"frame-{name}.md").write_text(f"---\norphan: true\n---\n\n# {title}\n\n{intro} Made by `scripts/bench`.\n\n{text}\n")
+        (folder / f"frame-{name}.md").write_text(
+            f"---\norphan: true\n---\n\n# {title}\n\n{intro} Made by `scripts/bench`.\n\n{text}\n")
     evaluation = (results / "evaluation/README.md").read_text()
     evaluation = re.sub(r"\]\((\w+\.svg)\)", r"](../results/evaluation/\1)", evaluation)
     (folder / "evaluation.md").write_text("---\norphan: true\n---\n\n" + evaluation)
@@ -97,8 +102,9 @@ def write_headers(folder, out):
     for file in sorted((SOURCE / "src/trilens").glob("*.h")):
         if not folder.exists() or (folder / "trilens" / file.name).exists():
             rows.append((f"`<trilens/{file.name}>`", file.read_text().split("\n")[0].removeprefix("// ")))
-    (out / "cpp-headers.md").write_text("---\norphan: true\n---\n\n# Public headers\n\nWhat each public header is for. Each "
-                                        "begins with an example, which the tests compile and run.\n\n" + table(("header", "what it is for"), rows))
+    (out / "cpp-headers.md").write_text(
+        "---\norphan: true\n---\n\n# Public headers\n\nWhat each public header is for. Each begins with an example, which the "
+        "tests compile and run.\n\n" + table(("header", "what it is for"), rows))
 
 
 def copy_pages(out):

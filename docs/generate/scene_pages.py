@@ -149,10 +149,12 @@ def camera_pictures(program):
             # OpenCV's lens is given in pixels of the film.
             size = () if kind == "opencv" else ("--size", "320x240")
             words = ("--camera", camera["name"], *size)
-            shown[kind] = (program.draw(f"camera-{kind}", text, *words), f"The example `cameras` by its camera \"{camera['name']}\"")
+            shown[kind] = (program.draw(f"camera-{kind}", text, *words),
+                           f"The example `cameras` by its camera \"{camera['name']}\"")
     context = SOURCE / "scenes/context.json"
     if "planarContext" not in shown and context.exists():
-        shown["planarContext"] = (program.draw("camera-planarContext", context, "--size", "320x240"), "`scenes/context.json`")
+        shown["planarContext"] = (program.draw("camera-planarContext", context, "--size", "320x240"),
+                                  "`scenes/context.json`")
     thesis = SOURCE / "scenes/thesis/fig_4_3_423.json"
     if "rayMesh" not in shown and thesis.exists():
         shown["rayMesh"] = (program.draw("camera-rayMesh", thesis, "--size", "320x320"),
@@ -207,7 +209,8 @@ def write_scene_pages(program, out):
     hand = (DOCS / "scene.md").read_text()
     rest = [name for name, one in schema.definitions.items()
             if "properties" in one and name not in (*CAMERA_PARTS, *SURFACE_PARTS)]
-    text = hand + "\n## A scene\n\n" + root.get("description", "") + "\n\n" + table(HEAD, schema.rows(root, required=root["required"]))
+    text = (hand + "\n## A scene\n\n" + root.get("description", "") + "\n\n"
+            + table(HEAD, schema.rows(root, required=root["required"])))
     for name in rest:
         definition = schema.definitions[name]
         text += section(schema, name) if not variants(definition) else (
@@ -219,8 +222,11 @@ def write_scene_pages(program, out):
     where |= {anchor_of(schema.definitions[name].get("title", name)): "scene.md" for name in rest}
 
     def write(page, text):
-        linked = re.sub(r"\]\(#([\w-]+)\)", lambda m: f"]({'' if where.get(m[1]) == page else where.get(m[1], '')}#{m[1]})", text)
-        (out / page).write_text(linked)
+        def link(found):
+            there = where.get(found[1], page)
+            return f"]({'' if there == page else there}#{found[1]})"
+
+        (out / page).write_text(re.sub(r"\]\(#([\w-]+)\)", link, text))
 
     write("scene.md", text)
     shown = camera_pictures(program)
@@ -237,8 +243,10 @@ def write_scene_pages(program, out):
     pages += section(schema, "mesh")
     pages += ("\n## Cages\n\nOne cage of eight points by its `subdivisionScheme`, and with a crease. A cage is a control "
               "mesh: the surface is what repeated subdivision of it converges to.\n\n"
-              + table(("`catmullClark`", "`catmullClark`, upper edges creased"), [tuple(f"![{n}]({cages[n]})" for n in ("catmullClark", "crease"))])
-              + "\n" + table(("`bilinear`", "`loop`, of triangles"), [tuple(f"![{n}]({cages[n]})" for n in ("bilinear", "loop"))]))
+              + table(("`catmullClark`", "`catmullClark`, upper edges creased"),
+                      [tuple(f"![{n}]({cages[n]})" for n in ("catmullClark", "crease"))])
+              + "\n" + table(("`bilinear`", "`loop`, of triangles"),
+                             [tuple(f"![{n}]({cages[n]})" for n in ("bilinear", "loop"))]))
     for name, drawn in (("primitive", primitives), ("normals", normals)):
         definition = schema.definitions[name]
         title = definition.get("title", name)
