@@ -145,11 +145,6 @@ def main():
     write_results(out)
     write_python(asked.python, out)
     write_headers(asked.headers, out)
-    # Pages of others, where they are there.
-    for name in ("contributing", "laws"):
-        if not (out / f"{name}.md").exists():
-            index = out / "index.md"
-            index.write_text(index.read_text().replace(f"\n{name}\n", "\n"))
     print(f"generate: {program.drawn} pictures drawn")
 
 

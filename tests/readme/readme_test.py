@@ -25,7 +25,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 ELSEWHERE = re.compile(r"scripts/(\S+)")
 WRITTEN = re.compile(r"\s-o (\S+)|>\s*(\S+)")
 # Made by docs/generate/generate.py; scripts/docs checks links to them.
-GENERATED = re.compile(r"(scene-cameras|scene-surfaces|examples|python-reference|cpp-headers|laws|contributing)\.md$"
+GENERATED = re.compile(r"(scene-cameras|scene-surfaces|examples|python-reference|cpp-headers)\.md$"
                        r"|commands/|tables/|generated/")
 
 
