@@ -40,7 +40,7 @@ configure_file(${CMAKE_CURRENT_LIST_DIR}/trilens.pc.in ${PROJECT_BINARY_DIR}/tri
 install(FILES ${PROJECT_BINARY_DIR}/trilens.pc DESTINATION ${pc_folder} COMPONENT development)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/Doxyfile.in ${PROJECT_BINARY_DIR}/Doxyfile @ONLY)
 
-# Manual pages and completion come from the command's own tree of options.
+# Manual pages, completion and schemas come from the command's own tree of options.
 if(NOT TRILENS_CORE_ONLY)
   set(shell ${PROJECT_BINARY_DIR}/shell)
   set(compressed)
@@ -54,6 +54,8 @@ if(NOT TRILENS_CORE_ONLY)
     COMMAND trilens_command completion bash > ${shell}/trilens
     COMMAND trilens_command completion zsh > ${shell}/_trilens
     COMMAND trilens_command completion fish > ${shell}/trilens.fish
+    COMMAND trilens_command scene schema > ${shell}/trilens-scene-1.schema.json
+    COMMAND trilens_command sweep schema > ${shell}/trilens-sweep-summary-1.schema.json
     COMMAND ${CMAKE_COMMAND} -E touch ${shell}/made
     DEPENDS trilens_command VERBATIM)
   add_custom_target(trilens_shell ALL DEPENDS ${shell}/made)
@@ -61,4 +63,7 @@ if(NOT TRILENS_CORE_ONLY)
   install(FILES ${shell}/trilens DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
   install(FILES ${shell}/_trilens DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT program)
   install(FILES ${shell}/trilens.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
+  # JSON Schemas, for editors: a scene names its own by "$schema".
+  install(FILES ${shell}/trilens-scene-1.schema.json ${shell}/trilens-sweep-summary-1.schema.json
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/trilens COMPONENT program)
 endif()

@@ -1,11 +1,13 @@
-"""Runs what the README tells its reader to type, from its text, in a fresh folder, and looks at what comes of it.
+"""Runs what the README and the pages of docs/ tell their reader to type, from their text, each in a fresh folder, looks at
+what comes of it, and holds the answers that they show against those of the program.
 
-    python3 readme_test.py BUILD FOLDER [README]
+    python3 readme_test.py BUILD FOLDER [PAGE.md ...]
 
-Indented blocks are shell lines, C++, Python, JSON or a quotation; anything else is a mistake of the README or of this
-test. Shell lines run as they stand, in one shell, one after the other. C++ is compiled and run by tests/examples, Python
-by tests/python/readme_test.py; here each is only looked for. What takes a quarter of an hour, or tests everything, is run by
+Shell blocks run as they stand, in one shell, one after the other, unless a comment before them says why not. C++ of the
+README is compiled and run by tests/examples, its Python by tests/python/readme_test.py; here each is only looked for.
+Python of docs/ is run where the module is built. What takes a quarter of an hour, or tests everything, is run by
 continuous integration itself (.ci/run, and scripts/check studies with less to do): here it must be named there."""
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -15,60 +17,25 @@ import subprocess
 import sys
 import time
 
+import pages
 import pictures
+from pages import Wrong
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-SHELL = re.compile(r"(\$?trilens[ =]|scripts/|mkdir |echo |cmake |cd |pip |doxygen )")
 ELSEWHERE = re.compile(r"scripts/(\S+)")
 WRITTEN = re.compile(r"\s-o (\S+)|>\s*(\S+)")
-
-
-class Wrong(Exception):
-    """What is not as the README says."""
-
-
-def blocks_of(text):
-    """The indented blocks as (kind, lines without the indent). Programs may have empty lines in them."""
-    # Fenced blocks are indented ones.
-    text = re.sub(r"^```\w*\n(.*?)^```$", lambda fenced: "\n" + re.sub(r"^", "    ", fenced[1].rstrip(), flags=re.M) + "\n",
-                  text, flags=re.M | re.S)
-    found, after_text = [], True
-    for part in re.split(r"\n(?:[ \t]*\n)+", text):
-        lines = part.strip("\n").split("\n")
-        # What is indented less belongs to a paragraph, or a paragraph to it.
-        if not all(line.startswith("    ") for line in lines):
-            after_text = True
-            continue
-        lines = [line[4:] for line in lines]
-        if not after_text and found[-1][0] in ("C++", "Python") and not SHELL.match(lines[0]):
-            found[-1][1].extend(["", *lines])
-        else:
-            found.append((kind_of(lines), lines))
-        after_text = False
-    return found
-
-
-def kind_of(block):
-    first = block[0]
-    if all(SHELL.match(line) for line in block):
-        return "shell"
-    if first.startswith("#include"):
-        return "C++"
-    if first.startswith("import "):
-        return "Python"
-    if first.startswith('"'):
-        return "JSON"
-    if first[0].isupper() and not any(c in first for c in "$=`"):
-        return "quotation"
-    raise Wrong(f"nobody runs the README's block that begins with: {first}")
+# Made by docs/generate/generate.py; scripts/docs checks links to them.
+GENERATED = re.compile(r"(scene-cameras|scene-surfaces|examples|python-reference|cpp-headers)\.md$"
+                       r"|commands/|tables/|generated/")
 
 
 class Reader:
-    """Someone who types the README's lines."""
+    """Someone who types a page's lines."""
 
-    def __init__(self, build, folder):
-        self.folder, self.ran, self.problems = folder, 0, []
-        self.continuous = (SOURCE / ".ci/run").read_text() + (SOURCE / "scripts/check").read_text()
+    def __init__(self, build, folder, page):
+        self.build, self.folder, self.page = build, folder, page
+        self.ran, self.skipped, self.problems, self.log = 0, 0, [], []
+        self.continuous = "".join((SOURCE / name).read_text() for name in (".ci/run", "scripts/check", "scripts/bench"))
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         # What a clone has, and what was built in it; results go here.
@@ -77,47 +44,56 @@ class Reader:
         (folder / "build").mkdir()
         (folder / "build/release").symlink_to(build)
         self.variables = ""
+        self.environment = {**os.environ, "PATH": f"{build}:{os.environ['PATH']}"}
 
     def check(self, where, work):
         """Notes what goes wrong; the others go on."""
         try:
-            work()
+            return work()
         except (Wrong, pictures.Blank, OSError, ValueError) as error:
             self.problems.append(f"{where}: {error}")
+        return ""
 
-    def shell(self, line):
-        named = ELSEWHERE.match(line)
-        if named:
-            if not re.search(rf"scripts/{named[1]}\b", self.continuous):
-                raise Wrong("continuous integration does not run it")
-            return
-        if re.match(r"\w+=\S+$", line):
-            self.variables += line + "\n"
-            return
-        # The machine's own folders stay as they are.
-        line = line.replace("--prefix /usr/local", "--prefix installed")
+    def start(self, command, shown):
         begin = time.monotonic()
-        run = subprocess.run(["bash", "-euo", "pipefail", "-c", self.variables + line], cwd=self.folder,
-                             capture_output=True, text=True, stdin=subprocess.DEVNULL)
-        print(f"{time.monotonic() - begin:6.1f} s  {line}", flush=True)
+        run = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                             env=self.environment)
+        self.log.append(f"{time.monotonic() - begin:6.1f} s  {shown}")
         self.ran += 1
         if run.returncode != 0:
             raise Wrong(f"ends with {run.returncode}: {(run.stdout + run.stderr)[-600:]}")
-        self.look_at_results(line.split("  #")[0], run.stdout)
+        return run.stdout
+
+    def shell(self, command):
+        """Runs it; returns what it prints."""
+        named = ELSEWHERE.match(command)
+        if named:
+            if not re.search(rf"scripts/{named[1]}\b", self.continuous):
+                raise Wrong("continuous integration does not run it")
+            return ""
+        if re.match(r"(export )?\w+=\S+$", command):
+            self.variables += command + "\n"
+            return ""
+        # The machine's own folders stay as they are.
+        command = command.replace("--prefix /usr/local", "--prefix installed")
+        out = self.start(["bash", "-euo", "pipefail", "-c", self.variables + command], command.split("\n")[0])
+        self.look_at_results(re.split(r"  #|<<'", command)[0], out)
+        return out
 
     def look_at_results(self, line, out):
         """Files that a line names are there and show something; what it prints says something."""
         for output, redirected in WRITTEN.findall(line):
             path = self.folder / (output or redirected)
             if output and "--print" not in line and path.is_dir():
-                pictures.require_file(path / "report.html")
+                if "--shard" not in line:  # parts have their page when they are merged
+                    pictures.require_file(path / "report.html")
             elif "--print" not in line:
                 pictures.require_file(path)
             if path.suffix == ".apng":
                 self.look_at_frames(path)
-        if not WRITTEN.search(line) and re.match(r"\$trilens", line) and not out.strip():
+        if not WRITTEN.search(line) and re.match(r"trilens", line) and not out.strip():
             raise Wrong("prints nothing")
-        if " project " in line:
+        if " project " in line and "--json" not in line:
             rows = [row.split(",") for row in out.split()]
             images = [dict(zip(rows[0], row)) for row in rows[1:]]
             if not any(image["path"] != "direct" and image["visible"] == "1" for image in images):
@@ -131,53 +107,96 @@ class Reader:
         if len(shares) < 12 or min(shares) < max(shares) / 6:
             raise Wrong(f"{path.name}: {len(shares)} frames, the emptiest with {min(shares):.4f}, the fullest {max(shares):.4f}")
 
-    def json(self, block):
-        """A part of a scene file: it makes the scene that the README works on another one."""
-        scene = json.loads(re.sub(r"^\s*//.*$", "", (self.folder / "my.json").read_text(), flags=re.M))
-        scene.update(json.loads("{" + "\n".join(block) + "}"))
-        (self.folder / "part.json").write_text(json.dumps(scene))
-        self.shell("$trilens scene validate part.json")
+    def json(self, lines):
+        """A scene, which is valid, or a part of one, which makes the scene that the page works on another one."""
+        text = re.sub(r"^\s*//.*$", "", "\n".join(lines), flags=re.M)
+        if text.lstrip().startswith("{"):
+            part = json.loads(text)
+        else:
+            part = json.loads(re.sub(r"^\s*//.*$", "", (self.folder / "my.json").read_text(), flags=re.M))
+            part.update(json.loads("{" + text + "}"))
+        (self.folder / "part.json").write_text(json.dumps(part))
+        self.shell("trilens scene validate part.json")
+
+    def python(self, lines):
+        """A program of the page, where the module is built."""
+        if not list((self.build / "python/trilens").glob("_trilens*.so")):
+            self.skipped += 1
+            return
+        code = "import sys; sys.path.insert(0, 'build/release/python')\n" + "\n".join(lines)
+        (self.folder / "results/out").mkdir(parents=True, exist_ok=True)
+        if not self.start([sys.executable, "-B", "-c", code], f"Python: {lines[2]}").strip() and "print(" in code:
+            raise Wrong("prints nothing")
+
+    def read(self, text):
+        """Types what the page says, from its beginning to its end."""
+        is_readme = self.page.name == "README.md"
+        kinds, printed = [], None
+        for block in pages.blocks_of(text):
+            kinds.append(block.kind)
+            if block.kind == "output":
+                if printed is None:
+                    self.problems.append(f"an answer without a question: {block.lines[0]}")
+                else:
+                    self.check(block.lines[0], lambda: pages.check_output(block.lines, printed))
+                printed = None
+                continue
+            printed = None
+            if block.kind == "shell":
+                for command in pages.commands_of(block.lines):
+                    if block.reason and not ELSEWHERE.match(command):
+                        continue
+                    out = self.check(command, lambda: self.shell(command))
+                    printed = (printed or "") + (out or "")
+                printed = None if block.reason else printed
+            elif block.kind == "JSON" and not block.reason:
+                self.check(block.lines[0], lambda: self.json(block.lines))
+            elif block.kind == "Python" and not is_readme and not block.reason and block.lines[0].startswith("import "):
+                self.check(block.lines[2], lambda: self.python(block.lines))
+        for line in pages.inline_commands(text):
+            self.check(line, lambda: self.shell(line))
+        self.check_links(text)
+        if is_readme and (self.ran < 5 or not {"shell", "C++", "Python", "output"} <= set(kinds)):
+            self.problems.append(f"the README has hardly anything to try: {self.ran} commands, {sorted(set(kinds))}")
+        if is_readme and text.count("\n") > 150:
+            self.problems.append(f"the README has {text.count(chr(10))} lines, and at most 150 are read")
+
+    def check_links(self, text):
+        prose = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
+        for shown, name in re.findall(r"(!?)\[[^]]*\]\(([^)#\s]+)(?:#[^)]*)?\)", prose):
+            if "://" in name or (self.page.name != "README.md" and GENERATED.match(name)):
+                continue
+            path = self.page.parent / name
+            self.check(name, lambda: pictures.require_file(path) if shown else path.stat())
+        for name in re.findall(r"`((?:scripts|bench|scenes|examples|results|tests|src|python|docs)/[\w./-]+)`", prose):
+            if not (SOURCE / name).exists() and not re.search(r"NAME|^results/out", name):
+                self.problems.append(f"there is no {name}")
 
 
-def inline_commands(text):
-    """What stands in the sentences: `$trilens scene schema`, `trilens scene example crystal-ball`; not the mere names of
-    commands."""
-    found = re.findall(r"`\$?trilens ([a-z]+ [^`]*)`", re.sub(r"\s+", " ", text))
-    return ["$trilens " + command.replace("COMMAND", "render") for command in found]
-
-
-def check_links(reader, text):
-    for shown, name in re.findall(r"(!?)\[[^]]*\]\(([^)#\s]+)\)", text):
-        if "://" in name:
-            continue
-        path = SOURCE / name
-        reader.check(name, lambda: pictures.require_file(path) if shown else path.stat())
-    for name in re.findall(r"`((?:scripts|bench|scenes|examples|results|tests|src|python|docs)/[\w./-]+)`", text):
-        if not (SOURCE / name).exists() and not name.startswith("results/out"):
-            reader.problems.append(f"there is no {name}")
+def read_page(build, folder, page):
+    reader = Reader(build, folder / page.stem, page)
+    # Where a page speaks of a scene of the reader's own.
+    with open(reader.folder / "my.json", "w") as own:
+        subprocess.run([build / "trilens", "scene", "example", "mirror-sphere"], stdout=own, check=True)
+    reader.check("its blocks", lambda: reader.read(page.read_text()))
+    return reader
 
 
 def main():
     build, folder = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-    text = pathlib.Path(sys.argv[3] if len(sys.argv) > 3 else SOURCE / "README.md").read_text()
-    reader = Reader(build, folder)
-    kinds = []
-    for kind, block in blocks_of(text):
-        kinds.append(kind)
-        if kind == "shell":
-            for line in block:
-                reader.check(line, lambda: reader.shell(line))
-        elif kind == "JSON":
-            reader.check(block[0], lambda: reader.json(block))
-    for line in inline_commands(text):
-        reader.check(line, lambda: reader.shell(line))
-    check_links(reader, text)
-    if reader.ran < 10 or not {"shell", "C++", "Python"} <= set(kinds):
-        reader.problems.append(f"the README has hardly anything to try: {reader.ran} commands, {sorted(set(kinds))}")
-    for problem in reader.problems:
-        print("README:", problem)
-    print(f"{reader.ran - min(reader.ran, len(reader.problems))} passed, {len(reader.problems)} failed, 0 skipped")
-    return 1 if reader.problems else 0
+    asked = [pathlib.Path(word).resolve() for word in sys.argv[3:]]
+    asked = asked or [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
+    passed = failed = skipped = 0
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        for reader in pool.map(lambda page: read_page(build, folder, page), asked):
+            print(f"{reader.page.relative_to(SOURCE)}: {reader.ran} commands", flush=True)
+            for line in [*reader.log, *(f"PROBLEM of {reader.page.name}: {one}" for one in reader.problems)]:
+                print(line, flush=True)
+            passed += max(reader.ran - len(reader.problems), 0)
+            failed += len(reader.problems)
+            skipped += reader.skipped
+    print(f"{passed} passed, {failed} failed, {skipped} skipped")
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":
