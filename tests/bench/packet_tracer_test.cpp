@@ -6,7 +6,7 @@
 
 #include "base/util/parallel.h"
 #include "intersect/tracer.h"
-#include "random_scene.h"
+#include "intersect/random_scene.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -52,12 +52,12 @@ TEST_CASE("a race counts its course and times both sides", "[bench]") {
     CHECK(r.seen == r.pixels);
     CHECK(r.facets == 2);
     CHECK(r.triangles == 800);
-    for (const double ms : {r.prepare_ms, r.samples_ms, r.visible_ms, r.draw_ms, r.written_ms, r.whole_ms,
-                            r.build_ms, r.rays_ms, r.trace_ms, r.trace_written_ms})
+    for (const double ms : {r.prepare_ms, r.samples_ms, r.visible_ms, r.written_ms, r.whole_ms, r.build_ms,
+                            r.rays_ms, r.trace_ms, r.trace_written_ms})
         CHECK(ms > 0);
-    CHECK(r.slowest_ratio <= r.ratio.draw);
-    CHECK(r.ratio.draw <= r.fastest_ratio);
-    CHECK(r.ratio.with_build == Approx((r.trace_ms + r.build_ms) / (r.draw_ms + r.prepare_ms)));
+    CHECK(r.slowest_ratio <= r.ratio.written);
+    CHECK(r.ratio.written <= r.fastest_ratio);
+    CHECK(r.ratio.with_build == Approx((r.trace_ms + r.build_ms) / (r.written_ms + r.prepare_ms)));
     CHECK(r.mismatches.pixels == r.mismatches.edge + r.mismatches.depth + r.mismatches.unexplained);
     CHECK(r.mismatches.unexplained == 0);
     CHECK(r.mismatches.pixels < r.pixels / 100);
@@ -122,4 +122,15 @@ TEST_CASE("an instruction set that a side does not have is a usage error", "[ben
                     UsageError);
     // The next race has all of them again.
     CHECK(race({course.scene, {{&course.mesh, &course.owned}}, course.grid}, {1, ""}).pixels > 0);
+}
+
+TEST_CASE("a race refuses what does not fit together", "[bench][bad-input]") {
+    const Course course;
+    const FacetSamples none, wrong{{0, 0, 7}, {1, 2}};
+    const RaceParams once{1, ""};
+    CHECK_THROWS_AS(race({course.scene, {{&course.mesh, &none}}, course.grid}, once), InputError);
+    CHECK_THROWS_AS(race({course.scene, {{&course.mesh, &wrong}}, course.grid}, once), InputError);
+    CHECK_THROWS_AS(race({course.scene, {{}}, course.grid}, once), InputError);
+    CHECK_THROWS_AS(race({course.scene, {}, {0, 0, 9, 9, 65536}}, once), InputError);
+    CHECK_THROWS_AS(race({course.scene, {}, course.grid}, {0, ""}), UsageError);
 }

@@ -53,7 +53,7 @@ struct Truths {
         const Image close = draw(*finer, Engine::kLimitTruth, window);
         const auto field = make_seen_field(close, layer);
         REQUIRE(field);
-        const Piece piece{seen.object, seen.optic, std::nullopt};
+        const SurfaceId piece{seen.object, seen.optic, std::nullopt};
         for (int y = 0; y + 1 < field->height; ++y)
             for (int x = 0; x + 1 < field->width; ++x) {
                 const std::size_t at = field->index(x, y), right = at + 1, below = field->index(x, y + 1);

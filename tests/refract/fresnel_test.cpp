@@ -4,14 +4,13 @@
 #include <cmath>
 #include <random>
 
-#include "shade/optic_weights.h"
 #include "support/test.h"
 
 using namespace trilens;
 
 namespace {
 
-struct Drawn {
+struct DrawnInterface {
     std::mt19937_64 engine{32};
     double uniform(double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(engine);
@@ -38,7 +37,7 @@ TEST_CASE("reflectance: 4 percent for glass head on, all at grazing, sums of tan
     CHECK(fresnel_reflectance(0, 1 / 1.5) == 1);
     CHECK(fresnel_reflectance(0.3, 1) == Approx(0).margin(1e-30));
 
-    Drawn draw;
+    DrawnInterface draw;
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0.01, 1.5);
         if (eta * std::sin(in) >= 0.999 || std::fabs(eta - 1) < 1e-3) continue;
@@ -62,7 +61,7 @@ TEST_CASE("at Brewster's angle the part parallel to the plane of incidence is no
 
 TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy", "[shade][law]") {
     // Transmitted intensity from the amplitudes of transmission, weighted by index and cosine.
-    Drawn draw;
+    DrawnInterface draw;
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0, 1.55);
         const double sin_out = eta * std::sin(in);
@@ -75,7 +74,7 @@ TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy", "[
 }
 
 TEST_CASE("the interface reflects alike from both sides", "[shade][law]") {
-    Drawn draw;
+    DrawnInterface draw;
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0, 1.5);
         const double sin_out = eta * std::sin(in);
@@ -103,21 +102,4 @@ TEST_CASE("glass reflects all only beyond the critical angle, from inside: not a
     const double critical = std::sqrt(1 - 1 / (1.5 * 1.5));
     CHECK(is_beyond_critical(critical * (1 - 1e-9), 1.5));
     CHECK_FALSE(is_beyond_critical(critical * (1 + 1e-9), 1.5));
-}
-
-TEST_CASE("without Fresnel glass passes everything on at grazing too, and so to its tint", "[shade][law]") {
-    Material glass;
-    glass.transmission_factor = 1;
-    glass.ior = 1.1;
-    glass.base_color_factor = {0.5, 0.6, 0.7};
-    for (const double dispersion : {0.0, 1.0}) {
-        glass.dispersion = dispersion;
-        const OpticWeights grazing = optic_weights(glass, {0, true}, false);
-        CHECK(grazing.reflect == Vec3(0));
-        CHECK(grazing.refract == glass.base_color_factor);
-        CHECK_FALSE(reflects_totally(glass, {0, true}));
-        CHECK(optic_weights(glass, {0, true}, true).reflect == Vec3(1));
-        CHECK(optic_weights(glass, {0, false}, false).reflect == Vec3(1));
-        CHECK(reflects_totally(glass, {0, false}));
-    }
 }

@@ -1,5 +1,6 @@
 // What every test includes: Catch2 of either major version, skips that are counted, and where the data lie.
-#pragma once
+#ifndef TRILENS_TESTS_SUPPORT_TEST_H
+#define TRILENS_TESTS_SUPPORT_TEST_H
 
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
@@ -44,3 +45,5 @@ inline void ignore(const std::string&) {}
 /// Skips where a file of the outside data is missing.
 #define TRILENS_NEEDS_DATA(relative) \
     if (trilens_test::data_missing(relative)) TRILENS_SKIP(std::string("needs ") + (relative) + " of TRILENS_DATA_DIR")
+
+#endif

@@ -325,14 +325,6 @@ TEST_CASE("what looks through meshes by itself refuses what does not fit togethe
         odd.rays[1].direction = Vec3(x);
         only_errors("caustic_sheets", [&] { caustic_sheets({odd, {}, 1}); });
     }
-    TriangleScene scene;
-    FacetSamples none, wrong{{0, 0, 7}, {1, 2}};
-    const RaceParams once{1, ""};
-    CHECK_THROWS_AS(race({scene, {{&mesh, &none}}, grid}, once), InputError);
-    CHECK_THROWS_AS(race({scene, {{&mesh, &wrong}}, grid}, once), InputError);
-    CHECK_THROWS_AS(race({scene, {{}}, grid}, once), InputError);
-    CHECK_THROWS_AS(race({scene, {}, {0, 0, 9, 9, 65536}}, once), InputError);
-    CHECK_THROWS_AS(race({scene, {}, grid}, {0, ""}), UsageError);
     mesh.facets[0][1] = 44;
     CHECK(refusal([&] { caustic_sheets({mesh, {}, 1}); }).rfind("facets/0: ", 0) == 0);
 }
