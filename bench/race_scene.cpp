@@ -1,5 +1,6 @@
 // The projector against Embree's packets on the rays of a scene's optics, in the same run.
-// Use: bench_race SCENE [-n N] [--size WxH] [--camera NAME] [--repeat K] [--isa SET] [--threads T] [--json]
+// Use: bench_race SCENE [-n N] [--size WxH] [--spp S] [--camera NAME] [--repeat K] [--isa SET] [--threads T]
+// [--json]
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
@@ -15,13 +16,15 @@ int main(int count, char** words) {
     SceneRequest scene;
     BenchRequest request;
     std::string camera, size;
-    int threads = 0;
+    int threads = 0, samples = 0;
     bool json = false;
     CLI::App app{"The projector against Embree on the same rays, in the same run."};
     app.add_option("SCENE", scene.file, "a scene file")->required();
     app.add_option("-n,--resolution", request.frame.resolution, "of the optics; default: the scene's")
         ->check(CLI::Range(1, 1024));
     app.add_option("--size", size, "WIDTHxHEIGHT of the film; default: the scene's");
+    app.add_option("--spp", samples, "samples along each side of a pixel; default: the scene's")
+        ->check(CLI::Range(1, 64));
     app.add_option("--camera", camera, "a camera by name; default: the scene's own");
     app.add_option("--repeat", request.race.repeats, "rounds; each draws and traces twice, there and back")
         ->check(CLI::Range(1, 1000));
@@ -39,6 +42,7 @@ int main(int count, char** words) {
             scene.overrides.push_back({"/film/width", size.substr(0, cross)});
             scene.overrides.push_back({"/film/height", size.substr(cross + 1)});
         }
+        if (samples > 0) scene.overrides.push_back({"/film/spp", std::to_string(samples)});
         const Scene loaded = load_scene(scene);
         request.frame.camera = find_camera(loaded, camera);
         const auto warn = [](const std::string& warning) {

@@ -45,8 +45,8 @@ struct SuiteResult {
     std::size_t count(TestState state) const;
 };
 
-/// One <testsuite> with one <testcase> per test: <failure>, <error> or <skipped> with the reasons,
-/// <system-out> with notes and with what became of the reference. A class is the folder part of the name.
+/// One `testsuite` with one `testcase` per test: `failure`, `error` or `skipped` with the reasons,
+/// `system-out` with notes and with what became of the reference. A class is the folder part of the name.
 std::string junit_xml(const SuiteResult& result, const std::string& title);
 
 }  // namespace trilens

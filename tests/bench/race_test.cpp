@@ -57,7 +57,7 @@ TEST_CASE("a race counts its course and times both sides", "[bench]") {
         CHECK(ms > 0);
     CHECK(r.slowest_ratio <= r.ratio.written);
     CHECK(r.ratio.written <= r.fastest_ratio);
-    CHECK(r.ratio.with_build == Approx((r.trace_ms + r.build_ms) / (r.written_ms + r.prepare_ms)));
+    CHECK(r.ratio.with_build == Approx((r.trace_written_ms + r.build_ms) / (r.written_ms + r.prepare_ms)));
     CHECK(r.mismatches.pixels == r.mismatches.edge + r.mismatches.depth + r.mismatches.unexplained);
     CHECK(r.mismatches.unexplained == 0);
     CHECK(r.mismatches.pixels < r.pixels / 100);

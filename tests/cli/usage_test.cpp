@@ -64,7 +64,7 @@ TEST_CASE("every kind of bad option is told in one line with what the option tak
     check_usage("render a.json -o", {"-o/--output takes OUT", "nothing follows"});
     check_usage("render a.json -n 2 -n 3", {"-n/--resolution takes one value", "2 times"});
     check_usage("render a.json --engine exct",
-                {"--engine takes exact, classic, auto, envmap or planar", "'exact'"});
+                {"--engine takes exact, classic, envmap or planar", "'exact'"});
     check_usage("render a.json --slices 2 --tessellate 2", {"--tessellate", "--slices", "exclude"});
     check_usage("render a.json b.json", {"no further argument \"b.json\""});
     check_usage("render a.json --quiet=3", {"-q/--quiet takes no value"});

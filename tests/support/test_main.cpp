@@ -90,7 +90,7 @@ std::vector<Case> all_cases() {
 
 /// The name as a test spec that only it matches.
 std::string as_spec(const std::string& name) {
-    std::string spec;
+    std::string spec = name[0] == '-' ? "*" : "";  // else it were an option
     for (const char c : name) {
         if (std::strchr("\\,[]\"", c)) spec += '\\';
         spec += c;
