@@ -91,17 +91,6 @@ StudyRow compare(const SeenPicture& exact, const SeenPicture& classic) {
     return row;
 }
 
-std::string clip_name(Clip clip) {
-    return clip == Clip::kScene ? "scene" : clip == Clip::kScreen ? "screen" : "none";
-}
-
-std::string curves_name(Curves curves) {
-    return curves == Curves::kSlices       ? "slices"
-           : curves == Curves::kTessellate ? "tessellate"
-           : curves == Curves::kArcs       ? "arcs"
-                                           : "straight";
-}
-
 bool has_pieces(const StudyRow& row) {
     return row.params.curves == Curves::kSlices || row.params.curves == Curves::kTessellate;
 }
@@ -113,8 +102,8 @@ std::string table_csv(const std::vector<StudyRow>& rows) {
     for (const StudyRow& row : rows) {
         text += fmt::format(
             "{},{},{},{},{},{},{},{},{},{},{},{},{:.6g},{:.4g},{:.4g}\n", row.scene, row.resolution,
-            curves_name(row.params.curves), has_pieces(row) ? std::to_string(row.params.pieces) : "",
-            clip_name(row.params.clip), row.pixels, row.optic_pixels, row.differing, row.direct, row.reflect,
+            name_of(row.params.curves), has_pieces(row) ? std::to_string(row.params.pieces) : "",
+            name_of(row.params.clip), row.pixels, row.optic_pixels, row.differing, row.direct, row.reflect,
             row.refract, row.uncovered, row.share(), row.exact_seconds, row.classic_seconds);
     }
     return text;

@@ -138,9 +138,9 @@ int run(const std::vector<std::string>& words) {
             frame.rays = way;
             frame.max_error = rays || silent ? 0 : std::stod(words[1]);
             if (silent)
-                study.tell_silent(corner_rays_name(way), frame);
+                study.tell_silent(name_of(way), frame);
             else
-                study.tell(corner_rays_name(way), frame);
+                study.tell(name_of(way), frame);
         }
         for (const Engine engine : {Engine::kEnvironment, Engine::kPlanar}) {
             if (!rays) break;

@@ -29,6 +29,13 @@ void bind_film_camera(py::module_& module);
 /// Throws UsageError with the nearest known name unless `name` is one of them; `what`: "engine".
 void require_known(const std::string& what, const std::string& name, std::span<const std::string> known);
 
+/// The value of that name. Throws UsageError with the nearest one where there is none.
+template <typename E>
+E require_named(const std::string& what, const std::string& name) {
+    require_known(what, name, names_of<E>());
+    return *find_named<E>(name);
+}
+
 /// str(object).
 inline std::string text_of(const py::handle& object) {
     return py::str(object);

@@ -22,7 +22,7 @@ py::array view_of(const py::object& self, const std::string& name) {
     return py::array_t<float>(shape, channel.floats().data(), self);
 }
 
-std::vector<std::string> names_of(const HeldImage& held) {
+std::vector<std::string> names_in(const HeldImage& held) {
     std::vector<std::string> names;
     for (const Channel& channel : held.image.channels) names.push_back(channel.name);
     return names;
@@ -103,8 +103,8 @@ void bind_mapping(py::class_<HeldImage, std::shared_ptr<HeldImage>>& image) {
              "(NONE where there is none). A view: no copy is made, writing changes the image, and the view "
              "keeps\n"
              "the image alive. Raises KeyError.")
-        .def("keys", names_of, "The channels' names, in the image's order.")
-        .def("__iter__", [](const HeldImage& held) { return py::iter(py::cast(names_of(held))); })
+        .def("keys", names_in, "The channels' names, in the image's order.")
+        .def("__iter__", [](const HeldImage& held) { return py::iter(py::cast(names_in(held))); })
         .def("__len__", [](const HeldImage& held) { return held.image.channels.size(); })
         .def("__contains__",
              [](const HeldImage& held, const std::string& name) { return held.image.find(name) != nullptr; })
@@ -122,7 +122,7 @@ void bind_copying(py::class_<HeldImage, std::shared_ptr<HeldImage>>& image) {
             [](const py::object& self) {
                 const HeldImage& held = self.cast<const HeldImage&>();
                 py::dict channels;
-                for (const std::string& name : names_of(held)) channels[py::str(name)] = view_of(self, name);
+                for (const std::string& name : names_in(held)) channels[py::str(name)] = view_of(self, name);
                 return py::make_tuple(channels, size_of(held), window_of(held), held.image.metadata,
                                       held.statistics);
             },
@@ -153,7 +153,7 @@ void bind_image(py::module_& module) {
             "window: (x0, y0, x1, y1) of the film that the arrays cover; None: from its top left.\n"
             "metadata: texts by names that start with \"trilens:\".\n"
             "Raises UsageError for arrays of unequal shapes or other types, InputError for what is no image.")
-        .def_property_readonly("names", names_of, "The channels' names, in the image's order.")
+        .def_property_readonly("names", names_in, "The channels' names, in the image's order.")
         .def_property_readonly("size", size_of, "(width, height) of the film, in pixels.")
         .def_property_readonly("window", window_of,
                                "(x0, y0, x1, y1): the pixels of the film that the arrays cover.")

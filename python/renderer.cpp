@@ -21,25 +21,10 @@ struct ClassicArguments {
     std::optional<double> tolerance;
 };
 
-const Names kEngines{"exact", "classic", "limit", "facets", "envmap", "planar"};
-const Names kCurves{"arcs", "slices", "tessellate", "straight"};
-const Names kClips{"scene", "screen", "none"};
-
 ClassicParams classic_params(const ClassicArguments& given) {
     ClassicParams params;
-    if (given.curves) {
-        require_known("curves", *given.curves, kCurves);
-        params.curves = *given.curves == "arcs"         ? Curves::kArcs
-                        : *given.curves == "slices"     ? Curves::kSlices
-                        : *given.curves == "tessellate" ? Curves::kTessellate
-                                                        : Curves::kStraight;
-    }
-    if (given.clip) {
-        require_known("clip", *given.clip, kClips);
-        params.clip = *given.clip == "scene"    ? Clip::kScene
-                      : *given.clip == "screen" ? Clip::kScreen
-                                                : Clip::kUnclipped;
-    }
+    if (given.curves) params.curves = require_named<Curves>("curves", *given.curves);
+    if (given.clip) params.clip = require_named<Clip>("clip", *given.clip);
     params.pieces = given.pieces.value_or(params.pieces);
     params.tolerance = given.tolerance.value_or(params.tolerance);
     return params;
@@ -53,14 +38,8 @@ struct FacetArguments {
     std::optional<std::string> seen_optics = {};
 
     FrameParams of(FrameParams frame) const {
-        if (grid) {
-            require_known("grid", *grid, Names{"surface", "screen"});
-            frame.grid = *grid == "screen" ? GridKind::kScreen : GridKind::kSurface;
-        }
-        if (rays) {
-            require_known("rays", *rays, Names{"fitted", "interpolated"});
-            frame.rays = *rays == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
-        }
+        if (grid) frame.grid = require_named<GridKind>("grid", *grid);
+        if (rays) frame.rays = require_named<CornerRays>("rays", *rays);
         if (seen_optics) {
             require_known("seen_optics", *seen_optics, Names{"layers", "divided"});
             frame.layered = *seen_optics == "layers";
@@ -285,12 +264,8 @@ FrameParams frame_params(const Renderer& renderer, int resolution, const std::op
 }
 
 EngineChoice engine_choice(const std::string& name) {
-    require_known("engine", name, kEngines);
-    if (name == "classic") return ClassicParams{};
-    for (const Engine engine :
-         {Engine::kLimitTruth, Engine::kFacetsTruth, Engine::kEnvironment, Engine::kPlanar})
-        if (name == engine_name(engine)) return engine;
-    return Engine::kExact;
+    const auto engine = require_named<Engine>("engine", name);
+    return engine == Engine::kClassic ? EngineChoice(ClassicParams{}) : EngineChoice(engine);
 }
 
 void bind_renderer(py::module_& module) {

@@ -64,18 +64,13 @@ void bind_parts(py::module_& module) {
     bind_fields(film, field("width", &Film::width, "Pixels."), field("height", &Film::height, "Pixels."),
                 field("spp", &Film::spp, "S: every pixel has S x S samples."));
     film.def_property_readonly(
-        "filter",
-        [](const Film& one) {
-            return one.filter == FilterKind::kMitchell   ? "mitchell"
-                   : one.filter == FilterKind::kGaussian ? "gaussian"
-                                                         : "box";
-        },
+        "filter", [](const Film& one) { return name_of(one.filter); },
         "How samples make a pixel's colour: \"box\", \"mitchell\" or \"gaussian\".");
 
     py::class_<CameraDescription>(module, "Camera", "A camera as the scene gives it.")
         .def_readonly("name", &CameraDescription::name)
         .def_property_readonly(
-            "type", [](const CameraDescription& camera) { return camera_type_name(camera.type); },
+            "type", [](const CameraDescription& camera) { return name_of(camera.type); },
             "As in scene files: \"perspective\", \"fisheye\", \"rayMesh\", ...")
         .def_readonly("yfov", &CameraDescription::yfov,
                       "The whole vertical angle, degrees (of types that have it).")

@@ -12,20 +12,13 @@ using SurfacePointer = std::shared_ptr<Surface>;
 using Faces = std::vector<std::vector<int>>;
 using Creases = std::vector<std::pair<std::vector<int>, double>>;
 using Corners = std::vector<std::pair<int, double>>;
-using ShapeNames = std::vector<std::string>;
 
 SubdivisionScheme scheme_of(const std::string& name) {
-    require_known("scheme", name, ShapeNames{"catmullClark", "loop", "bilinear"});
-    return name == "loop"       ? SubdivisionScheme::kLoop
-           : name == "bilinear" ? SubdivisionScheme::kBilinear
-                                : SubdivisionScheme::kCatmullClark;
+    return require_named<SubdivisionScheme>("scheme", name);
 }
 
 InterpolateBoundary boundary_of(const std::string& name) {
-    require_known("interpolate_boundary", name, ShapeNames{"none", "edgeOnly", "edgeAndCorner"});
-    return name == "none"       ? InterpolateBoundary::kNothing
-           : name == "edgeOnly" ? InterpolateBoundary::kEdgeOnly
-                                : InterpolateBoundary::kEdgeAndCorner;
+    return require_named<InterpolateBoundary>("interpolate_boundary", name);
 }
 
 void add_faces(Cage& cage, const Faces& faces) {
@@ -93,11 +86,7 @@ const char* domain_name(const Surface& surface, Id face) {
 }
 
 SurfacePointer primitive_surface(const std::string& type, Primitive primitive) {
-    require_known("primitive", type, ShapeNames{"sphere", "paraboloid", "cylinder", "plane"});
-    primitive.type = type == "sphere"       ? Primitive::Type::kSphere
-                     : type == "paraboloid" ? Primitive::Type::kParaboloid
-                     : type == "cylinder"   ? Primitive::Type::kCylinder
-                                            : Primitive::Type::kPlane;
+    primitive.type = require_named<Primitive::Type>("primitive", type);
     return make_surface(primitive);
 }
 

@@ -36,7 +36,7 @@ std::vector<Option> picture_options(RenderOptions& options, const std::string& f
           {.names = "--grid",
            .target = &options.grid,
            .help = "where the optics' facets lie: on the surface, or on the film over the optic",
-           .choices = {"surface", "screen"}},
+           .choices = names_of<GridKind>()},
           {.names = "--pixel",
            .target = &options.pixel,
            .help = "explain one pixel as JSON",
@@ -64,7 +64,7 @@ std::vector<Option> facet_options(RenderOptions& options) {
          .target = &options.rays,
          .help = "of every optic's facets, whatever the scene says: fitted to the exact rays in the mean, or "
                  "exact at the corners and interpolated between them",
-         .choices = {"fitted", "interpolated"}},
+         .choices = names_of<CornerRays>()},
         {.names = "--max-error",
          .target = &options.max_error,
          .help = "divide facets until they show things this many pixels from their place at most, as "
@@ -97,7 +97,7 @@ std::vector<Option> engine_options(RenderOptions& options) {
          .target = &options.clip,
          .help = "classic: where outlines are cut at a facet's border: in the scene, on the screen, or not "
                  "(none)",
-         .choices = {"scene", "screen", "none"}}};
+         .choices = names_of<Clip>()}};
 }
 
 std::string output_format(const RenderOptions& options, const std::string& command) {
@@ -123,9 +123,7 @@ EngineChoice chosen_engine(const RenderOptions& options) {
                                             : Engine::kExact;
     }
     ClassicParams params;
-    params.clip = options.clip == "scene"    ? Clip::kScene
-                  : options.clip == "screen" ? Clip::kScreen
-                                             : Clip::kUnclipped;
+    params.clip = find_named<Clip>(options.clip).value();
     params.curves = options.slices > 0       ? Curves::kSlices
                     : options.tessellate > 0 ? Curves::kTessellate
                                              : Curves::kArcs;
@@ -137,10 +135,8 @@ PictureRequest picture_request(const RenderOptions& options, const EngineChoice&
     PictureRequest request;
     request.engine = engine;
     request.layers = layer_request(options.scene);
-    if (!options.rays.empty())
-        request.frame.rays = options.rays == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
-    if (!options.grid.empty())
-        request.frame.grid = options.grid == "screen" ? GridKind::kScreen : GridKind::kSurface;
+    request.frame.rays = find_named<CornerRays>(options.rays);
+    request.frame.grid = find_named<GridKind>(options.grid);
     if (options.max_error >= 0) request.frame.max_error = options.max_error;
     return request;
 }

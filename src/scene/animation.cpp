@@ -12,6 +12,7 @@
 #include "scene/load.h"
 #include "scene/read/override.h"
 #include "scene/read/reading.h"
+#include "scene/read/scene_fields.h"
 
 namespace trilens {
 namespace {
@@ -106,7 +107,7 @@ std::vector<SceneOverride> turntable(const Scene& scene, std::size_t camera, int
         case CameraType::kCrossedSlits:
         case CameraType::kGeneralLinear:
         case CameraType::kMultiPerspective:
-            throw UsageError("the camera \"" + from.name + "\" (" + camera_type_name(from.type) +
+            throw UsageError("the camera \"" + from.name + "\" (" + name_of(from.type) +
                              ") does not turn with its lookAt alone: animate its values instead");
         default:
             break;

@@ -45,21 +45,7 @@ Box primitive_box(const Primitive& p) {
 
 std::string shape_name(const Mesh& mesh) {
     if (mesh.role == Role::kObject) return "polygons";
-    if (!mesh.primitive)
-        return mesh.cage.scheme == SubdivisionScheme::kCatmullClark ? "catmullClark"
-               : mesh.cage.scheme == SubdivisionScheme::kLoop       ? "loop"
-                                                                    : "bilinear";
-    switch (mesh.primitive->type) {
-        case Primitive::Type::kSphere:
-            return "sphere";
-        case Primitive::Type::kParaboloid:
-            return "paraboloid";
-        case Primitive::Type::kCylinder:
-            return "cylinder";
-        case Primitive::Type::kPlane:
-            return "plane";
-    }
-    return "";
+    return mesh.primitive ? name_of(mesh.primitive->type) : name_of(mesh.cage.scheme);
 }
 
 MeshInfo make_mesh_info(const Mesh& mesh, const Scene& scene) {
@@ -106,7 +92,7 @@ SceneInfo make_scene_info(const Scene& scene) {
     SceneInfo info;
     for (const CameraDescription& camera : scene.cameras) {
         info.cameras.push_back(camera.name);
-        info.camera_types.push_back(camera_type_name(camera.type));
+        info.camera_types.push_back(name_of(camera.type));
     }
     for (const Mesh& mesh : scene.meshes) {
         info.meshes.push_back(make_mesh_info(mesh, scene));

@@ -9,6 +9,7 @@
 #include "scene/json/json_check.h"
 #include "scene/read/override.h"
 #include "scene/read/reading.h"
+#include "scene/read/scene_fields.h"
 
 namespace trilens {
 namespace {

@@ -8,7 +8,7 @@
 #include "scene/data/scene.h"
 #include "scene/data/scene_override.h"
 #include "scene/data/texture_reader.h"
-#include "scene/json/schema.h"
+#include "scene/read/scene_schema.h"
 
 namespace trilens {
 

@@ -46,7 +46,7 @@ std::vector<FoundLayer> layers_of(const std::vector<ImagePart>& parts) {
     return found;
 }
 
-std::string names_of(const std::vector<FoundLayer>& layers) {
+std::string list_names(const std::vector<FoundLayer>& layers) {
     std::string names;
     for (const FoundLayer& layer : layers)
         names += (names.empty() ? "" : ", ") + (layer.name.empty() ? "R G B without a name" : layer.name);
@@ -88,9 +88,9 @@ Image read_compared_image(const std::string& file, const std::string& layer) {
     if (layers.empty()) throw InputError(file, "", "has no layer with channels R, G and B");
     const std::vector<FoundLayer> meant = matching(layers, parts, layer);
     if (meant.empty())
-        throw InputError(file, "", "has no layer \"" + layer + "\"; it has " + names_of(layers));
+        throw InputError(file, "", "has no layer \"" + layer + "\"; it has " + list_names(layers));
     if (meant.size() > 1)
-        throw InputError(file, "", "has several layers, name one of them: " + names_of(meant));
+        throw InputError(file, "", "has several layers, name one of them: " + list_names(meant));
     Image image = std::move(parts[meant[0].part].image);
     move_to_root(image, meant[0].prefix);
     return image;

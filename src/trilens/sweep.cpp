@@ -8,6 +8,7 @@
 #include <mutex>
 #include <system_error>
 
+#include "base/description/digest.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "sweep/plan/sweep_file.h"
@@ -134,19 +135,50 @@ SweepSubject subject_of(const SweepRequest& request, const SweepAxes& axes, cons
     return subject;
 }
 
-std::string engine_key(const PictureRequest& picture) {
-    const EngineChoice& engine = picture.engine;
-    std::string key = engine_name(engine.engine);
-    if (engine.engine == Engine::kClassic)
-        key += fmt::format(" {} within {}", classic_name(engine.classic), engine.classic.tolerance);
-    const char* const grid = !picture.frame.grid                        ? "own"
-                             : *picture.frame.grid == GridKind::kScreen ? "screen"
-                                                                        : "surface";
-    const char* const rays = !picture.frame.rays                          ? "own"
-                             : *picture.frame.rays == CornerRays::kFitted ? "fitted"
-                                                                          : "interpolated";
-    const std::string error = picture.frame.max_error ? fmt::format("{}", *picture.frame.max_error) : "own";
-    return fmt::format("{}\n{}\n{}\n{}\n{}", key, picture.frame.resolution, grid, rays, error);
+// The structures are taken apart by all of their members: one that is added does not compile until it is
+// named here. The camera stands beside them by its name.
+
+void add(const LayerRequest& window, Digest& digest) {
+    const auto& [x0, y0, x1, y1, layers] = window;
+    digest.add_all(x0, y0, x1, y1, layers.size());
+    for (const std::string& layer : layers) digest.add(layer);
+}
+
+void add(const FrameParams& frame, Digest& digest) {
+    [[maybe_unused]] const auto& [camera, resolution, grid, rays, max_error, layered] = frame;
+    const auto add_own = [&](const auto& own) {
+        digest.add(own.has_value());
+        if (own) digest.add(*own);
+    };
+    digest.add(resolution);
+    add_own(grid);
+    add_own(rays);
+    add_own(max_error);
+    add_own(layered);
+}
+
+void add(const EngineChoice& choice, Digest& digest) {
+    const auto& [engine, classic] = choice;
+    digest.add(engine);
+    if (engine != Engine::kClassic) return;
+    const auto& [curves, clip, pieces, tolerance] = classic;
+    digest.add_all(curves, clip, pieces, tolerance);
+}
+
+std::string picture_key(const PictureRequest& picture) {
+    const auto& [frame, engine, window] = picture;
+    Digest digest;
+    add(frame, digest);
+    add(engine, digest);
+    add(window, digest);
+    return digest.digits();
+}
+
+/// Of the exact surfaces' truth: it has no facets.
+std::string window_key(const LayerRequest& window) {
+    Digest digest;
+    add(window, digest);
+    return digest.digits();
 }
 
 /// The truth of run n's own facets is that run's alone; the limit surface is that of all resolutions.
@@ -154,11 +186,11 @@ RunKeys keys_of(SweepJob& job, const Coordinates& point) {
     const PointRequest request = request_at(job.base, point);
     const SubjectFacts& facts = sweepable_facts(*job.subjects, request);
     const std::string seen = code_digest() + "\n" + facts.camera + "\n" + facts.digest;
-    const bool is_facets = job.truth == Engine::kFacetsTruth;
-    return {
-        seen + "\n" + engine_key(request.picture),
-        fmt::format("{}\n{}\n{}", seen, engine_name(job.truth), is_facets ? engine_key(request.picture) : ""),
-        facts.optics};
+    const PictureRequest& picture = request.picture;
+    const std::string of_truth =
+        job.truth == Engine::kFacetsTruth ? picture_key(picture) : window_key(picture.layers);
+    return {seen + "\n" + picture_key(picture), seen + "\n" + engine_name(job.truth) + "\n" + of_truth,
+            facts.optics};
 }
 
 Picture draw(SweepJob& job, const PointRequest& request, const std::string& what, double* surface_seconds) {

@@ -27,6 +27,13 @@ int whole(const AxisValue& value) {
     return static_cast<int>(number);
 }
 
+template <typename E>
+E named(const AxisValue& value) {
+    if (const std::optional<E> found = find_named<E>(value.text)) return *found;
+    throw UsageError("the value \"" + value.text + "\" is none of the axis" +
+                     suggestion(value.text, names_of<E>()));
+}
+
 void override_with(const std::string& pointer, const std::string& value, PointRequest& request) {
     request.scene.overrides.push_back({pointer, value});
 }
@@ -46,17 +53,15 @@ void set_size(const AxisValue& value, PointRequest& request) {
 
 void set_clip(const AxisValue& value, PointRequest& request) {
     request.picture.engine.engine = Engine::kClassic;
-    request.picture.engine.classic.clip = value.text == "scene"    ? Clip::kScene
-                                          : value.text == "screen" ? Clip::kScreen
-                                                                   : Clip::kUnclipped;
+    request.picture.engine.classic.clip = named<Clip>(value);
 }
 
 void set_rays(const AxisValue& value, PointRequest& request) {
-    request.picture.frame.rays = value.text == "fitted" ? CornerRays::kFitted : CornerRays::kInterpolated;
+    request.picture.frame.rays = named<CornerRays>(value);
 }
 
 void set_grid(const AxisValue& value, PointRequest& request) {
-    request.picture.frame.grid = value.text == "screen" ? GridKind::kScreen : GridKind::kSurface;
+    request.picture.frame.grid = named<GridKind>(value);
 }
 
 void set_scene(const AxisValue& value, PointRequest& request) {
@@ -92,15 +97,15 @@ const std::vector<AxisEntry>& axis_entries() {
          [](const auto& v, auto& r) { set_pieces(Curves::kTessellate, v, r); }},
         {{"slices", "slices", "K [pieces of a curved edge]", kWhole, 1, 1024, true},
          [](const auto& v, auto& r) { set_pieces(Curves::kSlices, v, r); }},
-        {{"clip", "", "clipping", ValueKind::kWord, 0, 0, false, {"scene", "screen", "none"}}, set_clip},
-        {{"rays", "", "corner rays", ValueKind::kWord, 0, 0, false, {"fitted", "interpolated"}}, set_rays},
-        {{"grid", "", "facets' grid", ValueKind::kWord, 0, 0, false, {"surface", "screen"}}, set_grid},
+        {{"clip", "", "clipping", ValueKind::kWord, 0, 0, false, names_of<Clip>()}, set_clip},
+        {{"rays", "", "corner rays", ValueKind::kWord, 0, 0, false, names_of<CornerRays>()}, set_rays},
+        {{"grid", "", "facets' grid", ValueKind::kWord, 0, 0, false, names_of<GridKind>()}, set_grid},
         {{"max-error", "px", "largest predicted error [px]", ValueKind::kNumber, 0, 1000},
          [](const auto& v, auto& r) { r.picture.frame.max_error = number_of(v); }},
         {{"size", "", "pixels", ValueKind::kSize, 1, kMostPixels, true, {}, kMostFilmSide}, set_size},
         {{"spp", "spp", "samples per pixel, across", kWhole, 1, kMaxSpp},
          [](const auto& v, auto& r) { override_with("/film/spp", v.text, r); }},
-        {{"max-depth", "depth", "optic hits after the first", kWhole, 0, 64},
+        {{"max-depth", "depth", "optic hits after the first", kWhole, 0, kMostDepth},
          [](const auto& v, auto& r) { override_with("/render/maxDepth", v.text, r); }},
     };
     return entries;
@@ -134,7 +139,7 @@ std::vector<SceneOverride> with_camera_facets(const PointRequest& request, const
     const std::string place = "/cameras/" + std::to_string(index);
     if (!chooses_facets(camera))
         throw InputError(scene.file, place,
-                         "\"" + camera.name + "\" is " + camera_type_name(camera.type) +
+                         "\"" + camera.name + "\" is " + name_of(camera.type) +
                              ": the axis camera-facets is for cameras that choose their own");
     std::vector<SceneOverride> changes;
     if (camera.tolerance > 0) changes.push_back({place + "/tolerance", "", true});

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "base/util/enum_names.h"
 #include "trilinear/scene_edge.h"
 
 namespace trilens {
@@ -23,6 +24,20 @@ enum class Clip {
     kScreen,     // the polygons, at the facet's edges (section 5.1)
     kScene,  // the scene's edges, where they cross the surfaces that the facet's edges sweep (section 5.2):
              // facets that share an edge share these points, so that pictures are continuous across them
+};
+
+template <>
+struct EnumNames<Curves> {
+    static constexpr std::array kTable{NamedValue<Curves>{Curves::kArcs, "arcs"},
+                                       NamedValue<Curves>{Curves::kSlices, "slices"},
+                                       NamedValue<Curves>{Curves::kTessellate, "tessellate"},
+                                       NamedValue<Curves>{Curves::kStraight, "straight"}};
+};
+template <>
+struct EnumNames<Clip> {
+    static constexpr std::array kTable{NamedValue<Clip>{Clip::kScene, "scene"},
+                                       NamedValue<Clip>{Clip::kScreen, "screen"},
+                                       NamedValue<Clip>{Clip::kUnclipped, "none"}};
 };
 
 /// From one t to another, which may be smaller.

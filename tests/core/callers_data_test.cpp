@@ -243,9 +243,9 @@ TEST_CASE("every kind of camera meets descriptions, films, places and points tha
     only_errors("exact_ray", [] { exact_ray({}, {0, 0}); });
     only_errors("film_positions", [] { film_positions({}, {0, 0, 0}); });
     only_errors("facet_kinds", [] { facet_kinds(Camera()); });
-    for (std::size_t k = 0; k < kCameraTypeNames.size(); ++k) {
+    for (std::size_t k = 0; k < EnumNames<CameraType>::kTable.size(); ++k) {
         const auto type = static_cast<CameraType>(k);
-        INFO(camera_type_name(type));
+        INFO(name_of(type));
         for (const double x : kOddNumbers) {
             CameraDescription plain;
             plain.type = type, plain.facets = 2;

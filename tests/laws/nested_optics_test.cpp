@@ -263,8 +263,8 @@ TEST_CASE("layers at full size beside dividing, with a table", "[.long][layers-t
         for (const bool layers : {true, false})
             for (const CornerRays rays : {CornerRays::kInterpolated, CornerRays::kFitted}) {
                 const FrameParams frame = layered(layers, rays);
-                print((std::string(layers ? "lay " : "div ") + corner_rays_name(rays)).substr(0, 8).c_str(),
-                      n, errors_of(*world, frame, truth));
+                print((std::string(layers ? "lay " : "div ") + name_of(rays)).substr(0, 8).c_str(), n,
+                      errors_of(*world, frame, truth));
             }
     }
 }

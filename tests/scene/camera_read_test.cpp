@@ -37,10 +37,9 @@ TEST_CASE("cameras of the shipped scene are read with their types", "[scene]") {
     CHECK(info.camera_types[1] == "fisheye");
     CHECK(info.cameras[1] == "fisheye");
     std::size_t of_types = 0;
-    for (std::size_t type = 0; type < kCameraTypeNames.size(); ++type)
-        of_types +=
-            std::count(info.camera_types.begin(), info.camera_types.end(), kCameraTypeNames[type]) > 0;
-    CHECK(of_types == kCameraTypeNames.size() - 2);  // but planarContext and rayMesh
+    for (const std::string& type : names_of<CameraType>())
+        of_types += std::count(info.camera_types.begin(), info.camera_types.end(), type) > 0;
+    CHECK(of_types == names_of<CameraType>().size() - 2);  // but planarContext and rayMesh
     const CameraDescription& several = scene.cameras[13];
     REQUIRE(several.views.size() == 3);
     CHECK(several.views[1].camera.yfov == 50);

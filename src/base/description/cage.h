@@ -5,12 +5,28 @@
 #include <vector>
 
 #include "base/math/vec.h"
+#include "base/util/enum_names.h"
 #include "base/util/ids.h"
 
 namespace trilens {
 
 enum class SubdivisionScheme { kCatmullClark, kLoop, kBilinear };
 enum class InterpolateBoundary { kNothing, kEdgeOnly, kEdgeAndCorner };
+
+template <>
+struct EnumNames<SubdivisionScheme> {
+    static constexpr std::array kTable{
+        NamedValue<SubdivisionScheme>{SubdivisionScheme::kCatmullClark, "catmullClark"},
+        NamedValue<SubdivisionScheme>{SubdivisionScheme::kLoop, "loop"},
+        NamedValue<SubdivisionScheme>{SubdivisionScheme::kBilinear, "bilinear"}};
+};
+template <>
+struct EnumNames<InterpolateBoundary> {
+    static constexpr std::array kTable{
+        NamedValue<InterpolateBoundary>{InterpolateBoundary::kNothing, "none"},
+        NamedValue<InterpolateBoundary>{InterpolateBoundary::kEdgeOnly, "edgeOnly"},
+        NamedValue<InterpolateBoundary>{InterpolateBoundary::kEdgeAndCorner, "edgeAndCorner"}};
+};
 
 /// A polygon mesh with subdivision tags. As an object it is drawn as its polygons; as an optic it stands for
 /// its limit surface. Field names and meaning: UsdGeomMesh; a sharpness >= 10 is infinite.
@@ -41,6 +57,15 @@ struct Primitive {
     double focal_length = 1;  // paraboloid: apex to focus
     double height = 2;        // cylinder: length along the axis
     Vec2 size{2, 2};          // plane: lengths of its sides along tangent and axis x tangent
+};
+
+template <>
+struct EnumNames<Primitive::Type> {
+    static constexpr std::array kTable{
+        NamedValue<Primitive::Type>{Primitive::Type::kSphere, "sphere"},
+        NamedValue<Primitive::Type>{Primitive::Type::kParaboloid, "paraboloid"},
+        NamedValue<Primitive::Type>{Primitive::Type::kCylinder, "cylinder"},
+        NamedValue<Primitive::Type>{Primitive::Type::kPlane, "plane"}};
 };
 
 }  // namespace trilens

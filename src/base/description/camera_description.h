@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/math/vec.h"
+#include "base/util/enum_names.h"
 #include "base/util/ids.h"
 
 namespace trilens {
@@ -32,19 +33,39 @@ enum class CameraType {
     kRayMesh
 };
 
-/// The types' names in scene files, in the order of CameraType: "perspective", "orthographic", ...
-inline constexpr std::array kCameraTypeNames{
-    "perspective",      "orthographic", "oblique",       "viewVolume",   "cylindrical",   "spherical",
-    "fisheye",          "opencv",       "pushbroom",     "crossedSlits", "generalLinear", "distortion",
-    "multiPerspective", "inwardSphere", "planarContext", "rayMesh"};
-
-constexpr const char* camera_type_name(CameraType type) {
-    return kCameraTypeNames[static_cast<std::size_t>(type)];
-}
+template <>
+struct EnumNames<CameraType> {
+    static constexpr std::array kTable{
+        NamedValue<CameraType>{CameraType::kPerspective, "perspective"},
+        NamedValue<CameraType>{CameraType::kOrthographic, "orthographic"},
+        NamedValue<CameraType>{CameraType::kOblique, "oblique"},
+        NamedValue<CameraType>{CameraType::kViewVolume, "viewVolume"},
+        NamedValue<CameraType>{CameraType::kCylindrical, "cylindrical"},
+        NamedValue<CameraType>{CameraType::kSpherical, "spherical"},
+        NamedValue<CameraType>{CameraType::kFisheye, "fisheye"},
+        NamedValue<CameraType>{CameraType::kOpencv, "opencv"},
+        NamedValue<CameraType>{CameraType::kPushbroom, "pushbroom"},
+        NamedValue<CameraType>{CameraType::kCrossedSlits, "crossedSlits"},
+        NamedValue<CameraType>{CameraType::kGeneralLinear, "generalLinear"},
+        NamedValue<CameraType>{CameraType::kDistortion, "distortion"},
+        NamedValue<CameraType>{CameraType::kMultiPerspective, "multiPerspective"},
+        NamedValue<CameraType>{CameraType::kInwardSphere, "inwardSphere"},
+        NamedValue<CameraType>{CameraType::kPlanarContext, "planarContext"},
+        NamedValue<CameraType>{CameraType::kRayMesh, "rayMesh"}};
+};
 
 /// How far from the film's middle a fisheye shows what lies at an angle theta from its axis: proportional to
 /// theta, 2 sin(theta / 2), 2 tan(theta / 2), sin(theta).
 enum class FisheyeMapping { kEquidistant, kEquisolid, kStereographic, kOrthographic };
+
+template <>
+struct EnumNames<FisheyeMapping> {
+    static constexpr std::array kTable{
+        NamedValue<FisheyeMapping>{FisheyeMapping::kEquidistant, "equidistant"},
+        NamedValue<FisheyeMapping>{FisheyeMapping::kEquisolid, "equisolid"},
+        NamedValue<FisheyeMapping>{FisheyeMapping::kStereographic, "stereographic"},
+        NamedValue<FisheyeMapping>{FisheyeMapping::kOrthographic, "orthographic"}};
+};
 
 /// The standard terms of a linear view (Foley et al., Computer Graphics, chapter 6), world frame but where
 /// said. The axes u, v and n of viewing coordinates: n along vpn, v along the part of vup across it.

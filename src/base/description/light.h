@@ -5,6 +5,7 @@
 
 #include "base/description/texture.h"
 #include "base/math/vec.h"
+#include "base/util/enum_names.h"
 
 namespace trilens {
 
@@ -18,6 +19,13 @@ struct Light {
     Vec3 direction{0, -1, 0};  // unit, the way the light travels
     Vec3 position{0};
     bool shadows = false;
+};
+
+template <>
+struct EnumNames<Light::Type> {
+    static constexpr std::array kTable{NamedValue<Light::Type>{Light::Type::kDirectional, "directional"},
+                                       NamedValue<Light::Type>{Light::Type::kPoint, "point"},
+                                       NamedValue<Light::Type>{Light::Type::kAmbient, "ambient"}};
 };
 
 /// What rays see that hit nothing: a colour, or a latitude-longitude picture turned about +Y.

@@ -31,53 +31,26 @@ Viewer make_viewer(const World& world, const FrameParams& frame, const EngineCho
     return make_views(world, frame, engine, warn).viewer;
 }
 
-namespace {
-
-constexpr std::pair<Engine, const char*> kEngines[] = {
-    {Engine::kExact, "exact"},      {Engine::kClassic, "classic"},    {Engine::kFacetsTruth, "facets"},
-    {Engine::kLimitTruth, "limit"}, {Engine::kEnvironment, "envmap"}, {Engine::kPlanar, "planar"}};
-
-}  // namespace
-
 std::string engine_name(Engine engine) {
-    for (const auto& [known, name] : kEngines)
-        if (known == engine) return name;
-    return "";
+    return name_of(engine);
 }
 
 const std::vector<std::string>& engine_names() {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        for (const auto& [engine, name] : kEngines) all.emplace_back(name);
-        return all;
-    }();
+    static const std::vector<std::string> names = names_of<Engine>();
     return names;
 }
 
 Engine find_engine(const std::string& name) {
-    for (const auto& [engine, known] : kEngines)
-        if (name == known) return engine;
-    throw UsageError("there is no engine \"" + name + "\"" + suggestion(name, engine_names()));
+    const std::optional<Engine> engine = find_named<Engine>(name);
+    if (!engine) throw UsageError("there is no engine \"" + name + "\"" + suggestion(name, engine_names()));
+    return *engine;
 }
 
 std::string classic_name(const ClassicParams& params) {
-    std::string name;
-    switch (params.curves) {
-        case Curves::kStraight:
-            name = "straight";
-            break;
-        case Curves::kSlices:
-            name = "slices " + std::to_string(params.pieces);
-            break;
-        case Curves::kTessellate:
-            name = "tessellate " + std::to_string(params.pieces);
-            break;
-        case Curves::kArcs:
-            name = "arcs";
-            break;
-    }
-    if (params.clip == Clip::kScreen) name += ", clip screen";
-    if (params.clip == Clip::kUnclipped) name += ", clip none";
+    std::string name = name_of(params.curves);
+    if (params.curves == Curves::kSlices || params.curves == Curves::kTessellate)
+        name += " " + std::to_string(params.pieces);
+    if (params.clip != Clip::kScene) name += std::string(", clip ") + name_of(params.clip);
     return name;
 }
 

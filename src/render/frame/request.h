@@ -32,6 +32,14 @@ struct FrameParams {
 /// kPlanar: the projector on flat facets. Both end paths after the first optic.
 enum class Engine { kExact, kClassic, kFacetsTruth, kLimitTruth, kEnvironment, kPlanar };
 
+template <>
+struct EnumNames<Engine> {
+    static constexpr std::array kTable{
+        NamedValue<Engine>{Engine::kExact, "exact"},        NamedValue<Engine>{Engine::kClassic, "classic"},
+        NamedValue<Engine>{Engine::kFacetsTruth, "facets"}, NamedValue<Engine>{Engine::kLimitTruth, "limit"},
+        NamedValue<Engine>{Engine::kEnvironment, "envmap"}, NamedValue<Engine>{Engine::kPlanar, "planar"}};
+};
+
 /// Whether an engine makes its picture by projection; else it traces rays.
 inline bool projects(Engine engine) {
     return engine != Engine::kFacetsTruth && engine != Engine::kLimitTruth;

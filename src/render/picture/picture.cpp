@@ -27,7 +27,7 @@ std::string resolution_text(const World& world, int asked) {
 std::string rays_text(const World& world, const FrameParams& frame) {
     std::string text;
     for (std::size_t i = 0; i < world.optics.size(); ++i)
-        text += (text.empty() ? "" : ",") + std::string(corner_rays_name(optic_rays(world, i, frame)));
+        text += (text.empty() ? "" : ",") + std::string(name_of(optic_rays(world, i, frame)));
     return text;
 }
 

@@ -5,8 +5,6 @@
 
 namespace trilens {
 
-inline constexpr int kMostFilmSide = 32768;  // pixels, as the schema of scenes has it
-
 /// Throws InputError with the place of the first thing that no scene file could say: indices out of range,
 /// arrays that do not fit together, numbers that are not finite, a film without pixels. Scenes from files
 /// pass. Cages are checked where their limit surface is made.

@@ -19,14 +19,23 @@ namespace trilens {
 
 /// What a scene may ask for at most.
 inline constexpr long long kMostPixels = 1LL << 28;  // of a film
+inline constexpr int kMostFilmSide = 32768;         // pixels
 /// Coordinates beyond this are taken for mistakes: products of four still fit in a double.
 inline constexpr double kLargestCoordinate = 1e30;
 inline constexpr int kMaxSpp = 64;
 inline constexpr int kMaxResolution = 1024;
+inline constexpr int kMostDepth = 64;          // optic hits after the first
 inline constexpr double kMostMaxError = 1000;  // pixels
 
 /// How samples make a pixel's colour: see make_pixel_filter.
 enum class FilterKind { kBox, kMitchell, kGaussian };
+
+template <>
+struct EnumNames<FilterKind> {
+    static constexpr std::array kTable{NamedValue<FilterKind>{FilterKind::kBox, "box"},
+                                       NamedValue<FilterKind>{FilterKind::kMitchell, "mitchell"},
+                                       NamedValue<FilterKind>{FilterKind::kGaussian, "gaussian"}};
+};
 
 struct Film {
     int width = 640, height = 480;
@@ -36,6 +45,12 @@ struct Film {
 
 enum class Role { kObject, kOptic };
 
+template <>
+struct EnumNames<Role> {
+    static constexpr std::array kTable{NamedValue<Role>{Role::kObject, "object"},
+                                       NamedValue<Role>{Role::kOptic, "optic"}};
+};
+
 /// How an optic's normals are overridden (thesis chapter 7: planes with perturbed or spherical normals).
 struct NormalOverride {
     enum class Type { kSmooth, kSphere, kNoise };
@@ -43,6 +58,14 @@ struct NormalOverride {
     Vec3 center{0};  // kSphere: normals point away from it
     int seed = 0;    // kNoise
     double amplitude = 0, scale = 1;
+};
+
+template <>
+struct EnumNames<NormalOverride::Type> {
+    static constexpr std::array kTable{
+        NamedValue<NormalOverride::Type>{NormalOverride::Type::kSmooth, "smooth"},
+        NamedValue<NormalOverride::Type>{NormalOverride::Type::kSphere, "sphere"},
+        NamedValue<NormalOverride::Type>{NormalOverride::Type::kNoise, "noise"}};
 };
 
 /// The triangles of an object, ready to draw: world frame, polygons already cut into triangles, in face

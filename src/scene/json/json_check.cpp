@@ -8,7 +8,6 @@
 
 #include "base/util/check.h"
 #include "base/util/suggestion.h"
-#include "scene/json/schema.h"
 
 namespace trilens {
 namespace {
@@ -213,7 +212,8 @@ class Checker {
     const Json& root_;
 };
 
-/// Every keyword of the schema must be one that the checker obeys or may ignore.
+}  // namespace
+
 void check_keywords(const Json& schema) {
     static const std::set<std::string> known = {"$schema",
                                                 "$id",
@@ -257,8 +257,6 @@ void check_keywords(const Json& schema) {
     }
 }
 
-}  // namespace
-
 std::optional<Problem> find_problem(const Json& value, const Json& schema) {
     return Checker(schema).check(value, schema, Path(), "");
 }
@@ -288,15 +286,6 @@ std::vector<std::string> known_keys(const Json& object_schema) {
 
 bool is_free_key(const std::string& key) {
     return key == "extras" || key.rfind("x-", 0) == 0;
-}
-
-const Json& scene_schema_json() {
-    static const Json schema = [] {
-        Json parsed = parse_json(scene_schema(), "the scene schema");
-        check_keywords(parsed);
-        return parsed;
-    }();
-    return schema;
 }
 
 }  // namespace trilens

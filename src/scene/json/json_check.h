@@ -31,7 +31,7 @@ const Json& resolve_schema(const Json& schema, const Json& root);
 std::vector<std::string> known_keys(const Json& object_schema);
 bool is_free_key(const std::string& key);
 
-/// scene_schema(), parsed once.
-const Json& scene_schema_json();
+/// Every keyword of the schema must be one that the checker obeys or may ignore; another is a bug.
+void check_keywords(const Json& schema);
 
 }  // namespace trilens

@@ -7,6 +7,7 @@
 #include "base/util/suggestion.h"
 #include "scene/json/json_check.h"
 #include "scene/read/reading.h"
+#include "scene/read/scene_fields.h"
 
 namespace trilens {
 

@@ -1,8 +1,9 @@
-// Cameras out of checked JSON.
+// Cameras: their settings, and what is read of them by hand.
 #include <algorithm>
 #include <cmath>
 
 #include "scene/read/reading.h"
+#include "scene/read/scene_fields.h"
 
 namespace trilens {
 namespace {
@@ -59,38 +60,10 @@ void read_ray_mesh(const Node& node, CameraDescription& camera, Reading& reading
             std::to_string(without_area) + " triangles have no area on the screen: no pixel sees them");
 }
 
-std::array<double, 4> window_or(const Node& node, const char* key, const std::array<double, 4>& fallback) {
-    if (!node.has(key)) return fallback;
-    std::array<double, 4> window{};
-    for (std::size_t k = 0; k < 4; ++k) window[k] = node.json.at(key)[k].get<double>();
-    return window;
-}
-
 Vec3 direction_at(const Node& node) {
     const Vec3 direction = to_vec3(node.json);
     if (direction == Vec3(0)) node.fail("a direction must not be zero");
     return direction;
-}
-
-void read_view_volume(const Node& node, ViewVolume& volume) {
-    volume.vrp = vec3_or(node, "vrp", volume.vrp);
-    volume.vpn = vec3_or(node, "vpn", volume.vpn);
-    volume.vup = vec3_or(node, "vup", volume.vup);
-    volume.prp = to_vec3(node["prp"].json);
-    volume.window = window_or(node, "window", volume.window);
-    volume.parallel = string_or(node, "projection", "perspective") == "parallel";
-    volume.front = number_or(node, "front", volume.front);
-    volume.back = number_or(node, "back", volume.back);
-}
-
-void read_opencv(const Node& node, OpencvLens& lens) {
-    lens.fisheye = string_or(node, "model", "pinhole") == "fisheye";
-    lens.fx = number_or(node, "fx", lens.fx);
-    lens.fy = number_or(node, "fy", lens.fy);
-    lens.cx = number_or(node, "cx", lens.cx);
-    lens.cy = number_or(node, "cy", lens.cy);
-    if (node.has("distortion"))
-        for (const Json& value : node.json.at("distortion")) lens.distortion.push_back(value.get<double>());
 }
 
 void read_lines(const Node& node, CameraDescription& camera) {
@@ -113,49 +86,12 @@ void read_ground(const Node& node, CameraDescription& camera) {
     camera.ground_normal = direction_at(node["ground"][std::size_t{1}]);
 }
 
-FisheyeMapping mapping_of(const std::string& name) {
-    if (name == "equisolid") return FisheyeMapping::kEquisolid;
-    if (name == "stereographic") return FisheyeMapping::kStereographic;
-    if (name == "orthographic") return FisheyeMapping::kOrthographic;
-    return FisheyeMapping::kEquidistant;
-}
-
-CameraType type_of(const std::string& name) {
-    const auto found = std::find(kCameraTypeNames.begin(), kCameraTypeNames.end(), name);
-    return static_cast<CameraType>(found - kCameraTypeNames.begin());
-}
-
-void read_numbers(const Node& node, CameraDescription& camera) {
-    camera.yfov = number_or(node, "yfov", camera.yfov);
-    if (node.has("shift")) camera.shift = to_vec2(node["shift"].json);
-    camera.near_depth = number_or(node, "near", camera.near_depth);
-    camera.far_depth = number_or(node, "far", camera.far_depth);
-    camera.ymag = number_or(node, "ymag", camera.ymag);
-    camera.angle = number_or(node, "angle", camera.angle);
-    camera.scale = number_or(node, "scale", camera.scale);
-    camera.hfov = number_or(node, "hfov", camera.hfov);
-    camera.vfov = number_or(node, "vfov", camera.vfov);
-    camera.mapping = mapping_of(string_or(node, "mapping", "equidistant"));
-    camera.fov = number_or(node, "fov", camera.fov);
-    camera.travel = vec3_or(node, "travel", camera.travel);
-    camera.detail = window_or(node, "detail", camera.detail);
-    camera.context_fov = number_or(node, "contextFov", camera.context_fov);
-    camera.blend = number_or(node, "blend", camera.blend);
-    camera.center = vec3_or(node, "center", camera.center);
-    camera.radius = number_or(node, "radius", camera.radius);
-    camera.bend = number_or(node, "bend", camera.bend);
-    camera.facets = int_or(node, "facets", camera.facets);
-    camera.tolerance = number_or(node, "tolerance", camera.tolerance);
-    if (node.has("facets") && node.has("tolerance"))
-        node["tolerance"].fail("stands beside facets: only one of them may be given");
-}
-
 void read_views(const Node& node, CameraDescription& camera, Reading& reading) {
     for (std::size_t i = 0; i < node["views"].size(); ++i) {
         const Node view = node["views"][i];
         WindowedCamera one;
         one.camera = read_camera(view, i, reading);
-        one.window = window_or(view, "window", one.window);
+        if (view.has("window")) from_json_value(view["window"].json, one.window);
         if (!view.has("lookAt")) {
             if (!node.has("lookAt")) view.fail("needs 'lookAt', since the camera has none");
             one.camera.eye = camera.eye;
@@ -170,31 +106,15 @@ void read_views(const Node& node, CameraDescription& camera, Reading& reading) {
 
 CameraDescription read_camera(const Node& node, std::size_t index, Reading& reading) {
     CameraDescription camera;
-    camera.name = string_or(node, "name", "camera" + std::to_string(index));
-    camera.type = type_of(string_or(node, "type", "perspective"));
+    camera.name = "camera" + std::to_string(index);
     if (node.has("lookAt")) read_look_at(node["lookAt"], camera);
-    read_numbers(node, camera);
+    read_fields(node, camera_fields(), camera);
+    if (node.has("facets") && node.has("tolerance"))
+        node["tolerance"].fail("stands beside facets: only one of them may be given");
     read_lines(node, camera);
     read_ground(node, camera);
-    switch (camera.type) {
-        case CameraType::kRayMesh:
-            read_ray_mesh(node, camera, reading);
-            break;
-        case CameraType::kViewVolume:
-            read_view_volume(node, camera.view_volume);
-            break;
-        case CameraType::kCrossedSlits:
-            camera.window = window_or(node, "window", camera.window);
-            break;
-        case CameraType::kOpencv:
-            read_opencv(node, camera.lens);
-            break;
-        case CameraType::kMultiPerspective:
-            read_views(node, camera, reading);
-            break;
-        default:
-            break;
-    }
+    if (camera.type == CameraType::kRayMesh) read_ray_mesh(node, camera, reading);
+    if (camera.type == CameraType::kMultiPerspective) read_views(node, camera, reading);
     return camera;
 }
 

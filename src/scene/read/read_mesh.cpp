@@ -7,6 +7,7 @@
 #include "base/util/suggestion.h"
 #include "scene/data/cage_diagnostics.h"
 #include "scene/read/reading.h"
+#include "scene/read/scene_fields.h"
 
 namespace trilens {
 namespace {
@@ -42,21 +43,6 @@ void check_optic_material(const Node& node, Id index, Reading& reading) {
     if (mirror && glass) node["material"].fail(optic + "cannot be mirror and glass at once");
     if (material.roughness_factor != 0) node["material"].fail(optic + "must have roughnessFactor 0");
     if (material.base_color_texture) reading.warn(node["material"].place, "a texture on an optic is ignored");
-}
-
-NormalOverride read_normals(const Node& node) {
-    NormalOverride normals;
-    if (!node.has("normals")) return normals;
-    const Node in = node["normals"];
-    const std::string type = in["type"].json.get<std::string>();
-    normals.type = type == "smooth"   ? NormalOverride::Type::kSmooth
-                   : type == "sphere" ? NormalOverride::Type::kSphere
-                                      : NormalOverride::Type::kNoise;
-    normals.center = vec3_or(in, "center", normals.center);
-    normals.seed = int_or(in, "seed", normals.seed);
-    normals.amplitude = number_or(in, "amplitude", normals.amplitude);
-    normals.scale = number_or(in, "scale", normals.scale);
-    return normals;
 }
 
 void place_or_fail(PolygonMesh& polygons, const Node& node) {
@@ -149,16 +135,11 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
 
 Mesh read_mesh(const Node& node, std::size_t index, Reading& reading) {
     Mesh mesh;
-    mesh.name = string_or(node, "name", "mesh" + std::to_string(index));
-    mesh.role = node["role"].json == "optic" ? Role::kOptic : Role::kObject;
+    mesh.name = "mesh" + std::to_string(index);
+    read_fields(node, mesh_fields(), mesh);
     inherits(node);
     mesh.material = find_material(node, reading);
-    mesh.resolution = int_or(node, "resolution", mesh.resolution);
-    if (string_or(node, "rays", "fitted") == "interpolated") mesh.rays = CornerRays::kInterpolated;
-    mesh.grid = string_or(node, "grid", "surface") == "screen" ? GridKind::kScreen : GridKind::kSurface;
-    mesh.layered = string_or(node, "seenOptics", "layers") == "layers";
-    mesh.priority = int_or(node, "priority", mesh.priority);
-    mesh.normals = read_normals(node);
+    if (node.has("normals")) read_fields(node["normals"], normal_fields(), mesh.normals);
     mesh.role == Role::kOptic ? read_optic(node, mesh, reading) : read_object(node, mesh, reading);
     return mesh;
 }

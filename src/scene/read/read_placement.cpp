@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/read/reading.h"
+#include "scene/read/scene_fields.h"
 
 namespace trilens {
 namespace {
@@ -47,27 +48,55 @@ Transform read_transform(const Node& mesh) {
     return make_transform(translate, rotate, scale);
 }
 
+const std::vector<Field<Primitive>>& primitive_fields() {
+    const auto along = [](const char* key) {
+        Field<Primitive> field = part<Primitive>(key, ref("vec3"));
+        field.schema["default"] = to_json_value(Primitive().axis);
+        return field;
+    };
+    static const std::vector<Field<Primitive>> fields{
+        choice("type", &Primitive::type).without_default(),
+        setting("center", &Primitive::center, ref("vec3"), "paraboloid: its apex."),
+        setting("radius", &Primitive::radius, ref("positive"), "paraboloid: of its rim.")
+            .of({"sphere", "paraboloid", "cylinder"}),
+        along("axis").of({"paraboloid", "cylinder"}),
+        along("normal").of({"plane"}),
+        part<Primitive>("tangent", ref("vec3"),
+                        "Default: a direction at right angles to axis or normal, +X for +Y.")
+            .of({"paraboloid", "cylinder", "plane"}),
+        setting("focalLength", &Primitive::focal_length, ref("positive")).of({"paraboloid"}),
+        setting("height", &Primitive::height, ref("positive")).of({"cylinder"}),
+        setting("size", &Primitive::size, several(2, ref("positive")), "Along tangent and normal x tangent.")
+            .of({"plane"}),
+    };
+    return fields;
+}
+
+Json primitive_schema() {
+    return object_schema({.title = "a primitive",
+                          .description = "An optic given by a formula. axis: paraboloid from apex to focus, "
+                                         "cylinder along it; tangent: where u begins.",
+                          .required = {"type"},
+                          .kind_title = "a #"},
+                         primitive_fields());
+}
+
 Primitive read_primitive(const Node& node, const Transform& transform, const Node& mesh) {
     const std::optional<double> factor = similarity_factor(transform);
     if (!factor) mesh["transform"].fail("a primitive stays exact only under a uniform scale");
 
     Primitive primitive;
-    const std::string type = node["type"].json.get<std::string>();
-    primitive.type = type == "sphere"       ? Primitive::Type::kSphere
-                     : type == "paraboloid" ? Primitive::Type::kParaboloid
-                     : type == "cylinder"   ? Primitive::Type::kCylinder
-                                            : Primitive::Type::kPlane;
+    read_fields(node, primitive_fields(), primitive);
     const char* axis_key = primitive.type == Primitive::Type::kPlane ? "normal" : "axis";
-    const Vec3 axis = node.has(axis_key) ? read_direction(node[axis_key]) : Vec3(0, 1, 0);
+    const Vec3 axis = node.has(axis_key) ? read_direction(node[axis_key]) : primitive.axis;
     const Vec3 tangent = read_tangent(node, axis);
 
-    primitive.center = map_point(transform, vec3_or(node, "center", Vec3(0)));
+    primitive.center = map_point(transform, primitive.center);
     primitive.axis = normalize_or_zero(transform.linear * axis);
     primitive.tangent = normalize_or_zero(transform.linear * tangent);
-    primitive.radius = number_or(node, "radius", 1) * *factor;
-    primitive.focal_length = number_or(node, "focalLength", 1) * *factor;
-    primitive.height = number_or(node, "height", 2) * *factor;
-    if (node.has("size")) primitive.size = to_vec2(node["size"].json);
+    primitive.radius *= *factor;
+    primitive.focal_length *= *factor;
+    primitive.height *= *factor;
     primitive.size *= *factor;
     const double extent = std::max({primitive.radius, primitive.focal_length, primitive.height,
                                     primitive.size.x, primitive.size.y, length(primitive.center)});

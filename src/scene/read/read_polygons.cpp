@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "scene/read/reading.h"
+#include "scene/read/scene_fields.h"
 
 namespace trilens {
 namespace {
@@ -82,19 +83,23 @@ PolygonMesh read_inline_polygons(const Node& mesh) {
     return polygons;
 }
 
+const std::vector<Field<Cage>>& subdivision_fields() {
+    static const std::vector<Field<Cage>> fields{
+        choice("subdivisionScheme", &Cage::scheme),
+        choice("interpolateBoundary", &Cage::interpolate_boundary),
+        part<Cage>("creaseIndices", list_of(ref("index")), "Chains of points, one after the other."),
+        part<Cage>("creaseLengths", list_of(whole_in(2, kMostIndex)), "Points per chain; absent: pairs."),
+        part<Cage>("creaseSharpnesses", list_of(ref("notNegative")),
+                   "One per chain, or one per edge; 10 and more is infinite."),
+        part<Cage>("cornerIndices", list_of(ref("index"))),
+        part<Cage>("cornerSharpnesses", list_of(ref("notNegative"))),
+        part<Cage>("holeIndices", list_of(ref("index")), "Faces that are not drawn."),
+    };
+    return fields;
+}
+
 void read_subdivision(const Node& mesh, Cage& cage) {
-    if (mesh.has("subdivisionScheme")) {
-        const std::string scheme = mesh["subdivisionScheme"].json.get<std::string>();
-        cage.scheme = scheme == "catmullClark" ? SubdivisionScheme::kCatmullClark
-                      : scheme == "loop"       ? SubdivisionScheme::kLoop
-                                               : SubdivisionScheme::kBilinear;
-    }
-    if (mesh.has("interpolateBoundary")) {
-        const std::string boundary = mesh["interpolateBoundary"].json.get<std::string>();
-        cage.interpolate_boundary = boundary == "none"       ? InterpolateBoundary::kNothing
-                                    : boundary == "edgeOnly" ? InterpolateBoundary::kEdgeOnly
-                                                             : InterpolateBoundary::kEdgeAndCorner;
-    }
+    read_fields(mesh, subdivision_fields(), cage);
     if (mesh.has("creaseIndices")) read_creases(mesh, cage);
     if (mesh.has("cornerIndices")) {
         cage.corner_indices = read_indices(mesh["cornerIndices"], cage.points.size(), "points");

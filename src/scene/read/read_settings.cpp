@@ -5,6 +5,7 @@
 
 #include "base/util/check.h"
 #include "scene/read/reading.h"
+#include "scene/read/scene_fields.h"
 
 namespace trilens {
 namespace {
@@ -37,90 +38,193 @@ Vec3 read_direction(const Node& direction) {
     return unit;
 }
 
+const std::vector<Field<Film>>& film_fields() {
+    static const std::vector<Field<Film>> fields{
+        setting("width", &Film::width, whole_in(1, kMostFilmSide)),
+        setting("height", &Film::height, whole_in(1, kMostFilmSide)),
+        setting("spp", &Film::spp, whole_in(1, kMaxSpp), "S: S x S samples per pixel."),
+        choice("filter", &Film::filter,
+               "How samples make a pixel's colour: the mean of its own, or weighted with those of pixels "
+               "around."),
+    };
+    return fields;
+}
+
+Json film_schema() {
+    return object_schema({.title = "a film", .description = "At most 2^28 pixels."}, film_fields());
+}
+
 Film read_film(const Node& scene) {
     Film film;
     if (!scene.has("film")) return film;
     const Node node = scene["film"];
-    film.width = int_or(node, "width", film.width);
-    film.height = int_or(node, "height", film.height);
-    film.spp = int_or(node, "spp", film.spp);
-    const std::string filter = string_or(node, "filter", "box");
-    film.filter = filter == "mitchell"   ? FilterKind::kMitchell
-                  : filter == "gaussian" ? FilterKind::kGaussian
-                                         : FilterKind::kBox;
+    read_fields(node, film_fields(), film);
     if (static_cast<long long>(film.width) * film.height > kMostPixels)
         node.fail(std::to_string(film.width) + " x " + std::to_string(film.height) +
                   " pixels are more than " + std::to_string(kMostPixels));
     return film;
 }
 
+const std::vector<Field<Background>>& background_fields() {
+    static const std::vector<Field<Background>> fields = [] {
+        Field<Background> rotate = part<Background>("rotate", ref("number"));
+        rotate.schema["default"] = 0;
+        rotate.read = [](const Json& json, Background& background) {
+            const double angle = std::remainder(json.get<double>(), 360) * kRadiansPerDegree;
+            background.rotate_cos = std::cos(angle);
+            background.rotate_sin = std::sin(angle);
+        };
+        return std::vector<Field<Background>>{setting("color", &Background::color, ref("color")),
+                                              part<Background>("file", ref("name")), std::move(rotate)};
+    }();
+    return fields;
+}
+
+Json background_schema() {
+    Json schema = object_schema(
+        {.title = "a background",
+         .description = "A colour, or a latitude-longitude picture turned about +Y by 'rotate' degrees."},
+        background_fields());
+    schema["dependencies"]["rotate"] = {"file"};
+    schema["if"]["required"] = {"file"};
+    schema["then"] = {{"title", "a background with a file"}, {"properties", {{"color", false}}}};
+    return schema;
+}
+
 Background read_background(const Node& scene, Reading& reading) {
     Background background;
     if (!scene.has("background")) return background;
     const Node node = scene["background"];
-    background.color = vec3_or(node, "color", background.color);
+    read_fields(node, background_fields(), background);
     if (node.has("file")) background.environment = read_picture(reading, node["file"]);
-    const double angle = std::remainder(number_or(node, "rotate", 0), 360) * kRadiansPerDegree;
-    background.rotate_cos = std::cos(angle);
-    background.rotate_sin = std::sin(angle);
     return background;
+}
+
+const std::vector<Field<Light>>& light_fields() {
+    static const std::vector<Field<Light>> fields = [] {
+        Field<Light> direction =
+            part<Light>("direction", ref("vec3"), "directional: the way the light travels.");
+        return std::vector<Field<Light>>{
+            part<Light>("name", ref("name")),
+            choice("type", &Light::type).without_default(),
+            setting("color", &Light::color, ref("color")),
+            setting("intensity", &Light::intensity, ref("notNegative"),
+                    "directional: lux; point: candela; ambient: radiance."),
+            std::move(direction).of({"directional!"}),
+            setting("position", &Light::position, ref("vec3")).of({"point!"}).without_default(),
+            setting(
+                "shadows", &Light::shadows, yes_or_no(),
+                "Whether objects and mirrors cast shadows in this light: objects by their triangles, mirrors "
+                "by their exact surface, at any resolution. Glass casts none: it lets the light through, "
+                "unbent and undimmed.")
+                .of({"directional", "point"})};
+    }();
+    return fields;
+}
+
+Json light_schema() {
+    return object_schema({.title = "a light", .required = {"type"}, .kind_title = "a # light"},
+                         light_fields());
 }
 
 Light read_light(const Node& node) {
     Light light;
-    const std::string type = node["type"].json.get<std::string>();
-    light.color = vec3_or(node, "color", light.color);
-    light.intensity = number_or(node, "intensity", light.intensity);
-    light.shadows = bool_or(node, "shadows", light.shadows);
-    if (type == "directional") {
-        light.type = Light::Type::kDirectional;
-        light.direction = read_direction(node["direction"]);
-    } else if (type == "point") {
-        light.type = Light::Type::kPoint;
-        light.position = to_vec3(node["position"].json);
-    }
+    read_fields(node, light_fields(), light);
+    if (node.has("direction")) light.direction = read_direction(node["direction"]);
     return light;
+}
+
+const std::vector<Field<RenderSettings>>& render_fields() {
+    static const std::vector<Field<RenderSettings>> fields = [] {
+        const std::vector<std::string> names{"direct", "reflect", "refract"};
+        Field<RenderSettings> paths = part<RenderSettings>("paths", {{"type", "array"},
+                                                                     {"minItems", 1},
+                                                                     {"uniqueItems", true},
+                                                                     {"items", word_of(names)},
+                                                                     {"default", names}});
+        paths.read = [](const Json& json, RenderSettings& render) {
+            const auto named = [&](const char* path) {
+                return std::find(json.begin(), json.end(), path) != json.end();
+            };
+            render.direct = named("direct");
+            render.reflect = named("reflect");
+            render.refract = named("refract");
+        };
+        return std::vector<Field<RenderSettings>>{
+            setting("maxDepth", &RenderSettings::max_depth, whole_in(0, kMostDepth),
+                    "Optic hits after the first; 0: paths end after their first optic, as if there were no "
+                    "other."),
+            std::move(paths), setting("fresnel", &RenderSettings::fresnel, yes_or_no()),
+            setting("maxError", &RenderSettings::max_error, number_in(0, kMostMaxError),
+                    "Pixels: facets whose predicted displacement against the exact paths is more are "
+                    "divided, and at last traced; 0: they are as 'resolution' says, but for those that are "
+                    "off by far more than facets of their size are: a pixel at 32 on a film 480 high, by the "
+                    "square of both.")};
+    }();
+    return fields;
+}
+
+Json render_schema() {
+    return object_schema({.title = "render settings"}, render_fields());
 }
 
 RenderSettings read_render(const Node& scene) {
     RenderSettings render;
-    if (!scene.has("render")) return render;
-    const Node node = scene["render"];
-    render.max_depth = int_or(node, "maxDepth", render.max_depth);
-    render.max_error = number_or(node, "maxError", render.max_error);
-    render.fresnel = bool_or(node, "fresnel", render.fresnel);
-    if (node.has("paths")) {
-        const auto named = [&](const char* path) {
-            const Json& paths = node.json.at("paths");
-            return std::find(paths.begin(), paths.end(), path) != paths.end();
-        };
-        render.direct = named("direct");
-        render.reflect = named("reflect");
-        render.refract = named("refract");
-    }
+    if (scene.has("render")) read_fields(scene["render"], render_fields(), render);
     return render;
+}
+
+namespace {
+
+const std::vector<Field<Material>>& volume_fields() {
+    static const std::vector<Field<Material>> fields{
+        setting("attenuationColor", &Material::attenuation_color, several(3, ref("share"))),
+        setting("attenuationDistance", &Material::attenuation_distance, ref("notNegative"),
+                "0: no absorption."),
+    };
+    return fields;
+}
+
+}  // namespace
+
+const std::vector<Field<Material>>& material_fields() {
+    static const std::vector<Field<Material>> fields = [] {
+        Field<Material> volume =
+            part<Material>("volume", object_schema({.title = "a volume"}, volume_fields()));
+        return std::vector<Field<Material>>{
+            setting("name", &Material::name, {{"type", "string"}, {"minLength", 1}},
+                    "Unique; 'inherit' is taken."),
+            setting("baseColorFactor", &Material::base_color_factor, ref("color")),
+            part<Material>("baseColorTexture", ref("name")),
+            setting("unlit", &Material::unlit, yes_or_no()),
+            setting("metallicFactor", &Material::metallic_factor, ref("share")),
+            setting("roughnessFactor", &Material::roughness_factor, ref("share")),
+            setting("transmissionFactor", &Material::transmission_factor, ref("share")),
+            setting("ior", &Material::ior, number_above(0, 10)),
+            setting("dispersion", &Material::dispersion, ref("notNegative"),
+                    "glTF's: 20 / Abbe number; light then parts into three colours."),
+            std::move(volume)};
+    }();
+    return fields;
+}
+
+Json material_schema() {
+    return object_schema(
+        {.title = "a material",
+         .description = "glTF's names. An optic needs metallicFactor 1 (mirror) or transmissionFactor 1 "
+                        "(glass), and roughnessFactor 0.",
+         .required = {"name"}},
+        material_fields());
 }
 
 Material read_material(const Node& node, Reading& reading) {
     Material material;
-    material.name = node["name"].json.get<std::string>();
+    read_fields(node, material_fields(), material);
     if (material.name == "inherit")
         node["name"].fail("'inherit' is taken: it stands for a file's own materials");
-    material.base_color_factor = vec3_or(node, "baseColorFactor", material.base_color_factor);
     if (node.has("baseColorTexture"))
         material.base_color_texture = read_picture(reading, node["baseColorTexture"]);
-    material.unlit = bool_or(node, "unlit", material.unlit);
-    material.metallic_factor = number_or(node, "metallicFactor", material.metallic_factor);
-    material.roughness_factor = number_or(node, "roughnessFactor", material.roughness_factor);
-    material.transmission_factor = number_or(node, "transmissionFactor", material.transmission_factor);
-    material.ior = number_or(node, "ior", material.ior);
-    material.dispersion = number_or(node, "dispersion", material.dispersion);
-    if (node.has("volume")) {
-        const Node volume = node["volume"];
-        material.attenuation_color = vec3_or(volume, "attenuationColor", material.attenuation_color);
-        material.attenuation_distance =
-            number_or(volume, "attenuationDistance", material.attenuation_distance);
-    }
+    if (node.has("volume")) read_fields(node["volume"], volume_fields(), material);
     return material;
 }
 

@@ -1,0 +1,263 @@
+// The settings of cameras, each with the types that have it.
+#include <algorithm>
+
+#include "scene/read/scene_fields.h"
+
+namespace trilens {
+namespace {
+
+using Camera = CameraDescription;
+using CameraFields = std::vector<Field<Camera>>;
+
+/// Linear views: perspective with a window that may be off the axis, and parallel ones.
+CameraFields linear_fields() {
+    return {
+        setting("shift", &Camera::shift, several(2, number_in(-1000, 1000)),
+                "perspective: the window moves by this share of the film's width and height, x right, y up.")
+            .of({"perspective"}),
+        setting("near", &Camera::near_depth, ref("notNegative"),
+                "perspective: what lies nearer along the view axis is not seen.")
+            .of({"perspective"}),
+        setting("far", &Camera::far_depth, ref("positive"), "perspective: likewise what lies farther.")
+            .of({"perspective"})
+            .without_default(),
+        setting("ymag", &Camera::ymag, ref("positive"),
+                "orthographic, oblique: half the film's height in the world.")
+            .of({"orthographic", "oblique"}),
+        setting("angle", &Camera::angle, number_in(-360, 360),
+                "oblique: of receding lines on the film, from the right towards the top; planarContext: how "
+                "far the ground turns up, at most 90.")
+            .of({"oblique", "planarContext"}),
+        setting("scale", &Camera::scale, ref("notNegative"),
+                "oblique: length of receding lines on the film, 1 cavalier, 0.5 cabinet.")
+            .of({"oblique"}),
+    };
+}
+
+/// A view by view plane, window and projection reference point (Foley et al.), and the window of crossed
+/// slits.
+CameraFields view_volume_fields() {
+    const auto volume = [](Field<ViewVolume> field) {
+        return within(&Camera::view_volume, std::move(field));
+    };
+    Field<Camera> window = part<Camera>(
+        "window", several(4, ref("number")),
+        "viewVolume, crossedSlits: umin, umax, vmin, vmax on the view plane (crossedSlits: through 'at' of "
+        "lookAt), which fill the film.");
+    window.read = [](const Json& json, Camera& camera) {
+        if (camera.type == CameraType::kViewVolume) from_json_value(json, camera.view_volume.window);
+        if (camera.type == CameraType::kCrossedSlits) from_json_value(json, camera.window);
+    };
+    return {
+        volume(setting("vrp", &ViewVolume::vrp, ref("vec3"), "viewVolume: a point of the view plane."))
+            .of({"viewVolume"}),
+        volume(setting("vpn", &ViewVolume::vpn, ref("vec3"), "viewVolume: its normal, towards the viewer."))
+            .of({"viewVolume"}),
+        volume(setting("vup", &ViewVolume::vup, ref("vec3"))).of({"viewVolume"}),
+        volume(setting("prp", &ViewVolume::prp, ref("vec3"),
+                       "viewVolume: the eye in (u, v, n) from the vrp; parallel: rays go from it to the "
+                       "window's middle."))
+            .of({"viewVolume!"})
+            .without_default(),
+        std::move(window).of({"viewVolume!", "crossedSlits!"}),
+        volume(either("projection", &ViewVolume::parallel, {"perspective", "parallel"}))
+            .of({"viewVolume!"})
+            .without_default(),
+        volume(setting("front", &ViewVolume::front, ref("number"),
+                       "viewVolume: n of the clipping plane; without it none."))
+            .of({"viewVolume"})
+            .without_default(),
+        volume(setting("back", &ViewVolume::back, ref("number"), "viewVolume: likewise."))
+            .of({"viewVolume"})
+            .without_default(),
+    };
+}
+
+/// Panoramas, fisheyes and calibrated lenses.
+CameraFields lens_fields() {
+    const auto lens = [](Field<OpencvLens> field) { return within(&Camera::lens, std::move(field)); };
+    Field<OpencvLens> distortion = part<OpencvLens>(
+        "distortion",
+        {{"type", "array"}, {"maxItems", 14}, {"items", ref("number")}, {"default", Json::array()}},
+        "opencv: k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tx ty (4, 5, 8, 12 or 14 of them), or the fisheye's k1 "
+        "k2 k3 k4.");
+    distortion.read = [](const Json& json, OpencvLens& into) {
+        into.distortion = json.get<std::vector<double>>();
+    };
+    return {
+        setting("hfov", &Camera::hfov, number_above(0, 360), "Longitudes across the film, degrees.")
+            .of({"cylindrical", "spherical", "inwardSphere"}),
+        setting("vfov", &Camera::vfov, number_above(0, 180), "Latitudes over the film, degrees.")
+            .of({"spherical", "inwardSphere"}),
+        choice("mapping", &Camera::mapping,
+               "fisheye: how the distance from the film's middle grows with the angle from the axis.")
+            .of({"fisheye"}),
+        setting("fov", &Camera::fov, number_above(0, 360),
+                "fisheye: degrees across the film's smaller side; beyond that circle there are no rays.")
+            .of({"fisheye"}),
+        lens(either("model", &OpencvLens::fisheye, {"pinhole", "fisheye"})).of({"opencv!"}).without_default(),
+        lens(setting("fx", &OpencvLens::fx, ref("positive"), "opencv: pixels of the film."))
+            .of({"opencv!"})
+            .without_default(),
+        lens(setting("fy", &OpencvLens::fy, ref("positive"))).of({"opencv!"}).without_default(),
+        lens(
+            setting("cx", &OpencvLens::cx, ref("number"),
+                    "opencv: pixels from the film's left edge, where a pixel's centre is at .5: OpenCV's own "
+                    "cx + 0.5."))
+            .of({"opencv!"})
+            .without_default(),
+        lens(setting("cy", &OpencvLens::cy, ref("number"), "opencv: likewise from the top."))
+            .of({"opencv!"})
+            .without_default(),
+        lens(std::move(distortion)).of({"opencv"}),
+    };
+}
+
+/// Cameras of lines, and of three rays.
+CameraFields line_fields() {
+    return {
+        setting("travel", &Camera::travel, ref("vec3"),
+                "pushbroom: the eye's way from the film's left edge to its right; lookAt's eye is in the "
+                "middle.")
+            .of({"pushbroom!"})
+            .without_default(),
+        part<Camera>("slits", several(2, several(2, ref("vec3"))),
+                     "crossedSlits: a point and a direction each; rays begin at the first.")
+            .of({"crossedSlits!"}),
+        part<Camera>("rays", several(3, ref("placedRay")),
+                     "generalLinear: all rays are affine combinations of these.")
+            .of({"generalLinear!"}),
+    };
+}
+
+/// Cameras that show one part in detail and the rest as its context, or several views in one.
+CameraFields context_fields() {
+    Json views = list_of(ref("view"), 1);
+    views["maxItems"] = 64;
+    return {
+        setting("detail", &Camera::detail, several(4, ref("share")),
+                "distortion: x0, y0, x1, y1 of the film from its top left, drawn in perspective.")
+            .of({"distortion!"}),
+        setting("contextFov", &Camera::context_fov, number_above(0, 360),
+                "distortion: twice the angle from the view axis at the film's border.")
+            .of({"distortion"}),
+        part<Camera>("views", std::move(views), "multiPerspective: a view without a lookAt has the camera's.")
+            .of({"multiPerspective!"}),
+        setting("blend", &Camera::blend, ref("share"),
+                "multiPerspective: share of the film's width and height over which rays pass from one view "
+                "to the next.")
+            .of({"multiPerspective"}),
+        setting("center", &Camera::center, ref("vec3"), "inwardSphere: rays go to it, and on.")
+            .of({"inwardSphere!"})
+            .without_default(),
+        setting("radius", &Camera::radius, ref("positive"), "inwardSphere: rays begin there.")
+            .of({"inwardSphere!"})
+            .without_default(),
+        part<Camera>("ground", several(2, ref("vec3")), "planarContext: a point and the normal.")
+            .of({"planarContext!"}),
+        setting("bend", &Camera::bend, ref("positive"),
+                "planarContext: distance from which the ground turns up, over an arc as long.")
+            .of({"planarContext!"})
+            .without_default(),
+    };
+}
+
+/// How fine the mesh of a camera is that is not linear, or the mesh itself.
+CameraFields fineness_fields() {
+    const auto not_linear = [](Field<Camera> field) {
+        return std::move(field).of({"cylindrical", "spherical", "fisheye", "opencv", "pushbroom",
+                                    "crossedSlits", "generalLinear", "distortion", "multiPerspective",
+                                    "inwardSphere", "planarContext"});
+    };
+    Field<Camera> facets = setting("facets", &Camera::facets, whole_in(1, kMostCameraFacets),
+                                   "N x N over the film, where a camera is not linear.");
+    facets.schema["default"] = kDefaultCameraFacets;
+    return {
+        not_linear(std::move(facets)),
+        not_linear(setting("tolerance", &Camera::tolerance, ref("positive"),
+                           "Pixels: as many facets as leave no place further off; instead of facets."))
+            .without_default(),
+        part<Camera>("points", list_of(ref("vec3"), 3), "rayMesh: origin of each corner's ray.")
+            .of({"rayMesh!"}),
+        part<Camera>("directions", list_of(ref("vec3"), 3), "rayMesh: one per corner, any length but 0.")
+            .of({"rayMesh!"}),
+        part<Camera>("screen", list_of(several(2, number_in(-1000, 1000)), 3),
+                     "rayMesh: one per corner, 0..1 from the film's top left; a facet may reach beyond the "
+                     "film.")
+            .of({"rayMesh!"}),
+        part<Camera>("triangles", list_of(several(3, ref("index")), 1), "rayMesh: three corners each.")
+            .of({"rayMesh!"}),
+    };
+}
+
+CameraFields all_camera_fields() {
+    CameraFields fields{
+        setting("name", &Camera::name, ref("name")),
+        choice("type", &Camera::type),
+        setting("yfov", &Camera::yfov, number_between(0, 180),
+                "The whole vertical angle, degrees; distortion: of the detail.")
+            .of({"perspective", "cylindrical", "pushbroom", "distortion", "planarContext"}),
+        part<Camera>("lookAt", ref("lookAt"))
+            .of({"perspective!", "orthographic!", "oblique!", "cylindrical!", "spherical!", "fisheye!",
+                 "opencv!", "pushbroom!", "crossedSlits!", "generalLinear!", "distortion!",
+                 "multiPerspective", "inwardSphere!", "planarContext!"}),
+    };
+    for (CameraFields (*const chapter)() :
+         {linear_fields, view_volume_fields, lens_fields, line_fields, context_fields, fineness_fields})
+        for (Field<Camera>& field : chapter()) fields.push_back(std::move(field));
+    return fields;
+}
+
+/// A view of a multi-perspective camera: a camera, its window a part of the film, whose facets are the
+/// whole's.
+std::vector<FieldSchema> view_fields() {
+    const std::vector<std::string> whole{"viewVolume", "crossedSlits", "multiPerspective", "rayMesh"};
+    const auto drop_whole = [&](std::vector<std::string>& kinds) {
+        std::erase_if(kinds, [&](const std::string& kind) {
+            return std::find(whole.begin(), whole.end(), kind) != whole.end();
+        });
+    };
+    std::vector<FieldSchema> fields;
+    for (const Field<Camera>& of_camera : camera_fields()) {
+        FieldSchema field = of_camera;
+        if (field.key == "facets" || field.key == "tolerance") continue;
+        if (field.key == "window") field = part<Camera>("window", several(4, ref("share")));
+        if (field.key == "lookAt") field.needed_by.clear();
+        if (field.key == "type") {
+            std::vector<std::string> names = names_of<CameraType>();
+            drop_whole(names);
+            field.schema["enum"] = names;
+        }
+        const bool of_all = field.kinds.empty();
+        drop_whole(field.kinds);
+        drop_whole(field.needed_by);
+        if (of_all || !field.kinds.empty()) fields.push_back(std::move(field));
+    }
+    return fields;
+}
+
+}  // namespace
+
+const std::vector<Field<CameraDescription>>& camera_fields() {
+    static const CameraFields fields = all_camera_fields();
+    return fields;
+}
+
+Json camera_schema() {
+    return object_schema({.title = "a camera", .kind_title = "a # camera", .default_kind = "perspective"},
+                         camera_fields());
+}
+
+Json view_schema() {
+    return object_schema(
+        {.title = "a view",
+         .description =
+             "A camera of a multiPerspective one, with its window: x0, y0, x1, y1 in shares of the "
+             "film from its top left.",
+         .required = {"window"},
+         .kind_title = "a # view",
+         .default_kind = "perspective"},
+        view_fields());
+}
+
+}  // namespace trilens

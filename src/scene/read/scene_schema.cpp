@@ -1,0 +1,139 @@
+// The scene format as a JSON Schema (draft 7), made of the tables of settings: what the checks, --set and the
+// documentation read.
+#include "scene/read/scene_schema.h"
+
+#include <string>
+
+#include "scene/json/json_check.h"
+#include "scene/read/scene_fields.h"
+
+namespace trilens {
+namespace {
+
+// The whole, the values that many keys share, and the parts that fill no members by themselves.
+constexpr const char* kFrame = R"json({
+"$schema": "http://json-schema.org/draft-07/schema#",
+"$id": "trilens-scene-1.schema.json",
+"title": "a scene",
+"description": "Right-handed, Y up, degrees; colours are linear Rec.709; paths are relative to the scene file; keys under 'extras' or starting with 'x-' are free.",
+"type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+"required": ["version", "cameras"],
+"properties": {
+  "$schema": { "type": "string" },
+  "version": { "const": 1 },
+  "film": { "$ref": "#/definitions/film" },
+  "cameras": { "type": "array", "minItems": 1, "items": { "$ref": "#/definitions/camera" } },
+  "background": { "$ref": "#/definitions/background" },
+  "materials": { "type": "array", "items": { "$ref": "#/definitions/material" } },
+  "meshes": { "type": "array", "items": { "$ref": "#/definitions/mesh" } },
+  "lights": { "type": "array", "items": { "$ref": "#/definitions/light" } },
+  "render": { "$ref": "#/definitions/render" },
+  "animation": { "$ref": "#/definitions/animation" }
+},
+"definitions": {
+  "number": { "type": "number", "minimum": -1e30, "maximum": 1e30 },
+  "positive": { "type": "number", "exclusiveMinimum": 0, "maximum": 1e30 },
+  "notNegative": { "type": "number", "minimum": 0, "maximum": 1e30 },
+  "share": { "type": "number", "minimum": 0, "maximum": 1 },
+  "index": { "type": "integer", "minimum": 0, "maximum": 2147483647 },
+  "name": { "type": "string", "minLength": 1 },
+  "vec2": { "type": "array", "minItems": 2, "maxItems": 2, "items": { "$ref": "#/definitions/number" } },
+  "vec3": { "type": "array", "minItems": 3, "maxItems": 3, "items": { "$ref": "#/definitions/number" } },
+  "color": { "type": "array", "minItems": 3, "maxItems": 3, "items": { "$ref": "#/definitions/notNegative" } },
+
+  "lookAt": {
+    "title": "a lookAt",
+    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "required": ["eye", "at"],
+    "properties": {
+      "eye": { "$ref": "#/definitions/vec3" }, "at": { "$ref": "#/definitions/vec3" },
+      "up": { "$ref": "#/definitions/vec3", "default": [0, 1, 0] }
+    }
+  },
+
+  "placedRay": {
+    "title": "a ray",
+    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "required": ["point", "direction", "screen"],
+    "properties": {
+      "point": { "$ref": "#/definitions/vec3" }, "direction": { "$ref": "#/definitions/vec3" },
+      "screen": { "$ref": "#/definitions/vec2", "description": "0..1 from the film's top left." }
+    }
+  },
+
+  "transform": {
+    "title": "a transform", "description": "matrix, or scale, then rotate, then translate.",
+    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "properties": {
+      "translate": { "$ref": "#/definitions/vec3", "default": [0, 0, 0] },
+      "rotate": { "type": "array", "minItems": 4, "maxItems": 4, "items": { "$ref": "#/definitions/number" }, "default": [0, 0, 0, 1], "description": "Quaternion x, y, z, w, any length but 0." },
+      "scale": { "$ref": "#/definitions/vec3", "default": [1, 1, 1], "description": "No entry may be 0; an odd number of negative ones mirrors." },
+      "matrix": { "type": "array", "minItems": 16, "maxItems": 16, "items": { "$ref": "#/definitions/number" }, "description": "Column by column, as glTF; its last row is 0 0 0 1." }
+    },
+    "if": { "required": ["matrix"] },
+    "then": { "title": "a transform with a matrix", "properties": { "translate": false, "rotate": false, "scale": false } }
+  },
+
+  "animation": {
+    "title": "an animation", "description": "Values of this scene by frame; without a frame that is asked for, the scene is as it stands.",
+    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "required": ["tracks"],
+    "properties": {
+      "fps": { "$ref": "#/definitions/positive", "default": 24, "description": "Frames per second of an animated picture." },
+      "tracks": { "type": "array", "minItems": 1, "items": { "$ref": "#/definitions/track" } }
+    }
+  },
+
+  "track": {
+    "title": "a track", "description": "One value over time: held before the first key and after the last.",
+    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "required": ["target", "keys"],
+    "properties": {
+      "target": { "type": "string", "minLength": 1, "description": "JSON pointer of a number, or of an array of numbers, of this scene: /cameras/0/yfov, /meshes/2/points." },
+      "interpolation": { "enum": ["linear", "smooth", "step"], "default": "linear", "description": "From key to key; rotations go by the shorter great arc." },
+      "keys": { "type": "array", "minItems": 1, "items": { "$ref": "#/definitions/key" } }
+    }
+  },
+
+  "key": {
+    "title": "a key",
+    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "required": ["frame", "value"],
+    "properties": {
+      "frame": { "$ref": "#/definitions/number" },
+      "value": {}
+    }
+  }
+}
+})json";
+
+Json make_schema() {
+    Json schema = parse_json(kFrame, "the scene schema");
+    Json& definitions = schema["definitions"];
+    definitions["film"] = film_schema();
+    definitions["camera"] = camera_schema();
+    definitions["view"] = view_schema();
+    definitions["background"] = background_schema();
+    definitions["material"] = material_schema();
+    definitions["mesh"] = mesh_schema();
+    definitions["primitive"] = primitive_schema();
+    definitions["normals"] = normals_schema();
+    definitions["light"] = light_schema();
+    definitions["render"] = render_schema();
+    check_keywords(schema);
+    return schema;
+}
+
+}  // namespace
+
+const Json& scene_schema_json() {
+    static const Json schema = make_schema();
+    return schema;
+}
+
+const char* scene_schema() {
+    static const std::string text = scene_schema_json().dump(2) + "\n";
+    return text.c_str();
+}
+
+}  // namespace trilens
