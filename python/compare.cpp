@@ -65,15 +65,8 @@ py::object displacement_arrays(const py::object& self, const std::string& layer)
 
 void bind_metrics(py::module_& module) {
     py::class_<Metrics> metrics(module, "Metrics", "Errors over R, G and B of all compared pixels, peak 1.");
-    bind_fields(metrics, field("mae", &Metrics::mae, "Mean |v - r|."),
-                field("rmse", &Metrics::rmse, "Root of the mean (v - r)^2."),
-                field("relmse", &Metrics::relmse, "Mean (v - r)^2 / (r^2 + 0.01)."),
-                field("psnr_db", &Metrics::psnr_db, "Decibels; inf for equal images."),
-                field("ssim", &Metrics::ssim, "Structural similarity of the luminances."),
-                field("flip", &Metrics::flip, "Mean of FLIP's errors, 0 (none to be seen) to 1."),
-                field("max", &Metrics::max, "Largest |v - r|."),
-                field("p50", &Metrics::p50, "Percentile of each pixel's largest |v - r|."),
-                field("p95", &Metrics::p95, "Likewise."), field("p99", &Metrics::p99, "Likewise."));
+    std::apply([&](const auto&... one) { bind_fields(metrics, field(one.name, one.value, one.help)...); },
+               kColourMetrics);
     py::class_<CompareCounts> counts(module, "Counts", "Counts of pixels.");
     bind_fields(
         counts, field("pixels", &CompareCounts::pixels, "Compared."),

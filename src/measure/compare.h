@@ -1,6 +1,7 @@
 // Two images, pixel against pixel: how far apart they are, and whether that is too far.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -39,6 +40,28 @@ struct Metrics {
     double max = 0;                    // largest |v - r|
     double p50 = 0, p95 = 0, p99 = 0;  // of each pixel's largest |v - r|
 };
+
+/// One of the Metrics, as JSON, limits, the columns of sweeps ("rgb_" before the name) and Python have it.
+struct ColourMetric {
+    const char* name;
+    double Metrics::*value;
+    const char* help;
+    bool is_likeness = false;          // more is better
+    bool is_column = true;             // of a sweep
+    const char* limit_name = nullptr;  // null: `name`
+};
+inline constexpr std::array kColourMetrics{
+    ColourMetric{"mae", &Metrics::mae, "Mean |v - r|."},
+    ColourMetric{"rmse", &Metrics::rmse, "Root of the mean (v - r)^2."},
+    ColourMetric{"relmse", &Metrics::relmse, "Mean (v - r)^2 / (r^2 + 0.01)."},
+    ColourMetric{"psnr_db", &Metrics::psnr_db, "Decibels; inf for equal images.", true},
+    ColourMetric{"ssim", &Metrics::ssim, "Structural similarity of the luminances.", true},
+    ColourMetric{"flip", &Metrics::flip, "Mean of FLIP's errors, 0 (none to be seen) to 1.", false, true,
+                 "rgb_flip"},
+    ColourMetric{"max", &Metrics::max, "Largest |v - r|."},
+    ColourMetric{"p50", &Metrics::p50, "Percentile of each pixel's largest |v - r|.", false, false},
+    ColourMetric{"p95", &Metrics::p95, "Likewise."},
+    ColourMetric{"p99", &Metrics::p99, "Likewise."}};
 
 struct CompareCounts {
     std::size_t pixels = 0;                    // compared

@@ -25,21 +25,11 @@ Metric percent(std::size_t part, std::size_t whole) {
 }
 
 void add_colours(const Comparison& comparison, std::vector<NamedMetric>& all) {
-    const Metrics& m = comparison.metrics;
+    for (const ColourMetric& one : kColourMetrics)
+        all.push_back(
+            {one.limit_name ? one.limit_name : one.name, comparison.metrics.*one.value, one.is_likeness});
     const CompareCounts& c = comparison.counts;
-    all.insert(all.end(), {{"mae", m.mae},
-                           {"rmse", m.rmse},
-                           {"relmse", m.relmse},
-                           {"max", m.max},
-                           {"p50", m.p50},
-                           {"p95", m.p95},
-                           {"p99", m.p99},
-                           {"psnr_db", m.psnr_db, true},
-                           {"ssim", m.ssim, true},
-                           {"rgb_flip", m.flip},
-                           {"fail", number(c.fail)},
-                           {"warn", number(c.warn)},
-                           {"hard", number(c.hard)}});
+    all.insert(all.end(), {{"fail", number(c.fail)}, {"warn", number(c.warn)}, {"hard", number(c.hard)}});
 }
 
 void add_seen(const Layers& layers, const std::string& prefix, std::vector<NamedMetric>& all) {

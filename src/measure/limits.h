@@ -24,8 +24,8 @@ struct NamedMetric {
     bool is_likeness = false;     // more is better: ssim, psnr_db, coverage
 };
 
-/// Every number that may be limited, in a fixed order. Of the beauty (or the layer that was compared) mae,
-/// rmse, relmse, max, p50, p95, p99, psnr_db, ssim, rgb_flip, fail, warn, hard. Of what is seen, summed over
+/// Every number that may be limited, in a fixed order. Of the beauty (or the layer that was compared) the
+/// kColourMetrics (flip as rgb_flip), then fail, warn, hard. Of what is seen, summed over
 /// the layers, object_mismatch, primitive_mismatch and coverage_mismatch, and each as percent of the pixels
 /// that see something. Of the displacement, the worst of the layers, displacement_mean, _p50, _p95, _p99,
 /// _max and _mean_off_folds in pixels; summed over the layers lost, beyond_radius and missing; lost_percent

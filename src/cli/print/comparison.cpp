@@ -8,11 +8,9 @@ namespace trilens {
 namespace {
 
 Json metrics_json(const Metrics& m) {
-    return {
-        {"mae", json_number(m.mae)},   {"rmse", json_number(m.rmse)},       {"relmse", json_number(m.relmse)},
-        {"relmse_eps", 0.01},          {"psnr_db", json_number(m.psnr_db)}, {"psnr_peak", 1},
-        {"ssim", json_number(m.ssim)}, {"flip", json_number(m.flip)},       {"max", json_number(m.max)},
-        {"p50", json_number(m.p50)},   {"p95", json_number(m.p95)},         {"p99", json_number(m.p99)}};
+    Json json{{"relmse_eps", 0.01}, {"psnr_peak", 1}};
+    for (const ColourMetric& one : kColourMetrics) json[one.name] = json_number(m.*one.value);
+    return json;
 }
 
 Json seen_json(const SeenMismatch& s) {

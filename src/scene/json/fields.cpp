@@ -1,6 +1,7 @@
 #include "scene/json/fields.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace trilens {
@@ -33,6 +34,11 @@ Json condition_of(const std::string& kind, const ObjectSchema& object,
 }
 
 }  // namespace
+
+Json to_json_value(double value) {
+    const bool is_whole = std::floor(value) == value && std::abs(value) < 1e9;
+    return is_whole ? Json(static_cast<int>(value)) : Json(value);
+}
 
 Json number_in(double least, double most) {
     return {{"type", "number"}, {"minimum", to_json_value(least)}, {"maximum", to_json_value(most)}};

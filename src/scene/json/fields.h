@@ -31,9 +31,7 @@ Json word_of(const std::vector<std::string>& names);
 Json yes_or_no();
 
 // Values as JSON, for defaults.
-inline Json to_json_value(double value) {
-    return value == static_cast<int>(value) ? Json(static_cast<int>(value)) : Json(value);
-}
+Json to_json_value(double value);  // 40, not 40.0
 inline Json to_json_value(int value) {
     return value;
 }

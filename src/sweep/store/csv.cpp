@@ -9,22 +9,35 @@
 #include <utility>
 #include <vector>
 
+#include "measure/compare.h"
 #include "report/text.h"
 
 namespace trilens {
 namespace {
 
-// In the order of the file; those that are no metric are filled from the manifest and the plan.
-// clang-format off
-constexpr std::array kColumns = {
-    "id", "scene", "camera", "mesh", "method", "truth", "n", "facets", "width", "height", "spp", "seed",
-    "rgb_mae", "rgb_rmse", "rgb_relmse", "rgb_psnr_db", "rgb_ssim", "rgb_flip", "rgb_max", "rgb_p95", "rgb_p99",
-    "disp_mean_px", "disp_p95_px", "disp_max_px", "disp_coverage", "disp_lost", "disp_missing", "false_hit", "false_miss", "nonfinite", "failed_px",
-    "t_surface_s", "t_rays_s", "t_prepare_s", "t_draw_s", "t_shade_s", "t_write_s", "t_first_s", "t_spread_s",
-    "t_trace_s", "t_total_s", "repeats", "peak_rss_mb", "threads", "jobs", "machine_used_by_others",
-    "status", "exit_code", "image", "diff", "image_fnv1a",
-    "coverage_mismatch", "object_mismatch", "primitive_mismatch"};
-// clang-format on
+/// In the order of the file; those that are no metric are filled from the manifest and the plan.
+std::vector<std::string> make_columns() {
+    // clang-format off
+    std::vector<std::string> columns = {
+        "id", "scene", "camera", "mesh", "method", "truth", "n", "facets", "width", "height", "spp", "seed"};
+    for (const ColourMetric& one : kColourMetrics)
+        if (one.is_column) columns.push_back(std::string("rgb_") + one.name);
+    columns.insert(columns.end(), {
+        "disp_mean_px", "disp_p95_px", "disp_max_px", "disp_coverage", "disp_lost", "disp_missing", "false_hit", "false_miss",
+        "nonfinite", "failed_px",
+        "t_surface_s", "t_rays_s", "t_prepare_s", "t_draw_s", "t_shade_s", "t_write_s", "t_first_s", "t_spread_s",
+        "t_trace_s", "t_total_s", "repeats", "peak_rss_mb", "threads", "jobs", "machine_used_by_others",
+        "status", "exit_code", "image", "diff", "image_fnv1a",
+        "coverage_mismatch", "object_mismatch", "primitive_mismatch"});
+    // clang-format on
+    return columns;
+}
+
+const std::vector<std::string>& run_columns() {
+    static const std::vector<std::string> columns = make_columns();
+    return columns;
+}
+
 constexpr std::array<std::string_view, 5> kAxesWithColumns = {"resolution", "scene", "camera", "engine",
                                                               "spp"};
 constexpr std::array kDisplacementColumns = {
@@ -96,7 +109,7 @@ std::vector<std::string> further_axes(const SweepAxes& axes) {
 
 std::string runs_csv(const SweepSummary& summary) {
     const std::vector<std::string> axes = further_axes(summary.manifest.axes);
-    std::vector<std::string> header = {kColumns.begin(), kColumns.end()};
+    std::vector<std::string> header = {run_columns().begin(), run_columns().end()};
     header.insert(header.begin() + 1, axes.begin(), axes.end());
     std::vector<std::vector<std::string>> rows = {header};
     for (const RunRecord& run : summary.runs) {

@@ -22,19 +22,12 @@ namespace {
 constexpr std::array<const char*, 3> kLayers = {"reflect", "refract", "direct"};
 
 MetricValues colour_values(const Comparison& comparison) {
-    const Metrics& rgb = comparison.metrics;
     const CompareCounts& counts = comparison.counts;
-    return {{"rgb_mae", rgb.mae},
-            {"rgb_rmse", rgb.rmse},
-            {"rgb_relmse", rgb.relmse},
-            {"rgb_psnr_db", rgb.psnr_db},
-            {"rgb_ssim", rgb.ssim},
-            {"rgb_flip", rgb.flip},
-            {"rgb_max", rgb.max},
-            {"rgb_p95", rgb.p95},
-            {"rgb_p99", rgb.p99},
-            {"nonfinite", static_cast<double>(counts.nan_test + counts.inf_test)},
-            {"failed_px", static_cast<double>(counts.fail)}};
+    MetricValues values{{"nonfinite", static_cast<double>(counts.nan_test + counts.inf_test)},
+                        {"failed_px", static_cast<double>(counts.fail)}};
+    for (const ColourMetric& one : kColourMetrics)
+        if (one.is_column) values[std::string("rgb_") + one.name] = comparison.metrics.*one.value;
+    return values;
 }
 
 /// Without a pixel found there is no mean: only the counts.
