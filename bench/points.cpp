@@ -13,7 +13,7 @@
 #include "reflect/reflection.h"
 #include "surfaces/surfaces.h"
 #include "timing.h"
-#include "trilinear/mesh_point_images.h"
+#include "trilinear/points/mesh_point_images.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include "surfaces/checked_cage.h"
 #include "surfaces/edge_numbers.h"
 #include "surfaces/limit_patches.h"
-#include "surfaces/polynomial_bounds.h"
+#include "surfaces/polynomial/polynomial_bounds.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {

@@ -10,7 +10,7 @@
 #include "base/raymesh/surface.h"
 #include "base/raymesh/triangle_scene.h"
 #include "camera/linear/perspective.h"
-#include "trilinear/mesh_point_images.h"
+#include "trilinear/points/mesh_point_images.h"
 
 namespace trilens {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "trilinear/scene_edge.h"
+#include "trilinear/facet/scene_edge.h"
 
 namespace trilens {
 

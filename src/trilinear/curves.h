@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/util/enum_names.h"
-#include "trilinear/scene_edge.h"
+#include "trilinear/facet/scene_edge.h"
 
 namespace trilens {
 

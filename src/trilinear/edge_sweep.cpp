@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/math/roots.h"
-#include "trilinear/coplanarity.h"
-#include "trilinear/scene_edge.h"
+#include "trilinear/facet/coplanarity.h"
+#include "trilinear/facet/scene_edge.h"
 
 namespace trilens {
 namespace {

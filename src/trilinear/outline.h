@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "trilinear/curves.h"
-#include "trilinear/scene_edge.h"
+#include "trilinear/facet/scene_edge.h"
 
 namespace trilens {
 

@@ -8,8 +8,8 @@
 #include "camera/linear/view_volume.h"
 #include "core/ray_mesh.h"
 #include "support/test.h"
-#include "trilinear/beam.h"
-#include "trilinear/point_images.h"
+#include "trilinear/points/beam.h"
+#include "trilinear/points/point_images.h"
 
 using namespace trilens;
 using namespace trilens_test;

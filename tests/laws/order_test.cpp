@@ -7,7 +7,7 @@
 
 #include "laws/worlds.h"
 #include "measure/displacement/displacement.h"
-#include "measure/displacement/folds.h"
+#include "measure/field/folds.h"
 #include "render/picture/picture.h"
 #include "support/test.h"
 

@@ -1,6 +1,6 @@
 // Folds are found where a field turns over and nowhere else; off them a mean displacement falls with the
 // error's order.
-#include "measure/displacement/folds.h"
+#include "measure/field/folds.h"
 
 #include <algorithm>
 #include <cmath>

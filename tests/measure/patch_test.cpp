@@ -1,12 +1,12 @@
 // Patches: where they show points, and where they cannot.
-#include "measure/displacement/patch.h"
+#include "measure/field/patch.h"
 
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
 
-#include "measure/displacement/patch_batch.h"
+#include "measure/field/patch_batch.h"
 #include "measure/plain_inversion.h"
 #include "support/test.h"
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "measure/displacement/patch.h"
+#include "measure/field/patch.h"
 
 namespace trilens_test {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "measure/displacement/patch.h"
+#include "measure/field/patch.h"
 
 namespace trilens_test::plain {
 

@@ -1,5 +1,5 @@
 // The way down the pyramid for many points against a look at every cell.
-#include "measure/displacement/pyramid_query.h"
+#include "measure/field/pyramid_query.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "support/test.h"
-#include "surfaces/polynomial_bounds.h"
+#include "surfaces/polynomial/polynomial_bounds.h"
 #include "surfaces/surfaces.h"
 #include "test_cages.h"
 

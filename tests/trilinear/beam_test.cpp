@@ -1,11 +1,11 @@
 // The beam test never turns away a point that the cubic images, and turns away most of the others.
-#include "trilinear/beam.h"
+#include "trilinear/points/beam.h"
 
 #include <cmath>
 
 #include "random_facets.h"
 #include "support/test.h"
-#include "trilinear/point_images.h"
+#include "trilinear/points/point_images.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -8,7 +8,7 @@
 #include "random_facets.h"
 #include "support/test.h"
 #include "trilinear/conic_arc.h"
-#include "trilinear/scene_edge.h"
+#include "trilinear/facet/scene_edge.h"
 
 using namespace trilens;
 using namespace trilens_test;

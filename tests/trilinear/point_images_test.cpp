@@ -1,5 +1,5 @@
 // Laws of the images of a point: the closed form against a dense sweep in t, special cameras, borders, scale.
-#include "trilinear/point_images.h"
+#include "trilinear/points/point_images.h"
 
 #include <cmath>
 #include <vector>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "trilinear/facet.h"
+#include "trilinear/facet/facet.h"
 
 namespace trilens_test {
 

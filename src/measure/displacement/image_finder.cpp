@@ -5,8 +5,8 @@
 #include <bit>
 
 #include "measure/displacement/image_query.h"
-#include "measure/displacement/patch_batch.h"
-#include "measure/displacement/pyramid_query.h"
+#include "measure/field/patch_batch.h"
+#include "measure/field/pyramid_query.h"
 
 namespace trilens {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/math/vec.h"
-#include "measure/displacement/field_cell_bounds.h"
-#include "measure/displacement/field_pyramid.h"
-#include "measure/displacement/position_field.h"
+#include "measure/field/field_cell_bounds.h"
+#include "measure/field/field_pyramid.h"
+#include "measure/field/position_field.h"
 
 namespace trilens {
 

@@ -9,9 +9,9 @@
 
 #include "base/math/vec.h"
 #include "measure/displacement/image_finder.h"
-#include "measure/displacement/patch.h"
-#include "measure/displacement/patch_batch.h"
-#include "measure/displacement/patch_cache.h"
+#include "measure/field/patch.h"
+#include "measure/field/patch_batch.h"
+#include "measure/field/patch_cache.h"
 
 namespace trilens {
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/util/parallel.h"
-#include "measure/displacement/folds.h"
+#include "measure/field/folds.h"
 
 namespace trilens {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/image/image.h"
-#include "measure/displacement/field_cell_bounds.h"
-#include "measure/displacement/field_pyramid.h"
+#include "measure/field/field_cell_bounds.h"
+#include "measure/field/field_pyramid.h"
 #include "measure/pixel/flip.h"
 
 namespace trilens {

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "base/math/vec.h"
-#include "measure/displacement/patch.h"
-#include "measure/displacement/position_field.h"
+#include "measure/field/patch.h"
+#include "measure/field/position_field.h"
 
 namespace trilens {
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "base/math/box.h"
-#include "trilinear/facet.h"
+#include "trilinear/facet/facet.h"
 
 namespace trilens {
 

@@ -39,10 +39,11 @@ inline constexpr double kLeastDeterminant = 0x1p-30;
 /// outside the triangle by its rounding. hit_points-inl.h repeats the operations, bit for bit.
 std::optional<LineHit> hit_point(const SampleRay& ray, const TriangleFrame& triangle);
 
-/// An edge conic (trilinear/edge_conic.h) further from zero than this share of its terms has the sign of the
-/// decision. With p = weight corner - origin', the conic is direction' . (p_a x p_b) / weight. Counting
-/// roundings, each half a unit in the last place: 24 in the corners' positions on the ray's screen, 20 in the
-/// conic, 16 where coefficients are moved from the facet's corner to another reference, 8 in the ray.
+/// An edge conic (trilinear/facet/edge_conic.h) further from zero than this share of its terms has the sign
+/// of the decision. With p = weight corner - origin', the conic is direction' . (p_a x p_b) / weight.
+/// Counting roundings, each half a unit in the last place: 24 in the corners' positions on the ray's screen,
+/// 20 in the conic, 16 where coefficients are moved from the facet's corner to another reference, 8 in the
+/// ray.
 inline constexpr double kDecisionErrorBound = 128 * 2.220446049250313e-16;
 
 /// Whether the ray's line meets the triangle, by exact signs: the corners are projected along the ray on the

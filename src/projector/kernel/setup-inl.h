@@ -205,7 +205,7 @@ HWY_INLINE void store3(const Vector3& v, double (*to)[6][kLanes], int q, std::si
     hn::Store(v.y, kDouble, to[1][q] + at);
     hn::Store(v.z, kDouble, to[2][q] + at);
 }
-/// The quadratics of the rays' Pluecker coordinates (trilinear/edge_conic.h, line_quadratic).
+/// The quadratics of the rays' Pluecker coordinates (trilinear/facet/edge_conic.h, line_quadratic).
 HWY_NOINLINE void make_lines(TileLanes& lanes) {
     for (std::size_t at = 0; at < kLanes; at += kDoubles) {
         Vector3 o[3], d[3];

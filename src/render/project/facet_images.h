@@ -8,7 +8,7 @@
 #include "base/util/lazy.h"
 #include "render/frame/frame.h"
 #include "specular/specular_point.h"
-#include "trilinear/mesh_point_images.h"
+#include "trilinear/points/mesh_point_images.h"
 
 namespace trilens {
 

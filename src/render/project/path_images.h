@@ -11,7 +11,7 @@
 #include "paths/facets/facet_paths.h"
 #include "paths/trace/history_image.h"
 #include "render/frame/frame.h"
-#include "trilinear/mesh_point_images.h"
+#include "trilinear/points/mesh_point_images.h"
 
 namespace trilens {
 

@@ -34,7 +34,7 @@ const SweepFit* find_fit(const std::vector<SweepFit>& fits, const std::string& l
                          const std::string& optic, const std::string& metric,
                          const Coordinates* group = nullptr);
 
-/// The fit of the mean off the folds (measure/displacement/folds.h); nullptr where it says no more than that
+/// The fit of the mean off the folds (measure/field/folds.h); nullptr where it says no more than that
 /// of the mean, because no run found a pixel near a fold.
 const SweepFit* find_fit_off_folds(const std::vector<SweepFit>& fits, const std::string& layer,
                                    const std::string& optic, const Coordinates* group = nullptr);

@@ -1,0 +1,187 @@
+// Bounds over boxes from the parts that a face is made of.
+#include "surfaces/polynomial/polynomial_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/util/parallel.h"
+#include "surfaces/polynomial/normal_bounds.h"
+#include "surfaces/polynomial/polynomial_parts.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// Radii of the quantities, then of the normal.
+constexpr std::size_t kNormal = kQuantities;
+using Radii = std::array<double, kQuantities + 1>;
+
+struct Box {
+    Vec2 low, high;
+};
+
+/// A part of a face, or four that make up one.
+struct Branch {
+    PartShape shape;
+    std::size_t first = 0;  // of four branches, or of one part
+    bool is_part = true;
+};
+
+struct Face {
+    std::vector<Branch> branches;  // the whole face first
+    std::vector<FacePart> parts;
+};
+
+std::array<PartShape, 4> quarters(const PartShape& shape, FaceDomain domain) {
+    const double half = shape.size / 2;
+    const PartShape last = domain == FaceDomain::kSquare ? PartShape{shape.corner + half, half}
+                                                         : PartShape{shape.corner + half, -half};
+    return {{{shape.corner, half},
+             {shape.corner + Vec2(half, 0), half},
+             {shape.corner + Vec2(0, half), half},
+             last}};
+}
+
+Face take_apart(const Surface& surface, Id id) {
+    const FaceDomain domain = surface.domain(id);
+    const double finest = std::ldexp(1, -kFinestPart);
+    Face face;
+    face.branches.push_back({});
+    for (std::size_t b = 0; b < face.branches.size(); ++b) {
+        const PartShape shape = face.branches[b].shape;
+        FacePart part = fit_part(surface, id, shape);
+        const bool split = !part.is_polynomial && std::fabs(shape.size) > finest;
+        face.branches[b].is_part = !split;
+        face.branches[b].first = split ? face.branches.size() : face.parts.size();
+        if (split) {
+            for (const PartShape& quarter : quarters(shape, domain)) face.branches.push_back({quarter});
+        } else {
+            face.parts.push_back(std::move(part));
+        }
+    }
+    return face;
+}
+
+/// Whether the box and the shape share more than a border; a box without extent along a parameter may lie on
+/// it.
+bool overlap(const PartShape& shape, FaceDomain domain, const Box& box) {
+    for (int axis = 0; axis < 2; ++axis) {
+        const double low = std::max(box.low[axis], shape.low()[axis]);
+        const double high = std::min(box.high[axis], shape.high()[axis]);
+        if (box.low[axis] < box.high[axis] ? !(low < high) : !(low <= high)) return false;
+    }
+    if (domain == FaceDomain::kSquare) return true;
+    const Vec2 near = shape.size > 0 ? glm::max(box.low, shape.low()) : glm::min(box.high, shape.high());
+    const double beyond = (near.x + near.y - shape.corner.x - shape.corner.y) / shape.size;
+    return box.low == box.high ? beyond <= 1 : beyond < 1;
+}
+
+class PolynomialBounder final : public SurfaceBounder {
+  public:
+    explicit PolynomialBounder(const Surface& surface) : surface_(surface), faces_(surface.face_count()) {
+        parallel_for(faces_.size(), 1, [&](std::size_t first, std::size_t last) {
+            for (std::size_t f = first; f < last; ++f) faces_[f] = take_apart(surface_, static_cast<Id>(f));
+        });
+    }
+
+    SurfaceBounds bounds(Id face, const Vec2& low, const Vec2& high) const override {
+        std::vector<const FacePart*> parts;
+        collect(face, 0, {low, high}, parts);
+        const Vec2 middle = 0.5 * (low + high);
+        const bool beyond = surface_.domain(face) == FaceDomain::kTriangle && middle.x + middle.y > 1;
+
+        SurfaceBounds result;
+        if (parts.empty()) return result;  // rounding put the box outside of a triangle
+        if (beyond) {
+            result.middle = continued(*parts.front(), middle);
+        } else {
+            result.middle = surface_.eval(face, middle);
+        }
+        Radii radius{};
+        for (const FacePart* part : parts) widen(*part, {low, high}, result.middle, radius);
+        // Continued beyond the face, several parts are not one smooth surface.
+        if (beyond && parts.size() > 1) std::fill_n(radius.begin() + 3, 3, kInfinite);
+
+        result.position_radius = radius[0];
+        result.du_radius = radius[1];
+        result.dv_radius = radius[2];
+        result.duu_radius = radius[3];
+        result.duv_radius = radius[4];
+        result.dvv_radius = radius[5];
+        result.normal_radius = std::min(radius[kNormal], 2.0);
+        result.is_finest = parts.size() == 1 && !parts.front()->is_polynomial;
+        return result;
+    }
+
+  private:
+    void collect(Id face, std::size_t index, const Box& box, std::vector<const FacePart*>& parts) const {
+        const Branch& branch = faces_[face].branches[index];
+        if (!overlap(branch.shape, surface_.domain(face), box)) return;
+        if (branch.is_part) {
+            parts.push_back(&faces_[face].parts[branch.first]);
+        } else {
+            for (std::size_t k = 0; k < 4; ++k) collect(face, branch.first + k, box, parts);
+        }
+    }
+
+    static SurfacePoint continued(const FacePart& part, const Vec2& uv) {
+        if (!part.is_polynomial) return part.middle;
+        const std::array<BezierNet, kQuantities> nets = part_nets(part.net);
+        const Vec2 t = (uv - part.shape.corner) / part.shape.size;
+        const double scale = 1 / part.shape.size;
+        SurfacePoint point;
+        for (std::size_t q = 0; q < kQuantities; ++q)
+            point.*kQuantity[q] = value(nets[q], t) * (q == 0 ? 1 : q < 3 ? scale : scale * scale);
+        point.position += part.origin;
+        point.normal = normalize_or_zero(cross(point.du, point.dv));
+        return point;
+    }
+
+    /// Widens the radii about `middle` by one part's values within the box.
+    static void widen(const FacePart& part, const Box& box, const SurfacePoint& middle, Radii& radius) {
+        if (part.is_polynomial) {
+            widen_by_hulls(part, box, middle, radius);
+            return;
+        }
+        for (std::size_t q = 0; q < kQuantities; ++q) {
+            const double off = length(part.middle.*kQuantity[q] - middle.*kQuantity[q]);
+            radius[q] = std::max(radius[q], off + part.slack[q]);
+        }
+        const double turn = length(part.middle.normal - middle.normal) + part.normal_spread;
+        radius[kNormal] = std::max(radius[kNormal], turn);
+    }
+
+    static void widen_by_hulls(const FacePart& part, const Box& box, const SurfacePoint& middle,
+                               Radii& radius) {
+        const Vec2 low = glm::max(box.low, part.shape.low()), high = glm::min(box.high, part.shape.high());
+        const Vec2 a = (low - part.shape.corner) / part.shape.size;
+        const Vec2 b = (high - part.shape.corner) / part.shape.size;
+        const double scale = 1 / part.shape.size;
+        std::array<BezierNet, kQuantities> nets = part_nets(part.net);
+        for (std::size_t q = 0; q < kQuantities; ++q) {
+            const double unit = q == 0 ? 1 : q < 3 ? scale : scale * scale;
+            const Vec3 about = middle.*kQuantity[q] - (q == 0 ? part.origin : Vec3(0));
+            nets[q] = restricted(nets[q], a, b);
+            for (std::size_t k = 0; k < nets[q].points().size(); ++k) {
+                nets[q].point[k] *= unit;
+                radius[q] = std::max(radius[q], length(nets[q].point[k] - about) + part.slack[q]);
+            }
+        }
+        const TangentHulls hulls{nets[1].points(), nets[2].points(), part.slack[1], part.slack[2]};
+        radius[kNormal] = std::max(radius[kNormal], normal_radius(hulls, middle.normal));
+    }
+
+    const Surface& surface_;
+    std::vector<Face> faces_;
+};
+
+}  // namespace
+
+std::unique_ptr<const SurfaceBounder> make_polynomial_bounder(const Surface& surface) {
+    return std::make_unique<PolynomialBounder>(surface);
+}
+
+}  // namespace trilens

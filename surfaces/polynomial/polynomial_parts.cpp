@@ -1,0 +1,182 @@
+// Interpolates a part of a face and compares with the face elsewhere.
+#include "surfaces/polynomial/polynomial_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace trilens {
+namespace {
+
+/// Interpolation and comparison disagree by this share of the part's size if it is a polynomial (some
+/// thousand rounding errors); derivatives by these, in units of the part's own parameters.
+constexpr double kFitTolerance = 1e-11;
+constexpr std::array<double, kQuantities> kMoreTolerance = {1, 10, 10, 100, 100, 100};
+/// The same as a share of the coordinates, whose rounding the surface's own evaluation carries.
+constexpr double kCoordinateTolerance = 1e-14;
+
+/// Bounds are wider than the largest disagreement found by this factor.
+constexpr double kSlackFactor = 4;
+/// Samples stand for a whole part if their spread is taken this often.
+constexpr double kSampleFactor = 2;
+
+constexpr std::array<double, 4> kCubicNodes = {0.05, 0.35, 0.65, 0.95};
+constexpr std::array<double, 5> kQuarticNodes = {0.05, 0.25, 0.5, 0.75, 0.95};
+
+/// Interpolation nodes of triangles: the lattice of this order over the triangle shrunk towards its middle.
+constexpr int kLattice = 4;
+constexpr double kShrink = 0.9, kShift = (1 - kShrink) / 3;
+
+Vec2 at(const PartShape& shape, const Vec2& t) {
+    return shape.corner + shape.size * t;
+}
+
+/// Lagrange's polynomial of lattice point (i, j) at t (Zienkiewicz, The Finite Element Method: triangular
+/// family).
+double lattice_basis(int i, int j, const Vec2& t) {
+    const Vec2 inner = (t - kShift) / kShrink;
+    const auto rising = [](int count, double x) {
+        double product = 1;
+        for (int m = 0; m < count; ++m) product *= (kLattice * x - m) / (m + 1);
+        return product;
+    };
+    return rising(i, inner.x) * rising(j, inner.y) * rising(kLattice - i - j, 1 - inner.x - inner.y);
+}
+
+/// The net over the unit square of the shape's own parameters t, which for negative sizes run against (u, v).
+BezierNet interpolated(const Surface& surface, Id face, const FacePart& part) {
+    const auto position = [&](const Vec2& t) {
+        return surface.eval_first_order(face, at(part.shape, t)).position - part.origin;
+    };
+    std::array<Vec3, 25> values;
+    if (surface.domain(face) == FaceDomain::kSquare) {
+        for (std::size_t k = 0; k < 16; ++k) values[k] = position({kCubicNodes[k % 4], kCubicNodes[k / 4]});
+        return interpolating_net(kCubicNodes, std::span(values).first(16));
+    }
+    values.fill(Vec3(0));
+    for (int j = 0; j <= kLattice; ++j) {
+        for (int i = 0; i + j <= kLattice; ++i) {
+            const Vec3 sample = position(kShift + kShrink * Vec2(i, j) / static_cast<double>(kLattice));
+            for (std::size_t k = 0; k < 25; ++k)
+                values[k] += lattice_basis(i, j, {kQuarticNodes[k % 5], kQuarticNodes[k / 5]}) * sample;
+        }
+    }
+    return interpolating_net(kQuarticNodes, values);
+}
+
+/// Points inside a part, four by four in its quarters' quarters, none on a line of halves.
+std::vector<Vec2> probes(FaceDomain domain) {
+    std::vector<Vec2> points;
+    for (int j = 0; j < 4; ++j) {
+        for (int i = 0; i < 4; ++i) {
+            if (domain == FaceDomain::kSquare) {
+                const Vec2 within(0.2 + 0.2 * ((i + 2 * j) % 4), 0.2 + 0.2 * ((3 * i + j) % 4));
+                points.push_back((Vec2(i, j) + within) / 4.0);
+            } else {
+                if (i + j <= 3) points.push_back((Vec2(i, j) + Vec2(0.3, 0.25)) / 4.0);
+                if (i + j <= 2) points.push_back((Vec2(i, j) + Vec2(0.7, 0.75)) / 4.0);
+            }
+        }
+    }
+    return points;
+}
+
+/// Points ever closer to the face's own sides and corners, where creases that are sharp for many refinements
+/// show only within a last narrow strip.
+void add_border_probes(FaceDomain domain, const PartShape& shape, std::vector<Vec2>& points) {
+    const auto add = [&](const Vec2& uv) {
+        const Vec2 t = (uv - shape.corner) / shape.size;
+        const bool inside =
+            t.x >= 0 && t.y >= 0 && (domain == FaceDomain::kSquare ? t.x <= 1 && t.y <= 1 : t.x + t.y <= 1);
+        if (inside) points.push_back(t);
+    };
+    const Vec2 low = shape.low(), size = shape.high() - low;
+    for (double off = 0.7 * size.x; off > 0x1p-13; off /= 2) {
+        for (const double along : {0.23, 0.61}) {
+            const Vec2 here = low + along * size;
+            for (const double far : {off, 1 - off}) {
+                add({far, here.y});
+                add({here.x, far});
+            }
+            if (domain == FaceDomain::kTriangle) add({here.x - off, 1 - here.x});
+        }
+        for (const double u : {off, 1 - 2 * off})
+            for (const double v : {off, 1 - 2 * off}) add({u, v});
+    }
+}
+
+double largest_coordinate(const Vec3& v) {
+    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+}
+
+/// The largest differences of the quantities between the surface and the nets, by the surface's parameters.
+std::array<double, kQuantities> differences(const Surface& surface, Id face, const FacePart& part,
+                                            const std::array<BezierNet, kQuantities>& nets) {
+    std::vector<Vec2> points = probes(surface.domain(face));
+    add_border_probes(surface.domain(face), part.shape, points);
+    std::array<double, kQuantities> largest{};
+    for (const Vec2& t : points) {
+        SurfacePoint point = surface.eval(face, at(part.shape, t));
+        point.position -= part.origin;
+        for (std::size_t q = 0; q < kQuantities; ++q) {
+            const double scale = std::pow(part.shape.size, q == 0 ? 0 : q < 3 ? 1 : 2);
+            const double difference = length(value(nets[q], t) / scale - point.*kQuantity[q]);
+            // Not a number stays the largest.
+            if (!(difference <= largest[q])) largest[q] = difference;
+        }
+    }
+    return largest;
+}
+
+/// Samples over the whole part, and how far they lie from its middle.
+void sample(const Surface& surface, Id face, FacePart& part) {
+    constexpr int kSteps = 6;
+    const bool triangle = surface.domain(face) == FaceDomain::kTriangle;
+    part.middle = surface.eval(face, at(part.shape, Vec2(triangle ? 1.0 / 3 : 0.5)));
+    part.slack.fill(0);
+    part.normal_spread = 0;
+    for (int j = 0; j <= kSteps; ++j) {
+        for (int i = 0; i <= (triangle ? kSteps - j : kSteps); ++i) {
+            const Vec2 t = Vec2(i, j) / static_cast<double>(kSteps);
+            const SurfacePoint point = surface.eval(face, at(part.shape, t));
+            for (std::size_t q = 0; q < kQuantities; ++q) {
+                const double off = length(point.*kQuantity[q] - part.middle.*kQuantity[q]);
+                part.slack[q] = std::max(part.slack[q], kSampleFactor * off);
+            }
+            const double turn = kSampleFactor * length(point.normal - part.middle.normal);
+            part.normal_spread = std::max(part.normal_spread, turn);
+        }
+    }
+    // Derivatives that are approximations have no second ones that bound their change.
+    for (std::size_t q = 3; q < kQuantities; ++q) part.slack[q] = std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+std::array<BezierNet, kQuantities> part_nets(const BezierNet& net) {
+    const BezierNet du = derivative(net, 0), dv = derivative(net, 1);
+    return {net, du, dv, derivative(du, 0), derivative(du, 1), derivative(dv, 1)};
+}
+
+FacePart fit_part(const Surface& surface, Id face, const PartShape& shape) {
+    FacePart part;
+    part.shape = shape;
+    part.origin = surface.eval_first_order(face, at(shape, Vec2(0.3))).position;
+    part.net = interpolated(surface, face, part);
+
+    double size = 0;
+    for (const Vec3& control : part.net.points()) size = std::max(size, length(control));
+    const double tolerance = kFitTolerance * size + kCoordinateTolerance * largest_coordinate(part.origin);
+    const std::array<double, kQuantities> off = differences(surface, face, part, part_nets(part.net));
+    part.is_polynomial = true;
+    for (std::size_t q = 0; q < kQuantities; ++q) {
+        const double scale = std::pow(std::fabs(shape.size), q == 0 ? 0 : q < 3 ? 1 : 2);
+        const double allowed = kMoreTolerance[q] * tolerance / scale;
+        part.is_polynomial = part.is_polynomial && off[q] <= allowed;
+        part.slack[q] = kSlackFactor * off[q] + 0.05 * allowed;
+    }
+    if (!part.is_polynomial) sample(surface, face, part);
+    return part;
+}
+
+}  // namespace trilens
