@@ -7,7 +7,7 @@ namespace trilens::python {
 
 void bind_program(py::module_& module) {
     module.attr("NONE") = kNone;
-    module.def("version", version, "The version of the library that runs, as \"0.2.0\".");
+    module.def("version", version, "The version of the library that runs, as \"0.3.0\".");
     module.def("library_versions", library_versions,
                "The libraries underneath with their versions: ray tracing, surfaces, images.");
     module.def(

@@ -27,8 +27,7 @@ namespace {
 namespace Bfr = OpenSubdiv::Bfr;
 namespace Far = OpenSubdiv::Far;
 
-// --- Trees: what patches of equal topology share
-// -------------------------------------------------------------
+// --- Trees: what patches of equal topology share ---
 
 /// Bytes of a face's tree of patches: above all a row of weights of the control points for each patch point.
 std::size_t tree_bytes(const Bfr::Surface<double>& surface) {
@@ -76,8 +75,7 @@ class SharedTrees final : public Bfr::SurfaceFactoryCache {
 
 thread_local SharedTrees::Tree SharedTrees::tree_ = SharedTrees::Tree::kShared;
 
-// --- Patches
-// -------------------------------------------------------------------------------------------------
+// --- Patches ---
 
 /// One face's limit surface with its patch points, relative to `origin` so that small faces far away stay
 /// exact.

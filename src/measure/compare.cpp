@@ -55,8 +55,7 @@ bool is_same(const std::vector<ChannelPair>& channels, std::size_t i) {
     return same;
 }
 
-// --- Values that are not finite
-// ----------------------------------------------------------------------------------
+// --- Values that are not finite ---
 
 constexpr std::uint8_t kNan = 1, kInf = 2;
 
@@ -94,8 +93,7 @@ std::size_t count_kind(const std::vector<std::uint8_t>& kinds, const Mask& mask,
     return count;
 }
 
-// --- Metrics
-// -----------------------------------------------------------------------------------------------------
+// --- Metrics ---
 
 double luminance(double r, double g, double b) {
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;
@@ -166,8 +164,7 @@ Metrics metrics_of(const Image& image, const std::vector<ChannelPair>& channels,
     return metrics;
 }
 
-// --- Verdict
-// -----------------------------------------------------------------------------------------------------
+// --- Verdict ---
 
 /// What one pixel's channels say together.
 struct PixelFlags {

@@ -12,7 +12,7 @@
 
 namespace trilens {
 
-/// The version of the library that runs now, "0.2.0"; kVersion is that of the headers.
+/// The version of the library that runs now, "0.3.0"; kVersion is that of the headers.
 std::string version();
 
 /// The libraries underneath with their versions: ray tracing, surfaces, images.

@@ -66,8 +66,7 @@ bool ImageQuery::next(PatchBatch& batch, std::size_t lane, PatchCache& patches) 
     return false;
 }
 
-// --- Cells
-// ----------------------------------------------------------------------------------------------
+// --- Cells ---
 
 bool ImageQuery::next_cell() {
     if (stage_ == Stage::kNear) {
@@ -161,8 +160,7 @@ bool ImageQuery::begin_found_cell() {
     return false;
 }
 
-// --- Patches of a cell
-// ----------------------------------------------------------------------------------------------
+// --- Patches of a cell ---
 
 /// False where the cell has nothing of the wanted object.
 bool ImageQuery::begin_cell(int column, int row) {

@@ -18,8 +18,7 @@ std::uint16_t bit(int node) {
     return static_cast<std::uint16_t>(1u << node);
 }
 
-// --- Which pixels belong
-// -------------------------------------------------------------------------------------------
+// --- Which pixels belong ---
 
 /// Bits of the nodes that may belong (and are in the field), and of those linked to the right and down.
 struct Neighbourhood {
@@ -68,8 +67,7 @@ Nodes points_of(const PositionField& field, const PatchPlace& place, std::uint16
     return points;
 }
 
-// --- Extrapolation
-// -------------------------------------------------------------------------------------------------
+// --- Extrapolation ---
 
 enum Kind { kNoEstimate, kConstant, kLinear, kParallelogram, kQuadratic };
 

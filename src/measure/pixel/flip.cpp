@@ -28,8 +28,7 @@ using Planes = std::array<Plane, 3>;
 
 constexpr std::size_t kPixelsAtOnce = 4096;
 
-// --- Filters
-// ----------------------------------------------------------------------------------------------
+// --- Filters ---
 
 template <typename Weight>
 Kernel make_kernel(int reach, const Weight& weight) {
@@ -110,8 +109,7 @@ std::vector<double> feature_strength(const Plane& lightness, const Kernel& featu
     return lengths;
 }
 
-// --- What one picture becomes
-// ----------------------------------------------------------------------------------------------
+// --- What one picture becomes ---
 
 Planes opponent_planes(const ColourPicture& picture, const std::vector<std::uint8_t>& is_finite) {
     Planes planes;
@@ -167,8 +165,7 @@ FlipWindow prepare(const ColourPicture& picture, const std::vector<std::uint8_t>
             feature_strength(lightness, point, smooth)};
 }
 
-// --- The error
-// ----------------------------------------------------------------------------------------------
+// --- The error ---
 
 constexpr double kColourExponent = 0.7, kFeatureExponent = 0.5;
 
