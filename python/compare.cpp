@@ -2,7 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "image.h"
-#include "talk.h"
+#include "python_call.h"
 
 namespace trilens::python {
 namespace {
@@ -23,7 +23,7 @@ const char* verdict_name(Verdict verdict) {
 
 HeldImage difference(const ImageComparison& self) {
     const DifferenceOptions options{self.options.layer, self.options.mask_object};
-    return {Talk().run([&] {
+    return {PythonCall().run([&] {
                 Image image = make_difference(self.reference->image, self.test->image, options);
                 add_shifts(self.layers, image);
                 return image;
@@ -191,7 +191,7 @@ void bind_comparison(py::module_& module) {
 ImageComparison compare_images(const HeldPointer& reference, const HeldPointer& test,
                                const CompareOptions& options, double radius) {
     if (!(radius >= 1 && radius <= 4096)) throw UsageError("the radius is 1 to 4096 pixels");
-    return Talk().run([&] {
+    return PythonCall().run([&] {
         ImageComparison result{reference, test, options, {}, {}};
         result.comparison = compare(reference->image, test->image, options);
         result.layers = compare_layers(reference->image, test->image, {radius, options.mask_object});

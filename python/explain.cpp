@@ -1,8 +1,8 @@
 // One pixel explained, as a dict of the command's form.
 #include <pybind11/stl.h>
 
+#include "python_call.h"
 #include "renderer.h"
-#include "talk.h"
 
 namespace trilens::python {
 namespace {
@@ -99,7 +99,7 @@ void bind_explain(RendererClass& renderer) {
         [](const Renderer& self, int x, int y, int resolution, const std::optional<std::string>& camera,
            const std::string& engine) {
             const PictureRequest request{frame_params(self, resolution, camera), engine_choice(engine), {}};
-            const PixelExplanation pixel = Talk().run([&] { return self.explain(request, x, y); });
+            const PixelExplanation pixel = PythonCall().run([&] { return self.explain(request, x, y); });
             return explanation_dict(self, request.engine.engine, pixel);
         },
         py::arg("x"), py::arg("y"), py::arg("resolution") = 0, py::arg("camera") = py::none(),

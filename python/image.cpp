@@ -4,7 +4,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "talk.h"
+#include "python_call.h"
 
 namespace trilens::python {
 namespace {
@@ -176,7 +176,7 @@ void bind_image(py::module_& module) {
             "save",
             [](const HeldImage& held, const std::filesystem::path& file, double exposure,
                const std::string& tone, double white) {
-                Talk().run([&] {
+                PythonCall().run([&] {
                     return write_image(file.string(), held.image, {exposure, tone_curve(tone), white}), true;
                 });
             },
@@ -192,7 +192,7 @@ void bind_image(py::module_& module) {
     module.def(
         "count_regions",
         [](const HeldImage& held, std::size_t least) {
-            return Talk().run([&] { return count_regions(held.image, least); });
+            return PythonCall().run([&] { return count_regions(held.image, least); });
         },
         py::arg("image"), py::arg("least") = kSmallestRegion,
         "How many separate shapes stand before the environment: regions of at least least pixels that touch "
@@ -201,7 +201,7 @@ void bind_image(py::module_& module) {
     module.def(
         "read_image",
         [](const std::filesystem::path& file) {
-            return HeldImage{Talk().run([&] { return read_image(file.string()); }), {}};
+            return HeldImage{PythonCall().run([&] { return read_image(file.string()); }), {}};
         },
         py::arg("file"),
         "Reads every channel of an OpenEXR file in its own type (half becomes float32).\n"

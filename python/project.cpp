@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "arrays.h"
+#include "python_call.h"
 #include "renderer.h"
-#include "talk.h"
 
 namespace trilens::python {
 namespace {
@@ -157,7 +157,7 @@ void bind_project(RendererClass& renderer) {
             request.refine = refine;
             request.visibility = visibility;
             request.derivatives = derivatives;
-            return rows_array(Talk().run([&] { return rows_of(self.project(given, request)); }));
+            return rows_array(PythonCall().run([&] { return rows_of(self.project(given, request)); }));
         },
         py::arg("points"), py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(),
         py::arg("search") = "complete", py::arg("refine") = true, py::arg("visibility") = true,

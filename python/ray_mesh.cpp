@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "talk.h"
+#include "python_call.h"
 
 namespace trilens::python {
 namespace {
@@ -84,7 +84,7 @@ py::dict hit_arrays(const std::vector<Hit>& hits, const SampleGrid& grid) {
 }
 
 py::dict draw(const RayMesh& mesh, const TriangleScene& scene, const SampleGrid& grid) {
-    return hit_arrays(Talk().run([&] { return draw_through(mesh, scene, grid); }), grid);
+    return hit_arrays(PythonCall().run([&] { return draw_through(mesh, scene, grid); }), grid);
 }
 
 py::dict visible_arrays(const std::vector<Visible>& visible, const SampleGrid& grid) {
@@ -108,7 +108,7 @@ py::dict image_arrays(const RayMesh& mesh, const Doubles& points) {
     for (std::size_t i = 0; i < given.size(); ++i)
         if (!std::isfinite(given[i].x + given[i].y + given[i].z))
             throw InputError("", "points/" + std::to_string(i), "is not finite");
-    const PointImageLists lists = Talk().run([&] { return MeshPointImages(mesh).images(given); });
+    const PointImageLists lists = PythonCall().run([&] { return MeshPointImages(mesh).images(given); });
     std::vector<std::int64_t> point;
     std::vector<Id> facet;
     std::vector<double> x, y, t, weights;
@@ -270,7 +270,7 @@ void bind_ray_mesh(py::module_& module) {
            const py::object& primitive) {
             const TriangleScene scene = triangles_of(points, triangles, object, primitive);
             const SampleGrid grid{window[0], window[1], window[2], window[3], side};
-            return visible_arrays(Talk().run([&] { return visible_through(mesh, scene, grid); }), grid);
+            return visible_arrays(PythonCall().run([&] { return visible_through(mesh, scene, grid); }), grid);
         },
         py::arg("mesh"), py::arg("points"), py::arg("triangles"), py::arg("window"), py::arg("side") = 1,
         py::kw_only(), py::arg("object") = py::none(), py::arg("primitive") = py::none(),

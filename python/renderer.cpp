@@ -6,7 +6,7 @@
 
 #include "image.h"
 #include "line_arrays.h"
-#include "talk.h"
+#include "python_call.h"
 
 namespace trilens::python {
 namespace {
@@ -81,19 +81,20 @@ struct Job {
 };
 
 /// Draws the picture, into the job's file where it has one.
-Picture draw_or_write(const Renderer& renderer, const PictureRequest& request, const Job& job, Talk& talk) {
-    const Progress progress = talk.progress(job.name);
-    if (!job.file) return renderer.draw(request, progress, talk.warner());
+Picture draw_or_write(const Renderer& renderer, const PictureRequest& request, const Job& job,
+                      PythonCall& call) {
+    const Progress progress = call.progress(job.name);
+    if (!job.file) return renderer.draw(request, progress, call.warner());
     const std::string file = job.file->string();
     if (image_format(file) == ImageFormat::kExr)
-        return renderer.write_exr(file, request, progress, talk.warner());
-    Picture picture = renderer.draw(request, progress, talk.warner());
+        return renderer.write_exr(file, request, progress, call.warner());
+    Picture picture = renderer.draw(request, progress, call.warner());
     write_image(file, picture.image);
     return picture;
 }
 
-HeldImage draw(const Renderer& renderer, const PictureRequest& request, const Job& job, Talk& talk) {
-    Picture picture = talk.run([&] { return draw_or_write(renderer, request, job, talk); });
+HeldImage draw(const Renderer& renderer, const PictureRequest& request, const Job& job, PythonCall& call) {
+    Picture picture = call.run([&] { return draw_or_write(renderer, request, job, call); });
     py::dict statistics;
     statistics["optic_pixels"] = picture.statistics.optic_pixels;
     statistics["pixels_without_ray"] = picture.statistics.pixels_without_ray;
@@ -118,13 +119,13 @@ void bind_pictures(RendererClass& renderer) {
            std::optional<double> max_error, const std::optional<std::string>& grid,
            const std::optional<std::string>& seen_optics, const File& file, const py::object& progress,
            const py::object& warn) {
-            Talk talk(progress, warn);
+            PythonCall call(progress, warn);
             return draw(
                 self,
                 {FacetArguments{rays, max_error, grid, seen_optics}.of(
                      frame_params(self, resolution, camera)),
                  projecting_engine(engine, {curves, clip, pieces, tolerance}), layer_request(layers, window)},
-                {"render", file}, talk);
+                {"render", file}, call);
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::arg("engine") = "exact",
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
@@ -177,12 +178,12 @@ void bind_pictures(RendererClass& renderer) {
             if (surface == "limit" && (rays || max_error || grid || seen_optics))
                 throw UsageError(
                     "rays, max_error, grid and seen_optics are about facets; add surface=\"facets\"");
-            Talk talk(progress, warn);
+            PythonCall call(progress, warn);
             return draw(self,
                         {FacetArguments{rays, max_error, grid, seen_optics}.of(
                              frame_params(self, resolution, camera)),
                          engine_choice(surface), layer_request(layers, window)},
-                        {"trace", file}, talk);
+                        {"trace", file}, call);
         },
         py::arg("surface") = "limit", py::arg("resolution") = 0, py::arg("camera") = py::none(),
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
@@ -226,10 +227,10 @@ void bind_line_drawing(py::module_& module, RendererClass& renderer) {
         [](const Renderer& self, int resolution, const std::optional<std::string>& camera, bool wire,
            bool folds, bool caustics, const std::optional<std::string>& rays,
            const std::optional<std::string>& grid, const py::object& warn) {
-            Talk talk(py::none(), warn);
+            PythonCall call(py::none(), warn);
             const FrameParams frame =
                 FacetArguments{rays, std::nullopt, grid}.of(frame_params(self, resolution, camera));
-            return talk.run([&] { return self.draw_lines(frame, {wire, folds, caustics}, talk.warner()); });
+            return call.run([&] { return self.draw_lines(frame, {wire, folds, caustics}, call.warner()); });
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(), py::arg("wire") = false,
         py::arg("folds") = false, py::arg("caustics") = false, py::arg("rays") = py::none(),
@@ -280,16 +281,16 @@ void bind_renderer(py::module_& module) {
         "A scene with what is built from it, each part once: surfaces, trees, grids. Several\n"
         "threads may draw with one renderer at once.");
     renderer.def(py::init([](const Scene& scene, const py::object& warn) {
-                     Talk talk(py::none(), warn);
-                     return talk.run([&] { return std::make_shared<Renderer>(scene, talk.warner()); });
+                     PythonCall call(py::none(), warn);
+                     return call.run([&] { return std::make_shared<Renderer>(scene, call.warner()); });
                  }),
                  py::arg("scene"), py::kw_only(), py::arg("warn") = py::none(),
                  "Raises InputError where a cage has no limit surface. warn: see load_scene.");
     renderer.def(
         "change",
         [](Renderer& self, const Scene& scene, const py::object& warn) {
-            Talk talk(py::none(), warn);
-            const SceneReuse kept = talk.run([&] { return self.change(scene, talk.warner()); });
+            PythonCall call(py::none(), warn);
+            const SceneReuse kept = call.run([&] { return self.change(scene, call.warner()); });
             py::dict parts;
             parts["objects"] = kept.objects;
             parts["optics"] = kept.optics;

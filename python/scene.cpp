@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "talk.h"
+#include "python_call.h"
 
 namespace trilens::python {
 namespace {
@@ -21,9 +21,9 @@ py::object json_value(const std::string& text) {
     return py::module_::import("json").attr("loads")(text);
 }
 
-void tell_warnings(const Scene& scene, Talk& talk) {
-    talk.run([&] {
-        const Warn warn = talk.warner();
+void tell_warnings(const Scene& scene, PythonCall& call) {
+    call.run([&] {
+        const Warn warn = call.warner();
         for (const std::string& message : scene.warnings) warn(message);
         return true;
     });
@@ -31,10 +31,10 @@ void tell_warnings(const Scene& scene, Talk& talk) {
 
 Scene load(const std::filesystem::path& file, const py::dict& overrides, int resolution,
            const py::object& warn) {
-    Talk talk(py::none(), warn);
+    PythonCall call(py::none(), warn);
     const SceneRequest request{file.string(), overrides_of(overrides), resolution};
-    Scene scene = talk.run([&] { return load_scene(request); });
-    tell_warnings(scene, talk);
+    Scene scene = call.run([&] { return load_scene(request); });
+    tell_warnings(scene, call);
     return scene;
 }
 
@@ -43,14 +43,14 @@ struct SceneText {
 };
 
 Scene parse(const SceneText& text, const py::dict& overrides, int resolution, const py::object& warn) {
-    Talk talk(py::none(), warn);
+    PythonCall call(py::none(), warn);
     const std::vector<SceneOverride> changes = overrides_of(overrides);
-    Scene scene = talk.run([&] {
+    Scene scene = call.run([&] {
         Scene parsed = parse_scene(text.json, text.folder, changes, text.label);
         if (resolution != 0) set_resolution(parsed, resolution);
         return parsed;
     });
-    tell_warnings(scene, talk);
+    tell_warnings(scene, call);
     return scene;
 }
 

@@ -3,7 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "bindings.h"
-#include "talk.h"
+#include "python_call.h"
 
 namespace trilens::python {
 namespace {
@@ -85,8 +85,8 @@ void bind_suite(py::module_& module) {
             request.junit = junit.value_or("").string();
             request.html = html.value_or("").string();
             request.title = title;
-            Talk talk(progress);
-            return talk.run([&] { return run_suite(request, {talk.progress("tests"), {}, {}}); });
+            PythonCall call(progress);
+            return call.run([&] { return run_suite(request, {call.progress("tests"), {}, {}}); });
         },
         py::arg("folders"), py::arg("pattern") = "", py::kw_only(), py::arg("jobs") = 0,
         py::arg("update") = false, py::arg("junit") = py::none(), py::arg("html") = py::none(),

@@ -3,7 +3,7 @@
 
 #include <pybind11/stl.h>
 
-#include "talk.h"
+#include "python_call.h"
 
 namespace trilens::python {
 namespace {
@@ -63,7 +63,7 @@ py::dict eval(const Surface& surface, const py::object& face, const Doubles& uv)
         if (!std::isfinite(numbers[2 * i]) || !std::isfinite(numbers[2 * i + 1]))
             throw InputError("", "uv/" + std::to_string(i), "is not finite");
     }
-    const std::vector<SurfacePoint> points = Talk().run([&] {
+    const std::vector<SurfacePoint> points = PythonCall().run([&] {
         std::vector<SurfacePoint> found(count);
         for (std::size_t i = 0; i < count; ++i)
             found[i] = surface.eval(faces[i], {numbers[2 * i], numbers[2 * i + 1]});
@@ -133,8 +133,8 @@ void bind_surface_makers(py::module_& module) {
             cage.hole_indices = holes;
             add_faces(cage, faces);
             add_sharpness(cage, creases, corners);
-            Talk talk(py::none(), warn);
-            return talk.run([&]() -> SurfacePointer { return make_surface(cage, name, talk.warner()); });
+            PythonCall call(py::none(), warn);
+            return call.run([&]() -> SurfacePointer { return make_surface(cage, name, call.warner()); });
         },
         py::arg("points"), py::arg("faces"), py::kw_only(), py::arg("creases") = Creases(),
         py::arg("corners") = Corners(), py::arg("holes") = std::vector<int>(),
@@ -193,7 +193,7 @@ void bind_surface(py::module_& module) {
         .def(
             "grid",
             [](const Surface& surface, int n) {
-                return Talk().run([&] { return make_surface_grid(surface, n); });
+                return PythonCall().run([&] { return make_surface_grid(surface, n); });
             },
             py::arg("n"),
             "n x n squares of two facets on each face of four sides, n^2 facets on each triangular one; n in "

@@ -6,8 +6,8 @@
 #include <variant>
 
 #include "arrays.h"
+#include "python_call.h"
 #include "scene.h"
-#include "talk.h"
 
 namespace trilens::python {
 namespace {
@@ -45,8 +45,8 @@ std::vector<AxisRequest> axes_of(const py::object& over) {
     return has_texts ? axes : std::vector<AxisRequest>{axis_of("resolution", over)};
 }
 
-SweepTalk talk_of(Talk& talk) {
-    return {[&talk](const std::string& job) { return talk.progress(job); }, talk.warner()};
+SweepObserver observer_of(PythonCall& call) {
+    return {[&call](const std::string& job) { return call.progress(job); }, call.warner()};
 }
 
 const SweepFit* find_fit(const SweepSummary& summary, const std::string& metric, const std::string& layer,
@@ -196,8 +196,8 @@ void def_sweep(py::module_& module, const char* name, const Work& work, const ch
             request.folder = folder.string();
             request.title = title;
             request.replace = replace;
-            Talk talk(progress, warn);
-            return talk.run([&] { return work(request, talk_of(talk)); });
+            PythonCall call(progress, warn);
+            return call.run([&] { return work(request, observer_of(call)); });
         },
         py::arg("scene"), py::arg("folder"), py::arg("over") = "resolution=1..16:x2", py::kw_only(),
         py::arg("truth") = "limit", py::arg("camera") = py::none(), py::arg("overrides") = py::dict(),
@@ -213,7 +213,7 @@ void bind_sweep(py::module_& module) {
     bind_summary(module);
     def_sweep(
         module, "sweep",
-        [](const SweepRequest& request, const SweepTalk& talk) { return run_sweep(request, talk); },
+        [](const SweepRequest& request, const SweepObserver& call) { return run_sweep(request, call); },
         "Renders, traces and compares over the optics' resolutions or any other axes, in a folder that can "
         "be "
         "resumed:\n"
@@ -237,16 +237,18 @@ void bind_sweep(py::module_& module) {
         "the\ncamera chooses them, with a warning.");
     def_sweep(
         module, "plan_sweep",
-        [](const SweepRequest& request, const SweepTalk& talk) { return plan_sweep(request, talk); },
+        [](const SweepRequest& request, const SweepObserver& call) { return plan_sweep(request, call); },
         "Writes the plan of a sweep and runs nothing; returns the plan's file. Arguments: see sweep.");
     module.def(
         "load_sweep",
-        [](const SweepPath& folder) { return Talk().run([&] { return load_sweep(folder.string()); }); },
+        [](const SweepPath& folder) { return PythonCall().run([&] { return load_sweep(folder.string()); }); },
         py::arg("folder"),
         "What a sweep's folder says, with fits; writes nothing. Raises InputError without a plan.");
     module.def(
         "report_sweep",
-        [](const SweepPath& folder) { return Talk().run([&] { return report_sweep(folder.string()); }); },
+        [](const SweepPath& folder) {
+            return PythonCall().run([&] { return report_sweep(folder.string()); });
+        },
         py::arg("folder"), "The same, and writes tables, plots and report.html.");
 }
 

@@ -13,16 +13,16 @@ namespace {
 Answer run(const SuiteRequest& request, Console& console) {
     console.files().writes(request.junit);
     console.files().writes(request.html);
-    SuiteTalk talk;
+    SuiteObserver observer;
     // Scenes are read for their files only where one of them could be lost.
     if (console.files().has_old_outputs())
-        talk.reads = [&](const std::vector<std::string>& files) { console.files().reads(files); };
-    talk.progress = console.progress("tests");
-    talk.on_test = [&](const TestResult& test) {
+        observer.reads = [&](const std::vector<std::string>& files) { console.files().reads(files); };
+    observer.progress = console.progress("tests");
+    observer.on_test = [&](const TestResult& test) {
         console.note(fmt::format("{}: {} in {:.2f} s", test.name, test_state_name(test.state), test.seconds));
         for (const std::string& note : test.notes) console.note("  " + note);
     };
-    return answer_of(request, run_suite(request, talk));
+    return answer_of(request, run_suite(request, observer));
 }
 
 }  // namespace

@@ -169,7 +169,7 @@ LayerRequest layer_request(const SceneOptions& options) {
     return request;
 }
 
-SweepTalk sweep_talk(Console& console) {
+SweepObserver sweep_talk(Console& console) {
     return {[&console](const std::string& job) { return console.progress(job); }, console.warner()};
 }
 

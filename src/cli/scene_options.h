@@ -51,6 +51,6 @@ Renderer load_renderer(const SceneOptions& options, Console& console);
 LayerRequest layer_request(const SceneOptions& options);
 
 /// A sweep that talks on the console.
-SweepTalk sweep_talk(Console& console);
+SweepObserver sweep_talk(Console& console);
 
 }  // namespace trilens

@@ -98,11 +98,11 @@ void BatchSearch::search(Level& level) {
 void BatchSearch::descend(std::span<std::size_t> some, Level* above) {
     Level level{above, some, false, {}};
     if (some.size() <= kFewPoints) {
-        if (some.size() > PointPacket::kNearPoints) halve_points(points_, some, PointPacket::kNearPoints);
+        if (some.size() > PointPacket::kNearPoints) spatial_split(points_, some, PointPacket::kNearPoints);
         search(level);
         return;
     }
-    const std::size_t half = halve_points(points_, some, kFewPoints);
+    const std::size_t half = spatial_split(points_, some, kFewPoints);
     descend(some.first(half), &level);
     descend(some.subspan(half), &level);
 }

@@ -72,10 +72,10 @@ bool could_be_input(const std::string& output) {
     return !output.empty() && std::filesystem::exists(output, none);
 }
 
-void require_outputs_apart(const SuiteRequest& request, const SuiteTalk& talk) {
-    if (!talk.reads && !could_be_input(request.junit) && !could_be_input(request.html)) return;
+void require_outputs_apart(const SuiteRequest& request, const SuiteObserver& observer) {
+    if (!observer.reads && !could_be_input(request.junit) && !could_be_input(request.html)) return;
     const std::vector<std::string> files = files_of_all(request.folders);
-    if (talk.reads) talk.reads(files);
+    if (observer.reads) observer.reads(files);
     for (const std::string& output : {request.junit, request.html})
         if (could_be_input(output)) check_writable(output, files);
 }
@@ -97,8 +97,8 @@ SuiteScene open_suite_scene(const RenderTest& test, const Progress& progress, co
     }};
 }
 
-SuiteResult run_suite(const SuiteRequest& request, const SuiteTalk& talk) {
-    require_outputs_apart(request, talk);
+SuiteResult run_suite(const SuiteRequest& request, const SuiteObserver& observer) {
+    require_outputs_apart(request, observer);
     SuiteParams params;
     params.folders = request.folders;
     params.pattern = request.pattern;
@@ -107,11 +107,11 @@ SuiteResult run_suite(const SuiteRequest& request, const SuiteTalk& talk) {
     params.junit = request.junit;
     params.html = request.html;
     params.title = request.title;
-    params.progress = talk.progress;
-    params.on_test = talk.on_test;
+    params.progress = observer.progress;
+    params.on_test = observer.on_test;
     SuiteCallbacks callbacks;
     callbacks.open = [&](const RenderTest& test, const Warn& warn) {
-        return open_suite_scene(test, talk.progress, warn);
+        return open_suite_scene(test, observer.progress, warn);
     };
     callbacks.read = [](const std::string& file) { return read_compared_image(file); };
     return run_suite(params, callbacks);

@@ -31,7 +31,7 @@ struct SuiteRequest {
 };
 
 /// How a suite says what it does; all may be empty.
-struct SuiteTalk {
+struct SuiteObserver {
     Progress progress;
     std::function<void(const TestResult& test)> on_test;  // after each, never from two threads at once
     // Before any test: every file that the tests read, whether it is there or not. What it throws ends the
@@ -43,7 +43,7 @@ struct SuiteTalk {
 /// own (TestState::kError), and the others go on; results do not depend on `jobs`. Throws InputError for
 /// folders without tests, UsageError where the pattern means none or where `junit` or `html` is a file that
 /// tests below `folders` read, OutputError, Interrupted.
-SuiteResult run_suite(const SuiteRequest& request, const SuiteTalk& talk = {});
+SuiteResult run_suite(const SuiteRequest& request, const SuiteObserver& observer = {});
 
 /// The tests that run_suite would run, in the order in which they are found; nothing is drawn. Throws as
 /// run_suite does.

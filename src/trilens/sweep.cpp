@@ -32,13 +32,13 @@ struct SweepJob {
     PointRequest base;
     Engine truth = Engine::kLimitTruth;
     std::unique_ptr<Subjects> subjects;
-    SweepTalk talk;
+    SweepObserver observer;
     std::map<std::string, bool> warned;
     std::mutex mutex;  // of `warned` and of what it tells
 
     void warn(const std::string& message) {
         const std::lock_guard guard(mutex);
-        if (talk.warn && warned.emplace(message, true).second) talk.warn(message);
+        if (observer.warn && warned.emplace(message, true).second) observer.warn(message);
     }
 };
 
@@ -199,7 +199,7 @@ Picture draw(SweepJob& job, const PointRequest& request, const std::string& what
     picture.frame.camera = subject->camera;
     // Where several are drawn at once, only the whole sweep says how far it is.
     Progress progress;
-    if (job.talk.progress && job.params.jobs <= 1) progress = job.talk.progress(what);
+    if (job.observer.progress && job.params.jobs <= 1) progress = job.observer.progress(what);
     progress.cancel = job.params.progress.cancel;
     if (surface_seconds) *surface_seconds = subject->seconds;
     return subject->renderer.draw(picture, progress, [&](const std::string& text) { job.warn(text); });
@@ -229,13 +229,13 @@ double memory_of(SweepJob& job, const PlannedRun& run) {
            kBytesPerFacet * 2 * n * n * static_cast<double>(facts.faces);
 }
 
-std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk& talk) {
+std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepObserver& observer) {
     if (request.jobs < 1 || request.repeats < 1)
         throw UsageError("a sweep needs at least one job and one repeat");
     auto job = std::make_unique<SweepJob>();
     SweepJob* const at = job.get();
     job->truth = truth_engine(request.truth);
-    job->talk = talk;
+    job->observer = observer;
     job->params.folder = request.folder;
     job->params.axes = axes_of(request);
     job->params.shard = shard_of(request.shard);
@@ -260,7 +260,7 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk&
     job->params.subject = subject_of(request, job->params.axes,
                                      sweepable_facts(*job->subjects, request_at(job->base, points.at(0))));
     job->params.subject.left_out = left_out;
-    if (talk.progress) job->params.progress = talk.progress("sweep of " + job->params.subject.title);
+    if (observer.progress) job->params.progress = observer.progress("sweep of " + job->params.subject.title);
     job->callbacks.keys = [at](const Coordinates& point) { return keys_of(*at, point); };
     job->callbacks.render = [at](const PlannedRun& run) { return render(*at, run); };
     job->callbacks.trace = [at](const PlannedRun& run) { return trace(*at, run); };
@@ -275,8 +275,8 @@ std::unique_ptr<SweepJob> make_job(const SweepRequest& request, const SweepTalk&
 
 }  // namespace
 
-SweepSummary run_sweep(const SweepRequest& request, const SweepTalk& talk) {
-    const std::unique_ptr<SweepJob> job = make_job(request, talk);
+SweepSummary run_sweep(const SweepRequest& request, const SweepObserver& observer) {
+    const std::unique_ptr<SweepJob> job = make_job(request, observer);
     return run_sweep(job->params, job->callbacks);
 }
 
@@ -349,8 +349,8 @@ bool is_whole_sweep(const std::string& shard) {
     return shard_of(shard).count == 1;
 }
 
-std::string plan_sweep(const SweepRequest& request, const SweepTalk& talk) {
-    const std::unique_ptr<SweepJob> job = make_job(request, talk);
+std::string plan_sweep(const SweepRequest& request, const SweepObserver& observer) {
+    const std::unique_ptr<SweepJob> job = make_job(request, observer);
     plan_sweep(job->params, job->callbacks);
     return job->params.folder + "/plan.jsonl";
 }

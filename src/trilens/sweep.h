@@ -55,7 +55,7 @@ struct SweepRequest {
 };
 
 /// How a sweep says what it does; both may be empty. `progress`: made for a job of that name.
-struct SweepTalk {
+struct SweepObserver {
     std::function<Progress(const std::string& job)> progress;
     Warn warn;
 };
@@ -71,7 +71,7 @@ struct SweepTalk {
 /// OutputError, Interrupted. A scene file without an optic is swept over its camera's facets where the axis
 /// is resolution and the camera chooses them; of an axis of scenes those that lack what another axis varies
 /// are left out while others are left. Both are said, and SweepSubject::left_out has the latter.
-SweepSummary run_sweep(const SweepRequest& request, const SweepTalk& talk = {});
+SweepSummary run_sweep(const SweepRequest& request, const SweepObserver& observer = {});
 
 /// Why run_sweep would refuse the request for what its scene lacks (an optic, a camera, a place in the file
 /// that an axis names); none where it would not. For sweeps of many scenes, none of which should end for
@@ -89,7 +89,7 @@ bool is_sweep_file(const std::string& file);
 bool is_whole_sweep(const std::string& shard);
 
 /// Writes the plan and runs nothing; returns the plan's file.
-std::string plan_sweep(const SweepRequest& request, const SweepTalk& talk = {});
+std::string plan_sweep(const SweepRequest& request, const SweepObserver& observer = {});
 
 /// Throws UsageError where two of the files have one name but for folder and end: their results would write
 /// over each other; and for "-", which cannot be read more than once.

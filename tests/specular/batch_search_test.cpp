@@ -174,12 +174,12 @@ TEST_CASE("points are halved by their coordinates alone, and their ball holds th
         const PointBall ball = ball_around(points, some);
         for (const Vec3& p : points) CHECK(length(p - ball.middle) <= ball.radius);
 
-        const std::size_t half = halve_points(points, some);
+        const std::size_t half = spatial_split(points, some);
         CHECK(half == points.size() / 2);
-        CHECK(halve_points(points, other) == half);
+        CHECK(spatial_split(points, other) == half);
         const std::size_t unit = 1 + static_cast<std::size_t>(round) % (points.size() - 1);
         std::vector<std::size_t> in_units(some);
-        const std::size_t of_units = halve_points(points, in_units, unit);
+        const std::size_t of_units = spatial_split(points, in_units, unit);
         CHECK(of_units % unit == 0);
         CHECK(of_units > 0);
         CHECK(of_units < points.size());

@@ -30,7 +30,7 @@ struct CountedSweep {
     }
     SweepSummary run() {
         drawn.clear();
-        SweepTalk talk;
+        SweepObserver talk;
         talk.progress = [this](const std::string& job) {
             ++drawn[job];
             return Progress();

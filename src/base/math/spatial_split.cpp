@@ -27,7 +27,7 @@ PointBall ball_around(std::span<const Vec3> points, std::span<const std::size_t>
     return {middle, length(glm::max(high - middle, middle - low)) * (1 + 1e-14)};
 }
 
-std::size_t halve_points(std::span<const Vec3> points, std::span<std::size_t> some, std::size_t unit) {
+std::size_t spatial_split(std::span<const Vec3> points, std::span<std::size_t> some, std::size_t unit) {
     TRILENS_CHECK(unit > 0 && some.size() > unit, "there is a first half and a second");
     const auto [low, high] = box_around(points, some);
     const Vec3 size = high - low;

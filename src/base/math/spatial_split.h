@@ -21,6 +21,6 @@ PointBall ball_around(std::span<const Vec3> points, std::span<const std::size_t>
 /// along the longest side of their box, and returns the size of the first half: a multiple of `unit` >= 1 and
 /// at least that, no more than half of the points where it can be. Which points come into which half is a
 /// matter of their coordinates, not of their order.
-std::size_t halve_points(std::span<const Vec3> points, std::span<std::size_t> some, std::size_t unit = 1);
+std::size_t spatial_split(std::span<const Vec3> points, std::span<std::size_t> some, std::size_t unit = 1);
 
 }  // namespace trilens

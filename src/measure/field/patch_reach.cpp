@@ -142,9 +142,9 @@ PatchHull hull_of(const Patch& patch) {
     // Relative to a point, nodes round differently: where that could decide whether they are smooth, both.
     bool may_be_smooth = true, may_be_rough = false;
     for (const auto& [step, third] : line_steps(patch.nodes)) {
-        const double doubt = 1e-6 * step + 1e-20 * size * size;
-        may_be_smooth = may_be_smooth && third <= kSmoothThird * step + doubt;
-        may_be_rough = may_be_rough || third >= kSmoothThird * step - doubt;
+        const double error_bound = 1e-6 * step + 1e-20 * size * size;
+        may_be_smooth = may_be_smooth && third <= kSmoothThird * step + error_bound;
+        may_be_rough = may_be_rough || third >= kSmoothThird * step - error_bound;
     }
     PatchHull hull;
     if (may_be_smooth) include(hull, cubic_hull(patch.nodes), margin);

@@ -100,7 +100,7 @@ void find_cells_here(const FieldPyramid& index, const PointPacket& packet, std::
 
 std::uint64_t held_by_here(const FieldCellBounds& reach, const PointPacket& packet, std::uint64_t asked) {
     // More than the products round by.
-    const Number doubt = number(4e-7F), least = number(1e-37F);
+    const Number error_bound = number(4e-7F), least = number(1e-37F);
     std::uint64_t held = 0;
     for (std::size_t first = 0; first < packet.count; first += kWidth) {
         if (!(asked >> first & kAll)) continue;
@@ -115,7 +115,7 @@ std::uint64_t held_by_here(const FieldCellBounds& reach, const PointPacket& pack
                          z = hn::Mul(number(slab.direction[2]), points.point[2]);
             const Number at = hn::Add(hn::Add(x, y), z),
                          size = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z)),
-                         margin = hn::Add(hn::Mul(doubt, size), least);
+                         margin = hn::Add(hn::Mul(error_bound, size), least);
             // What is no number is not outside.
             const Truth outside = hn::Or(hn::Lt(hn::Add(at, margin), number(slab.low)),
                                          hn::Gt(hn::Sub(at, margin), number(slab.high)));

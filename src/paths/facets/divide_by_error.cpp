@@ -113,7 +113,7 @@ void OpticPaths::divide_batch_by_error(std::vector<FittedLeaf> open) {
                 if (error[i] > params_.max_error) divided[i] = divide_part(context_, *open[i].part, params_);
             }
         });
-        set_kappas(divided);
+        set_ray_scales(divided);
         std::vector<FittedLeaf> next;
         for (std::size_t i = 0; i < open.size(); ++i) {
             const FittedLeaf& leaf = open[i];

@@ -43,7 +43,7 @@ void OpticPaths::probe_corners(std::span<const Id> facets) {
 }
 
 /// At the corners of those parts alone that need it: see append_part.
-void OpticPaths::set_kappas(std::span<const DividedFacet> divided) const {
+void OpticPaths::set_ray_scales(std::span<const DividedFacet> divided) const {
     const auto is_later = [](const PathSegment& history) {
         return history.parent != kNone || history.step.event != Event::kReflect;
     };
@@ -150,7 +150,7 @@ void OpticPaths::prepare(std::span<const Id> facets) {
             divided[i] = divide_facet(context_, facet, params_);
         }
     });
-    set_kappas(divided);
+    set_ray_scales(divided);
     std::vector<FittedLeaf> whole, open;
     for (std::size_t i = 0; i < fresh.size(); ++i) {
         prepared_[fresh[i]] = 1;

@@ -167,7 +167,7 @@ class OpticPaths {
     std::vector<Id> wanted_facets(std::span<const Id> facets);
     void set_film_corner(Id corner, const Vec2& pixel);
     void probe_corners(std::span<const Id> facets);
-    void set_kappas(std::span<const DividedFacet> divided) const;
+    void set_ray_scales(std::span<const DividedFacet> divided) const;
     void append(Id facet, Id cell, DividedFacet& divided);
     void append_part(Id leaf, FacetPart& part);
     void keep_room();

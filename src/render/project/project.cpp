@@ -18,7 +18,7 @@ constexpr std::size_t kPiecesPerThread = 8, kLeastPiece = 16, kMostPiece = 1024;
 /// Halves `some` in space until each `most` of them, counted from the first, lie together.
 void order_in_space(std::span<const Vec3> points, std::span<std::size_t> some, std::size_t most) {
     if (some.size() <= most) return;
-    const std::size_t half = halve_points(points, some, most);
+    const std::size_t half = spatial_split(points, some, most);
     run_side_by_side({[&] { order_in_space(points, some.first(half), most); },
                       [&] { order_in_space(points, some.subspan(half), most); }});
 }

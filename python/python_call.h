@@ -11,13 +11,13 @@
 namespace trilens::python {
 
 /// The Python side of one call, alive while it runs; made and destroyed with the GIL held.
-class Talk {
+class PythonCall {
   public:
     /// `progress`: None, or called as progress(done, job), done in 0..1; False stops the work. `warn`: None
     /// (the warnings module tells), or called as warn(message). Throws UsageError for what cannot be called.
-    explicit Talk(py::object progress = py::none(), py::object warn = py::none());
-    Talk(const Talk&) = delete;
-    Talk& operator=(const Talk&) = delete;
+    explicit PythonCall(py::object progress = py::none(), py::object warn = py::none());
+    PythonCall(const PythonCall&) = delete;
+    PythonCall& operator=(const PythonCall&) = delete;
 
     /// What the library is given. Between two reports Ctrl-C is looked for; what Python raises in a callback
     /// stops the work.

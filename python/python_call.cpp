@@ -1,4 +1,4 @@
-#include "talk.h"
+#include "python_call.h"
 
 namespace trilens::python {
 namespace {
@@ -10,19 +10,19 @@ py::object callable_or_none(py::object object, const char* name) {
 
 }  // namespace
 
-Talk::Talk(py::object progress, py::object warn)
+PythonCall::PythonCall(py::object progress, py::object warn)
     : progress_(callable_or_none(std::move(progress), "progress")),
       warn_(callable_or_none(std::move(warn), "warn")) {}
 
-Progress Talk::progress(const std::string& job) {
+Progress PythonCall::progress(const std::string& job) {
     return {[this, job](double done) { report(done, job); }, &cancel_};
 }
 
-Warn Talk::warner() {
+Warn PythonCall::warner() {
     return [this](const std::string& message) { tell(message); };
 }
 
-void Talk::report(double done, const std::string& job) {
+void PythonCall::report(double done, const std::string& job) {
     const py::gil_scoped_acquire acquired;
     if (raised_) return;
     try {
@@ -34,7 +34,7 @@ void Talk::report(double done, const std::string& job) {
     }
 }
 
-void Talk::tell(const std::string& message) {
+void PythonCall::tell(const std::string& message) {
     const py::gil_scoped_acquire acquired;
     if (raised_) return;
     try {
@@ -50,7 +50,7 @@ void Talk::tell(const std::string& message) {
     }
 }
 
-void Talk::rethrow(const std::exception_ptr& failure) const {
+void PythonCall::rethrow(const std::exception_ptr& failure) const {
     if (raised_) std::rethrow_exception(raised_);
     if (failure) std::rethrow_exception(failure);
 }

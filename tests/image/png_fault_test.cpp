@@ -42,7 +42,7 @@ std::vector<unsigned char> some_png() {
 }  // namespace
 
 TEST_CASE("a PNG with any damaged byte is read or refused without a word on stderr",
-          "[image][talk][bad-input]") {
+          "[image][png][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("image_talk");
     const std::vector<unsigned char> whole = some_png();
     int refused = 0;
@@ -70,7 +70,7 @@ TEST_CASE("a PNG with any damaged byte is read or refused without a word on stde
     CHECK(said.empty());
 }
 
-TEST_CASE("parts of an OpenEXR file come by name, each with its channels", "[image][talk]") {
+TEST_CASE("parts of an OpenEXR file come by name, each with its channels", "[image][png]") {
     if (std::system("command -v oiiotool > /dev/null 2>&1") != 0) TRILENS_SKIP("needs oiiotool");
     const std::string folder = trilens_test::scratch_dir("image_parts");
     const auto make = [&](const std::string& arguments) {
