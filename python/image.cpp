@@ -167,7 +167,8 @@ void bind_image(py::module_& module) {
             "subdivided_pixels (of a part of a facet), traced_pixels and layered_pixels (an optic seen in an "
             "optic);\n"
             "projected_facets; predicted_error: pixels, the most that was left; outline_pixels: predicted, "
-            "those between the outlines of optics and of their facets; prepare_seconds, "
+            "those between the outlines of optics and of their facets; deep_pixels: that lack light for "
+            "maxDepth; prepare_seconds, "
             "draw_seconds.")
         .def("rgb", rgb_of, py::arg("layer") = "",
              "The colours R, G, B of a layer (\"\": the beauty) as a new float32 array (height, width, 3),\n"

@@ -104,6 +104,7 @@ HeldImage draw(const Renderer& renderer, const PictureRequest& request, const Jo
     statistics["projected_facets"] = picture.statistics.projected_facets;
     statistics["predicted_error"] = picture.statistics.predicted_error;
     statistics["outline_pixels"] = picture.statistics.outline_pixels;
+    statistics["deep_pixels"] = picture.statistics.deep_pixels;
     statistics["prepare_seconds"] = picture.prepare_seconds;
     statistics["draw_seconds"] = picture.draw_seconds;
     return {std::move(picture.image), statistics};

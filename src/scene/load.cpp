@@ -58,6 +58,27 @@ void read_meshes(const Node& root, Reading& reading) {
                          "the material '" + reading.scene.materials[i].name + "' is not used");
 }
 
+/// What would be seen, but is black or plain.
+void warn_of_appearance(const Node& root, Reading& reading) {
+    const Scene& scene = reading.scene;
+    std::set<Id> of_objects;
+    for (const Mesh& mesh : scene.meshes) {
+        if (mesh.role != Role::kObject) continue;
+        of_objects.insert(mesh.object.material.begin(), mesh.object.material.end());
+    }
+    bool needs_light = false;
+    for (const Id i : of_objects) {
+        if (i >= scene.materials.size()) continue;
+        needs_light = needs_light || !scene.materials[i].unlit;
+        if (i < reading.named_materials && root["materials"][i].has("roughnessFactor") &&
+            scene.materials[i].roughness_factor != 1)
+            reading.warn("/materials/" + std::to_string(i) + "/roughnessFactor",
+                         "does nothing on an object: objects are matt, as of roughness 1");
+    }
+    if (needs_light && scene.lights.empty())
+        reading.warn("/lights", "there is no light: every object whose material is not unlit is black");
+}
+
 }  // namespace
 
 SceneSource::SceneSource(std::string named)
@@ -88,6 +109,7 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
         for (std::size_t i = 0; i < root["lights"].size(); ++i)
             reading.scene.lights.push_back(read_light(root["lights"][i]));
     reading.scene.render = read_render(root);
+    warn_of_appearance(root, reading);
     return std::move(reading.scene);
 }
 

@@ -154,6 +154,22 @@ TEST_CASE("glTF accessors: sparse or normalised or out of bounds", "[scene]") {
     CHECK(mesh.uvs[2] == Vec2(0, 0));
 }
 
+TEST_CASE("what a glTF has beside meshes and base colours is told of", "[scene]") {
+    const std::string folder = scratch_dir("scene_gltf_left_out");
+    Square square;
+    square.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1,"material":0)";
+    square.more = R"(,"materials":[{"normalTexture":{"index":0},"occlusionTexture":{"index":0},
+        "emissiveFactor":[0,1,0],"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}}},
+        {"emissiveTexture":{"index":0}}],"textures":[{"source":0}],"images":[{"uri":"a.png"}],
+        "cameras":[{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}}])";
+    const GltfModel model = read_gltf(write_square(folder, gltf_text(square)));
+    CHECK(model.warnings == std::vector<std::string>{"cameras are ignored: the scene names its own"});
+    CHECK(model.material_warnings ==
+          std::vector<std::string>{"emissive maps are ignored", "light that materials emit is ignored",
+                                   "metallic-roughness maps are ignored", "normal maps are ignored",
+                                   "occlusion maps are ignored"});
+}
+
 TEST_CASE("glTF materials and their pictures", "[scene]") {
     const std::string folder = scratch_dir("scene_gltf_materials");
     Square square;

@@ -134,3 +134,60 @@ TEST_CASE("what a scene holds is counted", "[scene]") {
     CHECK(info.materials[2].meshes == 1);
     CHECK(info.lights == 3);
 }
+
+TEST_CASE("rotations by angles are those of their matrices, whatever the order", "[scene][law]") {
+    std::mt19937 random(7);
+    const auto about = [](int k, double degrees) {
+        const double a = degrees * M_PI / 180;
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        Mat3 m(1);
+        m[i][i] = m[j][j] = std::cos(a);
+        m[i][j] = std::sin(a);
+        m[j][i] = -std::sin(a);
+        return m;
+    };
+    for (const std::string order : {"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}) {
+        for (int i = 0; i < 50; ++i) {
+            const Vec3 degrees = 400.0 * random_vec(random), p = random_vec(random);
+            Vec3 turned = p;
+            for (const char letter : order) turned = about(letter - 'X', degrees[letter - 'X']) * turned;
+            const Transform t = make_transform(Vec3(0), quaternion_of_euler(degrees, order), Vec3(1));
+            CHECK(length(map_point(t, p) - turned) < 1e-13);
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        Vec3 axis(0);
+        axis[k] = 0.01;
+        const Vec3 p = random_vec(random);
+        const Transform t = make_transform(Vec3(0), quaternion_about(axis, 77), Vec3(1));
+        CHECK(length(map_point(t, p) - about(k, 77) * p) < 1e-14);
+    }
+    CHECK(length(map_point(make_transform(Vec3(0), quaternion_about({1, 2, 3}, 360), Vec3(1)), {4, 5, 6}) -
+                 Vec3(4, 5, 6)) < 1e-13);
+}
+
+TEST_CASE("a scene turns by a quaternion, by angles and about an axis alike", "[scene]") {
+    const auto center_of = [](const std::string& rotate) {
+        const std::string mesh =
+            primitive_with(R"({"type":"sphere","center":[1,0,0]})", R"({"rotate":)" + rotate + "}");
+        return load_text(kRoom, {{"/meshes/2", mesh}}).meshes.back().primitive->center;
+    };
+    for (const char* rotate : {"[0,0,1,1]", R"({"euler":[0,0,90]})", R"({"axis":[0,0,5],"angle":90})",
+                               R"({"euler":[90,0,90],"order":"ZXY"})"}) {
+        INFO(rotate);
+        const Vec3 expected =
+            std::string(rotate).find("ZXY") == std::string::npos ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+        CHECK(length(center_of(rotate) - expected) < 1e-14);
+    }
+}
+
+TEST_CASE("a mesh is fitted into a cube, after its transform", "[scene]") {
+    const std::string mesh = R"({"name":"box","role":"object","points":[[0,0,0],[4,0,0],[0,2,1]],
+        "faceVertexCounts":[3],"faceVertexIndices":[0,1,2],"transform":{"scale":[3,1,1]},
+        "fit":{"center":[1,2,3],"size":2}})";
+    const std::vector<Vec3>& points = load_text(kRoom, {{"/meshes/2", mesh}}).meshes.back().object.points;
+    Box bounds;
+    for (const Vec3& point : points) bounds.include(point);
+    CHECK(length(0.5 * (bounds.low + bounds.high) - Vec3(1, 2, 3)) < 1e-14);
+    CHECK(length(bounds.size() - Vec3(2, 1.0 / 3, 1.0 / 6)) < 1e-14);
+}

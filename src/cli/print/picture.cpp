@@ -18,7 +18,9 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
         {"projected_facets", picture.statistics.projected_facets},
         {"predicted_error", picture.statistics.predicted_error},
         {"outline_pixels", picture.statistics.outline_pixels},
-        {"left_out", {{"faint", picture.statistics.faint_light}, {"deep", picture.statistics.deep_light}}},
+        {"left_out", {{"faint", picture.statistics.faint_light},
+                      {"deep", picture.statistics.deep_light},
+                      {"deep_pixels", picture.statistics.deep_pixels}}},
         {"prepare_seconds", picture.prepare_seconds},
         {"draw_seconds", picture.draw_seconds}};
 }

@@ -2,6 +2,8 @@
 
 #include <trilens/camera.h>
 
+#include "terminal/format.h"
+
 namespace trilens {
 namespace {
 
@@ -60,7 +62,13 @@ std::string mesh_line(const MeshInfo& mesh) {
     if (mesh.faces > 0) line += ", " + std::to_string(mesh.faces) + " faces";
     line += mesh.role == Role::kOptic ? ", resolution " + std::to_string(mesh.resolution)
                                       : ", " + std::to_string(mesh.triangles) + " triangles";
-    return line + ", material " + mesh.material + "\n";
+    line += ", material " + mesh.material;
+    if (!mesh.bounds.empty()) {
+        const Vec3 &a = mesh.bounds.low, &b = mesh.bounds.high;
+        line +=
+            fmt::format(", from {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}", a.x, a.y, a.z, b.x, b.y, b.z);
+    }
+    return line + "\n";
 }
 
 }  // namespace

@@ -32,6 +32,8 @@ struct PathLeaf {
     // Of kProjected: the most of each colour's light behind the first optic that no node carries, at any of
     // its corners: paths too faint to be followed, or so faint at the others that none stands for them.
     Vec3 faint{0};
+    // The most of each colour's light, at any of its corners, that would go on after the last optic followed.
+    Vec3 too_deep{0};
 };
 
 /// All rays of one history: its last step starts them.

@@ -31,6 +31,13 @@ Vec3 faint_light(const FacetPart& part) {
     return most;
 }
 
+Vec3 deep_light(const FacetPart& part) {
+    Vec3 most(0);
+    if (part.method != LeafMethod::kProjected) return most;
+    for (const PartCorner& corner : part.corners) most = glm::max(most, corner.probe->cut.too_deep);
+    return most;
+}
+
 }  // namespace
 
 Id PathNode::facet_of(Id leaf) const {
@@ -53,7 +60,8 @@ void OpticPaths::append(Id facet, Id cell, DividedFacet& divided) {
         if (from.part != kNone) leaf_cell_[first_leaf + from.part] = number(c);
     }
     for (FacetPart& part : divided.parts) {
-        leaves_.push_back({facet, part.level, part.method, part.centre, 0, part.layered, faint_light(part)});
+        leaves_.push_back({facet, part.level, part.method, part.centre, 0, part.layered, faint_light(part),
+                           deep_light(part)});
         if (part.method != LeafMethod::kProjected) continue;
         ++projected_count_;
         append_part(static_cast<Id>(leaves_.size() - 1), part);

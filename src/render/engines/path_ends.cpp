@@ -115,6 +115,7 @@ void ShownDrawer::note(const Shown& shown, const std::vector<Id>& leaf) {
         on_optic.predicted = of_sample.predicted;
         on_optic.cut = most_cut(on_optic.cut, shown.paths.cut());
         on_optic.cut.faint = glm::max(on_optic.cut.faint, of_sample.faint);
+        on_optic.deep = glm::max(on_optic.deep, of_sample.too_deep);
         if (of_sample.method == LeafMethod::kTraced) traced_.push_back(static_cast<Id>(of_whole));
     });
     views_.projected_facets += shown.paths.projected_count();

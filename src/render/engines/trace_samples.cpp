@@ -109,6 +109,7 @@ void follow_sample(const World& world, const FirstHit& first, const SampleView& 
         ends.push_back(end);
     }
     on_optic.cut = followed.cut;
+    on_optic.deep = followed.cut.too_deep;
 }
 
 }  // namespace trilens

@@ -100,6 +100,10 @@ struct LayerStatistics {
     // The most that was left out of any pixel, as a share of its light: paths that carry too little, and
     // paths that would go on to another optic after the last that is followed.
     double faint_light = 0, deep_light = 0;
+    // Pixels that would show more than kLeastWeight (1 / 512) of their light after the last optic that is
+    // followed, and the light of all of them together, in pixels.
+    std::size_t deep_pixels = 0;
+    double deep_sum = 0;
 };
 
 struct Picture {

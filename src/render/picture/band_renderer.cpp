@@ -164,6 +164,9 @@ void count(const World& world, const SampleViews& middle, const SampleView& view
     counts.faint_light = std::max(counts.faint_light, of_worst_colour(on_optic.cut.faint));
     counts.predicted_error = std::max(counts.predicted_error, on_optic.predicted);
     counts.deep_light = std::max(counts.deep_light, of_worst_colour(on_optic.cut.too_deep));
+    const double deep = of_worst_colour(on_optic.deep);
+    counts.deep_pixels += deep > kLeastWeight;
+    counts.deep_sum += deep;
 }
 
 void merge(const LayerStatistics& from, LayerStatistics& to) {
@@ -176,6 +179,8 @@ void merge(const LayerStatistics& from, LayerStatistics& to) {
     to.predicted_error = std::max(to.predicted_error, from.predicted_error);
     to.outline_pixels += from.outline_pixels;
     to.deep_light = std::max(to.deep_light, from.deep_light);
+    to.deep_pixels += from.deep_pixels;
+    to.deep_sum += from.deep_sum;
     to.projected_facets = std::max(to.projected_facets, from.projected_facets);
     to.crowded_out = std::max(to.crowded_out, from.crowded_out);
 }

@@ -57,19 +57,27 @@ void tell_crowded_out(const LayerStatistics& statistics, const Warn& warn) {
             statistics.crowded_out, DivideParams().most_bytes >> 20));
 }
 
+/// Of the light on all optics: less is not told of.
+constexpr double kToldShare = 0.002;
+
 /// What a picture leaves out of the scene.
 void tell_omissions(const World& world, Engine engine, const LayerStatistics& statistics, const Warn& warn) {
     const RenderSettings& settings = world.scene.render;
     const std::string why =
         follows_paths(engine) ? "maxDepth is 0" : "engine " + engine_name(engine) + " knows no others";
     if (settings.max_depth > 0 && follows_paths(engine)) {
-        // Less than half a step of 8 bits is nobody's concern.
-        if (statistics.deep_light > kLeastWeight)
+        // Light that a whole picture hardly has is nobody's concern; `left_out` has it all the same.
+        const auto pixels = static_cast<double>(statistics.optic_pixels);
+        if (statistics.deep_sum > kToldShare * pixels)
             warn(fmt::format(
-                "paths end after {} optics (maxDepth {}): up to {:.1f} % of a pixel's light would go "
-                "on to another; light that runs along a hollow mirror, or inside a wall of glass, meets them "
-                "many times",
-                settings.max_depth + 1, settings.max_depth, 100 * statistics.deep_light));
+                "paths end after {} optics (maxDepth {}): {} of {} pixels on optics lack light that would go "
+                "on "
+                "to another, {:.1f} % in the mean, up to {:.1f} %; light that runs along a hollow mirror, or "
+                "inside a wall of glass, meets them many times",
+                settings.max_depth + 1, settings.max_depth, statistics.deep_pixels, statistics.optic_pixels,
+                100 * statistics.deep_sum /
+                    static_cast<double>(std::max<std::size_t>(statistics.deep_pixels, 1)),
+                100 * statistics.deep_light));
         return;
     }
     if (world.optics.size() > 1 && (settings.reflect || settings.refract))

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace trilens {
 
@@ -16,6 +17,23 @@ Transform make_transform(const Vec3& translate, const Vec4& rotate, const Vec3& 
     const Vec4 unit = glm::normalize(rotate / largest);
     const Mat3 rotation = glm::mat3_cast(Quat(unit.w, unit.x, unit.y, unit.z));
     return {Mat3(rotation[0] * scale.x, rotation[1] * scale.y, rotation[2] * scale.z), translate};
+}
+
+Vec4 quaternion_about(const Vec3& axis, double degrees) {
+    const double half = std::remainder(degrees, 720) * std::numbers::pi / 360;
+    return {std::sin(half) * normalize_or_zero(axis), std::cos(half)};
+}
+
+Vec4 quaternion_of_euler(const Vec3& degrees, const std::string& order) {
+    Quat all(1, 0, 0, 0);
+    for (const char letter : order) {
+        const int k = letter - 'X';
+        Vec3 axis(0);
+        axis[k] = 1;
+        const Vec4 one = quaternion_about(axis, degrees[k]);
+        all = Quat(one.w, one.x, one.y, one.z) * all;
+    }
+    return {all.x, all.y, all.z, all.w};
 }
 
 std::optional<Transform> make_transform(std::span<const double, 16> columns) {

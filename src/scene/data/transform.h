@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "base/math/vec.h"
 
@@ -24,6 +25,13 @@ Transform compose(const Transform& outer, const Transform& inner);
 
 /// Scale, then rotate, then translate. The quaternion x, y, z, w may have any length but 0.
 Transform make_transform(const Vec3& translate, const Vec4& rotate, const Vec3& scale);
+
+/// The quaternion x, y, z, w of a rotation by `degrees` about an axis of any length but 0.
+Vec4 quaternion_about(const Vec3& axis, double degrees);
+
+/// Of rotations about the fixed axes by `degrees` about x, y and z, in the order of the letters: "XYZ" is
+/// about x first.
+Vec4 quaternion_of_euler(const Vec3& degrees, const std::string& order);
 
 /// From 16 numbers, column by column; none where the last row is not 0 0 0 1.
 std::optional<Transform> make_transform(std::span<const double, 16> columns);

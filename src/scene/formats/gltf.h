@@ -47,13 +47,14 @@ struct GltfModel {
     std::vector<GltfNode> nodes;
     std::vector<int> roots;  // nodes of the default scene
     std::vector<std::string> warnings;
+    std::vector<std::string> material_warnings;  // for whoever takes its materials
 };
 
 /// Reads a .gltf or .glb file (tinygltf). Lists, strips and fans of triangles; indexed or not; sparse
 /// accessors; matrices and TRS; KHR_materials_unlit, KHR_mesh_quantization. What is left out (points, lines,
-/// skins, morph targets, animation, vertex colours, further extensions) is in `warnings`. Throws
-/// InputError(file, place in the glTF) for anything malformed and for required extensions that are not known
-/// (KHR_draco_mesh_compression among them).
+/// skins, morph targets, animation, cameras, lights, vertex colours, further extensions) is in `warnings`.
+/// Throws InputError(file, place in the glTF) for anything malformed and for required extensions that are not
+/// known (KHR_draco_mesh_compression among them).
 GltfModel read_gltf(const std::string& file);
 
 /// The default scene as one mesh in the frame of the file: nodes depth first, each mesh's primitives in

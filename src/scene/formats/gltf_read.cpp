@@ -30,8 +30,11 @@ class Reader {
         for (std::size_t i = 0; i < in_.nodes.size(); ++i) read_node(i);
         read_roots();
         if (!in_.animations.empty()) warn("animations are ignored");
+        if (!in_.cameras.empty()) warn("cameras are ignored: the scene names its own");
+        if (!in_.lights.empty()) warn("lights are ignored: the scene names its own");
         if (!in_.skins.empty()) warn("skins are ignored: meshes stand in their bind pose");
-        for (const std::string& warning : warned_) out_.warnings.push_back(warning);
+        out_.warnings.assign(warned_.begin(), warned_.end());
+        out_.material_warnings.assign(material_warned_.begin(), material_warned_.end());
         return std::move(out_);
     }
 
@@ -40,6 +43,7 @@ class Reader {
         throw InputError(file_, place, message);
     }
     void warn(const std::string& message) { warned_.insert(message); }
+    void warn_of_material(const std::string& message) { material_warned_.insert(message); }
 
     int checked(int index, std::size_t count, const std::string& place, const char* what) const {
         if (index < -1 || (index >= 0 && static_cast<std::size_t>(index) >= count))
@@ -98,6 +102,7 @@ class Reader {
         result.material.roughness_factor = factor(pbr.roughnessFactor, place);
         if (material.alphaMode != "OPAQUE")
             warn("alphaMode " + material.alphaMode + " is ignored: all is opaque");
+        warn_of_maps(material);
         const int texture = checked(pbr.baseColorTexture.index, in_.textures.size(), place, "texture");
         if (texture >= 0) {
             result.image = checked(in_.textures[static_cast<std::size_t>(texture)].source, in_.images.size(),
@@ -108,6 +113,21 @@ class Reader {
                 warn("texture transforms are ignored");
         }
         out_.materials.push_back(std::move(result));
+    }
+
+    /// What a material has beside its base colour.
+    void warn_of_maps(const tinygltf::Material& material) {
+        const std::pair<const char*, int> maps[] = {
+            {"normal", material.normalTexture.index},
+            {"metallic-roughness", material.pbrMetallicRoughness.metallicRoughnessTexture.index},
+            {"occlusion", material.occlusionTexture.index},
+            {"emissive", material.emissiveTexture.index}};
+        for (const auto& [name, texture] : maps)
+            if (texture >= 0) warn_of_material(std::string(name) + " maps are ignored");
+        if (material.emissiveTexture.index < 0 &&
+            std::any_of(material.emissiveFactor.begin(), material.emissiveFactor.end(),
+                        [](double value) { return value != 0; }))
+            warn_of_material("light that materials emit is ignored");
     }
 
     double factor(double value, const std::string& place) const {
@@ -257,7 +277,7 @@ class Reader {
     const tinygltf::Model& in_;
     const std::string& file_;
     GltfModel out_;
-    std::set<std::string> warned_;
+    std::set<std::string> warned_, material_warned_;
 };
 
 }  // namespace

@@ -62,6 +62,16 @@ bool has_type(const Json& value, const std::string& type) {
     return is_integer(value);
 }
 
+/// "an array or an object".
+std::string with_articles(const std::vector<std::string>& types) {
+    std::string text;
+    for (const std::string& type : types) {
+        const bool vowel = type[0] == 'o' || type[0] == 'a' || type[0] == 'i';
+        text += (text.empty() ? "" : " or ") + std::string(vowel ? "an " : "a ") + type;
+    }
+    return text;
+}
+
 class Checker {
   public:
     explicit Checker(const Json& root) : root_(root) {}
@@ -87,12 +97,12 @@ class Checker {
             return problem(path, describe(value) + " is not " + schema.at("const").dump());
         if (schema.contains("enum")) return check_enum(value, schema.at("enum"), path);
         if (schema.contains("type")) {
-            const std::string type = schema.at("type").get<std::string>();
-            if (!has_type(value, type))
-                return problem(
-                    path, "expected " +
-                              std::string(type[0] == 'o' || type[0] == 'a' || type[0] == 'i' ? "an " : "a ") +
-                              type + ", found " + describe(value));
+            const Json& type = schema.at("type");
+            const std::vector<std::string> types =
+                type.is_array() ? type.get<std::vector<std::string>>() : std::vector{type.get<std::string>()};
+            if (std::none_of(types.begin(), types.end(),
+                             [&](const std::string& one) { return has_type(value, one); }))
+                return problem(path, "expected " + with_articles(types) + ", found " + describe(value));
         }
         if (schema.contains("minLength") && value.is_string() && value.get_ref<const std::string&>().empty())
             return problem(path, "must not be empty");
@@ -128,12 +138,15 @@ class Checker {
         const std::size_t least = schema.value("minItems", std::size_t{0});
         const std::size_t most = schema.value("maxItems", static_cast<std::size_t>(-1));
         if (value.size() < least || value.size() > most)
-            return problem(path, "has " + std::to_string(value.size()) +
-                                     (value.size() == 1 ? " entry" : " entries") + ", must have " +
-                                     (least == most          ? ""
-                                      : value.size() < least ? "at least "
-                                                             : "at most ") +
-                                     std::to_string(value.size() < least ? least : most));
+            return problem(
+                path,
+                "has " + std::to_string(value.size()) + (value.size() == 1 ? " entry" : " entries") +
+                    ", must have " +
+                    (least == most          ? ""
+                     : value.size() < least ? "at least "
+                                            : "at most ") +
+                    std::to_string(value.size() < least ? least : most) +
+                    (schema.contains("$comment") ? ": " + schema.at("$comment").get<std::string>() : ""));
         if (schema.contains("items")) {
             const Json& items = resolve_schema(schema.at("items"), root_);
             for (std::size_t i = 0; i < value.size(); ++i)
@@ -216,6 +229,7 @@ class Checker {
 
 void check_keywords(const Json& schema) {
     static const std::set<std::string> known = {"$schema",
+                                                "$comment",
                                                 "$id",
                                                 "$ref",
                                                 "title",

@@ -35,6 +35,7 @@ MeshFields all_mesh_fields() {
             "optic of glass: where bodies overlap the one of higher priority is inside, as a glass around "
             "its liquid."),
         part<Mesh>("transform", ref("transform")),
+        part<Mesh>("fit", ref("fit")),
         part<Mesh>("file", text_value(), "OBJ; for objects glTF and GLB too."),
         part<Mesh>("primitive", ref("primitive")),
         part<Mesh>("points", list_of(ref("vec3"), 3)),
@@ -70,7 +71,7 @@ constexpr const char* kMeshRules = R"json({
     { "if": { "required": ["file"] },
       "then": { "title": "a mesh with a file", "properties": { "uvs": false, "uvIndices": false } } },
     { "if": { "required": ["primitive"] },
-      "then": { "title": "a primitive", "properties": { "uvs": false, "uvIndices": false, "subdivisionScheme": false, "interpolateBoundary": false,
+      "then": { "title": "a primitive", "properties": { "fit": false, "uvs": false, "uvIndices": false, "subdivisionScheme": false, "interpolateBoundary": false,
         "creaseIndices": false, "cornerIndices": false, "holeIndices": false } } }
   ]
 })json";

@@ -92,7 +92,7 @@ void apply(Json& scene, const Target& target) {
         schema = schema ? schema_of_part(*schema, key, root) : nullptr;
         const bool last = &key == &keys.back();
         if (!value->is_null() || last) continue;
-        if (schema && schema->value("type", "") != "object")
+        if (schema && !(schema->contains("type") && schema->at("type") == "object"))
             target.fail("names nothing: there is no '" + key + "' yet");
         *value = Json::object();
     }

@@ -81,6 +81,8 @@ PolygonMesh read_gltf_file(const std::string& path, bool inherit, const std::str
     const GltfModel model = read_gltf(path);
     for (const std::string& buffer : model.buffer_files) reading.note_file(buffer);
     for (const std::string& warning : model.warnings) reading.warn(place, path + ": " + warning);
+    if (inherit)
+        for (const std::string& warning : model.material_warnings) reading.warn(place, path + ": " + warning);
     return polygons_of_gltf(model, path, inherit ? &reading.textures : nullptr);
 }
 

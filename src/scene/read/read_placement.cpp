@@ -25,6 +25,20 @@ Vec3 read_tangent(const Node& primitive, const Vec3& axis) {
     return normalize(across);
 }
 
+/// As a quaternion.
+Vec4 read_rotation(const Node& node) {
+    if (node.json.is_array()) {
+        Vec4 rotate;
+        for (std::size_t k = 0; k < 4; ++k) rotate[static_cast<int>(k)] = node.json[k].get<double>();
+        if (rotate == Vec4(0)) node.fail("a quaternion must not be zero (0 0 0 1 turns nothing)");
+        return rotate;
+    }
+    if (node.has("euler") == node.has("axis")) node.fail("needs either 'euler' or 'axis' with 'angle'");
+    if (node.has("euler"))
+        return quaternion_of_euler(to_vec3(node["euler"].json), string_or(node, "order", "XYZ"));
+    return quaternion_about(read_direction(node["axis"]), node["angle"].json.get<double>());
+}
+
 }  // namespace
 
 Transform read_transform(const Node& mesh) {
@@ -41,10 +55,7 @@ Transform read_transform(const Node& mesh) {
     const Vec3 translate = vec3_or(node, "translate", Vec3(0)), scale = vec3_or(node, "scale", Vec3(1));
     for (int k = 0; k < 3; ++k)
         if (scale[k] == 0) node["scale"][static_cast<std::size_t>(k)].fail("a scale of 0 flattens the mesh");
-    Vec4 rotate(0, 0, 0, 1);
-    for (std::size_t k = 0; node.has("rotate") && k < 4; ++k)
-        rotate[static_cast<int>(k)] = node["rotate"].json[k].get<double>();
-    if (rotate == Vec4(0)) node["rotate"].fail("a quaternion must not be zero (0 0 0 1 turns nothing)");
+    const Vec4 rotate = node.has("rotate") ? read_rotation(node["rotate"]) : Vec4(0, 0, 0, 1);
     return make_transform(translate, rotate, scale);
 }
 

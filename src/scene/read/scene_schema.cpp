@@ -66,12 +66,37 @@ constexpr const char* kFrame = R"json({
     "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
     "properties": {
       "translate": { "$ref": "#/definitions/vec3", "default": [0, 0, 0] },
-      "rotate": { "type": "array", "minItems": 4, "maxItems": 4, "items": { "$ref": "#/definitions/number" }, "default": [0, 0, 0, 1], "description": "Quaternion x, y, z, w, any length but 0." },
+      "rotate": { "$ref": "#/definitions/rotation", "default": [0, 0, 0, 1], "description": "A quaternion x, y, z, w of any length but 0; or angles." },
       "scale": { "$ref": "#/definitions/vec3", "default": [1, 1, 1], "description": "No entry may be 0; an odd number of negative ones mirrors." },
       "matrix": { "type": "array", "minItems": 16, "maxItems": 16, "items": { "$ref": "#/definitions/number" }, "description": "Column by column, as glTF; its last row is 0 0 0 1." }
     },
     "if": { "required": ["matrix"] },
     "then": { "title": "a transform with a matrix", "properties": { "translate": false, "rotate": false, "scale": false } }
+  },
+
+  "rotation": {
+    "title": "a rotation", "description": "A quaternion x, y, z, w; or { euler, order }: degrees about the fixed axes x, y and z, 'XYZ' about x first (as USD's rotateXYZ); or { axis, angle }: degrees about a direction.",
+    "type": ["array", "object"],
+    "$comment": "a quaternion is x, y, z, w; angles in degrees are { \"euler\": [x, y, z] } or { \"axis\": [x, y, z], \"angle\": a }",
+    "minItems": 4, "maxItems": 4, "items": { "$ref": "#/definitions/number" },
+    "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "properties": {
+      "euler": { "$ref": "#/definitions/vec3" },
+      "order": { "enum": ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"], "default": "XYZ" },
+      "axis": { "$ref": "#/definitions/vec3", "description": "Any length but 0." },
+      "angle": { "$ref": "#/definitions/number" }
+    },
+    "dependencies": { "order": ["euler"], "axis": ["angle"], "angle": ["axis"] }
+  },
+
+  "fit": {
+    "title": "a fit", "description": "Moves and scales a mesh, after its transform, until the middle of its bounds is 'center' and their longest side 'size'.",
+    "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
+    "required": ["size"],
+    "properties": {
+      "center": { "$ref": "#/definitions/vec3", "default": [0, 0, 0] },
+      "size": { "$ref": "#/definitions/positive" }
+    }
   },
 
   "animation": {
