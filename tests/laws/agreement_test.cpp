@@ -45,11 +45,11 @@ void check_shipped(int width, int height, bool print) {
     }
 }
 
-void check_cages(int width, int height, bool print) {
+void check_cages(int width, int height, const std::vector<int>& resolutions, bool print) {
     if (data_cages().empty()) TRILENS_SKIP("needs data/cages");
     TRILENS_NEEDS_DATA("models/spot.obj");
     for (const std::string& cage : data_cages())
-        for (const int n : {1, 2, 8}) check_agreement(cage, n, *cage_world(cage, n, width, height), print);
+        for (const int n : resolutions) check_agreement(cage, n, *cage_world(cage, n, width, height), print);
 }
 
 }  // namespace
@@ -78,10 +78,10 @@ TEST_CASE("projector and Embree agree on cages of every kind as mirrors", "[laws
 }
 
 TEST_CASE("projector and Embree agree on Pixar's cages as mirrors", "[laws][oracle][law]") {
-    check_cages(96, 72, false);
+    check_cages(96, 72, {2}, false);
 }
 
 TEST_CASE("the same at full size, with a table", "[.long][agreement][law]") {
     check_shipped(640, 480, true);
-    check_cages(640, 480, true);
+    check_cages(640, 480, {1, 2, 8}, true);
 }
