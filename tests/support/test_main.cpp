@@ -131,11 +131,11 @@ CATCH_REGISTER_LISTENER(CountListener)
 int main(int argc, char** argv) {
     if (argc == 3 && std::strcmp(argv[1], "--write-ctest") == 0)
         return write_ctest(std::filesystem::canonical(argv[0]).c_str(), argv[2]);
+    std::set<std::string> names;
+    for (const auto& [name, tags] : all_cases()) names.insert(name);
     const int result = Catch::Session().run(argc, argv);
     for (const auto& [test, why] : skips()) std::printf("skipped: %s: %s\n", test.c_str(), why.c_str());
     // A skip is of a whole test, by its name, or of a part of one that else went on.
-    std::set<std::string> names;
-    for (const auto& [name, tags] : all_cases()) names.insert(name);
     const std::size_t skipped = skips().size(), failed = totals().failed, rest = totals().tests - failed;
     const auto whole = static_cast<std::size_t>(std::count_if(
         skips().begin(), skips().end(), [&](const auto& skip) { return names.count(skip.first) > 0; }));
