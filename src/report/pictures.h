@@ -1,4 +1,4 @@
-// Pictures of images for reports: what is shown, how far two differ, how far things moved.
+// Images for reports: tone-mapped pictures, false-colour errors, displacement maps.
 #pragma once
 
 #include <optional>

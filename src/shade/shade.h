@@ -1,4 +1,4 @@
-// What colour a seen point has: one function for projector and truth.
+// Surface shading: Lambert's cosine law with lights, shadows and textures, for projector and tracer alike.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Seen points shaded side by side: what the lanes of a batch hold, and the steps that work on all of them.
+// Shading in SIMD lanes: a structure of arrays of surface points, and the steps over it.
 #pragma once
 
 #include <cstdint>

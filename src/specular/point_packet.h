@@ -19,7 +19,7 @@ class PointPacket {
     PointPacket(const Surface& surface, const SurfaceBounder& bounder, ViewTree& tree,
                 const SpecularQuery& query, const SearchLimits& limits);
 
-    /// Settles what lies near the images of the points before: at most kPointLanes of them.
+    /// Warm-starts points from the previous group's solutions: at most kPointLanes of them.
     void begin(std::span<const Vec3> points);
     /// Whether that is all for some reason or other, so that `end` needs no parts.
     bool is_done() const { return under_way_ == 0; }

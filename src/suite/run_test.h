@@ -1,4 +1,4 @@
-// One test of a suite: drawn, its stored picture updated where that is asked for, judged.
+// Runs one regression test: draws, updates the stored picture on request, judges.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Suites of regression tests: every test drawn, compared, judged, and told as JUnit and as one page.
+// Regression suites: tests found in folders, run, and reported as JUnit and HTML.
 #pragma once
 
 #include <functional>

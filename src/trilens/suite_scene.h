@@ -1,4 +1,4 @@
-// A regression test's scene through the library's own calls.
+// Draws the scene of a regression test through the public library.
 #pragma once
 
 #include "suite/suite.h"

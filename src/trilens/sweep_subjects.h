@@ -1,4 +1,4 @@
-// The scenes of a sweep's points: what is known of each, and renderers of those in use.
+// A cache of the scenes and renderers that a sweep's points need.
 #pragma once
 
 #include <deque>

@@ -1,4 +1,4 @@
-// A control mesh, in the words of UsdGeomMesh, and the analytic primitives that may stand in its place.
+// Subdivision cages (UsdGeomMesh's names) and analytic primitives.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// A file that is written piece by piece beside its name, and takes its place once it is whole.
+// Atomic writing: a temporary file beside the name, renamed once it is whole.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// TRILENS_CHECK: stops the program on a bug, with the place; never for bad input, never for "no answer".
+// TRILENS_CHECK: an assertion that stays in release builds; for bugs, never for bad input or for "no answer".
 #pragma once
 
 namespace trilens {

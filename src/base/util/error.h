@@ -1,4 +1,4 @@
-// The failures that are the world's fault, each with its exit code; caught once, in the command.
+// Runtime errors (input, output, usage, computation), one class per exit code; caught once, in the command.
 #pragma once
 
 #include <stdexcept>

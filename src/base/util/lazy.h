@@ -1,4 +1,4 @@
-// A value that is made when it is first asked for, then kept.
+// Lazy initialisation: a value made at its first use, by one thread, then kept.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// One piece of work on several threads of its own, for work that waits or that loops inside.
+// A task run on threads of its own, for work that blocks or loops inside (no work stealing).
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// "Did you mean": the known name that is nearest to a mistyped one.
+// Spelling suggestions by edit distance (Damerau and Levenshtein): "did you mean".
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// The version of trilens: the one place that states it.
+// The version of trilens, stated once.
 #pragma once
 
 #define TRILENS_VERSION_MAJOR 0

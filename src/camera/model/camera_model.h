@@ -1,4 +1,4 @@
-// A camera by its exact rays: which ray each place on the film has, and where a world point appears.
+// The camera interface: exact ray of a film position, and projection of a world point.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What `trilens compare` is asked, what it found, and how it says so.
+// Formats a comparison of two images as text and JSON.
 #pragma once
 
 #include <trilens/compare.h>

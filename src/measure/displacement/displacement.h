@@ -1,4 +1,4 @@
-// Displacement: how many pixels a seen point lies from where the reference shows it.
+// Displacement: the screen-space distance, in pixels, between where two images show the same point.
 #pragma once
 
 #include <cstddef>

@@ -11,9 +11,8 @@
 
 namespace trilens {
 
-/// A hit outside its cell is the cell next door's business, a hit on another triangle is less exact: both
-/// count as farther away, so that the better answer wins where two say nearly the same. Never less than the
-/// distance.
+/// Hits outside the cell are penalised, so the neighbouring cell wins ties; so are hits on another triangle,
+/// which are less exact. Never less than the distance.
 inline constexpr double kOvershootPenalty = 2, kOtherPrimitivePenalty = 0.25;
 inline constexpr double kMostPenalty = 1;  // more than both together
 static_assert(kOvershootPenalty * kOvershoot + kOtherPrimitivePenalty < kMostPenalty);

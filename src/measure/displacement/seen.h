@@ -1,4 +1,4 @@
-// What two images see through an optic, pixel by pixel: the same object, the same triangle, anything at all.
+// Per-pixel agreement of object ids, triangle ids and coverage between two images.
 #pragma once
 
 #include <cstddef>

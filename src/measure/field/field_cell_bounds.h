@@ -1,4 +1,4 @@
-// Which points the patches of a cell can show: tight bounds, each made when it is first asked for.
+// Bounds of the points that a cell's patches can show, computed lazily.
 #pragma once
 
 #include <atomic>

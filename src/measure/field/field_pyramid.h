@@ -1,4 +1,4 @@
-// What a search asks of a seen field: its links, where whole patches are, and which cells may show a point.
+// Pyramid of boxes over a position field, for nearest-point queries.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Folds of a seen field: curves on the screen where two images of the same points meet.
+// Fold curves of a position field: where its map from the screen turns over (singularities, Whitney folds).
 #pragma once
 
 #include <cstdint>

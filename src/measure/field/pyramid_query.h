@@ -1,4 +1,4 @@
-// Which cells may show the points that neighbouring pixels look for: one way down the pyramid for many.
+// Packet traversal of a field pyramid: the cells that may show the points of neighbouring pixels.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// A facet divided until the rays at its corners tell the truth about those between them.
+// Adaptive subdivision: splits a facet until interpolated corner rays match the exact paths inside it.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// A corner of a RayMesh as one history has it, made of what the camera's ray there comes to.
+// The corner ray of one history, made from the probe at that corner.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-// How far from its exact place a facet shows what it shows: displacement before it is drawn.
+// A-priori error estimate: the displacement of a facet's interpolated rays, in pixels, before drawing.
 #pragma once
 
 #include "base/raymesh/ray_mesh.h"

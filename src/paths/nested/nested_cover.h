@@ -1,4 +1,4 @@
-// Which facet of a mesh on the film lies over a place, where facets may overlap: the nearest one.
+// Visibility among overlapping facets on the film: the nearest facet over a position.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Nested optics: optics seen in mirrors, each with its own grid, imaged over the chain of mirrors before it.
+// Nested optics: optics seen in mirrors, each with its own grid imaged over the chain of mirrors before it.
 #pragma once
 
 #include <limits>

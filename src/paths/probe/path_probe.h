@@ -1,4 +1,4 @@
-// What a camera's ray through one point of a facet comes to: the exact paths from there.
+// Traces the exact paths of the camera ray through one point of a facet (a probe).
 #pragma once
 
 #include <array>

@@ -219,7 +219,7 @@ HWY_NOINLINE void resolve_group(const KernelScene& scene, KernelState& state) {
     }
 }
 
-// What vectors' samples see leaves the engine unplaced: exact triangles, and bounds of t.
+// Writes results: the exact triangle and bounds of t of each sample; the place on the triangle comes later.
 
 /// In the scene's order what `nearest` names in the prepared one.
 HWY_INLINE Words scene_triangles(const PreparedScene::Data& data, const Nearest& nearest) {

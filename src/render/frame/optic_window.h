@@ -1,4 +1,4 @@
-// Where on the film an optic's facets may be seen: elsewhere nothing of it need be drawn.
+// Conservative screen bounds of an optic.
 #pragma once
 
 #include "render/frame/frame.h"

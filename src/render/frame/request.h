@@ -1,4 +1,4 @@
-// What a picture is asked to be, and what is known of it once it is drawn.
+// A picture's request (frame, engine, layers) and its statistics.
 #pragma once
 
 #include <cstddef>

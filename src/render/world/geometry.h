@@ -1,4 +1,4 @@
-// What is built from a world's geometry: trees and grids, each made once, when it is first asked for.
+// Acceleration structures and grids of a world, built lazily.
 #pragma once
 
 #include <memory>

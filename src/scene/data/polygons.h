@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/description/material.h"
 #include "base/description/cage.h"
+#include "base/description/material.h"
 #include "base/util/ids.h"
 #include "scene/data/scene.h"
 #include "scene/data/transform.h"

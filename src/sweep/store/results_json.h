@@ -1,4 +1,4 @@
-// The sweep's own JSON files: written so that people can read them, read so that damage is noticed.
+// Reading and writing of a sweep's JSON files, with checks for damage.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Which files of a sweep's folder are the sweep's own: what else lies there is somebody's and stays.
+// Which files of a folder a sweep wrote: cleaning removes no others.
 #pragma once
 
 #include <set>
