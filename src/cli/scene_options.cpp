@@ -3,6 +3,7 @@
 #include <trilens/error.h>
 #include <trilens/stopwatch.h>
 #include <algorithm>
+#include <charconv>
 #include <iostream>
 #include <iterator>
 
@@ -34,6 +35,37 @@ std::vector<SceneOverride> file_overrides(const SceneOptions& options) {
     if (!options.filter.empty()) overrides.push_back({"/film/filter", '"' + options.filter + '"'});
     if (options.max_depth >= 0) overrides.push_back({"/render/maxDepth", std::to_string(options.max_depth)});
     return overrides;
+}
+
+/// What -n says.
+struct Resolutions {
+    int of_all = 0;  // 0: as the scene says
+    std::vector<std::pair<std::string, int>> of_optic;
+};
+
+Resolutions resolutions_of(const std::vector<std::string>& texts) {
+    Resolutions resolutions;
+    std::size_t of_all = 0;
+    for (const std::string& text : texts) {
+        const std::size_t equals = text.rfind('=');
+        const std::string number = equals == std::string::npos ? text : text.substr(equals + 1);
+        int n = 0;
+        const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), n);
+        if (error != std::errc() || stop != number.data() + number.size() || n < 1 || n > kMaxResolution)
+            throw UsageError(fmt::format(
+                "-n/--resolution takes an integer from 1 to {}, or NAME=N for one optic, not \"{}\"",
+                kMaxResolution, text));
+        if (equals == std::string::npos) {
+            resolutions.of_all = n;
+            ++of_all;
+        } else {
+            resolutions.of_optic.emplace_back(text.substr(0, equals), n);
+        }
+    }
+    if (of_all > 1)
+        throw UsageError(
+            fmt::format("-n/--resolution takes one value for every optic and is given {} times", of_all));
+    return resolutions;
 }
 
 /// OpenEXR's first four bytes.
@@ -72,15 +104,17 @@ std::string scene_note(const SceneOptions& options, const Scene& scene) {
 }  // namespace
 
 std::vector<Option> scene_argument(SceneOptions& options) {
-    return {{.names = "SCENE",
-             .target = &options.scene,
-             .help = "scene file (JSON), an image that carries its scene, or - for standard input",
-             .offer = Offer::kScene,
-             .is_required = true},
-            {.names = "-n,--resolution",
-             .target = &options.resolution,
-             .help = "N x N facets per quad face of every optic",
-             .range = {1, 1024}}};
+    return {
+        {.names = "SCENE",
+         .target = &options.scene,
+         .help = "scene file (JSON), an image that carries its scene, or - for standard input",
+         .offer = Offer::kScene,
+         .is_required = true},
+        {.names = "-n,--resolution",
+         .target = &options.resolution,
+         .help = "N x N facets per quad face of every optic; NAME=N: of that one; may be given several times",
+         .value = "N",
+         .check = [](const std::vector<std::string>& texts) { resolutions_of(texts); }}};
 }
 
 std::vector<Option> scene_overrides(SceneOptions& options) {
@@ -123,7 +157,7 @@ std::vector<Option> window_options(SceneOptions& options) {
 }
 
 SceneRequest scene_request(const SceneOptions& options) {
-    return {options.scene, file_overrides(options), options.resolution};
+    return {options.scene, file_overrides(options), resolutions_of(options.resolution).of_all};
 }
 
 Scene load_scene(const SceneOptions& options, Console& console) {
@@ -131,6 +165,8 @@ Scene load_scene(const SceneOptions& options, Console& console) {
     const Stopwatch watch;
     Scene scene = is_standard_stream(options.scene) ? read_standard_input(scene_request(options))
                                                     : load_scene(scene_request(options));
+    for (const auto& [optic, n] : resolutions_of(options.resolution).of_optic)
+        set_resolution(scene, n, optic);
     for (const FileRead& file : scene.files) console.files().reads({file.path});
     for (const std::string& warning : scene.warnings) console.warn(warning);
     console.note_stage(scene_note(options, scene), watch);

@@ -18,16 +18,16 @@ inline constexpr const char* kStandardInput = "standard input";
 std::string standard_input(const std::string& expected);
 
 struct SceneOptions {
-    std::string scene;             // a scene file, an image that carries its scene, or "-"
-    std::string camera;            // empty: the image's own, or the first
-    int resolution = 0;            // 0: as the scene says
-    std::string size;              // "640x480"; empty: as the scene says
-    int spp = 0;                   // 0: as the scene says
-    std::string filter;            // empty: as the scene says
-    int max_depth = -1;            // < 0: as the scene says
-    std::vector<std::string> set;  // "/json/pointer=VALUE"
-    std::string crop;              // "x0,y0,x1,y1"
-    std::string aov;               // empty: the usual ones
+    std::string scene;                    // a scene file, an image that carries its scene, or "-"
+    std::string camera;                   // empty: the image's own, or the first
+    std::vector<std::string> resolution;  // "16" for every optic, "ball=16" for one; else as the scene says
+    std::string size;                     // "640x480"; empty: as the scene says
+    int spp = 0;                          // 0: as the scene says
+    std::string filter;                   // empty: as the scene says
+    int max_depth = -1;                   // < 0: as the scene says
+    std::vector<std::string> set;         // "/json/pointer=VALUE"
+    std::string crop;                     // "x0,y0,x1,y1"
+    std::string aov;                      // empty: the usual ones
 };
 
 /// The scene argument and its resolution.

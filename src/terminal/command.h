@@ -51,9 +51,11 @@ struct Option {
     Range range = {};
     Offer offer = Offer::kNothing;
     bool is_required = false;
-    std::string excludes = "";   // the long name of an option that must not be given beside it
-    bool is_common = false;      // every command has it
-    bool is_answer = false;      // --help and --version: nothing else counts
+    std::string excludes = "";  // the long name of an option that must not be given beside it
+    bool is_common = false;     // every command has it
+    bool is_answer = false;     // --help and --version: nothing else counts
+    std::function<void(const std::vector<std::string>&)> check =
+        {};                      // throws UsageError for values it refuses
     bool value_follows = false;  // its value stands behind "=" or is left out: --json
 };
 

@@ -128,6 +128,7 @@ void set_option(const Option& option, const std::vector<std::string>& values) {
     if (values.size() > 1 && !takes_many(option))
         throw UsageError(spoken_name(option) + " takes one value and is given " +
                          std::to_string(values.size()) + " times");
+    if (option.check) option.check(values);
     for (const std::string& value : values) {
         if (value.empty()) throw UsageError(spoken_name(option) + " takes " + takes(option) + ", not \"\"");
         if (!option.choices.empty() &&

@@ -63,6 +63,7 @@ TEST_CASE("every kind of bad option is told in one line with what the option tak
     check_usage("render a.json -n", {"-n/--resolution", "nothing follows"});
     check_usage("render a.json -o", {"-o/--output takes OUT", "nothing follows"});
     check_usage("render a.json -n 2 -n 3", {"-n/--resolution takes one value", "2 times"});
+    check_usage("render a.json -n ball=", {"-n/--resolution", "NAME=N"});
     check_usage("render a.json --engine exct",
                 {"--engine takes exact, classic, envmap or planar", "'exact'"});
     check_usage("render a.json --slices 2 --tessellate 2", {"--tessellate", "--slices", "exclude"});
@@ -115,6 +116,8 @@ TEST_CASE("values that look like options, and groups of short ones, are read", "
               .exit_code == 0);
     CHECK(run_trilens("scene validate -n2 " + scene).exit_code == 0);
     CHECK(run_trilens("scene validate -qn 2 " + scene).exit_code == 0);
+    CHECK(run_trilens("scene info -n 2 -n ball=5 " + scene).out.find("resolution 5") != std::string::npos);
+    CHECK(run_trilens("scene info -n bal=5 " + scene).err.find("did you mean 'ball'?") != std::string::npos);
     CHECK(run_trilens("scene info --set=/film/width=16 " + scene).out.find("film 16 x 24") !=
           std::string::npos);
 }

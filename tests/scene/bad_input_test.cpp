@@ -360,6 +360,10 @@ TEST_CASE("overrides by JSON pointer", "[scene]") {
          "/meshes/01/role: no entry '01': the array has 3 entries, counted from 0 (in --set)"},
         {"/meshes/-/role", "optic",
          "/meshes/-/role: no entry '-': the array has 3 entries, counted from 0 (in --set)"},
+        {"/meshes/bal/role", "optic",
+         "/meshes/bal/role: no entry 'bal': the array has 3 entries, counted from 0; did you mean 'ball'? "
+         "(in "
+         "--set)"},
         {"/film/width/0", "1", "/film/width/0: names nothing: the number 64 has no part '0' (in --set)"},
         {"film/width", "1", "film/width: 'film/width' is no JSON pointer: it must begin with '/' (in --set)"},
         {"/film~2", "1", "/film~2: '~' in a JSON pointer must be followed by 0 or 1 (in --set)"},

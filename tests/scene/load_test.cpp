@@ -2,6 +2,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "scene/read/override.h"
 #include "scene_text.h"
 
 using namespace trilens;
@@ -131,4 +132,25 @@ TEST_CASE("a background picture turns about the Y axis", "[scene]") {
     CHECK(scene.background.rotate_sin == Approx(0.5));
     CHECK(begins_with(error_of(text, {}, folder + "/elsewhere/room.json"),
                       folder + "/elsewhere/room.json: /background/file: the picture '"));
+}
+
+TEST_CASE("an override names an entry of an array by its name", "[scene]") {
+    const Scene scene =
+        load_text(kRoom, {{"/meshes/ball/resolution", "5"}, {"/materials/glass/ior", "1.33"}});
+    CHECK(scene.meshes[1].resolution == 5);
+    CHECK(scene.materials[1].ior == 1.33);
+    const Scene without = load_text(kRoom, {{"/meshes/ball", "", true}, {"/cameras/rays", "", true}});
+    CHECK(without.meshes.size() == 2);
+    CHECK(without.cameras.size() == 1);
+}
+
+TEST_CASE("a resolution is every optic's, or one's by its name", "[scene]") {
+    Scene scene = load_text(kRoom);
+    set_resolution(scene, 3);
+    set_resolution(scene, 12, "ball");
+    CHECK(scene.meshes[0].resolution == 3);
+    CHECK(scene.meshes[1].resolution == 12);
+    CHECK(load_text(scene.resolved).meshes[1].resolution == 12);
+    CHECK_THROWS_AS(set_resolution(scene, 12, "wall"), UsageError);  // an object
+    CHECK(scene.meshes[1].resolution == 12);
 }

@@ -185,9 +185,9 @@ TEST_CASE("a mesh is fitted into a cube, after its transform", "[scene]") {
     const std::string mesh = R"({"name":"box","role":"object","points":[[0,0,0],[4,0,0],[0,2,1]],
         "faceVertexCounts":[3],"faceVertexIndices":[0,1,2],"transform":{"scale":[3,1,1]},
         "fit":{"center":[1,2,3],"size":2}})";
-    const std::vector<Vec3>& points = load_text(kRoom, {{"/meshes/2", mesh}}).meshes.back().object.points;
+    const Scene scene = load_text(kRoom, {{"/meshes/2", mesh}});
     Box bounds;
-    for (const Vec3& point : points) bounds.include(point);
+    for (const Vec3& point : scene.meshes.back().object.points) bounds.include(point);
     CHECK(length(0.5 * (bounds.low + bounds.high) - Vec3(1, 2, 3)) < 1e-14);
     CHECK(length(bounds.size() - Vec3(2, 1.0 / 3, 1.0 / 6)) < 1e-14);
 }

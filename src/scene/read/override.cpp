@@ -1,5 +1,7 @@
 #include "scene/read/override.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <vector>
 
@@ -51,18 +53,37 @@ Json parse_value(const Target& target) {
     return parse_json(text, target.file + ": " + target.change.pointer + " (in --set)");
 }
 
+/// The names of an array's entries; "" for those without.
+std::vector<std::string> entry_names(const Json& array) {
+    std::vector<std::string> names;
+    for (const Json& entry : array) {
+        const bool has_name = entry.is_object() && entry.contains("name") && entry.at("name").is_string();
+        names.push_back(has_name ? entry.at("name").get<std::string>() : "");
+    }
+    return names;
+}
+
+/// Which entry of an array a key is: by its place, counted from 0, or by its name.
+std::size_t entry_of(const Json& array, const std::string& key, const Target& target) {
+    std::size_t index = array.size();
+    const auto end = key.data() + key.size();
+    const auto [stop, error] = std::from_chars(key.data(), end, index);
+    const bool leading_zero = key.size() > 1 && key[0] == '0';
+    if (error == std::errc() && stop == end && !leading_zero && index < array.size()) return index;
+    std::vector<std::string> names = entry_names(array);
+    const auto found = std::find(names.begin(), names.end(), key);
+    if (found != names.end() && !key.empty()) return static_cast<std::size_t>(found - names.begin());
+    std::erase(names, "");
+    target.fail("no entry '" + key + "': the array has " + std::to_string(array.size()) +
+                (array.size() == 1 ? " entry" : " entries") + ", counted from 0" +
+                (names.empty() || key.empty() || !std::isalpha(static_cast<unsigned char>(key[0]))
+                     ? ""
+                     : suggestion(key, names)));
+}
+
 /// The part `key` of `value`, which is added to an object whose schema knows it or leaves it free.
 Json& step(Json& value, const std::string& key, const Json* schema, const Target& target) {
-    if (value.is_array()) {
-        std::size_t index = value.size();
-        const auto end = key.data() + key.size();
-        const auto [stop, error] = std::from_chars(key.data(), end, index);
-        const bool leading_zero = key.size() > 1 && key[0] == '0';
-        if (error != std::errc() || stop != end || leading_zero || index >= value.size())
-            target.fail("no entry '" + key + "': the array has " + std::to_string(value.size()) +
-                        (value.size() == 1 ? " entry" : " entries") + ", counted from 0");
-        return value[index];
-    }
+    if (value.is_array()) return value[entry_of(value, key, target)];
     if (!value.is_object()) target.fail("names nothing: " + describe(value) + " has no part '" + key + "'");
     if (!value.contains(key) && schema && !is_free_key(key) &&
         !schema_of_part(*schema, key, scene_schema_json()))
@@ -71,20 +92,28 @@ Json& step(Json& value, const std::string& key, const Json* schema, const Target
 }
 
 /// Takes away what the pointer names, which must be there.
-void remove(Json& scene, const Target& target) {
-    const Json::json_pointer place(target.change.pointer);
-    if (!scene.contains(place) || place.empty()) target.fail("names nothing that could be removed");
-    Json& parent = scene[place.parent_pointer()];
-    if (parent.is_array())
-        parent.erase(static_cast<std::size_t>(std::stoul(place.back())));
-    else
-        parent.erase(place.back());
+void remove(Json& scene, const std::vector<std::string>& keys, const Target& target) {
+    Json* parent = &scene;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        const bool is_last = k + 1 == keys.size();
+        if (parent->is_array()) {
+            const std::size_t entry = entry_of(*parent, keys[k], target);
+            if (is_last) return void(parent->erase(entry));
+            parent = &(*parent)[entry];
+        } else {
+            if (!parent->is_object() || !parent->contains(keys[k]))
+                target.fail("names nothing that could be removed");
+            if (is_last) return void(parent->erase(keys[k]));
+            parent = &(*parent)[keys[k]];
+        }
+    }
+    target.fail("names nothing that could be removed");
 }
 
 void apply(Json& scene, const Target& target) {
     const Json& root = scene_schema_json();
     const std::vector<std::string> keys = split_pointer(target);
-    if (target.change.removes) return remove(scene, target);
+    if (target.change.removes) return remove(scene, keys, target);
     Json* value = &scene;
     const Json* schema = &root;
     for (const std::string& key : keys) {
@@ -116,18 +145,25 @@ Json resolved_json(const Scene& scene) {
     return json;
 }
 
-void set_resolution(Scene& scene, int resolution) {
+void set_resolution(Scene& scene, int resolution, const std::string& optic) {
     if (resolution < 1 || resolution > kMaxResolution)
         throw InputError(scene_title(scene), "/meshes",
                          "a resolution of " + std::to_string(resolution) + " is not in 1.." +
                              std::to_string(kMaxResolution));
+    std::vector<std::size_t> meant;
+    std::vector<std::string> names;
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        if (scene.meshes[m].role != Role::kOptic) continue;
+        names.push_back(scene.meshes[m].name);
+        if (optic.empty() || names.back() == optic) meant.push_back(m);
+    }
+    if (meant.empty() && !optic.empty())
+        throw UsageError("there is no optic \"" + optic + "\"" + suggestion(optic, names));
     Json resolved;
     if (!scene.resolved.empty()) resolved = resolved_json(scene);
-    for (Mesh& mesh : scene.meshes)
-        if (mesh.role == Role::kOptic) mesh.resolution = resolution;
+    for (const std::size_t m : meant) scene.meshes[m].resolution = resolution;
     if (scene.resolved.empty() || scene.meshes.empty()) return;
-    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-        if (scene.meshes[m].role == Role::kOptic) resolved["meshes"][m]["resolution"] = resolution;
+    for (const std::size_t m : meant) resolved["meshes"][m]["resolution"] = resolution;
     scene.resolved = resolved.dump();
 }
 

@@ -10,16 +10,19 @@
 
 namespace trilens {
 
-/// Applies the overrides in order. A key that is missing but known to the scene schema is added, with the
-/// objects on the way to it. Throws InputError(file, pointer) where a pointer is malformed or names nothing.
+/// Applies the overrides in order. An entry of an array is named by its place, counted from 0, or by its own
+/// "name": /meshes/2/resolution, /meshes/ball/resolution. A key that is missing but known to the scene schema
+/// is added, with the objects on the way to it. Throws InputError(file, pointer) where a pointer is malformed
+/// or names nothing.
 void apply_overrides(Json& scene, std::span<const SceneOverride> overrides, const std::string& file);
 
 /// Scene::resolved, which is not empty, as a document. Callers may have written it: throws InputError where
 /// it is no scene's, as the schema has it, or names other meshes or cameras than the scene has.
 Json resolved_json(const Scene& scene);
 
-/// Gives every optic this resolution, in the scene and in its resolved JSON. Throws InputError unless it is
-/// in 1..1024, or where Scene::resolved is no scene's JSON; then nothing has changed.
-void set_resolution(Scene& scene, int resolution);
+/// Gives every optic this resolution, or with a name those of that name, in the scene and in its resolved
+/// JSON. Throws InputError unless it is in 1..1024, or where Scene::resolved is no scene's JSON, UsageError
+/// where no optic has the name; then nothing has changed.
+void set_resolution(Scene& scene, int resolution, const std::string& optic = "");
 
 }  // namespace trilens
