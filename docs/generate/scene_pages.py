@@ -185,15 +185,21 @@ PRIMITIVES = {
     "paraboloid": {"type": "paraboloid", "center": [0, 1, -0.8], "axis": [0.1, 0.1, 1], "radius": 1.1, "focalLength": 0.6},
     "cylinder": {"type": "cylinder", "center": [0, 1, 0], "axis": [0.3, 1, 0], "radius": 0.7, "height": 1.8},
     "plane": {"type": "plane", "center": [0, 1, -0.5], "normal": [0.3, 0.2, 1], "size": [2.2, 1.8]},
+    "box": {"type": "box", "center": [0, 0.7, 0], "axis": [0.2, 1, 0.1], "size": [1.6, 1.2, 1]},
+    "disk": {"type": "disk", "center": [0, 1, 0], "normal": [0.3, 0.6, 1], "radius": 0.9},
 }
+OF_OBJECTS = ("box", "disk")
 NORMALS = {"smooth": {"type": "smooth"}, "sphere": {"type": "sphere", "center": [0, 0.2, 0]},
            "noise": {"type": "noise", "seed": 7, "amplitude": 0.2, "scale": 3}}
 
 
 def surface_pictures(program):
     size = ("--size", "320x240")
-    primitives = {name: (program.draw(f"surface-{name}", surface_scene(program, {"primitive": shape}), *size),
-                         f"A mirror: `{json.dumps(shape)}`") for name, shape in PRIMITIVES.items()}
+    primitives = {}
+    for name, shape in PRIMITIVES.items():
+        mesh = {"primitive": shape} | ({"role": "object", "material": "yellow"} if name in OF_OBJECTS else {})
+        primitives[name] = (program.draw(f"surface-{name}", surface_scene(program, mesh), *size),
+                            f"{'An object' if name in OF_OBJECTS else 'A mirror'}: `{json.dumps(shape)}`")
     cages = {name: program.draw(f"cage-{name}", surface_scene(program, mesh), *size) for name, mesh in (
         ("catmullClark", CUBE), ("loop", TRIANGLES), ("bilinear", {**CUBE, "subdivisionScheme": "bilinear"}),
         ("crease", {**CUBE, "creaseIndices": [4, 5, 6, 7, 4], "creaseLengths": [5], "creaseSharpnesses": [10]}))}

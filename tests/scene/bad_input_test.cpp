@@ -259,7 +259,16 @@ TEST_CASE("keys that need or exclude each other", "[scene]") {
         {"/meshes/1/points", "[[0,0,0],[1,0,0],[0,1,0]]",
          "/meshes/1: 'points' needs 'faceVertexCounts' beside it"},
         {"/meshes/1/file", "ball.obj", "/meshes/1: a mesh has 'file' and 'primitive': only one may be given"},
-        {"/meshes/1/role", "object", "/meshes/1/primitive: 'primitive' is no key of an object"},
+        {"/meshes/1/primitive", R"({"type":"box","size":[1,1,1]})",
+         "/meshes/1/primitive/type: a box is an object's: an optic is a sphere, a paraboloid, a cylinder, a "
+         "plane, or "
+         "a cage"},
+        {"/meshes/1/primitive", R"({"type":"box"})", "/meshes/1/primitive: a box needs 'size'"},
+        {"/meshes/1/primitive", R"({"type":"plane","size":[1,1,1]})",
+         "/meshes/1/primitive/size: has 3 entries, must have 2 for a plane"},
+        {"/meshes/1/primitive", R"({"type":"sphere","segments":9})",
+         "/meshes/1/primitive/segments: are an object's: an optic is exact"},
+        {"/meshes/1/fit", R"({"size":1})", "/meshes/1/fit: an optic's primitive has its own center and size"},
         {"/meshes/2", R"({"role":"object"})",
          "/meshes/2: a mesh needs one of 'points', 'file' and 'primitive'"},
         {"/meshes/1", R"({"role":"optic","primitive":{"type":"sphere"}})",

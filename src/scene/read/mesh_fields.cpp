@@ -64,14 +64,12 @@ constexpr const char* kMeshRules = R"json({
     "creaseLengths": ["creaseIndices"], "cornerIndices": ["cornerSharpnesses"], "cornerSharpnesses": ["cornerIndices"]
   },
   "allOf": [
-    { "if": { "properties": { "role": { "const": "object" } } },
-      "then": { "title": "an object", "properties": { "primitive": false } } },
     { "if": { "properties": { "role": { "const": "optic" } } },
       "then": { "title": "an optic", "required": ["material"] } },
     { "if": { "required": ["file"] },
       "then": { "title": "a mesh with a file", "properties": { "uvs": false, "uvIndices": false } } },
     { "if": { "required": ["primitive"] },
-      "then": { "title": "a primitive", "properties": { "fit": false, "uvs": false, "uvIndices": false, "subdivisionScheme": false, "interpolateBoundary": false,
+      "then": { "title": "a primitive", "properties": { "uvs": false, "uvIndices": false, "subdivisionScheme": false, "interpolateBoundary": false,
         "creaseIndices": false, "cornerIndices": false, "holeIndices": false } } }
   ]
 })json";

@@ -83,6 +83,7 @@ void check_far_points(const Node& node, const Cage& cage) {
 void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     check_optic_material(node, mesh.material, reading);
     if (node.has("primitive")) {
+        if (node.has("fit")) node["fit"].fail("an optic's primitive has its own center and size");
         mesh.primitive = read_primitive(node["primitive"], read_transform(node), node);
         return;
     }
@@ -134,8 +135,9 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
                 node["material"].place,
                 "a mirror or glass on an object is drawn as a plain surface: an optic reflects and refracts");
     }
-    PolygonMesh polygons =
-        node.has("file") ? read_mesh_file(node, inherits(node), reading) : read_inline_polygons(node);
+    PolygonMesh polygons = node.has("file")        ? read_mesh_file(node, inherits(node), reading)
+                           : node.has("primitive") ? read_object_primitive(node["primitive"])
+                                                   : read_inline_polygons(node);
     read_subdivision(node, polygons.cage);
     place_or_fail(polygons, node);
     mesh.face_count = polygons.cage.face_vertex_counts.size();

@@ -59,56 +59,96 @@ Transform read_transform(const Node& mesh) {
     return make_transform(translate, rotate, scale);
 }
 
-const std::vector<Field<Primitive>>& primitive_fields() {
+const std::vector<Field<ObjectPrimitive>>& primitive_fields() {
+    using P = ObjectPrimitive;
     const auto along = [](const char* key) {
-        Field<Primitive> field = part<Primitive>(key, ref("vec3"));
-        field.schema["default"] = to_json_value(Primitive().axis);
+        Field<P> field = part<P>(key, ref("vec3"));
+        field.schema["default"] = to_json_value(P().axis);
         return field;
     };
-    static const std::vector<Field<Primitive>> fields{
-        choice("type", &Primitive::type).without_default(),
-        setting("center", &Primitive::center, ref("vec3"), "paraboloid: its apex."),
-        setting("radius", &Primitive::radius, ref("positive"), "paraboloid: of its rim.")
-            .of({"sphere", "paraboloid", "cylinder"}),
-        along("axis").of({"paraboloid", "cylinder"}),
-        along("normal").of({"plane"}),
-        part<Primitive>("tangent", ref("vec3"),
-                        "Default: a direction at right angles to axis or normal, +X for +Y.")
-            .of({"paraboloid", "cylinder", "plane"}),
-        setting("focalLength", &Primitive::focal_length, ref("positive")).of({"paraboloid"}),
-        setting("height", &Primitive::height, ref("positive")).of({"cylinder"}),
-        setting("size", &Primitive::size, several(2, ref("positive")), "Along tangent and normal x tangent.")
-            .of({"plane"}),
-    };
+    static const std::vector<Field<P>> fields = [&] {
+        Field<P> size =
+            part<P>("size", {{"type", "array"}, {"minItems", 2}, {"maxItems", 3}, {"items", ref("positive")}},
+                    "plane: along tangent and normal x tangent, 2 by 2 by default; box: along "
+                    "tangent, axis and tangent x axis.");
+        size.read = [](const Json& json, P& into) {
+            for (std::size_t k = 0; k < json.size(); ++k)
+                into.size[static_cast<int>(k)] = json[k].get<double>();
+        };
+        return std::vector<Field<P>>{
+            choice("type", &P::shape).without_default(),
+            setting("center", &P::center, ref("vec3"), "paraboloid: its apex."),
+            setting("radius", &P::radius, ref("positive"), "paraboloid: of its rim.")
+                .of({"sphere", "paraboloid", "cylinder", "disk"}),
+            along("axis").of({"paraboloid", "cylinder", "box"}),
+            along("normal").of({"plane", "disk"}),
+            part<P>("tangent", ref("vec3"),
+                    "Default: a direction at right angles to axis or normal, +X for +Y.")
+                .of({"paraboloid", "cylinder", "plane", "box", "disk"}),
+            setting("focalLength", &P::focal_length, ref("positive")).of({"paraboloid"}),
+            setting("height", &P::height, ref("positive")).of({"cylinder"}),
+            std::move(size).of({"plane", "box!"}),
+            setting("segments", &P::segments, whole_in(3, 1024),
+                    "object: pieces of a full circle; an optic is exact.")
+                .of({"sphere", "paraboloid", "cylinder", "disk"}),
+        };
+    }();
     return fields;
 }
 
 Json primitive_schema() {
-    return object_schema({.title = "a primitive",
-                          .description = "An optic given by a formula. axis: paraboloid from apex to focus, "
-                                         "cylinder along it; tangent: where u begins.",
-                          .required = {"type"},
-                          .kind_title = "a #"},
-                         primitive_fields());
+    return object_schema(
+        {.title = "a primitive",
+         .description =
+             "A mesh given by a formula: of an optic exact (sphere, paraboloid, cylinder without lids, "
+             "plane), of an object cut into polygons (spheres, boxes and cylinders closed). axis: "
+             "paraboloid from apex to focus, cylinder along it; tangent: where u begins.",
+         .required = {"type"},
+         .kind_title = "a #"},
+        primitive_fields());
+}
+
+namespace {
+
+/// In its own frame.
+ObjectPrimitive read_shape(const Node& node) {
+    ObjectPrimitive shape;
+    read_fields(node, primitive_fields(), shape);
+    const std::size_t sides = shape.shape == ObjectShape::kBox ? 3 : 2;
+    if (node.has("size") && node["size"].size() != sides)
+        node["size"].fail("has " + std::to_string(node["size"].size()) + " entries, must have " +
+                          std::to_string(sides) + " for a " + name_of(shape.shape));
+    const char* const axis = node.has("normal") ? "normal" : "axis";
+    if (node.has(axis)) shape.axis = read_direction(node[axis]);
+    shape.tangent = read_tangent(node, shape.axis);
+    return shape;
+}
+
+}  // namespace
+
+PolygonMesh read_object_primitive(const Node& node) {
+    return tessellate(read_shape(node));
 }
 
 Primitive read_primitive(const Node& node, const Transform& transform, const Node& mesh) {
+    const ObjectPrimitive shape = read_shape(node);
+    const std::optional<Primitive::Type> type = find_named<Primitive::Type>(name_of(shape.shape));
+    if (!type)
+        node["type"].fail(std::string("a ") + name_of(shape.shape) + " is an object's: an optic is " +
+                          "a sphere, a paraboloid, a cylinder, a plane, or a cage");
+    if (node.has("segments")) node["segments"].fail("are an object's: an optic is exact");
     const std::optional<double> factor = similarity_factor(transform);
     if (!factor) mesh["transform"].fail("a primitive stays exact only under a uniform scale");
 
     Primitive primitive;
-    read_fields(node, primitive_fields(), primitive);
-    const char* axis_key = primitive.type == Primitive::Type::kPlane ? "normal" : "axis";
-    const Vec3 axis = node.has(axis_key) ? read_direction(node[axis_key]) : primitive.axis;
-    const Vec3 tangent = read_tangent(node, axis);
-
-    primitive.center = map_point(transform, primitive.center);
-    primitive.axis = normalize_or_zero(transform.linear * axis);
-    primitive.tangent = normalize_or_zero(transform.linear * tangent);
-    primitive.radius *= *factor;
-    primitive.focal_length *= *factor;
-    primitive.height *= *factor;
-    primitive.size *= *factor;
+    primitive.type = *type;
+    primitive.center = map_point(transform, shape.center);
+    primitive.axis = normalize_or_zero(transform.linear * shape.axis);
+    primitive.tangent = normalize_or_zero(transform.linear * shape.tangent);
+    primitive.radius = shape.radius * *factor;
+    primitive.focal_length = shape.focal_length * *factor;
+    primitive.height = shape.height * *factor;
+    primitive.size = *factor * Vec2(shape.size.x, shape.size.y);
     const double extent = std::max({primitive.radius, primitive.focal_length, primitive.height,
                                     primitive.size.x, primitive.size.y, length(primitive.center)});
     if (!(extent <= kLargestCoordinate))

@@ -63,6 +63,8 @@ RenderSettings read_render(const Node& scene);
 Material read_material(const Node& material, Reading& reading);
 Mesh read_mesh(const Node& mesh, std::size_t index, Reading& reading);
 Primitive read_primitive(const Node& primitive, const Transform& transform, const Node& mesh);
+/// The polygons of an object's primitive, in its own frame.
+PolygonMesh read_object_primitive(const Node& primitive);
 Transform read_transform(const Node& mesh);
 
 /// Inline points, faces and uvs of a mesh.

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "scene/data/primitive_mesh.h"
 #include "scene/data/scene.h"
 #include "scene/json/fields.h"
 
@@ -16,7 +17,7 @@ const std::vector<Field<Light>>& light_fields();
 const std::vector<Field<RenderSettings>>& render_fields();
 const std::vector<Field<Mesh>>& mesh_fields();
 const std::vector<Field<Cage>>& subdivision_fields();  // keys of a mesh, too
-const std::vector<Field<Primitive>>& primitive_fields();
+const std::vector<Field<ObjectPrimitive>>& primitive_fields();
 const std::vector<Field<NormalOverride>>& normal_fields();
 
 /// scene_schema(), parsed; made once.

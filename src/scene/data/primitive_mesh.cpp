@@ -1,0 +1,148 @@
+#include "scene/data/primitive_mesh.h"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace trilens {
+namespace {
+
+/// A point of a surface given by two parameters.
+struct SurfaceCorner {
+    Vec3 point{0}, normal{0};
+};
+using Patch = std::function<SurfaceCorner(double u, double v)>;
+
+/// Where the patch's lower or upper row is one point: its quads are triangles there.
+struct Poles {
+    bool low = false, high = false;
+};
+
+/// columns x rows quads over the unit square of (u, v).
+void add_patch(const Patch& patch, int columns, int rows, const Poles& poles, PolygonMesh& mesh) {
+    const auto first = static_cast<int>(mesh.cage.points.size());
+    std::vector<Vec3> normals;
+    std::vector<Vec2> uvs;
+    for (int j = 0; j <= rows; ++j) {
+        for (int i = 0; i <= columns; ++i) {
+            const Vec2 uv(static_cast<double>(i) / columns, static_cast<double>(j) / rows);
+            const SurfaceCorner corner = patch(uv.x, uv.y);
+            mesh.cage.points.push_back(corner.point);
+            normals.push_back(corner.normal);
+            uvs.push_back(uv);
+        }
+    }
+    const auto add_face = [&](std::initializer_list<int> corners) {
+        mesh.cage.face_vertex_counts.push_back(static_cast<int>(corners.size()));
+        for (const int corner : corners) {
+            mesh.cage.face_vertex_indices.push_back(first + corner);
+            mesh.normals.push_back(normals[static_cast<std::size_t>(corner)]);
+            mesh.uvs.push_back(uvs[static_cast<std::size_t>(corner)]);
+        }
+    };
+    for (int j = 0; j < rows; ++j) {
+        for (int i = 0; i < columns; ++i) {
+            const int a = j * (columns + 1) + i, b = a + 1, c = b + columns + 1, d = c - 1;
+            if (poles.low && j == 0)
+                add_face({a, c, d});
+            else if (poles.high && j == rows - 1)
+                add_face({a, b, c});
+            else
+                add_face({a, b, c, d});
+        }
+    }
+}
+
+/// A frame about the axis: around(u) turns from the tangent, counterclockwise as the axis looks at one.
+struct AxisFrame {
+    explicit AxisFrame(const ObjectPrimitive& p)
+        : axis(p.axis), tangent(p.tangent), side(cross(p.axis, p.tangent)) {}
+    Vec3 around(double u) const {
+        const double angle = 2 * std::numbers::pi * u;
+        return std::cos(angle) * tangent + std::sin(angle) * side;
+    }
+    Vec3 axis, tangent, side;
+};
+
+/// A flat square: normal u x v.
+Patch square(const Vec3& middle, const Vec3& along_u, const Vec3& along_v) {
+    const Vec3 normal = normalize_or_zero(cross(along_u, along_v));
+    return [=](double u, double v) {
+        return SurfaceCorner{middle + (u - 0.5) * along_u + (v - 0.5) * along_v, normal};
+    };
+}
+
+/// A disk whose normal is the frame's axis, or against it.
+void add_disk(const Vec3& middle, const AxisFrame& frame, const ObjectPrimitive& p, bool along,
+              PolygonMesh& mesh) {
+    const double turn = along ? 1 : -1;
+    const Patch disk = [=](double u, double v) {
+        return SurfaceCorner{middle + (1 - v) * p.radius * frame.around(turn * u), turn * frame.axis};
+    };
+    add_patch(disk, p.segments, 1, {false, true}, mesh);
+}
+
+void add_box(const ObjectPrimitive& p, const AxisFrame& frame, PolygonMesh& mesh) {
+    const Vec3 half[3] = {0.5 * p.size.x * frame.tangent, 0.5 * p.size.y * frame.axis,
+                          -0.5 * p.size.z * frame.side};
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 &out = half[k], &u = half[(k + 1) % 3], &v = half[(k + 2) % 3];
+        add_patch(square(p.center + out, 2.0 * u, 2.0 * v), 1, 1, {}, mesh);
+        add_patch(square(p.center - out, 2.0 * v, 2.0 * u), 1, 1, {}, mesh);
+    }
+}
+
+}  // namespace
+
+PolygonMesh tessellate(const ObjectPrimitive& p) {
+    PolygonMesh mesh;
+    const AxisFrame frame(p);
+    switch (p.shape) {
+        case ObjectShape::kSphere:
+            add_patch(
+                [&](double u, double v) {
+                    const double latitude = (v - 0.5) * std::numbers::pi;
+                    const Vec3 normal =
+                        std::cos(latitude) * frame.around(u) + std::sin(latitude) * frame.axis;
+                    return SurfaceCorner{p.center + p.radius * normal, normal};
+                },
+                p.segments, (p.segments + 1) / 2, {true, true}, mesh);
+            break;
+        case ObjectShape::kParaboloid:
+            // r^2 = 4 f z; the front looks away from the focus, as outside a bowl.
+            add_patch(
+                [&](double u, double v) {
+                    const double r = v * p.radius;
+                    const Vec3 out = frame.around(u);
+                    const Vec3 point = p.center + r * out + r * r / (4 * p.focal_length) * frame.axis;
+                    return SurfaceCorner{point,
+                                         normalize_or_zero(r / (2 * p.focal_length) * out - frame.axis)};
+                },
+                p.segments, (p.segments + 3) / 4, {true, false}, mesh);
+            break;
+        case ObjectShape::kCylinder: {
+            const Vec3 up = 0.5 * p.height * frame.axis;
+            add_patch(
+                [&](double u, double v) {
+                    const Vec3 out = frame.around(u);
+                    return SurfaceCorner{p.center + p.radius * out + (2 * v - 1) * up, out};
+                },
+                p.segments, 1, {}, mesh);
+            add_disk(p.center + up, frame, p, true, mesh);
+            add_disk(p.center - up, frame, p, false, mesh);
+            break;
+        }
+        case ObjectShape::kPlane:
+            add_patch(square(p.center, p.size.x * frame.tangent, p.size.y * frame.side), 1, 1, {}, mesh);
+            break;
+        case ObjectShape::kBox:
+            add_box(p, frame, mesh);
+            break;
+        case ObjectShape::kDisk:
+            add_disk(p.center, frame, p, true, mesh);
+            break;
+    }
+    return mesh;
+}
+
+}  // namespace trilens
