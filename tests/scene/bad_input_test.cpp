@@ -139,7 +139,8 @@ TEST_CASE("wrong types and ranges and lengths", "[scene]") {
         {"/meshes/1/primitive/radius", "0",
          "/meshes/1/primitive/radius: 0 is out of range: must be greater than 0"},
         {"/meshes/1/primitive/type", "cone",
-         "/meshes/1/primitive/type: unknown value 'cone'; known: sphere, paraboloid, cylinder, plane"},
+         "/meshes/1/primitive/type: unknown value 'cone'; known: sphere, paraboloid, cylinder, plane, box, "
+         "disk"},
         {"/meshes/2/role", "mirror", "/meshes/2/role: unknown value 'mirror'; known: object, optic"},
         {"/lights/1/position", "null", "/lights/1/position: expected an array, found null"},
         {"/lights/0/intensity", "-1", "/lights/0/intensity: -1 is out of range: must be at least 0"},

@@ -77,7 +77,7 @@ TEST_CASE("the schema accepts the good and refuses the broken", "[scene][bad-inp
     CHECK(broken("/film/width", 0));
     CHECK(broken("/film/widht", 10));
     CHECK(broken("/cameras/0/type", "rayMesh"));
-    CHECK(broken("/meshes/1/role", "object"));
+    CHECK(broken("/meshes/1/primitive/type", "box"));
     CHECK(broken("/meshes/1/primitive/height", 1));
     CHECK(broken("/meshes/1/file", "ball.obj"));
     CHECK(broken("/render/paths", {"direct", "direct"}));
