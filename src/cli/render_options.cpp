@@ -8,6 +8,16 @@
 
 namespace trilens {
 
+namespace {
+
+std::vector<std::string> projecting_engines() {
+    std::vector<std::string> names = names_of<Engine>();
+    std::erase_if(names, [](const std::string& name) { return !projects(*find_named<Engine>(name)); });
+    return names;
+}
+
+}  // namespace
+
 std::vector<Option> picture_options(RenderOptions& options, const std::string& formats) {
     return joined(
         {scene_argument(options.scene),
@@ -79,9 +89,8 @@ std::vector<Option> engine_options(RenderOptions& options) {
         {.names = "--engine",
          .target = &options.engine,
          .help = "exact; classic: by the outlines of projected triangles; for comparison, envmap: an "
-                 "environment map "
-                 "at the optic's centre, planar: flat facets",
-         .choices = {"exact", "classic", "envmap", "planar"}},
+                 "environment map at the optic's centre, planar: flat facets",
+         .choices = projecting_engines()},
         {.names = "--slices",
          .target = &options.slices,
          .help = "classic: curved edges by K straight pieces between levels of t, not arcs",
@@ -118,9 +127,7 @@ EngineChoice chosen_engine(const RenderOptions& options) {
         if (options.slices > 0 || options.tessellate > 0 || options.clip != "scene")
             throw UsageError(
                 "--slices, --tessellate and --clip are the classic engine's; add --engine classic");
-        return options.engine == "envmap"   ? Engine::kEnvironment
-               : options.engine == "planar" ? Engine::kPlanar
-                                            : Engine::kExact;
+        return find_named<Engine>(options.engine).value();
     }
     ClassicParams params;
     params.clip = find_named<Clip>(options.clip).value();

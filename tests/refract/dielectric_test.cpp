@@ -2,22 +2,14 @@
 #include "refract/dielectric.h"
 
 #include <cmath>
-#include <random>
 
+#include "support/draw.h"
 #include "support/test.h"
 
 using namespace trilens;
+using trilens_test::Draw;
 
 namespace {
-
-struct Drawn {
-    std::mt19937_64 engine{32};
-    double uniform(double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(engine);
-    }
-    double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-    Vec3 unit() { return normalize(Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) + Vec3(0, 0, 1e-9)); }
-};
 
 /// A ray that arrives at `angle` on the plane y = 0 from above.
 Vec3 arriving(double angle) {
@@ -29,7 +21,7 @@ const Vec3 kUp{0, 1, 0};
 
 TEST_CASE("refraction keeps the plane and the length, and the sines have the ratio of the indices",
           "[refract]") {
-    Drawn draw;
+    Draw draw(32);
     int refracted_count = 0, reflected_count = 0;
     for (int i = 0; i < 5000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3);
@@ -56,7 +48,7 @@ TEST_CASE("refraction keeps the plane and the length, and the sines have the rat
 }
 
 TEST_CASE("light takes the same way back", "[refract][law]") {
-    Drawn draw;
+    Draw draw(32);
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3);
         const Vec3 incoming = arriving(draw.uniform(0, 1.5));

@@ -2,21 +2,14 @@
 #include "refract/dielectric.h"
 
 #include <cmath>
-#include <random>
 
+#include "support/draw.h"
 #include "support/test.h"
 
 using namespace trilens;
+using trilens_test::Draw;
 
 namespace {
-
-struct DrawnInterface {
-    std::mt19937_64 engine{32};
-    double uniform(double low, double high) {
-        return std::uniform_real_distribution<double>(low, high)(engine);
-    }
-    double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-};
 
 // Intensities by Fresnel's sine and tangent formulas: a second way to write the equations, good away from 0
 // and pi/2.
@@ -37,7 +30,7 @@ TEST_CASE("reflectance: 4 percent for glass head on, all at grazing, sums of tan
     CHECK(fresnel_reflectance(0, 1 / 1.5) == 1);
     CHECK(fresnel_reflectance(0.3, 1) == Approx(0).margin(1e-30));
 
-    DrawnInterface draw;
+    Draw draw(32);
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0.01, 1.5);
         if (eta * std::sin(in) >= 0.999 || std::fabs(eta - 1) < 1e-3) continue;
@@ -61,7 +54,7 @@ TEST_CASE("at Brewster's angle the part parallel to the plane of incidence is no
 
 TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy", "[shade][law]") {
     // Transmitted intensity from the amplitudes of transmission, weighted by index and cosine.
-    DrawnInterface draw;
+    Draw draw(32);
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0, 1.55);
         const double sin_out = eta * std::sin(in);
@@ -74,7 +67,7 @@ TEST_CASE("what is not reflected is transmitted: amplitudes conserve energy", "[
 }
 
 TEST_CASE("the interface reflects alike from both sides", "[shade][law]") {
-    DrawnInterface draw;
+    Draw draw(32);
     for (int i = 0; i < 2000; ++i) {
         const double eta = draw.log_uniform(1 / 3.0, 3), in = draw.uniform(0, 1.5);
         const double sin_out = eta * std::sin(in);

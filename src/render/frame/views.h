@@ -33,9 +33,8 @@ struct OpticView {
     double way = 0;        // of a ray that does not start in air: its length to the optic, scene units
     double predicted = 0;  // displacement that its facet may have, pixels, where an error was asked for
 
-    CutPaths cut;  // what was not followed
-    Vec3 deep{
-        0};  // of the facet's corners, or of the pixel's own path: what would go on after the last optic
+    CutPaths cut;  // what was not followed: of projected samples the most of the whole optic, but for `faint`
+    Vec3 deep{0};  // of its facet or its own path alone: light that would go on after the last optic
 
     std::size_t first_end = 0;  // of SampleViews::ends
     std::size_t end_count = 0;  // 0: no path from there has a ray

@@ -171,14 +171,6 @@ double number_or(const Node& parent, const char* key, double fallback) {
     return parent.has(key) ? parent.json.at(key).get<double>() : fallback;
 }
 
-int int_or(const Node& parent, const char* key, int fallback) {
-    return parent.has(key) ? parent.json.at(key).get<int>() : fallback;
-}
-
-bool bool_or(const Node& parent, const char* key, bool fallback) {
-    return parent.has(key) ? parent.json.at(key).get<bool>() : fallback;
-}
-
 std::string string_or(const Node& parent, const char* key, const std::string& fallback) {
     return parent.has(key) ? parent.json.at(key).get<std::string>() : fallback;
 }

@@ -51,8 +51,6 @@ Vec3 to_vec3(const Json& value);
 Vec2 to_vec2(const Json& value);
 Vec3 vec3_or(const Node& parent, const char* key, const Vec3& fallback);
 double number_or(const Node& parent, const char* key, double fallback);
-int int_or(const Node& parent, const char* key, int fallback);
-bool bool_or(const Node& parent, const char* key, bool fallback);
 std::string string_or(const Node& parent, const char* key, const std::string& fallback);
 
 }  // namespace trilens
