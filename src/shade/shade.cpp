@@ -87,20 +87,42 @@ Vec3 light_arriving(const ShadeScene& scene, const Light& light, const Frame& fr
     return kInversePi * irradiance * cosine * light.color;
 }
 
+Vec2 texture_place(const ShadeScene& scene, const Hit& hit) {
+    if (hit.triangle >= scene.uvs.size()) return Vec2(0);
+    const std::array<Vec2, 3>& uv = scene.uvs[hit.triangle];
+    return (1 - hit.barycentric.x - hit.barycentric.y) * uv[0] + hit.barycentric.x * uv[1] +
+           hit.barycentric.y * uv[2];
+}
+
+const Material& material_of(const ShadeScene& scene, const Hit& hit) {
+    return scene.materials[scene.material[hit.triangle]];
+}
+
 }  // namespace
+
+bool is_lit(const ShadeScene& scene, const Hit& hit) {
+    return !material_of(scene, hit).unlit;
+}
+
+Vec3 base_colour(const ShadeScene& scene, const Hit& hit) {
+    const Material& material = material_of(scene, hit);
+    if (!material.base_color_texture) return material.base_color_factor;
+    return material.base_color_factor *
+           lookup_repeat(*material.base_color_texture, texture_place(scene, hit));
+}
+
+std::optional<Vec2> base_colour_texel(const ShadeScene& scene, const Hit& hit) {
+    const Material& material = material_of(scene, hit);
+    if (!material.base_color_texture) return std::nullopt;
+    return texture_place(scene, hit) *
+           Vec2(material.base_color_texture->width, material.base_color_texture->height);
+}
 
 Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
     const Material& material = scene.materials[scene.material[hit.triangle]];
     const Frame frame = frame_at(scene, hit, ray.direction);
 
-    Vec3 base = material.base_color_factor;
-    if (material.base_color_texture) {
-        Vec2 uv(0);
-        if (hit.triangle < scene.uvs.size())
-            for (int k = 0; k < 3; ++k)
-                uv += frame.weights[k] * scene.uvs[hit.triangle][static_cast<std::size_t>(k)];
-        base *= lookup_repeat(*material.base_color_texture, uv);
-    }
+    const Vec3 base = base_colour(scene, hit);
     if (material.unlit) return base;
 
     Vec3 arriving(0);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,11 +49,33 @@ Vec3 shade_background(const Background& background, const Vec3& direction);
 struct SeenAlong {
     const Hit* hit = nullptr;  // unset: nothing but the background
     const Ray* ray = nullptr;
+    // Base colour of the hit, or radiance of the background, where it stands for more than one point of them;
+    // null: that of the point itself.
+    const Vec3* base = nullptr;
 };
 
-/// What the rays show: each hit's shade (the same bits as shade_hit's), or the background.
-/// light.size() == seen.size().
-void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::span<Vec3> light);
+/// Which lights reach a point, as a hash of the set: equal sets have equal ones.
+using ReachingLights = std::uint64_t;
+
+/// What the rays show: each hit's shade (the same bits as shade_hit's where no base is given), or the
+/// background. light.size() == seen.size(). `reaching`: gets which lights reach each hit that is lit, if it
+/// is not empty; then it has that size, too.
+void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::span<Vec3> light,
+                std::span<ReachingLights> reaching = {});
+
+/// Only which lights reach each hit. All must be hits of materials that are lit.
+void find_reaching_lights(const ShadeScene& scene, std::span<const SeenAlong> seen,
+                          std::span<ReachingLights> reaching);
+
+/// Whether the material there is lit: else it shows its base colour.
+bool is_lit(const ShadeScene& scene, const Hit& hit);
+
+/// Base colour at a hit.
+Vec3 base_colour(const ShadeScene& scene, const Hit& hit);
+
+/// Where a hit lies on its material's base colour texture, in texels from its lower left; none: it has no
+/// texture.
+std::optional<Vec2> base_colour_texel(const ShadeScene& scene, const Hit& hit);
 
 /// Reflectance of a polished metal by Schlick's approximation, as glTF has it:
 /// f0 + (1 - f0) (1 - cos)^5, cos the cosine of incidence in 0..1.

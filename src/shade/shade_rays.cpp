@@ -34,6 +34,14 @@ ShadeBatch::Bits unhindered(const ShadeScene& scene, const ShadeBatch& batch, Sh
     return lanes;
 }
 
+/// Of sets of lights the hash is the sum of these: a number like a random one (splitmix64's finalizer).
+ReachingLights number_of_light(std::size_t light) {
+    std::uint64_t x = (light + 1) * 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+}
+
 /// A batch on its way, with what is not the same number in all lanes.
 struct Shaded {
     explicit Shaded(const ShadeScene& of_scene)
@@ -41,36 +49,37 @@ struct Shaded {
 
     const ShadeScene& scene;
     ShadeBatch batch;
-    std::array<const Hit*, kShadeLanes> hit;
+    std::array<const SeenAlong*, kShadeLanes> seen;
     std::array<std::size_t, kShadeLanes> answer;  // index of the light that comes out
+    std::array<ReachingLights, kShadeLanes> reaching;
 
     void add(const SeenAlong& seen, std::size_t index);
     void pad();
     void arrive();
-    Vec3 base_colour(std::size_t lane, const Material& material) const;
     void shade(std::span<Vec3> light);
+    void find_reaching(std::span<ReachingLights> to);
 
   private:
     void set(std::size_t lane, const Hit& hit, const Vec3& toward);
 };
 
-void Shaded::set(std::size_t lane, const Hit& seen, const Vec3& toward) {
-    const IdTriple& corner = scene.triangles->triangles[seen.triangle];
+void Shaded::set(std::size_t lane, const Hit& hit, const Vec3& toward) {
+    const IdTriple& corner = scene.triangles->triangles[hit.triangle];
     for (std::size_t k = 0; k < 3; ++k) batch.corner[k].set(lane, scene.triangles->points[corner[k]]);
     if (batch.has_normals) {
-        const bool given = seen.triangle < scene.normals.size();
+        const bool given = hit.triangle < scene.normals.size();
         for (std::size_t k = 0; k < 3; ++k)
-            batch.corner_normal[k].set(lane, given ? scene.normals[seen.triangle][k] : Vec3(0));
+            batch.corner_normal[k].set(lane, given ? scene.normals[hit.triangle][k] : Vec3(0));
     }
     batch.toward.set(lane, toward);
-    batch.weight[0][lane] = 1 - seen.barycentric.x - seen.barycentric.y;
-    batch.weight[1][lane] = seen.barycentric.x;
-    batch.weight[2][lane] = seen.barycentric.y;
+    batch.weight[0][lane] = 1 - hit.barycentric.x - hit.barycentric.y;
+    batch.weight[1][lane] = hit.barycentric.x;
+    batch.weight[2][lane] = hit.barycentric.y;
 }
 
-void Shaded::add(const SeenAlong& seen, std::size_t index) {
-    set(batch.count, *seen.hit, seen.ray->direction);
-    hit[batch.count] = seen.hit;
+void Shaded::add(const SeenAlong& one, std::size_t index) {
+    set(batch.count, *one.hit, one.ray->direction);
+    seen[batch.count] = &one;
     answer[batch.count++] = index;
 }
 
@@ -78,65 +87,86 @@ void Shaded::add(const SeenAlong& seen, std::size_t index) {
 void Shaded::pad() {
     constexpr std::size_t kWidest = 8;
     const Vec3 toward = batch.toward.get(batch.count - 1);
-    for (std::size_t i = batch.count; i % kWidest != 0; ++i) set(i, *hit[batch.count - 1], toward);
-}
-
-Vec3 Shaded::base_colour(std::size_t lane, const Material& material) const {
-    if (!material.base_color_texture) return material.base_color_factor;
-    Vec2 uv(0);
-    const Id triangle = hit[lane]->triangle;
-    if (triangle < scene.uvs.size())
-        for (std::size_t k = 0; k < 3; ++k) uv += batch.weight[k][lane] * scene.uvs[triangle][k];
-    return material.base_color_factor * lookup_repeat(*material.base_color_texture, uv);
+    for (std::size_t i = batch.count; i % kWidest != 0; ++i) set(i, *seen[batch.count - 1]->hit, toward);
 }
 
 /// What all lights send to the lanes.
 void Shaded::arrive() {
     ShadeBatch::Bits wanted = 0;
     for (std::size_t i = 0; i < batch.count; ++i)
-        if (!scene.materials[scene.material[hit[i]->triangle]].unlit) wanted |= Segments::bit(i);
+        if (is_lit(scene, *seen[i]->hit)) wanted |= Segments::bit(i);
+    std::fill_n(reaching.begin(), batch.count, ReachingLights{0});
     if (wanted == 0) return;
     pad();
     find_surfaces(batch, kShadowOffset * scene.size);
-    for (const Light& light : scene.lights) {
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+        const Light& light = scene.lights[l];
         if (light.type == Light::Type::kAmbient) {
             add_ambient(batch, light.intensity * light.color);
             continue;
         }
-        const ShadeLight seen = as_lanes_see_it(scene, light);
-        find_light(batch, seen);
-        const ShadeBatch::Bits lit = batch.lit & wanted;
-        add_light(batch, light.color, seen.casts_shadows ? unhindered(scene, batch, lit) : lit);
+        const ShadeLight as_seen = as_lanes_see_it(scene, light);
+        find_light(batch, as_seen);
+        ShadeBatch::Bits lit = batch.lit & wanted;
+        if (as_seen.casts_shadows) lit = unhindered(scene, batch, lit);
+        add_light(batch, light.color, lit);
+        for_each_of(lit, [&](std::size_t i) { reaching[i] += number_of_light(l); });
     }
 }
 
-/// Empties the batch into the light that was asked for.
+/// Puts the batch into the light that was asked for.
 void Shaded::shade(std::span<Vec3> light) {
     if (batch.count == 0) return;
     arrive();
     for (std::size_t i = 0; i < batch.count; ++i) {
-        const Material& material = scene.materials[scene.material[hit[i]->triangle]];
-        const Vec3 base = base_colour(i, material);
-        light[answer[i]] = material.unlit ? base : base * batch.arriving.get(i);
+        const Hit& hit = *seen[i]->hit;
+        const Vec3 base = seen[i]->base ? *seen[i]->base : base_colour(scene, hit);
+        light[answer[i]] = is_lit(scene, hit) ? base * batch.arriving.get(i) : base;
     }
-    batch.count = 0;
+}
+
+void Shaded::find_reaching(std::span<ReachingLights> to) {
+    for (std::size_t i = 0; i < batch.count; ++i) to[answer[i]] = reaching[i];
 }
 
 }  // namespace
 
-void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::span<Vec3> light) {
+void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::span<Vec3> light,
+                std::span<ReachingLights> reaching) {
     TRILENS_CHECK(light.size() == seen.size(), "one light per ray");
     Shaded shaded(scene);
     shaded.batch.has_normals = !scene.normals.empty();
+    const auto empty = [&] {
+        shaded.shade(light);
+        if (!reaching.empty()) shaded.find_reaching(reaching);
+        shaded.batch.count = 0;
+    };
     for (std::size_t i = 0; i < seen.size(); ++i) {
         if (!seen[i].hit->seen()) {
-            light[i] = shade_background(scene.background, seen[i].ray->direction);
+            light[i] =
+                seen[i].base ? *seen[i].base : shade_background(scene.background, seen[i].ray->direction);
             continue;
         }
         shaded.add(seen[i], i);
-        if (shaded.batch.count == kShadeLanes) shaded.shade(light);
+        if (shaded.batch.count == kShadeLanes) empty();
     }
-    shaded.shade(light);
+    empty();
+}
+
+void find_reaching_lights(const ShadeScene& scene, std::span<const SeenAlong> seen,
+                          std::span<ReachingLights> reaching) {
+    Shaded shaded(scene);
+    shaded.batch.has_normals = !scene.normals.empty();
+    const auto empty = [&] {
+        if (shaded.batch.count > 0) shaded.arrive();
+        shaded.find_reaching(reaching);
+        shaded.batch.count = 0;
+    };
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        shaded.add(seen[i], i);
+        if (shaded.batch.count == kShadeLanes) empty();
+    }
+    empty();
 }
 
 }  // namespace trilens

@@ -36,9 +36,7 @@ struct SampleLattice {
         return column >= 0 && row >= 0 && column < columns() && row < rows();
     }
     std::size_t sample(int column, int row) const {
-        const int s = grid.side;
-        return grid.first_sample(grid.x0 + column / s, grid.y0 + row / s) +
-               static_cast<std::size_t>(row % s * s + column % s);
+        return grid.sample_at(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
     }
     int column(std::size_t sample) const {
         return static_cast<int>(std::lround((grid.position(sample).x - grid.x0) * grid.side - 0.5));

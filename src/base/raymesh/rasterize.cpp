@@ -22,8 +22,7 @@ struct SampleWindow {
 
 /// The facet's bounding rectangle in samples, one sample wider on each side against rounding.
 SampleWindow window_of(const std::array<Vec3, 3>& corner, const SampleGrid& grid) {
-    const std::size_t columns = static_cast<std::size_t>(grid.width() * grid.side);
-    const std::size_t rows = static_cast<std::size_t>(grid.height() * grid.side);
+    const std::size_t columns = grid.columns(), rows = grid.rows();
     Vec2 lo(INFINITY), hi(-INFINITY);
     for (const Vec3& c : corner) {
         if (!(c.z > 0)) return {0, columns, 0, rows};
@@ -83,13 +82,48 @@ std::vector<ScreenFacet> facets_on_screen(const RayMesh& mesh, const SampleGrid&
 struct SampleRow {
     std::size_t side = 1, first = 0;
 
-    SampleRow(const SampleGrid& grid, std::size_t row) : side(static_cast<std::size_t>(grid.side)) {
-        first = (row / side * static_cast<std::size_t>(grid.width()) * side + row % side) * side;
-    }
+    SampleRow(const SampleGrid& grid, std::size_t row)
+        : side(grid.in_rows() ? 1 : static_cast<std::size_t>(grid.side)), first(grid.sample_at(0, row)) {}
     std::size_t sample(std::size_t column) const {
         return side == 1 ? first + column : first + column / side * side * side + column % side;
     }
 };
+
+/// A row's samples where only some are chosen.
+struct ChosenRow {
+    std::span<const Id> chosen;
+    std::size_t number = 0;  // of column 0
+
+    ChosenRow(const SampleGrid& grid, std::size_t row) : chosen(grid.chosen), number(row * grid.columns()) {}
+    /// The first of the grid's samples at that column or after it.
+    std::size_t first_from(std::size_t column) const {
+        return static_cast<std::size_t>(std::lower_bound(chosen.begin(), chosen.end(), number + column) -
+                                        chosen.begin());
+    }
+};
+
+/// As fill_rows() where samples are chosen.
+void fill_chosen(const std::vector<ScreenFacet>& facets, const SampleGrid& grid, std::vector<Id>& owner) {
+    const Id last_number = grid.chosen.back();
+    const std::size_t begin = grid.chosen.front() / grid.columns(), end = last_number / grid.columns() + 1;
+    for (const ScreenFacet& facet : facets) {
+        const std::size_t last = std::min(end, facet.window.y1);
+        for (std::size_t row = std::max(begin, facet.window.y0); row < last; ++row) {
+            const ChosenRow samples(grid, row);
+            const std::size_t first = samples.first_from(facet.window.x0),
+                              finish = samples.first_from(facet.window.x1);
+            if (first == finish) continue;
+            const RowSpan cover = facet.edges.cover(row, facet.window.x0, facet.window.x1);
+            for (std::size_t s = first; s < finish; ++s) {
+                const std::size_t column = grid.chosen[s] - samples.number;
+                if (owner[s] != kNone || column < cover.begin || column >= cover.end) continue;
+                if ((column >= cover.sure_begin && column < cover.sure_end) ||
+                    covers(facet, grid.position(s)))
+                    owner[s] = facet.facet;
+            }
+        }
+    }
+}
 
 /// Rasterises rows of samples; facets ascend, so the first to claim a sample has the smallest index.
 void fill_rows(const std::vector<ScreenFacet>& facets, const SampleGrid& grid, std::vector<Id>& owner,
@@ -122,8 +156,12 @@ FacetSamples rasterize_facets(const RayMesh& mesh, const SampleGrid& grid) {
     std::vector<Id> owner(grid.size(), kNone);
     const std::vector<ScreenFacet> facets = facets_on_screen(mesh, grid);
     constexpr std::size_t kRowsTogether = 16;
-    parallel_for(static_cast<std::size_t>(grid.height() * grid.side), kRowsTogether,
-                 [&](std::size_t first, std::size_t last) { fill_rows(facets, grid, owner, first, last); });
+    if (!grid.chosen.empty())
+        fill_chosen(facets, grid, owner);
+    else
+        parallel_for(grid.rows(), kRowsTogether, [&](std::size_t first, std::size_t last) {
+            fill_rows(facets, grid, owner, first, last);
+        });
     return group_by_facet(owner, mesh.facets.size());
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,11 +11,19 @@
 
 namespace trilens {
 
+/// How the samples of a grid are numbered: pixel by pixel in rows, and inside a pixel in rows; or in rows of
+/// the lattice that the samples of all pixels make.
+enum class SampleOrder : std::uint8_t { kPixels, kLattice };
+
 /// A window of pixels [x0, x1) x [y0, y1) of a film, each pixel with side x side samples at the centres of
-/// a regular subpixel grid. Samples are numbered pixel by pixel in rows, and inside a pixel in rows.
+/// a regular subpixel grid.
 struct SampleGrid {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // pixels of the film
     int side = 1;                        // samples along a pixel's edge
+    SampleOrder order = SampleOrder::kPixels;
+    // Of kLattice: the only samples that there are, ascending numbers of the lattice; the grid's own numbers
+    // are places in this list, which must live longer. Empty: all.
+    std::span<const Id> chosen = {};
 
     int width() const { return x1 - x0; }
     int height() const { return y1 - y0; }
@@ -22,31 +31,62 @@ struct SampleGrid {
         return static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
     }
     int samples_per_pixel() const { return side * side; }
-    std::size_t size() const { return pixels() * static_cast<std::size_t>(samples_per_pixel()); }
-
-    /// The first sample of the pixel (x, y) of the film.
-    std::size_t first_sample(int x, int y) const {
-        return (static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) +
-                static_cast<std::size_t>(x - x0)) *
-               static_cast<std::size_t>(samples_per_pixel());
+    std::size_t size() const {
+        return chosen.empty() ? pixels() * static_cast<std::size_t>(samples_per_pixel()) : chosen.size();
     }
-    /// The number that a sample of this window has in `whole`, a grid around it with as many per pixel.
+
+    /// Whether numbers count on along the rows of the lattice.
+    bool in_rows() const { return (side == 1 || order == SampleOrder::kLattice) && chosen.empty(); }
+    /// Samples in a row of the lattice, and its rows.
+    std::size_t columns() const { return static_cast<std::size_t>(width() * side); }
+    std::size_t rows() const { return static_cast<std::size_t>(height() * side); }
+    /// The grid's samples as so many runs of numbers, all of one length, each within one row of pixels.
+    std::size_t runs() const {
+        return !chosen.empty()                  ? 1
+               : order == SampleOrder::kLattice ? rows()
+                                                : static_cast<std::size_t>(height());
+    }
+
+    /// The number of a place of the lattice; not of a grid with chosen samples.
+    std::size_t sample_at(std::size_t column, std::size_t row) const {
+        if (in_rows()) return row * columns() + column;
+        const std::size_t s = static_cast<std::size_t>(side);
+        return (row / s * static_cast<std::size_t>(width()) + column / s) * s * s + row % s * s + column % s;
+    }
+    /// The first sample of the pixel (x, y) of the film; not of a grid with chosen samples.
+    std::size_t first_sample(int x, int y) const {
+        return sample_at(static_cast<std::size_t>((x - x0) * side),
+                         static_cast<std::size_t>((y - y0) * side));
+    }
+    /// The number that a sample of this window has in `whole`, a grid around it with as many per pixel in the
+    /// same order, and with the same samples where they are chosen.
     std::size_t sample_in(const SampleGrid& whole, std::size_t sample) const {
-        const std::size_t row =
-            static_cast<std::size_t>(width()) * static_cast<std::size_t>(samples_per_pixel());
-        return whole.first_sample(x0, y0 + static_cast<int>(sample / row)) + sample % row;
+        if (!chosen.empty()) return sample;
+        const std::size_t row = size() / runs();
+        const std::size_t first = static_cast<std::size_t>((x0 - whole.x0) * (side));
+        const std::size_t pixel_rows = static_cast<std::size_t>(y0 - whole.y0);
+        if (order == SampleOrder::kLattice)
+            return (pixel_rows * static_cast<std::size_t>(side) + sample / row) * whole.columns() + first +
+                   sample % row;
+        return (pixel_rows + sample / row) * whole.columns() * static_cast<std::size_t>(side) +
+               first * static_cast<std::size_t>(side) + sample % row;
     }
     /// Position of a sample on the film, in pixels from its top left; a pixel's centre is at .5.
     Vec2 position(std::size_t sample) const {
-        const std::size_t columns = static_cast<std::size_t>(width());
-        if (side == 1)
-            return {x0 + static_cast<double>(sample % columns) + 0.5,
-                    y0 + static_cast<double>(sample / columns) + 0.5};
-        const std::size_t per_pixel = static_cast<std::size_t>(samples_per_pixel());
-        const std::size_t pixel = sample / per_pixel, inside = sample % per_pixel;
+        if (side == 1 && chosen.empty())
+            return {x0 + static_cast<double>(sample % columns()) + 0.5,
+                    y0 + static_cast<double>(sample / columns()) + 0.5};
         const std::size_t s = static_cast<std::size_t>(side);
-        return {x0 + static_cast<double>(pixel % columns) + (static_cast<double>(inside % s) + 0.5) / side,
-                y0 + static_cast<double>(pixel / columns) + (static_cast<double>(inside / s) + 0.5) / side};
+        if (order == SampleOrder::kLattice) {
+            const std::size_t number = chosen.empty() ? sample : chosen[sample];
+            const std::size_t column = number % columns(), row = number / columns();
+            return {x0 + static_cast<double>(column / s) + (static_cast<double>(column % s) + 0.5) / side,
+                    y0 + static_cast<double>(row / s) + (static_cast<double>(row % s) + 0.5) / side};
+        }
+        const std::size_t per_pixel = s * s, across = static_cast<std::size_t>(width());
+        const std::size_t pixel = sample / per_pixel, inside = sample % per_pixel;
+        return {x0 + static_cast<double>(pixel % across) + (static_cast<double>(inside % s) + 0.5) / side,
+                y0 + static_cast<double>(pixel / across) + (static_cast<double>(inside / s) + 0.5) / side};
     }
 };
 

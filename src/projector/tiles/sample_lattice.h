@@ -29,11 +29,14 @@ struct LatticeExtent {
 class LatticeWalk {
   public:
     explicit LatticeWalk(const SampleGrid& grid)
-        : width_(static_cast<Id>(grid.width())),
-          side_(static_cast<Id>(grid.side)),
-          per_pixel_(static_cast<Id>(grid.samples_per_pixel())) {}
+        : width_(static_cast<Id>(
+              grid.order == SampleOrder::kLattice ? grid.columns() : static_cast<std::size_t>(grid.width()))),
+          side_(static_cast<Id>(grid.order == SampleOrder::kLattice ? 1 : grid.side)),
+          per_pixel_(side_ * side_),
+          chosen_(grid.chosen) {}
 
     LatticeSample at(Id sample) {
+        if (!chosen_.empty()) sample = chosen_[sample];
         if (side_ == 1) {
             move_to_row_of(sample);
             return {static_cast<int>(sample - row_start_), static_cast<int>(row_)};
@@ -52,6 +55,7 @@ class LatticeWalk {
     }
 
     Id width_, side_, per_pixel_;
+    std::span<const Id> chosen_;
     Id row_ = 0, row_start_ = 0;  // of pixels; the row's first pixel
 };
 
@@ -64,19 +68,19 @@ struct LatticeRun {
     LatticeSample last() const { return {first.column + count - 1, first.row}; }
 };
 
-/// Calls body for runs of all the samples, which ascend. Where each pixel is one sample and the samples are
-/// many, the runs are as long as they can be, and found by their ends; else each sample is one.
+/// Calls body for runs of all the samples, which ascend. Where numbers count on along rows and the samples
+/// are many, the runs are as long as they can be, and found by their ends; else each sample is one.
 template <typename Body>
 void for_each_run(const SampleGrid& grid, std::span<const Id> samples, const Body& body) {
     constexpr std::size_t kMany = 100;  // measured
     LatticeWalk walk(grid);
-    const bool long_runs = grid.side == 1 && samples.size() >= kMany;
+    const bool long_runs = grid.in_rows() && samples.size() >= kMany;
     std::size_t count = 1;
     for (std::size_t i = 0; i < samples.size(); i += count) {
         LatticeRun run{walk.at(samples[i]), 1, samples[i]};
         if (long_runs) {
             const std::size_t most =
-                std::min(samples.size() - i, static_cast<std::size_t>(grid.width() - run.first.column));
+                std::min(samples.size() - i, grid.columns() - static_cast<std::size_t>(run.first.column));
             const auto follow = [&](std::size_t n) { return samples[i + n - 1] - samples[i] == n - 1; };
             // A row is about as long as the one before.
             count = std::min(count, most);

@@ -75,7 +75,7 @@ bool TileMaker::place_rows(const RoughTile& rough, const SampleTile& tile) {
     first_column_.assign(height + kBand - 1, tile.width);
     last_column_.assign(height + kBand - 1, -1);
     row_sample_.assign(height + kBand - 1, 0);
-    bool whole_rows = grid_->side == 1;
+    bool whole_rows = grid_->in_rows();
     for_each_run(*grid_, rough.samples, [&](const LatticeRun& run) {
         const int x = run.first.column - tile.column;
         const std::size_t y = static_cast<std::size_t>(run.first.row - tile.row);

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "base/raymesh/sample_grid.h"
+#include "render/frame/fragment_key.h"
 #include "render/frame/frame.h"
 #include "render/frame/request.h"
 #include "render/frame/views.h"
@@ -13,11 +14,20 @@ namespace trilens {
 /// Replaces `views` by what each sample of the grid shows.
 using Viewer = std::function<void(const SampleGrid& grid, SampleViews& views)>;
 
-/// A viewer, and the paths over each optic that it has worked out so far: SampleView::leaf and PathEnd::node
-/// count in them. The limit truth has no facets, and no `paths`.
+/// A viewer, and what it has of facets. The limit truth has none: all but the viewer is unset.
 struct FacetViews {
     Viewer viewer;
+    /// The paths over each optic worked out so far: SampleView::leaf and PathEnd::node count in them.
     std::function<const OpticPaths&(std::size_t optic)> paths;
+    const RayMesh* camera = nullptr;  // that SampleView::camera_facet counts in
+
+    /// Which samples make fragments: set for engines that project without outlines. `find`: see
+    /// find_fragment_keys(); `of`: the key of a sample of the viewer's.
+    struct Keys {
+        std::function<void(const SampleGrid& grid, std::span<FragmentKey> keys)> find;
+        std::function<FragmentKey(const SampleViews& views, const SampleView& view)> of;
+    };
+    Keys keys;
 };
 
 /// Views of `world`, which must outlive them. Throws InputError where the camera cannot show what the scene

@@ -7,6 +7,7 @@
 #include "base/raymesh/rasterize.h"
 #include "base/util/parallel.h"
 #include "projector/classic/classic.h"
+#include "render/engines/fragment_keys.h"
 #include "render/engines/path_ends.h"
 #include "render/engines/rim_samples.h"
 #include "render/engines/trace_samples.h"
@@ -115,10 +116,11 @@ void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid
         views.reset(grid.size());
     else
         views.restart(grid.size());
-    for_each_camera_ray(frame.camera.mesh, owned, grid, [&](Id s, const Ray& ray) {
+    for_each_camera_ray(frame.camera.mesh, owned, grid, [&](Id s, Id facet, const Ray& ray) {
         SampleView& view = views.samples[s];
         view = {};
         view.ray = ray;
+        view.camera_facet = facet;
         if (!hits[s].seen() || hits[s].t > reach()) return;
         view.hit = hits[s];
         view.depth = hits[s].t;
@@ -176,8 +178,8 @@ void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const
         draw_optics[index](frame.camera.mesh, owned, part, hits);
     else
         draw_optics[index](frame.camera.mesh, rasterize_facets(frame.camera.mesh, part), part, hits);
-    const std::size_t row = hits.size() / static_cast<std::size_t>(part.height());
-    parallel_for(static_cast<std::size_t>(part.height()), 1024 / row, [&](std::size_t from, std::size_t to) {
+    const std::size_t row = hits.size() / part.runs();
+    parallel_for(part.runs(), 1024 / row, [&](std::size_t from, std::size_t to) {
         for (std::size_t y = from; y < to; ++y) {
             const std::size_t first = part.sample_in(grid, y * row);
             for (std::size_t x = 0; x < row; ++x) {
@@ -194,6 +196,7 @@ void FacetViewer::view_rims(const SampleGrid& grid, SampleViews& views) const {
         decide_rims({*world, frame, rims, reach()}, grid, views);
         views.outline_error = rims.error;
     }
+    if (!grid.chosen.empty()) return;  // an area is that of all pixels
     for (std::size_t i = 0; i < rims.edges.size(); ++i) {
         const auto shows = [&](const Vec2& at) {
             const std::size_t sample = grid.first_sample(static_cast<int>(at.x), static_cast<int>(at.y));
@@ -282,8 +285,24 @@ FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice&
         viewer->redraws_direct = true;
     }
     viewer->draw_paths = watch ? watched(watch, viewer->draw_objects) : viewer->draw_objects;
-    return {[viewer](const SampleGrid& grid, SampleViews& views) { (*viewer)(grid, views); },
-            [viewer](std::size_t optic) -> const OpticPaths& { return *viewer->paths[optic]; }};
+    FacetViews views{[viewer](const SampleGrid& grid, SampleViews& seen) { (*viewer)(grid, seen); },
+                     [viewer](std::size_t optic) -> const OpticPaths& { return *viewer->paths[optic]; },
+                     &viewer->frame.camera.mesh,
+                     {}};
+    if (projects(engine.engine) && engine.engine != Engine::kClassic)
+        views.keys = {[viewer](const SampleGrid& grid, std::span<FragmentKey> keys) {
+                          find_fragment_keys({*viewer->world, viewer->frame, viewer->windows, viewer->paths,
+                                              viewer->nested, viewer->rims},
+                                             grid, keys);
+                      },
+                      [viewer](const SampleViews& seen, const SampleView& view) {
+                          const Id face =
+                              view.optic == kNone
+                                  ? kNone
+                                  : viewer->frame.optics[view.optic].facets->grid().facet_face[view.facet];
+                          return fragment_key(seen, view, face);
+                      }};
+    return views;
 }
 
 }  // namespace trilens

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "base/util/parallel.h"
+#include "render/engines/history_keys.h"
 
 namespace trilens {
 namespace {
 
-constexpr double kNear = 0.05;     // the same where it is known that it lies there: `next` is interpolated
 constexpr double kOnPlane = 1e-6;  // of a facet's size: as far from a plane as rounding puts it
 
 Vec3 share_of(const FacetWeights& weights, const Vec2& at) {
@@ -67,29 +67,12 @@ bool HistoryDrawer::ends_before_next(Id index, Id facet, const Hit& hit, const V
     for (int k = 0; k < 3; ++k) next += share[k] * node.next[corner[static_cast<std::size_t>(k)]];
     if (hit.t <= next * (1 + kTouch)) return true;
     if (!node.touches[facet]) return false;
-    if (hit.t <= next * (1 + kNear)) return true;
+    if (hit.t <= next * (1 + kNearTouch)) return true;
     const Ray ray = interpolated_ray(node.mesh, facet, share);
     const Vec3 place = ray.origin + hit.t * ray.direction;
     return std::any_of(paths_.nodes().begin(), paths_.nodes().end(), [&](const PathNode& other) {
         return other.parent == index && lies_where_rays_start(other, node.leaves[facet], place);
     });
-}
-
-/// Per sample the node's facet, if its path came as far as this node.
-std::vector<Id> HistoryDrawer::owners(const PathNode& node) const {
-    std::vector<Id> owner(grid_.size(), kNone);
-    const std::vector<char>* parent = node.parent == kNone ? nullptr : &goes_on_[node.parent];
-    if (parent && parent->empty()) return owner;  // no sample came as far as the node before
-    Id leaf = kNone, facet = kNone;               // the sample's before
-    for (std::size_t s = 0; s < owner.size(); ++s) {
-        if (leaf_[s] == kNone || (parent && !(*parent)[s])) continue;
-        if (leaf_[s] != leaf) {
-            leaf = leaf_[s];
-            facet = node.facet_of(leaf);
-        }
-        owner[s] = facet;
-    }
-    return owner;
 }
 
 /// Which of the owned samples end here; those whose path goes on are marked.
@@ -139,7 +122,9 @@ void HistoryDrawer::set_end(Id index, Id facet, const Vec3& share, PathEnd& end)
 
 void HistoryDrawer::draw(Id index, PathEnds& out) {
     const PathNode& node = paths_.nodes()[index];
-    const FacetSamples owned = group_by_facet(owners(node), node.mesh.facets.size());
+    const std::span<const char> came =
+        node.parent == kNone ? std::span<const char>() : std::span<const char>(goes_on_[node.parent]);
+    const FacetSamples owned = group_by_facet(owners_of_node(node, leaf_, came), node.mesh.facets.size());
     if (owned.sample.empty()) return;
     std::vector<Hit> hits(grid_.size());
     draw_mesh_(node.mesh, owned, grid_, hits);

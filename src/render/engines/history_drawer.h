@@ -13,6 +13,8 @@ namespace trilens {
 
 /// Of t: an object that lies no farther behind the next optic is seen in it.
 inline constexpr double kTouch = 1e-9;
+/// The same where it is known that an object lies on the next optic, whose t is interpolated.
+inline constexpr double kNearTouch = 0.05;
 
 /// An engine's work on one RayMesh: the nearest triangles along the rays of the owned samples.
 using DrawMesh = std::function<void(const RayMesh&, const FacetSamples&, const SampleGrid&, std::span<Hit>)>;
@@ -36,7 +38,6 @@ class HistoryDrawer {
     void draw(Id node, PathEnds& out);
 
   private:
-    std::vector<Id> owners(const PathNode& node) const;
     bool ends_before_next(Id node, Id facet, const Hit& hit, const Vec3& share) const;
     std::vector<char> find_ends(Id node, const FacetSamples& owned, std::span<const Hit> hits);
     void set_end(Id node, Id facet, const Vec3& share, PathEnd& end) const;

@@ -58,7 +58,7 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
     } else {
         owned = rasterize_facets(camera.mesh, grid);
         for_each_camera_ray(camera.mesh, owned, grid,
-                            [&](Id s, const Ray& ray) { views.samples[s].ray = ray; });
+                            [&](Id s, Id, const Ray& ray) { views.samples[s].ray = ray; });
     }
 
     set_initial_media(camera_media, views);

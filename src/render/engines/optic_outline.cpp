@@ -270,12 +270,20 @@ void mark_near_outline(std::span<const OutlineEdge> edges, double limit, const S
                   x1 = within(std::ceil(high.x), grid.x0, grid.x1);
         const int y0 = within(std::floor(low.y), grid.y0, grid.y1),
                   y1 = within(std::ceil(high.y), grid.y0, grid.y1);
-        if (x0 >= x1) continue;
-        const std::size_t row = static_cast<std::size_t>((x1 - x0) * grid.samples_per_pixel());
-        for (int y = y0; y < y1; ++y) {
-            const std::size_t first = grid.first_sample(x0, y);
-            for (std::size_t s = first; s < first + row; ++s)
-                if (!near[s] && distance_to(edge, grid.position(s)) <= room) near[s] = 1;
+        if (x0 >= x1 || y0 >= y1) continue;
+        const auto mark = [&](std::size_t s) {
+            if (!near[s] && distance_to(edge, grid.position(s)) <= room) near[s] = 1;
+        };
+        if (!grid.chosen.empty()) {
+            for (std::size_t s = 0; s < near.size(); ++s) mark(s);
+            continue;
+        }
+        SampleGrid window = grid;
+        window.x0 = x0, window.x1 = x1, window.y0 = y0, window.y1 = y1;
+        const std::size_t run = window.size() / window.runs();
+        for (std::size_t y = 0; y < window.runs(); ++y) {
+            const std::size_t first = window.sample_in(grid, y * run);
+            for (std::size_t s = first; s < first + run; ++s) mark(s);
         }
     }
 }

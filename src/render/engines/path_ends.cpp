@@ -7,32 +7,6 @@
 #include "base/util/parallel.h"
 
 namespace trilens {
-namespace {
-
-constexpr std::size_t kEndsPerTask = 256;
-
-/// Calls body(sample of the part, sample of the whole) for all of a part.
-template <typename Body>
-void for_each_sample(const SampleGrid& part, const SampleGrid& whole, const Body& body) {
-    const std::size_t rows = static_cast<std::size_t>(part.height()), row = part.size() / rows;
-    for (std::size_t y = 0; y < rows; ++y) {
-        const std::size_t first = part.sample_in(whole, y * row);
-        for (std::size_t x = 0; x < row; ++x) body(y * row + x, first + x);
-    }
-}
-
-/// The part's samples that see the optic by one of its facets, by facet of its paths.
-FacetSamples samples_by_facet(const PathEndsParams& params, const OpticPaths& paths, const SampleGrid& grid,
-                              const SampleViews& views) {
-    std::vector<Id> owner(params.part.size(), kNone);
-    for_each_sample(params.part, grid, [&](std::size_t s, std::size_t of_grid) {
-        const SampleView& view = views.samples[of_grid];
-        if (view.optic != params.optic || view.traced) return;
-        const Vec2 at = params.part.position(s);
-        owner[s] = paths.is_on_film() ? paths.film_facet(at) : params.framed.mesh_facet(view.facet, at);
-    });
-    return group_by_facet(owner, paths.outline().facets.size());
-}
 
 std::vector<Id> seen_facets(const FacetSamples& owned) {
     std::vector<Id> seen;
@@ -41,7 +15,6 @@ std::vector<Id> seen_facets(const FacetSamples& owned) {
     return seen;
 }
 
-/// The leaf of each sample; kNone: it sees another optic, or none.
 std::vector<Id> leaves_of_samples(const OpticPaths& paths, const FacetSamples& owned,
                                   const SampleGrid& grid) {
     std::vector<Id> leaf(grid.size(), kNone);
@@ -61,6 +34,33 @@ std::vector<Id> leaves_of_samples(const OpticPaths& paths, const FacetSamples& o
         }
     });
     return leaf;
+}
+
+namespace {
+
+constexpr std::size_t kEndsPerTask = 256;
+
+/// Calls body(sample of the part, sample of the whole) for all of a part.
+template <typename Body>
+void for_each_sample(const SampleGrid& part, const SampleGrid& whole, const Body& body) {
+    const std::size_t row = part.size() / part.runs();
+    for (std::size_t y = 0; y < part.runs(); ++y) {
+        const std::size_t first = part.sample_in(whole, y * row);
+        for (std::size_t x = 0; x < row; ++x) body(y * row + x, first + x);
+    }
+}
+
+/// The part's samples that see the optic by one of its facets, by facet of its paths.
+FacetSamples samples_by_facet(const PathEndsParams& params, const OpticPaths& paths, const SampleGrid& grid,
+                              const SampleViews& views) {
+    std::vector<Id> owner(params.part.size(), kNone);
+    for_each_sample(params.part, grid, [&](std::size_t s, std::size_t of_grid) {
+        const SampleView& view = views.samples[of_grid];
+        if (view.optic != params.optic || view.traced) return;
+        const Vec2 at = params.part.position(s);
+        owner[s] = paths.is_on_film() ? paths.film_facet(at) : params.framed.mesh_facet(view.facet, at);
+    });
+    return group_by_facet(owner, paths.outline().facets.size());
 }
 
 /// What is drawn: an optic that the camera sees itself, or a nested optic.

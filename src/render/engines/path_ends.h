@@ -30,6 +30,12 @@ struct PathEndsParams {
 PathEnds draw_optic_paths(const PathEndsParams& params, OpticPaths& paths, SampleViews& views,
                           std::vector<Id>& traced);
 
+/// The facets that have samples.
+std::vector<Id> seen_facets(const FacetSamples& owned);
+
+/// The leaf of each sample that `owned` gives to a facet of the paths, which are prepared; of others kNone.
+std::vector<Id> leaves_of_samples(const OpticPaths& paths, const FacetSamples& owned, const SampleGrid& grid);
+
 /// Puts the ends of all optics into the record, which has none, those of one sample side by side.
 void collect_ends(std::vector<PathEnds> optics, SampleViews& views);
 

@@ -21,8 +21,8 @@ using CameraRays = Camera;
 /// optics, whose grids then lie on its film. Throws InputError with its place where it is none.
 CameraRays make_camera_rays(const Scene& scene, std::size_t index);
 
-/// Calls use(sample, ray) with the camera's ray of every sample that `owned` gives to a facet, from several
-/// threads.
+/// Calls use(sample, facet, ray) with the camera's ray of every sample that `owned` gives to a facet, from
+/// several threads.
 template <typename Use>
 void for_each_camera_ray(const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid, Use&& use) {
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
@@ -31,7 +31,7 @@ void for_each_camera_ray(const RayMesh& mesh, const FacetSamples& owned, const S
         const std::span<const Id> samples = owned.of(f);
         parallel_for(samples.size(), 1024, [&](std::size_t from, std::size_t to) {
             for (const Id s : samples.subspan(from, to - from))
-                use(s, sample_ray(mesh, f, weights, grid.position(s)));
+                use(s, static_cast<Id>(f), sample_ray(mesh, f, weights, grid.position(s)));
         });
     }
 }

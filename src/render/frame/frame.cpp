@@ -1,6 +1,7 @@
 #include "render/frame/frame.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/math/box.h"
 #include "base/util/error.h"
@@ -12,6 +13,8 @@ namespace {
 
 /// Where an error is asked for, facets are divided down to DivideParams::least_area, whatever their size.
 constexpr int kMostLevelsForError = 12;
+/// Parts of a facet with fewer samples are traced (measured): their corners' paths and proofs cost as much.
+constexpr double kLeastSamples = 32;
 
 /// Facets whose rays turn smoothly show things off by the square of their size. Those that are predicted to
 /// be off by more than this, in pixels, lie, and are divided whether an error is asked for or not.
@@ -221,6 +224,11 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
     params.max_error =
         frame.max_error > 0 ? frame.max_error : believable_error(framed.resolution, world.scene.film.height);
     if (for_error) params.most_levels = kMostLevelsForError;
+    // Where pixels have many samples a part of a few square pixels has more than its corners' paths are
+    // worth.
+    const int side = world.scene.film.spp;
+    params.least_area = std::min(params.least_area, kLeastSamples / (side * side));
+    params.most_levels += static_cast<int>(std::ceil(std::log2(side)));
     if (nested) {
         params.nested_agree = [nested](const Vec2& pixel, Id next) { return nested->agree(pixel, next); };
         params.nested_covers = [nested](Id other, const Vec2& low, const Vec2& high) {

@@ -41,6 +41,7 @@ SampleGrid optic_window(const FramedOptic& optic, const CameraRays& camera) {
 
 SampleGrid part_in(const SampleGrid& grid, const SampleGrid& window) {
     SampleGrid part = grid;
+    if (!grid.chosen.empty()) return part;
     part.x0 = std::clamp(window.x0, grid.x0, grid.x1);
     part.y0 = std::clamp(window.y0, grid.y0, grid.y1);
     part.x1 = std::clamp(window.x1, part.x0, grid.x1);

@@ -15,9 +15,10 @@ struct SampleView {
     Hit hit;              // of World::objects; unset where an optic is nearer
     double depth = 1e30;  // t along `ray` of whatever is first; distance along the view axis
 
-    Id optic = kNone;   // index into World::optics; then SampleViews::on_optic has more
-    Id facet = kNone;   // of the optic's grid; limit truth: face of the surface
-    Id around = kNone;  // what `ray` starts in, of SampleViews::around; kNone: air
+    Id camera_facet = kNone;  // of the camera's RayMesh; kNone: `ray` is no facet's
+    Id optic = kNone;         // index into World::optics; then SampleViews::on_optic has more
+    Id facet = kNone;         // of the optic's grid; limit truth: face of the surface
+    Id around = kNone;        // what `ray` starts in, of SampleViews::around; kNone: air
 
     Id leaf = kNone;          // of its optic's OpticPaths; limit truth: none
     bool traced = false;      // its own paths were followed, those of no facet

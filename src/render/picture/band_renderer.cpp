@@ -9,6 +9,7 @@
 #include "base/util/parallel.h"
 #include "render/frame/camera_media.h"
 #include "render/picture/channels.h"
+#include "render/picture/fragments.h"
 #include "render/picture/pixel_filter.h"
 
 namespace trilens {
@@ -16,7 +17,8 @@ namespace {
 
 // Samples that are held at once: what stays in cache (measured), and what bounds the memory of a frame.
 constexpr std::size_t kBandSamples = 1u << 15, kMostBandSamples = 1u << 17;
-constexpr std::size_t kBandsAtOnce = 3;  // on their way: seen, shaded, taken
+constexpr std::size_t kMostKeys = 1u << 20;  // the same where samples have no record but a key
+constexpr std::size_t kBandsAtOnce = 3;      // on their way: seen, shaded, taken
 constexpr std::size_t kPixelsPerTask = 256;
 constexpr std::size_t kBlockRows = 16;  // of a block of the file, one thread's work
 
@@ -30,13 +32,6 @@ bool lacks_ray(const World& world, const SampleViews& views, const SampleView& v
     return settings.refract && !views.find(view, Path::kRefract) && !view.traced &&
            !reflects_totally(interface_of(world, view.optic, views.around_of(view), incidence.front),
                              incidence.cosine);
-}
-
-void add(SampleColour& sum, double weight, const SampleColour& one) {
-    sum.direct += weight * one.direct;
-    sum.reflect += weight * one.reflect;
-    sum.refract += weight * one.refract;
-    sum.coverage += weight * one.coverage;
 }
 
 SampleColour mean_colour(std::span<const SampleColour> samples) {
@@ -96,12 +91,16 @@ class FilteredSamples {
     std::vector<SampleColour> colours_;
 };
 
+bool makes_fragments(const FacetViews& facets, int side) {
+    return side > 1 && facets.keys.find;
+}
+
 /// How many rows of pixels are drawn together: whole blocks where they are many, one for every two threads at
 /// least, since several bands are on their way.
-int band_rows(std::size_t samples_per_row) {
+int band_rows(std::size_t samples_per_row, std::size_t most_samples) {
     const std::size_t wanted = std::max(kBandSamples / samples_per_row,
                                         kBlockRows * ((static_cast<std::size_t>(thread_count()) + 1) / 2));
-    const std::size_t rows = std::max<std::size_t>(1, std::min(wanted, kMostBandSamples / samples_per_row));
+    const std::size_t rows = std::max<std::size_t>(1, std::min(wanted, most_samples / samples_per_row));
     return static_cast<int>(rows > kBlockRows ? rows / kBlockRows * kBlockRows : rows);
 }
 
@@ -121,28 +120,35 @@ struct Band {
     SampleGrid grid{};
     SampleViews views, centres;  // centres: only where a pixel has several samples
     std::unique_ptr<FilteredSamples> filtered;
+    std::unique_ptr<FragmentColours> fragments;
     LayerStatistics counts;
 
     /// What the pixels' centres see: with one sample a pixel that sample, otherwise looked at once more.
     const SampleViews& middle() const { return grid.side > 1 ? centres : views; }
 };
 
-void view_band(const World& world, const Viewer& viewer, const PixelFilter& filter, Band& band) {
+void view_band(const World& world, const FacetViews& facets, const PixelFilter& filter, Band& band) {
     const SampleGrid& grid = band.grid;
     band.filtered.reset();
-    if (filter.reach > 0) band.filtered = std::make_unique<FilteredSamples>(world, viewer, grid, filter);
-    if (!band.filtered || grid.side == 1) viewer(grid, band.views);
-    if (grid.side > 1) viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
+    band.fragments.reset();
+    if (makes_fragments(facets, grid.side))
+        band.fragments = std::make_unique<FragmentColours>(world, facets, grid, filter);
+    else if (filter.reach > 0)
+        band.filtered = std::make_unique<FilteredSamples>(world, facets.viewer, grid, filter);
+    if (grid.side == 1 || (!band.filtered && !band.fragments)) facets.viewer(grid, band.views);
+    if (grid.side > 1) facets.viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
 }
 
 /// Colours of the pixels of a band from `first` on, as many as there is room for.
 void find_colours(const World& world, const Band& band, std::size_t first, std::span<SampleColour> colours) {
     const SampleGrid& grid = band.grid;
-    if (band.filtered) {
+    if (band.filtered || band.fragments) {
         const std::size_t width = static_cast<std::size_t>(grid.width());
-        for (std::size_t i = 0; i < colours.size(); ++i)
-            colours[i] = band.filtered->colour(grid.x0 + static_cast<int>((first + i) % width),
-                                               grid.y0 + static_cast<int>((first + i) / width));
+        for (std::size_t i = 0; i < colours.size(); ++i) {
+            const int x = grid.x0 + static_cast<int>((first + i) % width),
+                      y = grid.y0 + static_cast<int>((first + i) / width);
+            colours[i] = band.filtered ? band.filtered->colour(x, y) : band.fragments->colour(x, y);
+        }
         return;
     }
     const std::size_t per_pixel = static_cast<std::size_t>(grid.side * grid.side);
@@ -215,10 +221,11 @@ LayerStatistics put_band(const World& world, const Band& band, std::size_t first
 
 }  // namespace
 
-Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& request,
+Image draw_layers(const World& world, const FacetViews& facets, const LayerRequest& request,
                   const Progress& progress, LayerStatistics* statistics, const StripSink* sink) {
     const int side = world.scene.film.spp, width = request.x1 - request.x0, height = request.y1 - request.y0;
-    const int rows = band_rows(static_cast<std::size_t>(width * side * side));
+    const int rows = band_rows(static_cast<std::size_t>(width * side * side),
+                               makes_fragments(facets, side) ? kMostKeys : kMostBandSamples);
     const std::size_t bands = static_cast<std::size_t>((height + rows - 1) / rows);
     const std::size_t slots = std::min(bands, kBandsAtOnce);
 
@@ -242,7 +249,7 @@ Image draw_layers(const World& world, const Viewer& viewer, const LayerRequest& 
         if (progress.cancelled()) throw Interrupted();
         const int y = request.y0 + static_cast<int>(item) * rows;
         band[slot].grid = {request.x0, y, request.x1, std::min(y + rows, request.y1), side};
-        view_band(world, viewer, filter, band[slot]);
+        view_band(world, facets, filter, band[slot]);
     };
     stages.work = [&](std::size_t item, std::size_t slot) {
         const std::size_t above = sink ? 0 : item * static_cast<std::size_t>(rows);

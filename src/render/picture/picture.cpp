@@ -148,7 +148,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     check_film_fits(world, layers, sink != nullptr);
     Picture picture;
     const Stopwatch preparing;
-    const Viewer viewer = make_viewer(world, request.frame, request.engine, warn);
+    const FacetViews views = make_views(world, request.frame, request.engine, warn);
     picture.prepare_seconds = preparing.seconds();
 
     StripSink described;
@@ -161,7 +161,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     }
     const Stopwatch drawing;
     picture.image =
-        draw_layers(world, viewer, layers, progress, &picture.statistics, sink ? &described : nullptr);
+        draw_layers(world, views, layers, progress, &picture.statistics, sink ? &described : nullptr);
     picture.draw_seconds = drawing.seconds();
     describe(world, request, picture.image);
     if (warn) {

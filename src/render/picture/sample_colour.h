@@ -1,6 +1,7 @@
 // What colour a sample has: the light of its direct view, or of its paths over an optic, weighted.
 #pragma once
 
+#include "render/frame/camera_media.h"
 #include "render/frame/views.h"
 #include "render/world/world.h"
 
@@ -13,6 +14,44 @@ void sample_colours(const World& world, const SampleViews& views, std::size_t fi
 
 /// Shades what one sample, an element of views.samples, shows.
 SampleColour sample_colour(const World& world, const SampleViews& views, const SampleView& view);
+
+/// What one ray of a sample adds to it.
+struct Contribution {
+    SeenAlong seen;
+    Vec3 weight{0};                // of its light
+    const PathEnd* end = nullptr;  // null: what the camera sees itself
+};
+
+/// Calls body(contribution) for all that a sample shows.
+template <typename Body>
+void for_each_contribution(const World& world, const SampleViews& views, const SampleView& view,
+                           const Body& body) {
+    if (view.ray.direction == Vec3(0)) return;  // the camera has no ray there
+    if (view.optic == kNone) {
+        if (world.scene.render.direct)
+            body(Contribution{{&view.hit, &view.ray}, light_of_view(world, views, view), nullptr});
+        return;
+    }
+    const OpticWeights weights = first_weights(world, views, view);
+    for (const PathEnd& end : views.ends_of(view)) {
+        const Vec3 weight = (end.path == Path::kReflect ? weights.reflect : weights.refract) * end.weight;
+        if (weight != Vec3(0)) body(Contribution{{&end.hit, &end.ray}, weight, &end});
+    }
+}
+
+/// A sample's colour before light is added: where it shows a mesh.
+SampleColour unlit_colour(const SampleView& view);
+
+/// Adds the light that is seen along a contribution's ray.
+void add_light(const World& world, const Contribution& from, Vec3 light, SampleColour& colour);
+
+/// Adds a colour to a weighted sum of them.
+inline void add(SampleColour& sum, double weight, const SampleColour& one) {
+    sum.direct += weight * one.direct;
+    sum.reflect += weight * one.reflect;
+    sum.refract += weight * one.refract;
+    sum.coverage += weight * one.coverage;
+}
 
 /// Distance from the last optic to what is seen, in scene units; the end sees something.
 double path_length(const PathEnd& end);

@@ -1,0 +1,42 @@
+// Shading once per fragment: light at one point, textures averaged over the fragment's footprint by its
+// facet's map. After: Akeley, RealityEngine Graphics, 1993 (multisampling); Heckbert, Fundamentals of Texture
+// Mapping and Image Warping, 1989 (footprints).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "render/engines/engine.h"
+#include "render/picture/sample_colour.h"
+
+namespace trilens {
+
+/// Samples of one pixel that see the same.
+struct ShownFragment {
+    const SampleView* view = nullptr;  // where it is shaded, an element of the views
+    Vec2 pixel{0};                     // top left of the pixel on the film
+    // The samples, numbered in rows inside the pixel; empty: all of them.
+    std::span<const std::uint16_t> members = {};
+};
+
+/// What is needed to shade fragments.
+struct FragmentShading {
+    const World& world;
+    const FacetViews& facets;
+    const SampleViews& views;
+    int side = 1;  // samples along a pixel's edge
+};
+
+/// Colours of fragments, the means over their samples:
+/// - what reaches the shaded point reaches all its samples, if the same lights reach the outermost of them
+/// (at
+///   most four); else each sample is shaded by itself, where its ray by the same facet's map meets the
+///   triangle;
+/// - base colours, and the background's, are means over places as dense as its samples, or so dense that four
+///   lie in a texel's width, whichever is fewer;
+/// - weights (Fresnel, glass on the way) are those of the shaded point.
+/// Returns how many fragments were shaded sample by sample. colours.size() == fragments.size().
+std::size_t shade_fragments(const FragmentShading& shading, std::span<const ShownFragment> fragments,
+                            std::span<SampleColour> colours);
+
+}  // namespace trilens

@@ -1,0 +1,240 @@
+#include "render/picture/fragments.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+
+#include "base/util/parallel.h"
+#include "render/picture/fragment_shader.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::size_t kFragmentsPerTask = 256;
+constexpr std::size_t kViewsAtOnce = 1u << 16;  // what bounds the memory of samples that stand for themselves
+
+SampleGrid with_margin(const SampleGrid& window, const Film& film, int reach) {
+    return {std::max(0, window.x0 - reach),
+            std::max(0, window.y0 - reach),
+            std::min(film.width, window.x1 + reach),
+            std::min(film.height, window.y1 + reach),
+            window.side,
+            SampleOrder::kLattice};
+}
+
+}  // namespace
+
+/// A row of pixels on its way.
+struct FragmentColours::PixelRow {
+    std::vector<Fragment> fragments;
+    std::vector<std::uint16_t> members;
+    std::vector<std::uint32_t> counts;  // fragments per pixel
+    // Of the pixel at hand: the keys met, and each sample's number among them.
+    std::vector<FragmentKey> keys;
+    std::vector<std::uint16_t> key_of;
+};
+
+FragmentColours::FragmentColours(const World& world, const FacetViews& facets, const SampleGrid& window,
+                                 const PixelFilter& filter)
+    : world_(world),
+      facets_(facets),
+      filter_(filter),
+      grid_(with_margin(window, world.scene.film, filter.reach)) {
+    facets_.viewer({grid_.x0, grid_.y0, grid_.x1, grid_.y1, 1}, centres_);
+    find_fragments();
+    colours_.resize(fragments_.size());
+    shade_centres();
+    shade_samples();
+}
+
+Vec2 FragmentColours::pixel_corner(std::size_t pixel) const {
+    const std::size_t width = static_cast<std::size_t>(grid_.width());
+    return {grid_.x0 + static_cast<int>(pixel % width), grid_.y0 + static_cast<int>(pixel / width)};
+}
+
+std::size_t FragmentColours::lattice_sample(std::size_t pixel, int inside) const {
+    const std::size_t width = static_cast<std::size_t>(grid_.width()),
+                      side = static_cast<std::size_t>(grid_.side);
+    const std::size_t i = static_cast<std::size_t>(inside) % side,
+                      j = static_cast<std::size_t>(inside) / side;
+    return (pixel / width * side + j) * grid_.columns() + pixel % width * side + i;
+}
+
+/// One fragment per key, in the order in which they are met; a sample that stands alone is one by itself.
+/// `keys`: of the grid.
+void FragmentColours::split_pixel(std::size_t pixel, std::span<const FragmentKey> keys, PixelRow& row) const {
+    const int side = grid_.side;
+    row.keys.clear();
+    row.key_of.clear();
+    std::size_t last = 0;
+    for (int inside = 0; inside < side * side; ++inside) {
+        const FragmentKey key = keys[lattice_sample(pixel, inside)];
+        if (key == kAlone || row.keys.empty() || key != row.keys[last]) {
+            const auto found =
+                key == kAlone ? row.keys.end() : std::find(row.keys.begin(), row.keys.end(), key);
+            last = static_cast<std::size_t>(found - row.keys.begin());
+            if (found == row.keys.end()) row.keys.push_back(key);
+        }
+        row.key_of.push_back(static_cast<std::uint16_t>(last));
+    }
+    for (std::size_t k = 0; k < row.keys.size(); ++k) {
+        const std::size_t first = row.members.size();
+        Vec2 sum(0);
+        for (int inside = 0; inside < side * side; ++inside) {
+            if (row.key_of[static_cast<std::size_t>(inside)] != k) continue;
+            row.members.push_back(static_cast<std::uint16_t>(inside));
+            sum += Vec2(inside % side, inside / side);
+        }
+        const std::span<const std::uint16_t> members = std::span(row.members).subspan(first);
+        const Vec2 centroid = sum / static_cast<double>(members.size());
+        const auto distance = [&](std::uint16_t inside) {
+            const Vec2 off = Vec2(inside % side, inside / side) - centroid;
+            return dot(off, off);
+        };
+        const std::uint16_t nearest =
+            *std::min_element(members.begin(), members.end(),
+                              [&](std::uint16_t a, std::uint16_t b) { return distance(a) < distance(b); });
+        row.fragments.push_back({static_cast<Id>(lattice_sample(pixel, nearest)),
+                                 static_cast<std::uint32_t>(first),
+                                 static_cast<std::uint32_t>(members.size())});
+        if (members.size() == static_cast<std::size_t>(side * side)) {
+            row.fragments.back().members = 0;
+            row.members.resize(first);
+        }
+    }
+}
+
+void FragmentColours::find_fragments() {
+    std::vector<FragmentKey> keys(grid_.size());
+    facets_.keys.find(grid_, keys);
+    const std::size_t width = static_cast<std::size_t>(grid_.width()),
+                      height = static_cast<std::size_t>(grid_.height()),
+                      side = static_cast<std::size_t>(grid_.side);
+    std::vector<PixelRow> rows(height);
+    parallel_for(height, 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t y = from; y < to; ++y) {
+            PixelRow& row = rows[y];
+            for (std::size_t x = 0; x < width; ++x) {
+                const std::size_t before = row.fragments.size(), pixel = y * width + x;
+                const FragmentKey first = keys[lattice_sample(pixel, 0)];
+                bool one = first != kAlone;
+                for (std::size_t j = 0; one && j < side; ++j) {
+                    const FragmentKey* line = &keys[(y * side + j) * grid_.columns() + x * side];
+                    for (std::size_t i = 0; i < side; ++i) one = one && line[i] == first;
+                }
+                if (one && facets_.keys.of(centres_, centres_.samples[pixel]) == first)
+                    row.fragments.push_back({});
+                else
+                    split_pixel(pixel, keys, row);
+                row.counts.push_back(static_cast<std::uint32_t>(row.fragments.size() - before));
+            }
+        }
+    });
+    first_.reserve(grid_.pixels() + 1);
+    first_.push_back(0);
+    for (const PixelRow& row : rows) {
+        const auto shift = static_cast<std::uint32_t>(members_.size());
+        for (Fragment fragment : row.fragments) {
+            fragment.first_member += shift;
+            fragments_.push_back(fragment);
+        }
+        members_.insert(members_.end(), row.members.begin(), row.members.end());
+        for (const std::uint32_t count : row.counts) first_.push_back(first_.back() + count);
+    }
+    counts_.pixels = grid_.pixels();
+    counts_.fragments = fragments_.size();
+}
+
+/// Fragments that are a whole pixel: where its centre is known to see the same.
+void FragmentColours::shade_centres() {
+    std::atomic<std::size_t> by_sample = 0;
+    parallel_for(grid_.pixels(), kFragmentsPerTask, [&](std::size_t from, std::size_t to) {
+        std::vector<ShownFragment> shown;
+        std::vector<std::size_t> of;
+        for (std::size_t p = from; p < to; ++p) {
+            if (fragments_[first_[p]].sample != kNone) continue;
+            shown.push_back({&centres_.samples[p], pixel_corner(p), {}});
+            of.push_back(first_[p]);
+        }
+        std::vector<SampleColour> colours(shown.size());
+        by_sample += shade_fragments({world_, facets_, centres_, grid_.side}, shown, colours);
+        for (std::size_t k = 0; k < of.size(); ++k) colours_[of[k]] = colours[k];
+    });
+    counts_.by_sample += by_sample;
+}
+
+/// All others: at the samples that stand for them.
+void FragmentColours::shade_samples() {
+    struct Wanted {
+        Id sample;
+        std::uint32_t fragment, pixel;
+    };
+    std::vector<Wanted> wanted;
+    for (std::size_t p = 0; p < grid_.pixels(); ++p)
+        for (std::size_t f = first_[p]; f < first_[p + 1]; ++f)
+            if (fragments_[f].sample != kNone)
+                wanted.push_back(
+                    {fragments_[f].sample, static_cast<std::uint32_t>(f), static_cast<std::uint32_t>(p)});
+    std::sort(wanted.begin(), wanted.end(),
+              [](const Wanted& a, const Wanted& b) { return a.sample < b.sample; });
+
+    std::vector<Id> chosen;
+    SampleViews views;
+    std::atomic<std::size_t> by_sample = 0;
+    for (std::size_t start = 0; start < wanted.size(); start += kViewsAtOnce) {
+        const std::span<const Wanted> now =
+            std::span(wanted).subspan(start, std::min(kViewsAtOnce, wanted.size() - start));
+        chosen.clear();
+        for (const Wanted& one : now) chosen.push_back(one.sample);
+        SampleGrid grid = grid_;
+        grid.chosen = chosen;
+        facets_.viewer(grid, views);
+        parallel_for(now.size(), kFragmentsPerTask, [&](std::size_t from, std::size_t to) {
+            std::vector<ShownFragment> shown;
+            for (std::size_t k = from; k < to; ++k)
+                shown.push_back(
+                    {&views.samples[k], pixel_corner(now[k].pixel), members_of(fragments_[now[k].fragment])});
+            std::vector<SampleColour> colours(shown.size());
+            by_sample += shade_fragments({world_, facets_, views, grid_.side}, shown, colours);
+            for (std::size_t k = from; k < to; ++k) colours_[now[k].fragment] = colours[k - from];
+        });
+    }
+    counts_.by_sample += by_sample;
+}
+
+SampleColour FragmentColours::colour(int x, int y) const {
+    const auto weight_at = [&](int pixel, int sample) {
+        return filter_.weights[static_cast<std::size_t>((pixel + filter_.reach) * grid_.side + sample)];
+    };
+    const auto weight_of_pixel = [&](int pixel) {
+        double sum = 0;
+        for (int i = 0; i < grid_.side; ++i) sum += weight_at(pixel, i);
+        return sum;
+    };
+    SampleColour sum, mean;
+    double total = 0;
+    for (int py = std::max(grid_.y0, y - filter_.reach); py <= std::min(grid_.y1 - 1, y + filter_.reach);
+         ++py)
+        for (int px = std::max(grid_.x0, x - filter_.reach); px <= std::min(grid_.x1 - 1, x + filter_.reach);
+             ++px) {
+            const std::size_t pixel =
+                static_cast<std::size_t>(py - grid_.y0) * static_cast<std::size_t>(grid_.width()) +
+                static_cast<std::size_t>(px - grid_.x0);
+            for (std::size_t f = first_[pixel]; f < first_[pixel + 1]; ++f) {
+                double weight = 0;
+                if (fragments_[f].members == 0)
+                    weight = weight_of_pixel(px - x) * weight_of_pixel(py - y);
+                else
+                    for (const int inside : members_of(fragments_[f]))
+                        weight +=
+                            weight_at(px - x, inside % grid_.side) * weight_at(py - y, inside / grid_.side);
+                add(sum, weight, colours_[f]);
+                total += weight;
+            }
+        }
+    add(mean, 1 / total, sum);
+    mean.coverage = std::clamp(mean.coverage, 0.0, 1.0);
+    return mean;
+}
+
+}  // namespace trilens
