@@ -105,6 +105,9 @@ HeldImage draw(const Renderer& renderer, const PictureRequest& request, const Jo
     statistics["predicted_error"] = picture.statistics.predicted_error;
     statistics["outline_pixels"] = picture.statistics.outline_pixels;
     statistics["deep_pixels"] = picture.statistics.deep_pixels;
+    statistics["fragment_pixels"] = picture.statistics.fragment_pixels;
+    statistics["fragments"] = picture.statistics.fragments;
+    statistics["rays_by_sample"] = picture.statistics.rays_by_sample;
     statistics["prepare_seconds"] = picture.prepare_seconds;
     statistics["draw_seconds"] = picture.draw_seconds;
     return {std::move(picture.image), statistics};
@@ -118,22 +121,22 @@ void bind_pictures(RendererClass& renderer) {
            const std::optional<std::string>& curves, const std::optional<std::string>& clip,
            std::optional<int> pieces, std::optional<double> tolerance, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
-           const std::optional<std::string>& seen_optics, const File& file, const py::object& progress,
-           const py::object& warn) {
+           const std::optional<std::string>& seen_optics, const std::string& shading, const File& file,
+           const py::object& progress, const py::object& warn) {
             PythonCall call(progress, warn);
-            return draw(
-                self,
-                {FacetArguments{rays, max_error, grid, seen_optics}.of(
-                     frame_params(self, resolution, camera)),
-                 projecting_engine(engine, {curves, clip, pieces, tolerance}), layer_request(layers, window)},
-                {"render", file}, call);
+            return draw(self,
+                        {FacetArguments{rays, max_error, grid, seen_optics}.of(
+                             frame_params(self, resolution, camera)),
+                         projecting_engine(engine, {curves, clip, pieces, tolerance}),
+                         layer_request(layers, window), require_named<Shading>("shading", shading)},
+                        {"render", file}, call);
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::arg("engine") = "exact",
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("curves") = py::none(), py::arg("clip") = py::none(), py::arg("pieces") = py::none(),
         py::arg("tolerance") = py::none(), py::arg("rays") = py::none(), py::arg("max_error") = py::none(),
-        py::arg("grid") = py::none(), py::arg("seen_optics") = py::none(), py::arg("file") = py::none(),
-        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        py::arg("grid") = py::none(), py::arg("seen_optics") = py::none(), py::arg("shading") = "fragment",
+        py::arg("file") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the scene by projection. The same pixels for any number of threads.\n\n"
         "resolution: 1..1024, of every optic's grid; 0: as the scene says.\n"
         "camera: by name; None: the scene's own.\n"
@@ -154,6 +157,9 @@ void bind_pictures(RendererClass& renderer) {
         "seen_optics: \"layers\" (optics seen in mirrors are layers of their own, where they can be) or "
         "\"divided\";\n"
         "None: as the scene says.\n"
+        "shading: where pixels have several samples: \"fragment\" (once for those that see one triangle by "
+        "one "
+        "way,\nthe classic engine each) or \"sample\".\n"
         "grid: \"surface\" (n x n facets on each face) or \"screen\" (n x n over each optic's bounds on the "
         "film);\nNone: as the scene says.\n"
         "file: an OpenEXR file (.exr) that is written while the picture is drawn, which is then never held "

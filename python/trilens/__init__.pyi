@@ -219,6 +219,7 @@ class Renderer:
         max_error: Optional[float] = None,
         grid: Optional[str] = None,
         seen_optics: Optional[str] = None,
+        shading: str = "fragment",
         file: Optional[_File] = None,
         progress: _Progress = None,
         warn: _Warn = None,

@@ -86,6 +86,11 @@ std::vector<Option> facet_options(RenderOptions& options) {
 
 std::vector<Option> engine_options(RenderOptions& options) {
     return {
+        {.names = "--shading",
+         .target = &options.shading,
+         .help = "where pixels have several samples: shade those that see one triangle by one way once, or "
+                 "each by itself",
+         .choices = names_of<Shading>()},
         {.names = "--engine",
          .target = &options.engine,
          .help = "exact; classic: by the outlines of projected triangles; for comparison, envmap: an "
@@ -141,6 +146,7 @@ EngineChoice chosen_engine(const RenderOptions& options) {
 PictureRequest picture_request(const RenderOptions& options, const EngineChoice& engine) {
     PictureRequest request;
     request.engine = engine;
+    request.shading = find_named<Shading>(options.shading).value();
     request.layers = layer_request(options.scene);
     request.frame.rays = find_named<CornerRays>(options.rays);
     request.frame.grid = find_named<GridKind>(options.grid);

@@ -24,6 +24,7 @@ struct RenderOptions {
     std::string output;
     std::string pixel;  // "x,y"
     std::string engine = "exact";
+    std::string shading = "fragment";
     std::string clip = "scene";
     int slices = 0, tessellate = 0;  // 0: not asked for
     std::string surface = "limit";

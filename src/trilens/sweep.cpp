@@ -166,11 +166,12 @@ void add(const EngineChoice& choice, Digest& digest) {
 }
 
 std::string picture_key(const PictureRequest& picture) {
-    const auto& [frame, engine, window] = picture;
+    const auto& [frame, engine, window, shading] = picture;
     Digest digest;
     add(frame, digest);
     add(engine, digest);
     add(window, digest);
+    digest.add(shading);
     return digest.digits();
 }
 

@@ -80,10 +80,22 @@ struct LayerRequest {
     std::vector<std::string> layers;
 };
 
+/// How often a pixel of several samples is shaded. kFragment: once for all its samples that see one triangle
+/// through one history, by the engines that project without outlines; all others shade every sample. kSample:
+/// at every sample.
+enum class Shading { kFragment, kSample };
+
+template <>
+struct EnumNames<Shading> {
+    static constexpr std::array kTable{NamedValue<Shading>{Shading::kFragment, "fragment"},
+                                       NamedValue<Shading>{Shading::kSample, "sample"}};
+};
+
 struct PictureRequest {
     FrameParams frame;
     EngineChoice engine;
     LayerRequest layers;
+    Shading shading = Shading::kFragment;
 };
 
 /// Counts of what the user would want to know.
@@ -104,6 +116,9 @@ struct LayerStatistics {
     // followed, and the light of all of them together, in pixels.
     std::size_t deep_pixels = 0;
     double deep_sum = 0;
+    // Where pixels are shaded by fragments: those pixels, with the ones around them that a filter reaches; their
+    // fragments; and of the rays that these shade, those that had to be shaded at each sample.
+    std::size_t fragment_pixels = 0, fragments = 0, rays_by_sample = 0;
 };
 
 struct Picture {

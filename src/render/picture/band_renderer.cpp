@@ -187,6 +187,9 @@ void merge(const LayerStatistics& from, LayerStatistics& to) {
     to.deep_light = std::max(to.deep_light, from.deep_light);
     to.deep_pixels += from.deep_pixels;
     to.deep_sum += from.deep_sum;
+    to.fragment_pixels += from.fragment_pixels;
+    to.fragments += from.fragments;
+    to.rays_by_sample += from.rays_by_sample;
     to.projected_facets = std::max(to.projected_facets, from.projected_facets);
     to.crowded_out = std::max(to.crowded_out, from.crowded_out);
 }
@@ -199,6 +202,11 @@ LayerStatistics put_band(const World& world, const Band& band, std::size_t first
     counts.crowded_out = middle.crowded_out;
     counts.outline_pixels = middle.outline_pixels;
     counts.predicted_error = middle.outline_error;
+    if (band.fragments) {
+        counts.fragment_pixels = band.fragments->counts().pixels;
+        counts.fragments = band.fragments->counts().fragments;
+        counts.rays_by_sample = band.fragments->counts().by_sample;
+    }
     std::mutex mutex;
     parallel_for(band.grid.pixels(), kPixelsPerTask, [&](std::size_t from, std::size_t to) {
         LayerStatistics own;

@@ -12,10 +12,10 @@
 
 namespace trilens {
 
-/// How the samples of pixels were shaded, in pixels that show anything by rays.
+/// How the samples of pixels were shaded.
 struct FragmentCounts {
     std::size_t pixels = 0, fragments = 0;
-    std::size_t by_sample = 0;  // contributions of fragments that had to be shaded at each sample
+    std::size_t by_sample = 0;  // rays of fragments that had to be shaded at each sample
 };
 
 /// The colours of all fragments in a window and the pixels around it that a filter reaches.

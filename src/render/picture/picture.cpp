@@ -148,7 +148,8 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     check_film_fits(world, layers, sink != nullptr);
     Picture picture;
     const Stopwatch preparing;
-    const FacetViews views = make_views(world, request.frame, request.engine, warn);
+    FacetViews views = make_views(world, request.frame, request.engine, warn);
+    if (request.shading == Shading::kSample) views.keys = {};
     picture.prepare_seconds = preparing.seconds();
 
     StripSink described;
