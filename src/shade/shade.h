@@ -54,18 +54,21 @@ struct SeenAlong {
     const Vec3* base = nullptr;
 };
 
-/// Which lights reach a point, as a hash of the set: equal sets have equal ones.
-using ReachingLights = std::uint64_t;
+/// The light at a point of a surface.
+struct ReachingLight {
+    std::uint64_t lights = 0;  // which lights reach it, as a hash of the set: equal sets have equal ones
+    Vec3 arriving{0};          // irradiance over pi, and the ambient radiance
+};
 
 /// What the rays show: each hit's shade (the same bits as shade_hit's where no base is given), or the
-/// background. light.size() == seen.size(). `reaching`: gets which lights reach each hit that is lit, if it
-/// is not empty; then it has that size, too.
+/// background. light.size() == seen.size(). `reaching`: gets the light at each hit that is lit, if it is not
+/// empty; then it has that size, too.
 void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::span<Vec3> light,
-                std::span<ReachingLights> reaching = {});
+                std::span<ReachingLight> reaching = {});
 
-/// Only which lights reach each hit. All must be hits of materials that are lit.
-void find_reaching_lights(const ShadeScene& scene, std::span<const SeenAlong> seen,
-                          std::span<ReachingLights> reaching);
+/// Only the light at each hit. All must be hits of materials that are lit.
+void find_reaching_light(const ShadeScene& scene, std::span<const SeenAlong> seen,
+                         std::span<ReachingLight> reaching);
 
 /// Whether the material there is lit: else it shows its base colour.
 bool is_lit(const ShadeScene& scene, const Hit& hit);

@@ -35,7 +35,7 @@ ShadeBatch::Bits unhindered(const ShadeScene& scene, const ShadeBatch& batch, Sh
 }
 
 /// Of sets of lights the hash is the sum of these: a number like a random one (splitmix64's finalizer).
-ReachingLights number_of_light(std::size_t light) {
+std::uint64_t number_of_light(std::size_t light) {
     std::uint64_t x = (light + 1) * 0x9e3779b97f4a7c15u;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
@@ -50,14 +50,14 @@ struct Shaded {
     const ShadeScene& scene;
     ShadeBatch batch;
     std::array<const SeenAlong*, kShadeLanes> seen;
-    std::array<std::size_t, kShadeLanes> answer;  // index of the light that comes out
-    std::array<ReachingLights, kShadeLanes> reaching;
+    std::array<std::size_t, kShadeLanes> answer;    // index of the light that comes out
+    std::array<std::uint64_t, kShadeLanes> lights;  // as ReachingLight has them
 
     void add(const SeenAlong& seen, std::size_t index);
     void pad();
     void arrive();
     void shade(std::span<Vec3> light);
-    void find_reaching(std::span<ReachingLights> to);
+    void find_reaching(std::span<ReachingLight> to);
 
   private:
     void set(std::size_t lane, const Hit& hit, const Vec3& toward);
@@ -95,7 +95,7 @@ void Shaded::arrive() {
     ShadeBatch::Bits wanted = 0;
     for (std::size_t i = 0; i < batch.count; ++i)
         if (is_lit(scene, *seen[i]->hit)) wanted |= Segments::bit(i);
-    std::fill_n(reaching.begin(), batch.count, ReachingLights{0});
+    std::fill_n(lights.begin(), batch.count, std::uint64_t{0});
     if (wanted == 0) return;
     pad();
     find_surfaces(batch, kShadowOffset * scene.size);
@@ -110,7 +110,7 @@ void Shaded::arrive() {
         ShadeBatch::Bits lit = batch.lit & wanted;
         if (as_seen.casts_shadows) lit = unhindered(scene, batch, lit);
         add_light(batch, light.color, lit);
-        for_each_of(lit, [&](std::size_t i) { reaching[i] += number_of_light(l); });
+        for_each_of(lit, [&](std::size_t i) { lights[i] += number_of_light(l); });
     }
 }
 
@@ -125,14 +125,15 @@ void Shaded::shade(std::span<Vec3> light) {
     }
 }
 
-void Shaded::find_reaching(std::span<ReachingLights> to) {
-    for (std::size_t i = 0; i < batch.count; ++i) to[answer[i]] = reaching[i];
+void Shaded::find_reaching(std::span<ReachingLight> to) {
+    for (std::size_t i = 0; i < batch.count; ++i)
+        if (is_lit(scene, *seen[i]->hit)) to[answer[i]] = {lights[i], batch.arriving.get(i)};
 }
 
 }  // namespace
 
 void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::span<Vec3> light,
-                std::span<ReachingLights> reaching) {
+                std::span<ReachingLight> reaching) {
     TRILENS_CHECK(light.size() == seen.size(), "one light per ray");
     Shaded shaded(scene);
     shaded.batch.has_normals = !scene.normals.empty();
@@ -153,8 +154,8 @@ void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::s
     empty();
 }
 
-void find_reaching_lights(const ShadeScene& scene, std::span<const SeenAlong> seen,
-                          std::span<ReachingLights> reaching) {
+void find_reaching_light(const ShadeScene& scene, std::span<const SeenAlong> seen,
+                         std::span<ReachingLight> reaching) {
     Shaded shaded(scene);
     shaded.batch.has_normals = !scene.normals.empty();
     const auto empty = [&] {

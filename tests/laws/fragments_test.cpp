@@ -15,7 +15,8 @@ using namespace trilens_test;
 
 namespace {
 
-const std::vector<std::string> kScenes = {"sphere", "saddle", "crystal-ball", "glass-before-mirror"};
+const std::vector<std::string> kScenes = {"sphere", "saddle", "paths/crystal-ball",
+                                          "paths/glass-before-mirror"};
 
 std::unique_ptr<World> world_of(const std::string& scene, int spp, FilterKind filter = FilterKind::kBox) {
     std::unique_ptr<World> world = shipped_world(scene, 8, 64, 48);

@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t kMostShaded = Segments::kMost;
 constexpr std::size_t kCorners = 4;
 constexpr double kLookupsPerTexel = 4;
+// Of the light at the shaded point: how far that at the outermost samples may be off in the mean.
+constexpr double kWholeRoom = 0.25, kPartRoom = 0.05;
 constexpr double kPi = 3.14159265358979323846;
 
 /// The rays of a facet as a function of the film.
@@ -80,6 +82,7 @@ class SpreadContribution {
     }
     std::optional<SeenThere> at(const Vec2& place) const;
     const Contribution& contribution() const { return contribution_; }
+    bool is_whole_pixel() const { return fragment_.members.empty(); }
     /// What its outermost samples see; fewer than kCorners where some see nothing by its map, or it has one.
     std::span<const SeenThere> corners() const { return {corners_.data(), corner_count_}; }
     /// Mean base colour over its samples, or of the background; none: that of the shaded point will do.
@@ -198,7 +201,7 @@ class FragmentContributions {
     std::size_t by_sample() const { return by_sample_; }
 
   private:
-    std::array<bool, kMostShaded> find_uneven(std::span<const ReachingLights> reaching) const;
+    void even_out(std::span<const ReachingLight> centre, std::span<Vec3> light);
     Vec3 mean_light(const SpreadContribution& contribution) const;
 
     const FragmentShading& shading_;
@@ -207,26 +210,51 @@ class FragmentContributions {
     std::size_t by_sample_ = 0;
 };
 
-/// Which contributions have samples that other lights reach than the shaded point.
-std::array<bool, kMostShaded> FragmentContributions::find_uneven(
-    std::span<const ReachingLights> reaching) const {
+/// The mean over a pixel's samples of a function that is quadratic, less its value at the centre, as a share
+/// of the mean over the four samples at the corners less that.
+double corner_share(int side) {
+    return (side + 1.0) / (3.0 * (side - 1));
+}
+
+/// From the light at the shaded points to means over the samples. Samples are shaded one by one where other
+/// lights reach the outermost than the shaded point, or light changes by more than a mean can tell.
+void FragmentContributions::even_out(std::span<const ReachingLight> centre, std::span<Vec3> light) {
     std::array<SeenAlong, kMostShaded * kCorners> corners;
-    std::array<std::size_t, kMostShaded * kCorners> of;
     std::size_t count = 0;
+    const auto is_spread = [&](const SpreadContribution& one) {
+        const Hit& hit = *one.contribution().seen.hit;
+        return hit.seen() && !one.corners().empty() && is_lit(shading_.world.shading, hit);
+    };
+    for (const SpreadContribution& one : waiting_)
+        if (is_spread(one))
+            for (const SeenThere& corner : one.corners()) corners[count++] = {&corner.hit, &corner.ray};
+    std::array<ReachingLight, kMostShaded * kCorners> there;
+    find_reaching_light(shading_.world.shading, std::span(corners).first(count),
+                        std::span(there).first(count));
+
+    count = 0;
     for (std::size_t i = 0; i < waiting_.size(); ++i) {
-        const Hit& hit = *waiting_[i].contribution().seen.hit;
-        if (!hit.seen() || !is_lit(shading_.world.shading, hit)) continue;
-        for (const SeenThere& corner : waiting_[i].corners()) {
-            of[count] = i;
-            corners[count++] = {&corner.hit, &corner.ray};
+        if (!is_spread(waiting_[i])) continue;
+        const std::size_t n = waiting_[i].corners().size();
+        bool uneven = false;
+        Vec3 mean(0);
+        for (const ReachingLight& at : std::span(there).subspan(count, n)) {
+            uneven = uneven || at.lights != centre[i].lights;
+            mean += at.arriving / double(n);
+        }
+        count += n;
+        const bool whole = waiting_[i].is_whole_pixel();
+        const Vec3 off = mean - centre[i].arriving;
+        if (uneven ||
+            of_worst_colour(glm::abs(off) - (whole ? kWholeRoom : kPartRoom) * centre[i].arriving) > 0) {
+            light[i] = mean_light(waiting_[i]);
+            ++by_sample_;
+        } else if (whole && n == kCorners) {
+            for (int k = 0; k < 3; ++k)
+                if (centre[i].arriving[k] > 0)
+                    light[i][k] *= 1 + corner_share(shading_.side) * off[k] / centre[i].arriving[k];
         }
     }
-    std::array<ReachingLights, kMostShaded * kCorners> there;
-    find_reaching_lights(shading_.world.shading, std::span(corners).first(count),
-                         std::span(there).first(count));
-    std::array<bool, kMostShaded> uneven{};
-    for (std::size_t k = 0; k < count; ++k) uneven[of[k]] = uneven[of[k]] || there[k] != reaching[of[k]];
-    return uneven;
 }
 
 /// Each sample shaded by itself.
@@ -250,7 +278,7 @@ void FragmentContributions::shade() {
     std::array<SeenAlong, kMostShaded> seen;
     std::array<std::optional<Vec3>, kMostShaded> base;
     std::array<Vec3, kMostShaded> light;
-    std::array<ReachingLights, kMostShaded> reaching{};
+    std::array<ReachingLight, kMostShaded> reaching{};
     for (std::size_t i = 0; i < count; ++i) {
         seen[i] = waiting_[i].contribution().seen;
         base[i] = waiting_[i].mean_base();
@@ -258,14 +286,9 @@ void FragmentContributions::shade() {
     }
     shade_rays(shading_.world.shading, std::span(seen).first(count), std::span(light).first(count),
                std::span(reaching).first(count));
-    const std::array<bool, kMostShaded> uneven = find_uneven(std::span(reaching).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-        if (uneven[i]) {
-            light[i] = mean_light(waiting_[i]);
-            ++by_sample_;
-        }
+    even_out(std::span(reaching).first(count), std::span(light).first(count));
+    for (std::size_t i = 0; i < count; ++i)
         add_light(shading_.world, waiting_[i].contribution(), light[i], *colours_[i]);
-    }
     waiting_.clear();
 }
 

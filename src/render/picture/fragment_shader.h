@@ -28,10 +28,10 @@ struct FragmentShading {
 };
 
 /// Colours of fragments, the means over their samples:
-/// - what reaches the shaded point reaches all its samples, if the same lights reach the outermost of them
-/// (at
-///   most four); else each sample is shaded by itself, where its ray by the same facet's map meets the
-///   triangle;
+/// - light is asked for at the shaded point and at the outermost samples, at most four. Where other lights
+/// reach
+///   those, or light differs by much, each sample is shaded by itself, where its ray by the same facet's map
+///   meets the triangle; over a whole pixel it is else the mean of the quadratic that goes through them all;
 /// - base colours, and the background's, are means over places as dense as its samples, or so dense that four
 ///   lie in a texel's width, whichever is fewer;
 /// - weights (Fresnel, glass on the way) are those of the shaded point.
