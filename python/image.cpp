@@ -168,8 +168,8 @@ void bind_image(py::module_& module) {
             "optic);\n"
             "projected_facets; predicted_error: pixels, the most that was left; outline_pixels: predicted, "
             "those between the outlines of optics and of their facets; deep_pixels: that lack light for "
-            "maxDepth; prepare_seconds, "
-            "draw_seconds.")
+            "maxDepth;\nfragment_pixels (shaded once or a few times for all their samples), fragments (of "
+            "these pixels),\nrays_by_sample (shaded each for itself); prepare_seconds, draw_seconds.")
         .def("rgb", rgb_of, py::arg("layer") = "",
              "The colours R, G, B of a layer (\"\": the beauty) as a new float32 array (height, width, 3),\n"
              "linear Rec.709. Raises KeyError where the image has none.")

@@ -14,6 +14,7 @@ constexpr std::size_t kCorners = 4;
 constexpr double kLookupsPerTexel = 4;
 // Of the light at the shaded point: how far that at the outermost samples may be off in the mean.
 constexpr double kWholeRoom = 0.25, kPartRoom = 0.05;
+constexpr double kWayToEdge = 0.9;  // of the way to a triangle's edge, at most: walls may stand there
 constexpr double kPi = 3.14159265358979323846;
 
 /// The rays of a facet as a function of the film.
@@ -54,6 +55,22 @@ std::optional<Hit> meet_plane(const TriangleScene& scene, Id triangle, const Ray
     return Hit{triangle, t, {dot(cross(p, c), normal) / area, dot(cross(b, p), normal) / area}};
 }
 
+/// A point of a triangle's plane drawn towards one inside the triangle, until it lies inside, too.
+void draw_inside(const Hit& inside, Hit& hit) {
+    double way = 1;
+    const auto keep_positive = [&](double from, double to) {
+        if (to < 0 && from > 0) way = std::min(way, kWayToEdge * from / (from - to));
+        if (to < 0 && from <= 0) way = 0;
+    };
+    const Vec2 from = inside.barycentric, to = hit.barycentric;
+    keep_positive(from.x, to.x);
+    keep_positive(from.y, to.y);
+    keep_positive(1 - from.x - from.y, 1 - to.x - to.y);
+    if (way == 1) return;
+    hit.barycentric = from + way * (to - from);
+    hit.t = inside.t + way * (hit.t - inside.t);
+}
+
 /// What is seen at one place of a fragment.
 struct SeenThere {
     Hit hit;
@@ -67,7 +84,9 @@ class SpreadContribution {
                        const Contribution& contribution)
         : shading_(shading), fragment_(fragment), contribution_(contribution) {
         if (sample_count() > 1) map_ = map_of(shading, *fragment.view, contribution.end);
-        if (map_.mesh) find_corners();
+        if (!map_.mesh) return;
+        find_corners();
+        if (contribution.end && contribution.end->medium != kNone) find_mean_length();
     }
 
     std::size_t sample_count() const {
@@ -90,6 +109,8 @@ class SpreadContribution {
 
   private:
     void find_corners();
+    /// Of the way through the last medium, to first order: that at the centroid of the samples.
+    void find_mean_length();
     /// How many look-ups along a pixel's edge its texture asks for.
     int lookups() const;
     Vec3 base_at(const SeenThere& there) const;
@@ -107,7 +128,10 @@ std::optional<SeenThere> SpreadContribution::at(const Vec2& place) const {
     if (!contribution_.seen.hit->seen()) return SeenThere{{}, ray};
     const std::optional<Hit> hit = meet_plane(shading_.world.objects, contribution_.seen.hit->triangle, ray);
     if (!hit) return std::nullopt;
-    return SeenThere{*hit, ray};
+    // Samples of neighbouring facets see the same triangle; this facet's map, continued, may miss it.
+    SeenThere there{*hit, ray};
+    draw_inside(*contribution_.seen.hit, there.hit);
+    return there;
 }
 
 /// The outermost samples: those farthest along both diagonals, both ways.
@@ -133,6 +157,14 @@ void SpreadContribution::find_corners() {
     for (const Vec2& place : places)
         if (const std::optional<SeenThere> there = at(fragment_.pixel + place))
             corners_[corner_count_++] = *there;
+}
+
+void SpreadContribution::find_mean_length() {
+    if (is_whole_pixel() || !contribution_.seen.hit->seen()) return;
+    Vec2 sum(0);
+    for (std::size_t s = 0; s < sample_count(); ++s) sum += place(s);
+    if (const std::optional<SeenThere> there = at(sum / double(sample_count())))
+        contribution_.mean_length = there->hit.t * length(there->ray.direction);
 }
 
 int SpreadContribution::lookups() const {

@@ -27,14 +27,15 @@ struct FragmentShading {
     int side = 1;  // samples along a pixel's edge
 };
 
-/// Colours of fragments, the means over their samples:
-/// - light is asked for at the shaded point and at the outermost samples, at most four. Where other lights
-/// reach
-///   those, or light differs by much, each sample is shaded by itself, where its ray by the same facet's map
-///   meets the triangle; over a whole pixel it is else the mean of the quadratic that goes through them all;
-/// - base colours, and the background's, are means over places as dense as its samples, or so dense that four
-///   lie in a texel's width, whichever is fewer;
-/// - weights (Fresnel, glass on the way) are those of the shaded point.
+/// Colours of fragments, the means over their samples. Where a sample stands is told by its facet's map,
+/// drawn inside the triangle that all of them see.
+/// - Light is asked for at the shaded point and at the outermost samples, at most four. Where other lights
+///   reach those, or light differs by much, each sample is shaded by itself; over a whole pixel it is else
+///   the mean of the quadratic that goes through them all.
+/// - Base colours, and the background's, are means over places as dense as its samples, or so dense that four
+///   lie in a texel's width, whichever is fewer.
+/// - Weights (Fresnel, glass on the way) are those of the shaded point; the way through the last glass is
+///   that of the centroid.
 /// Returns how many fragments were shaded sample by sample. colours.size() == fragments.size().
 std::size_t shade_fragments(const FragmentShading& shading, std::span<const ShownFragment> fragments,
                             std::span<SampleColour> colours);

@@ -64,7 +64,7 @@ void add_light(const World& world, const Contribution& from, Vec3 light, SampleC
     }
     if (end->medium != kNone && end->hit.seen())
         light *= volume_transmittance(world.scene.materials[world.optics[end->medium].material],
-                                      path_length(*end));
+                                      from.mean_length.value_or(path_length(*end)));
     (end->path == Path::kReflect ? colour.reflect : colour.refract) += from.weight * light;
 }
 

@@ -1,6 +1,8 @@
 // What colour a sample has: the light of its direct view, or of its paths over an optic, weighted.
 #pragma once
 
+#include <optional>
+
 #include "render/frame/camera_media.h"
 #include "render/frame/views.h"
 #include "render/world/world.h"
@@ -20,6 +22,8 @@ struct Contribution {
     SeenAlong seen;
     Vec3 weight{0};                // of its light
     const PathEnd* end = nullptr;  // null: what the camera sees itself
+    // From the last optic to what is seen, in scene units, where it stands for more than its own sample.
+    std::optional<double> mean_length = std::nullopt;
 };
 
 /// Calls body(contribution) for all that a sample shows.
@@ -29,7 +33,7 @@ void for_each_contribution(const World& world, const SampleViews& views, const S
     if (view.ray.direction == Vec3(0)) return;  // the camera has no ray there
     if (view.optic == kNone) {
         if (world.scene.render.direct)
-            body(Contribution{{&view.hit, &view.ray}, light_of_view(world, views, view), nullptr});
+            body(Contribution{{&view.hit, &view.ray}, light_of_view(world, views, view)});
         return;
     }
     const OpticWeights weights = first_weights(world, views, view);
