@@ -192,22 +192,12 @@ void Divider::end(Id cell, FacetPart part) {
     divided_.parts.push_back(std::move(part));
 }
 
-/// Infinite where the eye's plane passes through.
-double screen_area(const std::array<FacetPoint, 3>& corners) {
-    const auto behind = [](const FacetPoint& corner) { return !(corner.screen.z > 0); };
-    if (std::all_of(corners.begin(), corners.end(), behind)) return 0;
-    std::array<Vec2, 3> at;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& s = corners[k].screen;
-        if (!(s.z > 0)) return kInfinity;
-        at[k] = {s.x / s.z, s.y / s.z};
-    }
-    const Vec2 b = at[1] - at[0], c = at[2] - at[0];
-    return 0.5 * std::fabs(b.x * c.y - b.y * c.x);
+std::array<Vec3, 3> on_screen(const std::array<FacetPoint, 3>& corners) {
+    return {corners[0].screen, corners[1].screen, corners[2].screen};
 }
 
 bool Divider::is_least(const Triangle& corners, int level) const {
-    return level >= params_.most_levels || screen_area(corners) < params_.least_area;
+    return level >= params_.most_levels || screen_area(on_screen(corners)) < params_.least_area;
 }
 
 /// Whether projected_ stands for the part. Sets the centre, and has all paths followed, where the principal
@@ -225,8 +215,7 @@ bool Divider::probe_inside(const Triangle& corners, Inside& inside, int level) {
 
 void Divider::divide(Id cell, const Triangle& corners, int level) {
     // Nobody sees what is off the film.
-    if (level > 0 &&
-        !may_reach_film({corners[0].screen, corners[1].screen, corners[2].screen}, context_.camera.film))
+    if (level > 0 && !may_reach_film(on_screen(corners), context_.camera.film))
         return trace(cell, corners, level);
     // Nobody looks into a part that would be traced anyway.
     if (is_least(corners, level) && !may_project(corners)) return trace(cell, corners, level);
@@ -246,7 +235,7 @@ void Divider::trace(Id cell, const Triangle& corners, int level) {
 /// A facet so small that what lies between its corners is less than a pixel away from them; false where it is
 /// none.
 bool Divider::divide_plain(Id cell, const Triangle& corners) {
-    if (!(screen_area(corners) < params_.plain_area)) return false;
+    if (!(screen_area(on_screen(corners)) < params_.plain_area)) return false;
     if (layered(corners, {}, 0) || project(corners, {}, 0))
         end(cell, std::move(projected_));
     else

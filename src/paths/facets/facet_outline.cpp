@@ -49,6 +49,7 @@ void OpticPaths::set_places(const SurfaceGrid& grid) {
     corner_probes_.resize(2 * places_.size());
     cells_.resize(grid.facets.size());
     prepared_.resize(grid.facets.size());
+    fitted_.resize(grid.facets.size());
 }
 
 void OpticPaths::set_film_corner(Id corner, const Vec2& pixel) {
@@ -90,6 +91,7 @@ OpticPaths::OpticPaths(ProbeContext context, const FilmWindow& window, DividePar
         }
     cells_.resize(outline_.facets.size());
     prepared_.resize(outline_.facets.size());
+    fitted_.resize(outline_.facets.size());
 }
 
 Id OpticPaths::film_facet(const Vec2& pixel) const {
@@ -112,6 +114,7 @@ OpticPaths::OpticPaths(ProbeContext context, const FirstPaths& first)
     }
     cells_.resize(grid.facets.size());
     prepared_.resize(grid.facets.size());
+    fitted_.resize(grid.facets.size());
     const std::size_t facets = grid.facets.size();
     for (std::size_t f = 0; f < facets; ++f) {
         leaves_.push_back({static_cast<Id>(f)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 
 #include "base/util/parallel.h"
 #include "paths/facets/divide_facet.h"
@@ -12,6 +13,8 @@ namespace trilens {
 namespace {
 
 constexpr std::size_t kCornersPerTask = 64, kFacetsPerTask = 16;
+constexpr double kFittedArea = 1;  // square pixels: a fit of facets below this costs more than drawing them
+constexpr double kInTheWay = 1 - 1e-4;  // of the way to a corner: what is met before hides it
 
 }  // namespace
 
@@ -61,12 +64,53 @@ void OpticPaths::set_ray_scales(std::span<const DividedFacet> divided) const {
     });
 }
 
-bool OpticPaths::on_film(Id facet) const {
+std::array<Vec3, 3> OpticPaths::screen_corners(Id facet) const {
     const IdTriple& corner = outline_.facets[facet];
-    const std::array<Vec3, 3> screen{outline_.screen[corner[0]], outline_.screen[corner[1]],
-                                     outline_.screen[corner[2]]};
+    return {outline_.screen[corner[0]], outline_.screen[corner[1]], outline_.screen[corner[2]]};
+}
+
+bool OpticPaths::on_film(Id facet) const {
+    const std::array<Vec3, 3> screen = screen_corners(facet);
     const bool has_image = std::all_of(screen.begin(), screen.end(), [](const Vec3& s) { return s.z != 0; });
     return has_image && may_reach_film(screen, context_.camera.film);
+}
+
+/// Whether the camera's ray through a corner of the grid comes to it: neither an optic nor an object is in
+/// its way.
+bool OpticPaths::is_in_sight(Id corner) const {
+    const Vec3& screen = outline_.screen[corner];
+    const Ray ray = context_.camera.ray(screen, places_[corner].point);
+    const double size = length(ray.direction);
+    if (!(size > 0)) return false;
+    const Vec3 direction = ray.direction / size;
+    const double nearer = kInTheWay * dot(places_[corner].point - ray.origin, direction);
+    const Hit object = params_.objects ? params_.objects->first_hit({ray.origin, direction}) : Hit();
+    if (object.seen() && object.t < nearer) return false;
+    const std::optional<NextOptic> optic =
+        next_optic(*context_.world, {{ray.origin, direction}, kNone, context_.camera.media(screen)});
+    return !optic || optic->distance >= nearer;
+}
+
+/// The facets of a side that are on the film and not too small to be worth it, ascending; where it can be
+/// told those alone of which a corner is in sight.
+std::vector<Id> OpticPaths::fitted_together(bool front) const {
+    const bool all = params_.fit_all || !grid_;
+    std::vector<Id> shown;
+    for (Id f = 0; f < outline_.facets.size(); ++f)
+        if (shows_front(f) == front && on_film(f) && (all || screen_area(screen_corners(f)) >= kFittedArea))
+            shown.push_back(f);
+    if (all) return shown;
+    std::vector<char> wanted(outline_.screen.size(), 0), sighted(outline_.screen.size(), 0);
+    for (const Id f : shown)
+        for (const Id corner : outline_.facets[f]) wanted[corner] = 1;
+    parallel_for(wanted.size(), kCornersPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t c = from; c < to; ++c) sighted[c] = wanted[c] && is_in_sight(static_cast<Id>(c));
+    });
+    std::erase_if(shown, [&](Id f) {
+        const IdTriple& corner = outline_.facets[f];
+        return !sighted[corner[0]] && !sighted[corner[1]] && !sighted[corner[2]];
+    });
+    return shown;
 }
 
 /// Those of `facets` that are not known, and those that are fitted with them; ascending.
@@ -82,8 +126,9 @@ std::vector<Id> OpticPaths::wanted_facets(std::span<const Id> facets) {
         for (std::size_t side = 0; side < 2; ++side) {
             if (!begins[side] || side_fitted_[side]) continue;
             side_fitted_[side] = true;
-            for (Id f = 0; f < outline_.facets.size(); ++f)
-                if (shows_front(f) == (side == 1) && on_film(f)) fresh.push_back(f);
+            const std::vector<Id> together = fitted_together(side == 1);
+            fresh.insert(fresh.end(), together.begin(), together.end());
+            for (const Id f : together) fitted_[f] = 1;
         }
     std::sort(fresh.begin(), fresh.end());
     fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
@@ -134,12 +179,11 @@ void OpticPaths::prepare(std::span<const Id> facets) {
     parallel_for(fresh.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             FacetToDivide facet;
-            const IdTriple& corners = outline_.facets[fresh[i]];
             if (!has_room_[fresh[i]]) {
-                divided[i] = traced_facet(
-                    {outline_.screen[corners[0]], outline_.screen[corners[1]], outline_.screen[corners[2]]});
+                divided[i] = traced_facet(screen_corners(fresh[i]));
                 continue;
             }
+            const IdTriple& corners = outline_.facets[fresh[i]];
             const bool front = shows_front(fresh[i]);
             facet.side = !grid_ ? ProbeSide::kNearest : front ? ProbeSide::kFront : ProbeSide::kBack;
             facet.reach = grid_ ? 0 : 2 * window_.reach;
@@ -160,7 +204,7 @@ void OpticPaths::prepare(std::span<const Id> facets) {
             const FittedLeaf leaf{static_cast<Id>(first_leaf + p), &divided[i].parts[p]};
             if (leaf.part->method != LeafMethod::kProjected) continue;
             open.push_back(leaf);
-            if (leaf.part->level == 0)
+            if (leaf.part->level == 0 && fitted_[fresh[i]])
                 whole.push_back(leaf);
             else if (params_.fit)
                 fit_alone(leaf, nodes_);

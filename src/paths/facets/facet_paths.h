@@ -73,6 +73,7 @@ struct DivideParams {
     std::size_t most_bytes = std::size_t{4} << 30;
     const Tracer* objects = nullptr;  // for the prediction: what is seen
     bool fit = false;                 // corner rays of whole facets are fitted
+    bool fit_all = false;             // hidden ones among them, and those of less than a pixel
     // Of a mirror: whether a pixel from which the exact path goes on to optic `next` (kNone: to none) shows
     // that optic as nested. Facets on which it does are not divided. Unset: there are no nested optics.
     std::function<bool(const Vec2& pixel, Id next)> nested_agree = {};
@@ -112,7 +113,8 @@ struct FirstPaths {
 /// ray of a part is the camera's exact ray through that point.
 ///
 /// Fitted rays depend on the facets all around, so with DivideParams::fit the first facet of a side that is
-/// asked for has all facets of that side worked out that are on the film: no crop changes them.
+/// asked for has all facets of that side worked out that are on the film, have a corner in sight and are not
+/// smaller than a pixel: no crop changes them. Of the others those that are asked for keep exact corner rays.
 class OpticPaths {
   public:
     /// `grid` must live longer.
@@ -165,7 +167,10 @@ class OpticPaths {
     };
     void set_places(const SurfaceGrid& grid);
     bool shows_front(Id facet) const;
+    std::array<Vec3, 3> screen_corners(Id facet) const;
     bool on_film(Id facet) const;
+    bool is_in_sight(Id corner) const;
+    std::vector<Id> fitted_together(bool front) const;
     std::vector<Id> wanted_facets(std::span<const Id> facets);
     void set_film_corner(Id corner, const Vec2& pixel);
     void probe_corners(std::span<const Id> facets);
@@ -191,6 +196,7 @@ class OpticPaths {
     std::vector<char> has_room_;                             // one per facet, once they are counted
     std::size_t crowded_out_ = 0;
     std::vector<char> prepared_;
+    std::vector<char> fitted_;  // one per facet: with those all around
     std::vector<PathLeaf> leaves_;
     std::vector<PathNode> nodes_;
     std::map<std::tuple<Id, Id, Event, Colours, Id>, Id> node_by_step_;

@@ -1,7 +1,10 @@
-// Whether a triangle on the screen may reach the film.
+// Where a triangle on the screen lies: whether it may reach the film, and its area there.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "base/math/vec.h"
 
@@ -21,6 +24,17 @@ inline bool may_reach_film(const std::array<Vec3, 3>& screen, const Vec2& film) 
         behind = behind && !(s.z > 0);
     }
     return !(left || right || below || above || behind);
+}
+
+/// The area of a triangle of homogeneous screen positions, in square pixels: infinite where the eye's plane
+/// passes through it, 0 where all of it lies behind the eye.
+inline double screen_area(const std::array<Vec3, 3>& screen) {
+    const auto behind = [](const Vec3& s) { return !(s.z > 0); };
+    if (std::all_of(screen.begin(), screen.end(), behind)) return 0;
+    if (std::any_of(screen.begin(), screen.end(), behind)) return std::numeric_limits<double>::infinity();
+    const auto pixel = [&](std::size_t k) { return Vec2(screen[k]) / screen[k].z; };
+    const Vec2 b = pixel(1) - pixel(0), c = pixel(2) - pixel(0);
+    return 0.5 * std::fabs(b.x * c.y - b.y * c.x);
 }
 
 }  // namespace trilens

@@ -106,6 +106,7 @@ NestedOptic::NestedOptic(const NestedStage& stage, std::vector<Id> chain, Id opt
     DivideParams divide = stage.divide;
     divide.fit = stage.optics[optic].fit;
     divide.plain_area = divide.fit ? 0 : kPlainArea;  // a fit looks inside all facets
+    divide.fit_all = true;
     if (world_.optics[optic].mirror && world_.max_depth > 0) {
         std::vector<Id> longer = chain_;
         longer.push_back(optic);
