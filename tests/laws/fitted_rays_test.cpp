@@ -181,6 +181,31 @@ TEST_CASE("fitted pictures do not depend on crops or threads", "[laws][law]") {
     }
 }
 
+TEST_CASE("fitted rays ask for no facets that nobody sees, nor for those below a pixel", "[laws][law]") {
+    // A board hides most of one ball and the whole of another.
+    const std::string board =
+        R"({"name":"board","role":"object","material":"grey","points":[[-1.2,-1.4,1.5],[0.35,-1.4,1.5],[0.35,2,1.5],[-1.2,2,1.5]],
+           "faceVertexCounts":[4],"faceVertexIndices":[0,1,2,3]},
+          {"name":"hidden","role":"optic","material":"chrome","primitive":{"type":"sphere","center":[-0.5,0,-1.2],"radius":0.3}})";
+    const auto world = room_with(kFittedBall + "," + board, 2, 24);
+    const auto open = room_with(kFittedBall, 2, 24);
+    const auto facets = [&](const World& shown, CornerRays rays, int n) {
+        FrameParams frame = with(rays);
+        frame.resolution = n;
+        return draw(shown, frame, Engine::kExact).statistics.projected_facets;
+    };
+    const auto fitted = facets(*world, CornerRays::kFitted, 24);
+    CHECK(fitted < 1.3 * facets(*world, CornerRays::kInterpolated, 24));
+    CHECK(fitted < 0.7 * facets(*open, CornerRays::kFitted, 24));
+    CHECK(facets(*open, CornerRays::kFitted, 96) < 1.3 * facets(*open, CornerRays::kInterpolated, 96));
+
+    LayerRequest window;
+    window.layers = layer_names();
+    const Image whole = draw(*world, with(CornerRays::kFitted), Engine::kExact, window).image;
+    window.x0 = 100, window.y0 = 40, window.x1 = 150, window.y1 = 110;
+    CHECK(same_in(whole, draw(*world, with(CornerRays::kFitted), Engine::kExact, window).image));
+}
+
 TEST_CASE("facets divided for an error keep it, whatever they began with", "[laws][law]") {
     struct Case {
         const std::string& optic;

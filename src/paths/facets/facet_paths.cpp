@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "base/util/parallel.h"
 #include "paths/facets/divide_facet.h"
@@ -113,7 +114,8 @@ std::vector<Id> OpticPaths::fitted_together(bool front) const {
     return shown;
 }
 
-/// Those of `facets` that are not known, and those that are fitted with them; ascending.
+/// Those of `facets` that are not known, and those that are fitted with them: these first, for a fit's sums
+/// must not depend on what else is asked for; each ascending.
 std::vector<Id> OpticPaths::wanted_facets(std::span<const Id> facets) {
     std::vector<Id> fresh;
     std::array<bool, 2> begins{};
@@ -130,7 +132,8 @@ std::vector<Id> OpticPaths::wanted_facets(std::span<const Id> facets) {
             fresh.insert(fresh.end(), together.begin(), together.end());
             for (const Id f : together) fitted_[f] = 1;
         }
-    std::sort(fresh.begin(), fresh.end());
+    std::sort(fresh.begin(), fresh.end(),
+              [&](Id a, Id b) { return std::pair(!fitted_[a], a) < std::pair(!fitted_[b], b); });
     fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
     return fresh;
 }
@@ -204,10 +207,10 @@ void OpticPaths::prepare(std::span<const Id> facets) {
             const FittedLeaf leaf{static_cast<Id>(first_leaf + p), &divided[i].parts[p]};
             if (leaf.part->method != LeafMethod::kProjected) continue;
             open.push_back(leaf);
-            if (leaf.part->level == 0 && fitted_[fresh[i]])
-                whole.push_back(leaf);
-            else if (params_.fit)
+            if (fits_alone(leaf.leaf))
                 fit_alone(leaf, nodes_);
+            else
+                whole.push_back(leaf);
         }
     }
     if (params_.fit) fit_nodes(whole, nodes_);

@@ -114,7 +114,8 @@ struct FirstPaths {
 ///
 /// Fitted rays depend on the facets all around, so with DivideParams::fit the first facet of a side that is
 /// asked for has all facets of that side worked out that are on the film, have a corner in sight and are not
-/// smaller than a pixel: no crop changes them. Of the others those that are asked for keep exact corner rays.
+/// smaller than a pixel: no crop changes them. Of the others those that are asked for are fitted alone, as
+/// parts are.
 class OpticPaths {
   public:
     /// `grid` must live longer.
@@ -176,6 +177,7 @@ class OpticPaths {
     void probe_corners(std::span<const Id> facets);
     void set_ray_scales(std::span<const DividedFacet> divided) const;
     void append(Id facet, Id cell, DividedFacet& divided);
+    bool fits_alone(Id leaf) const;
     void append_part(Id leaf, FacetPart& part);
     void keep_room();
     void divide_by_error(std::span<const FittedLeaf> open);

@@ -90,11 +90,16 @@ Id OpticPaths::node_of(Id parent, const PathSegment& segment) {
     return found->second;
 }
 
+/// Whether a leaf's corner rays are fitted for itself and not with those all around.
+bool OpticPaths::fits_alone(Id leaf) const {
+    return params_.fit && (leaves_[leaf].level > 0 || !fitted_[leaves_[leaf].facet]);
+}
+
 void OpticPaths::append_part(Id leaf, FacetPart& part) {
     std::vector<Id>& node_index = part.node;
     node_index.assign(part.histories.size(), kNone);
     part.node_facet.assign(part.histories.size(), kNone);
-    const bool alone = params_.fit && part.level > 0;  // fitted by itself
+    const bool alone = fits_alone(leaf);
     for (std::size_t h = 0; h < part.histories.size(); ++h) {
         const PathSegment& history = part.histories[h];
         node_index[h] = node_of(history.parent == kNone ? kNone : node_index[history.parent], history);
