@@ -120,7 +120,8 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     // Caustics are where neighbouring rays meet: of rays that are exact at the corners. A fit is nearer in
     // between, but its slopes are not: rays that stay parallel would meet far away.
     if (lines.caustics) plain.rays = CornerRays::kInterpolated;
-    const Frame frame = make_frame(world, plain, warn);
+    Frame frame = make_frame(world, plain, warn);
+    frame.fit_all = true;
     const SampleGrid grid{0, 0, drawing->width, drawing->height, kSide};
 
     // Everything that the camera may see, and the optics' grids.

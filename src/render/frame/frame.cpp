@@ -219,6 +219,7 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
     const Vec2 film(world.scene.film.width, world.scene.film.height);
     DivideParams params;
     params.fit = framed.rays == CornerRays::kFitted;
+    params.fit_all = frame.fit_all;
     params.objects = &object_tracer(world);
     params.estimates = !for_error;
     params.max_error =
