@@ -21,7 +21,7 @@ CommandRun run_trilens(const std::string& arguments) {
     static const std::string folder = scratch_dir("command_line");
     const std::string out = folder + "/out.txt", err = folder + "/err.txt";
     const std::string line =
-        std::string(TRILENS_BUILD_DIR) + "/trilens " + arguments + " >" + out + " 2>" + err;
+        trilens_test::build_dir() + "/trilens " + arguments + " >" + out + " 2>" + err;
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + status, bytes_of(out), bytes_of(err)};
 }

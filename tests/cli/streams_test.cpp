@@ -128,7 +128,7 @@ Ended end_while_reading(const std::string& folder, int signal) {
     const std::string pipe = folder + "/endless.json";
     fs::remove(pipe);
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-    const std::string program = std::string(TRILENS_BUILD_DIR) + "/trilens", output = folder + "/out.exr";
+    const std::string program = trilens_test::build_dir() + "/trilens", output = folder + "/out.exr";
     const pid_t child = fork();
     if (child == 0) {
         if (!std::freopen((folder + "/said.txt").c_str(), "w", stderr)) _exit(99);

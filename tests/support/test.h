@@ -17,14 +17,12 @@ namespace trilens_test {
 void note_skip(const std::string& test, const std::string& why);
 
 /// The project's own folder.
-inline std::string source_dir() {
-    return TRILENS_SOURCE_DIR;
-}
+std::string source_dir();
+/// Where it is built: the command, the public headers.
+std::string build_dir();
 /// Cages and models that are not part of the project, as CMake's TRILENS_DATA_DIR names them; empty or missing
 /// where there are none: see data_missing.
-inline std::string data_dir() {
-    return TRILENS_DATA_DIR;
-}
+std::string data_dir();
 /// Whether data_dir()/`relative` is missing.
 bool data_missing(const std::string& relative);
 /// A folder under the build tree for this test's files, made empty; no other test has it.

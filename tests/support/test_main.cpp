@@ -28,6 +28,18 @@ void note_skip(const std::string& test, const std::string& why) {
     skips()[test] = why;
 }
 
+std::string source_dir() {
+    return TRILENS_SOURCE_DIR;
+}
+
+std::string build_dir() {
+    return TRILENS_BUILD_DIR;
+}
+
+std::string data_dir() {
+    return TRILENS_DATA_DIR;
+}
+
 bool data_missing(const std::string& relative) {
     return data_dir().empty() || !std::filesystem::exists(data_dir() + "/" + relative);
 }
@@ -37,7 +49,7 @@ std::string scratch_dir(const std::string& name) {
     const std::size_t test = std::hash<std::string>()(Catch::getResultCapture().getCurrentTestName());
     char number[2 * sizeof(test) + 1];
     std::snprintf(number, sizeof(number), "%zx", test);
-    const std::filesystem::path folder = std::filesystem::path(TRILENS_BUILD_DIR) / "scratch" / number / name;
+    const std::filesystem::path folder = std::filesystem::path(build_dir()) / "scratch" / number / name;
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     return folder.string();

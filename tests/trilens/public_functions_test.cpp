@@ -70,7 +70,7 @@ const std::map<std::string, std::string> kElsewhere{
 /// is theirs alone.
 std::set<std::string> public_headers() {
     static const std::regex kInclude(R"(^#include <trilens/([\w/]+\.h)>)");
-    const fs::path root = fs::path(TRILENS_BUILD_DIR) / "include" / "trilens";
+    const fs::path root = fs::path(trilens_test::build_dir()) / "include" / "trilens";
     std::set<std::string> headers;
     for (const auto& entry : fs::directory_iterator(root)) {
         if (!entry.is_regular_file()) continue;
