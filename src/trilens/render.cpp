@@ -27,6 +27,10 @@ void check_engine(const EngineChoice& engine) {
         throw UsageError("the classic engine needs 1..1024 pieces and a positive tolerance");
 }
 
+bool is_finite(const Vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
 }  // namespace
 
 /// Who uses the world: many that draw, or one that changes it.
@@ -163,9 +167,27 @@ std::vector<PointProjection> Renderer::project(std::span<const Vec3> points,
     const auto use = users_->draw();
     check_frame(*world_, request.frame);
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y) || !std::isfinite(points[i].z))
-            throw InputError("", fmt::format("points/{}", i), "is not finite");
+        if (!is_finite(points[i])) throw InputError("", fmt::format("points/{}", i), "is not finite");
     return project_points(*world_, request, points);
+}
+
+ShotRays Renderer::shoot(std::span<const Vec2> places, const ShootRequest& request) const {
+    const auto use = users_->draw();
+    check_frame(*world_, {request.camera});
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (!std::isfinite(places[i].x) || !std::isfinite(places[i].y))
+            throw InputError("", fmt::format("pixels/{}", i), "is not finite");
+    return shoot_places(*world_, request, places);
+}
+
+ShotRays Renderer::shoot(std::span<const Ray> rays, const ShootRequest& request) const {
+    const auto use = users_->draw();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!is_finite(rays[i].origin)) throw InputError("", fmt::format("origins/{}", i), "is not finite");
+        if (!is_finite(rays[i].direction) || rays[i].direction == Vec3(0))
+            throw InputError("", fmt::format("directions/{}", i), "is no direction");
+    }
+    return shoot_rays(*world_, request, rays);
 }
 
 LineDrawing Renderer::draw_lines(const FrameParams& frame, const LineChoice& choice, const Warn& warn) const {

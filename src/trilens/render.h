@@ -19,6 +19,7 @@
 #include "render/frame/request.h"
 #include "render/picture/explain.h"
 #include "render/project/project.h"
+#include "render/shoot/shoot.h"
 #include "render/world/world.h"
 #include "scene/data/scene.h"
 #include "vector/caustic.h"
@@ -121,6 +122,14 @@ class Renderer {
     /// camera, resolution or largest error that there is not.
     std::vector<PointProjection> project(std::span<const Vec3> points,
                                          const ProjectRequest& request = {}) const;
+
+    /// What the rays through places of a camera's film meet; pixels from the top left, a pixel's centre at
+    /// .5. Throws UsageError for a camera that there is not, InputError for places that are not finite.
+    ShotRays shoot(std::span<const Vec2> places, const ShootRequest& request = {}) const;
+
+    /// What rays of one's own meet: world, directions of any length. Throws InputError for rays that are not
+    /// finite or have no direction.
+    ShotRays shoot(std::span<const Ray> rays, const ShootRequest& request = {}) const;
 
     /// The picture as lines. Throws UsageError for a camera, resolution or largest error that there is not,
     /// InputError where the camera cannot show what the scene has or the optics have too many facets to hold.

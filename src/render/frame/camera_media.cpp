@@ -85,6 +85,18 @@ CameraMedia camera_media_of(const World& world, const CameraRays& camera) {
     return around;
 }
 
+CameraMedia media_by_ray(const World& world) {
+    CameraMedia around;
+    around.world = &world;
+    around.by_ray = true;
+    for (std::size_t i = 0; i < world.optics.size(); ++i) {
+        if (world.optics[i].mirror) continue;
+        around.near.push_back(static_cast<Id>(i));
+        around.boxes.push_back(box_around(*world.optics[i].surface));
+    }
+    return around;
+}
+
 void warn_of_unsure_media(const World& world, const CameraMedia& around, const Warn& warn) {
     if (!warn) return;
     const auto bodies = std::count_if(world.optics.begin(), world.optics.end(),
@@ -132,7 +144,8 @@ GlassInterface interface_of(const World& world, Id optic, const Media& around, b
     if (around.count == 0) return {front ? nullptr : own, front ? own : nullptr, tint};
     const std::optional<MediaSides> sides = sides_of(around, optic, front);
     if (!sides) return {own, own, tint};  // light lost: nothing is drawn there
-    return {glass_of(world, active(world, sides->before)), glass_of(world, active(world, sides->after)), tint};
+    return {glass_of(world, active(world, sides->before)), glass_of(world, active(world, sides->after)),
+            tint};
 }
 
 OpticWeights first_weights(const World& world, const SampleViews& views, const SampleView& view) {

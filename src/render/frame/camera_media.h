@@ -30,6 +30,9 @@ struct CameraMedia {
 /// near plane that cuts, moving eyes) each ray is asked where it itself meets bodies first.
 CameraMedia camera_media_of(const World& world, const CameraRays& camera);
 
+/// What rays of any kind start in: each is asked.
+CameraMedia media_by_ray(const World& world);
+
 /// Warns where it cannot be told for sure what the eye is inside of.
 void warn_of_unsure_media(const World& world, const CameraMedia& around, const Warn& warn);
 
