@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 
 #include "arrays.h"
 #include "python_call.h"
 #include "renderer.h"
+#include "rows.h"
 
 namespace trilens::python {
 namespace {
@@ -36,54 +36,35 @@ struct Rows {
     std::size_t row_size() const { return sizeof(ImageRow) + steps * sizeof(StepRow); }
 };
 
-py::object row_type(std::size_t steps) {
-    py::list names, formats, offsets;
-    const auto add = [&](const char* name, const char* format, std::size_t offset) {
-        names.append(name);
-        formats.append(format);
-        offsets.append(offset);
-    };
-    add("point", "i8", offsetof(ImageRow, point));
-    add("x", "f8", offsetof(ImageRow, x));
-    add("y", "f8", offsetof(ImageRow, y));
-    add("t", "f8", offsetof(ImageRow, t));
-    add("path", "U7", offsetof(ImageRow, path));
-    add("optic", "u4", offsetof(ImageRow, optic));
-    add("object", "u4", offsetof(ImageRow, object));
-    add("facet", "u4", offsetof(ImageRow, facet));
-    add("length", "f8", offsetof(ImageRow, length));
-    add("inside", "?", offsetof(ImageRow, inside));
-    add("visible", "?", offsetof(ImageRow, visible));
-    add("refined", "?", offsetof(ImageRow, refined));
-    add("complete", "?", offsetof(ImageRow, complete));
-    add("off", "f8", offsetof(ImageRow, off));
-    add("weight", "(3,)f8", offsetof(ImageRow, weight));
-    add("has_derivative", "?", offsetof(ImageRow, has_derivative));
-    add("derivative", "(2,3)f8", offsetof(ImageRow, derivative));
-    add("step_count", "u4", offsetof(ImageRow, step_count));
-    py::dict step;
-    step["names"] = py::make_tuple("optic", "event");
-    step["formats"] = py::make_tuple("u4", "U8");
-    step["offsets"] = py::make_tuple(offsetof(StepRow, optic), offsetof(StepRow, event));
-    step["itemsize"] = sizeof(StepRow);
-    names.append("steps");
-    formats.append(py::make_tuple(step, py::make_tuple(steps)));
-    offsets.append(sizeof(ImageRow));
-    py::dict type;
-    type["names"] = names;
-    type["formats"] = formats;
-    type["offsets"] = offsets;
-    type["itemsize"] = sizeof(ImageRow) + steps * sizeof(StepRow);
-    return type;
-}
-
-void copy_text(std::string_view text, char32_t* target) {
-    std::copy(text.begin(), text.end(), target);
+py::dict row_type(std::size_t steps) {
+    RecordType type;
+    type.add("point", "i8", offsetof(ImageRow, point));
+    type.add("x", "f8", offsetof(ImageRow, x));
+    type.add("y", "f8", offsetof(ImageRow, y));
+    type.add("t", "f8", offsetof(ImageRow, t));
+    type.add("path", "U7", offsetof(ImageRow, path));
+    type.add("optic", "u4", offsetof(ImageRow, optic));
+    type.add("object", "u4", offsetof(ImageRow, object));
+    type.add("facet", "u4", offsetof(ImageRow, facet));
+    type.add("length", "f8", offsetof(ImageRow, length));
+    type.add("inside", "?", offsetof(ImageRow, inside));
+    type.add("visible", "?", offsetof(ImageRow, visible));
+    type.add("refined", "?", offsetof(ImageRow, refined));
+    type.add("complete", "?", offsetof(ImageRow, complete));
+    type.add("off", "f8", offsetof(ImageRow, off));
+    type.add("weight", "(3,)f8", offsetof(ImageRow, weight));
+    type.add("has_derivative", "?", offsetof(ImageRow, has_derivative));
+    type.add("derivative", "(2,3)f8", offsetof(ImageRow, derivative));
+    type.add("step_count", "u4", offsetof(ImageRow, step_count));
+    RecordType step;
+    step.add("optic", "u4", offsetof(StepRow, optic));
+    step.add("event", "U8", offsetof(StepRow, event));
+    type.add("steps", py::make_tuple(step.of_size(sizeof(StepRow)), py::make_tuple(steps)), sizeof(ImageRow));
+    return type.of_size(sizeof(ImageRow) + steps * sizeof(StepRow));
 }
 
 ImageRow row_of(const WorldImage& image) {
-    ImageRow row;
-    std::memset(&row, 0, sizeof row);  // the gaps too: equal images, equal bytes
+    auto row = empty_record<ImageRow>();
     row.x = image.pixel.x, row.y = image.pixel.y;
     row.t = image.t, row.length = image.length;
     row.optic = image.optic, row.object = image.object, row.facet = image.facet;
@@ -91,17 +72,14 @@ ImageRow row_of(const WorldImage& image) {
     row.inside = image.inside, row.visible = image.visible, row.refined = image.refined;
     row.has_derivative = image.has_derivative;
     row.off = image.off;
-    for (int k = 0; k < 3; ++k) row.weight[k] = image.weight[k];
-    for (int axis = 0; axis < 2; ++axis)
-        for (int k = 0; k < 3; ++k)
-            row.derivative[axis][k] = image.derivative[static_cast<std::size_t>(axis)][k];
+    copy_vector(image.weight, row.weight);
+    for (std::size_t axis = 0; axis < 2; ++axis) copy_vector(image.derivative[axis], row.derivative[axis]);
     row.step_count = static_cast<Id>(image.steps.size());
     return row;
 }
 
 StepRow row_of(const Step* step) {
-    StepRow row;
-    std::memset(&row, 0, sizeof row);
+    auto row = empty_record<StepRow>();
     row.optic = step ? step->optic : kNone;
     if (step) copy_text(event_name(step->event), row.event);
     return row;
@@ -129,10 +107,7 @@ Rows rows_of(const std::vector<PointProjection>& points) {
 }
 
 py::array rows_array(const Rows& rows) {
-    const py::object dtype = py::module_::import("numpy").attr("dtype")(row_type(rows.steps));
-    const auto stride = static_cast<py::ssize_t>(rows.row_size());
-    return py::array(py::dtype::from_args(dtype), {static_cast<py::ssize_t>(rows.bytes.size()) / stride},
-                     {stride}, rows.bytes.data());
+    return record_array(row_type(rows.steps), rows.bytes.data(), rows.bytes.size() / rows.row_size());
 }
 
 /// What the facets have is all that can be told without refining.

@@ -16,6 +16,7 @@ FrameParams frame_params(const Renderer& renderer, int resolution, const std::op
 EngineChoice engine_choice(const std::string& name);
 
 void bind_project(RendererClass& renderer);
+void bind_shoot(RendererClass& renderer);
 void bind_explain(RendererClass& renderer);
 
 }  // namespace trilens::python

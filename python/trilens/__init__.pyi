@@ -251,6 +251,15 @@ class Renderer:
         visibility: bool = True,
         derivatives: bool = False,
     ) -> NDArray[np.void]: ...
+    def shoot(
+        self,
+        pixels: Optional[ArrayLike] = None,
+        camera: Optional[str] = None,
+        *,
+        origins: Optional[ArrayLike] = None,
+        directions: Optional[ArrayLike] = None,
+        path: Optional[str] = None,
+    ) -> tuple[NDArray[np.void], NDArray[np.void]]: ...
     def explain(
         self, x: int, y: int, resolution: int = 0, camera: Optional[str] = None, engine: str = "exact"
     ) -> dict[str, Any]: ...

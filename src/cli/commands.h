@@ -15,6 +15,7 @@ Command sweep_submit_command();
 std::vector<Command> sweep_folder_commands();  // status, report, merge, schema
 Command report_command();
 Command project_command();
+Command shoot_command();
 Command test_command();
 Command scene_command();
 Command info_command();

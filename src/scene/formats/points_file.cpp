@@ -31,39 +31,42 @@ bool is_header(std::string_view line) {
     return true;
 }
 
-std::optional<Vec3> point_of(std::string_view text) {
-    Vec3 point(0);
+/// Adds the `count` numbers that a text consists of to `numbers`; false, and then nothing is said of what was
+/// added, where it is anything else.
+bool add_numbers(std::string_view text, std::size_t count, std::vector<double>& numbers) {
     const char *at = text.data(), *end = at + text.size();
     const auto skip_blanks = [&] {
         while (at < end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
     };
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
         skip_blanks();
         if (at < end && *at == '+') ++at;
-        const auto [next, error] = std::from_chars(at, end, point[k]);
-        if (error != std::errc() || !(std::abs(point[k]) <= kLargestCoordinate)) return std::nullopt;
+        double number = 0;
+        const auto [next, error] = std::from_chars(at, end, number);
+        if (error != std::errc() || !(std::abs(number) <= kLargestCoordinate)) return false;
+        numbers.push_back(number);
         at = next;
         skip_blanks();
-        if (k < 2 && (at >= end || *at++ != ',')) return std::nullopt;
+        if (k + 1 < count && (at >= end || *at++ != ',')) return false;
     }
-    return at == end ? std::optional(point) : std::nullopt;
+    return at == end;
 }
 
-/// Some lines of a text: their points, as far as the first line that is none.
+/// Some lines of a text: their numbers, as far as the first line that holds other things.
 struct Piece {
-    std::vector<Vec3> points;
+    std::size_t per_line = 3;
+    std::vector<double> numbers = {};
     std::size_t lines = 0;
-    std::optional<std::string_view> bad;  // the last line that was looked at
+    std::optional<std::string_view> bad = {};  // the last line that was looked at
 
     void take(std::string_view line, bool is_first) {
         ++lines;
         if (is_first && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);  // a byte order mark
         if (line.find_first_not_of(" \t\r") == std::string_view::npos || line[0] == '#') return;
-        const std::optional<Vec3> point = point_of(line);
-        if (point)
-            points.push_back(*point);
-        else if (!is_first || !is_header(line))
-            bad = line;
+        const std::size_t held = numbers.size();
+        if (add_numbers(line, per_line, numbers)) return;
+        numbers.resize(held);
+        if (!is_first || !is_header(line)) bad = line;
     }
     void take_lines(std::string_view text, bool is_first) {
         while (!text.empty() && !bad) {
@@ -96,37 +99,54 @@ std::string all_of(std::istream& in, const std::string& file) {
     return text;
 }
 
-}  // namespace
-
-std::optional<Vec3> parse_point(const std::string& text) {
-    return point_of(text);
+std::vector<Vec3> points_of(const std::vector<double>& numbers) {
+    std::vector<Vec3> points(numbers.size() / 3);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        points[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+    return points;
 }
 
-std::vector<Vec3> parse_points(const std::string& text, const std::string& name) {
-    std::vector<Piece> pieces(text.size() / kPiece + 1);
+}  // namespace
+
+std::vector<double> parse_numbers(const std::string& text, const std::string& name, const LineForm& form) {
+    std::vector<Piece> pieces(text.size() / kPiece + 1, Piece{.per_line = form.numbers});
     parallel_for(pieces.size(), 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const std::size_t begin = line_at(text, i * kPiece), end = line_at(text, (i + 1) * kPiece);
             pieces[i].take_lines(std::string_view(text).substr(begin, end - begin), i == 0);
         }
     });
-    std::vector<Vec3> points;
+    std::vector<double> numbers;
     std::size_t lines = 0;
     for (const Piece& piece : pieces) {
         lines += piece.lines;
-        points.insert(points.end(), piece.points.begin(), piece.points.end());
+        numbers.insert(numbers.end(), piece.numbers.begin(), piece.numbers.end());
         if (piece.bad)
             throw InputError(name, "line " + std::to_string(lines),
-                             "needs x,y,z within 1e30, not \"" + std::string(*piece.bad) + "\"");
+                             "needs " + form.names + " within 1e30, not \"" + std::string(*piece.bad) + "\"");
     }
-    if (points.empty()) throw InputError(name, "", "holds no points");
-    return points;
+    if (numbers.empty()) throw InputError(name, "", "holds no " + form.what);
+    return numbers;
+}
+
+std::vector<double> read_numbers(const std::string& file, const LineForm& form) {
+    std::ifstream in(file);
+    if (!in) throw InputError(file, "", "cannot be read");
+    return parse_numbers(all_of(in, file), file, form);
+}
+
+std::optional<Vec3> parse_point(const std::string& text) {
+    std::vector<double> numbers;
+    if (!add_numbers(text, 3, numbers)) return std::nullopt;
+    return Vec3(numbers[0], numbers[1], numbers[2]);
+}
+
+std::vector<Vec3> parse_points(const std::string& text, const std::string& name) {
+    return points_of(parse_numbers(text, name, {}));
 }
 
 std::vector<Vec3> read_points(const std::string& file) {
-    std::ifstream in(file);
-    if (!in) throw InputError(file, "", "cannot be read");
-    return parse_points(all_of(in, file), file);
+    return points_of(read_numbers(file, {}));
 }
 
 }  // namespace trilens

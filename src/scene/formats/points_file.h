@@ -21,4 +21,15 @@ std::vector<Vec3> parse_points(const std::string& text, const std::string& name)
 /// point, or where there is none.
 std::vector<Vec3> read_points(const std::string& file);
 
+/// What a line of a table holds, as messages name it: "x,y,z".
+struct LineForm {
+    std::size_t numbers = 3;
+    std::string names = "x,y,z";
+    std::string what = "points";
+};
+
+/// As parse_points and read_points, of lines of so many numbers: all of them, line by line.
+std::vector<double> parse_numbers(const std::string& text, const std::string& name, const LineForm& form);
+std::vector<double> read_numbers(const std::string& file, const LineForm& form);
+
 }  // namespace trilens
