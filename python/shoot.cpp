@@ -81,13 +81,13 @@ EventRow row_of(const PathEvent& event, std::size_t ray) {
     return row;
 }
 
-struct Rows {
+struct ShotRows {
     std::vector<RayRow> rays;
     std::vector<EventRow> events;
 };
 
-Rows rows_of(const ShotRays& shots) {
-    Rows rows;
+ShotRows shot_rows(const ShotRays& shots) {
+    ShotRows rows;
     rows.rays.reserve(shots.rays.size());
     rows.events.reserve(shots.events.size());
     for (std::size_t i = 0; i < shots.rays.size(); ++i) {
@@ -131,8 +131,8 @@ void bind_shoot(RendererClass& renderer) {
             if (path) request.path = EventWord(*path);
             const std::vector<Vec2> places = pixels ? places_of(*pixels) : std::vector<Vec2>();
             const std::vector<Ray> rays = pixels ? std::vector<Ray>() : rays_of(*origins, *directions);
-            const Rows rows = PythonCall().run(
-                [&] { return rows_of(pixels ? self.shoot(places, request) : self.shoot(rays, request)); });
+            const ShotRows rows = PythonCall().run(
+                [&] { return shot_rows(pixels ? self.shoot(places, request) : self.shoot(rays, request)); });
             return py::make_tuple(record_array(ray_type(), rows.rays.data(), rows.rays.size()),
                                   record_array(event_type(), rows.events.data(), rows.events.size()));
         },
