@@ -24,16 +24,16 @@ struct PathEvent {
     Vec3 normal{0};     // unit, world, on the surface's front side whichever side the path is on
 };
 
-/// kSeen: it ends at an object. kEscapes: it ends in the environment. kNoRay: the camera has no ray at that
-/// place of the film. kOtherPath: its path is not the word's. kLost: it is inside of more bodies of glass at
-/// once than can be told.
-enum class ShotState : std::uint8_t { kSeen, kEscapes, kNoRay, kOtherPath, kLost };
+/// kSeen: it ends at an object. kEscapes: it ends in the environment. kNoCameraRay: the camera has no ray at
+/// that place of the film. kOtherPath: its path is not the word's. kLost: it is inside of more bodies of
+/// glass at once than can be told.
+enum class ShotState : std::uint8_t { kSeen, kEscapes, kNoCameraRay, kOtherPath, kLost };
 
 template <>
 struct EnumNames<ShotState> {
     static constexpr std::array kTable{NamedValue<ShotState>{ShotState::kSeen, "seen"},
                                        NamedValue<ShotState>{ShotState::kEscapes, "escapes"},
-                                       NamedValue<ShotState>{ShotState::kNoRay, "no ray"},
+                                       NamedValue<ShotState>{ShotState::kNoCameraRay, "no ray"},
                                        NamedValue<ShotState>{ShotState::kOtherPath, "other path"},
                                        NamedValue<ShotState>{ShotState::kLost, "lost"}};
 };
@@ -41,14 +41,14 @@ struct EnumNames<ShotState> {
 /// What became of one ray. Where it was not followed to its end (the last three states) only `state` says
 /// anything.
 struct ShotRay {
-    ShotState state = ShotState::kNoRay;
+    ShotState state = ShotState::kNoCameraRay;
     std::size_t first_event = 0, event_count = 0;  // of ShotRays::events
     Vec3 origin{0}, direction{0};  // the last ray: from the last optic, or the ray itself where it meets
                                    // none; world, the direction unit
-    Id object = kNone;     // kSeen: index into Scene::meshes
-    Id primitive = kNone;  // kSeen: as in images, of the mesh
-    Vec3 position{0};      // kSeen: world
-    double t = 0;          // kSeen: from `origin` to `position`, scene units
+    Id object = kNone;             // kSeen: index into Scene::meshes
+    Id primitive = kNone;          // kSeen: as in images, of the mesh
+    Vec3 position{0};              // kSeen: world
+    double t = 0;                  // kSeen: from `origin` to `position`, scene units
     // The share of each colour of the light from there that the path carries: Fresnel, tint and absorption
     // all along it. Where it escapes inside a body of glass, without that body's absorption on the last ray.
     Vec3 weight{1};
@@ -84,8 +84,8 @@ struct ShootRequest {
 /// InputError where the camera is none.
 ShotRays shoot_places(const World& world, const ShootRequest& request, std::span<const Vec2> places);
 
-/// Rays of one's own: world, directions of any length; one that is zero or not finite has state kNoRay. What
-/// glass a ray starts in is found from where it goes.
+/// Rays of one's own: world, directions of any length; one that is zero or not finite has state kNoCameraRay.
+/// What glass a ray starts in is found from where it goes.
 ShotRays shoot_rays(const World& world, const ShootRequest& request, std::span<const Ray> rays);
 
 }  // namespace trilens
