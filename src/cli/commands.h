@@ -16,6 +16,7 @@ std::vector<Command> sweep_folder_commands();  // status, report, merge, schema
 Command report_command();
 Command project_command();
 Command shoot_command();
+Command unwrap_command();
 Command test_command();
 Command scene_command();
 Command info_command();

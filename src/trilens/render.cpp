@@ -208,6 +208,11 @@ LineDrawing Renderer::draw_lines(const FrameParams& frame, const LineChoice& cho
     return lines;
 }
 
+void Renderer::use_world(const std::function<void(const World&)>& work) const {
+    const auto use = users_->draw();
+    work(*world_);
+}
+
 std::string Renderer::digest() const {
     const auto use = users_->draw();
     return scene_digest(world_->scene);

@@ -10,6 +10,7 @@
 //     trilens::write_image("truth.exr", renderer.draw(request).image);
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -142,6 +143,10 @@ class Renderer {
 
     /// What the renderer is made of; its type is no part of the public headers.
     const World& world() const { return *world_; }
+
+    /// Does work that asks the world while nobody may change it. Throws UsageError where another thread does,
+    /// and what `work` throws.
+    void use_world(const std::function<void(const World&)>& work) const;
 
   private:
     class Users;

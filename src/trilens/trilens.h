@@ -20,4 +20,5 @@
 #include <trilens/surface.h>
 #include <trilens/sweep.h>
 #include <trilens/text.h>
+#include <trilens/unwrap.h>
 #include <trilens/version.h>

@@ -1,0 +1,223 @@
+#include "inverse/maps/sampled_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/util/error.h"
+#include "base/util/parallel.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::size_t kBatch = 1 << 16;  // places evaluated between two looks at the progress
+
+struct CubicValue {
+    Vec2 value{0}, slope{0};
+};
+
+/// The cubic with these ends and slopes, at t in 0..1.
+CubicValue cubic_hermite(const Vec2& p0, const Vec2& m0, const Vec2& p1, const Vec2& m1, double t) {
+    const double s = 1 - t;
+    return {(1 + 2 * t) * s * s * p0 + t * s * s * m0 + t * t * (3 - 2 * t) * p1 - t * t * s * m1,
+            6 * t * s * (p1 - p0) + s * (1 - 3 * t) * m0 + t * (3 * t - 2) * m1};
+}
+
+/// Which image of `there` continues each of `here`, `step` away: the one whose tangent meets its own half way
+/// best. None unless that pairs them off one to one.
+bool pair_off(const MapImages& here, const MapImages& there, const Vec2& step, std::vector<Id>& paired) {
+    const std::size_t count = here.size();
+    if (there.size() != count) return false;
+    paired.assign(count, 0);
+    std::uint64_t taken = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < count; ++k) {
+            if (there[k].history != here[i].history) continue;
+            const Vec2 gap = here[i].position + here[i].jacobian * (0.5 * step) - there[k].position +
+                             there[k].jacobian * (0.5 * step);
+            if (dot(gap, gap) < least) least = dot(gap, gap), paired[i] = static_cast<Id>(k);
+        }
+        if (!(least < std::numeric_limits<double>::infinity()) || (taken >> paired[i] & 1)) return false;
+        taken |= std::uint64_t{1} << paired[i];
+    }
+    return true;
+}
+
+constexpr std::size_t kMostPaired = 32;  // images of one place that are interpolated at all
+
+}  // namespace
+
+/// The corners of one cell, paired off.
+struct SampledMap::Patch {
+    Vec2 size{1};
+    std::array<const MapImages*, 4> corner{};
+    std::array<std::vector<Id>, 4> pairs;
+
+    static std::optional<Patch> of(const SampledMap& map, const Cell& cell) {
+        Patch patch;
+        patch.size = {std::max(1, cell.x1 - cell.x0), std::max(1, cell.y1 - cell.y0)};
+        for (std::size_t c = 0; c < 4; ++c) patch.corner[c] = &map.images_[cell.sample[c]];
+        if (patch.count() > kMostPaired) return std::nullopt;
+        for (std::size_t c = 0; c < 4; ++c) {
+            const Vec2 step((c & 1) ? cell.x1 - cell.x0 : 0, (c & 2) ? cell.y1 - cell.y0 : 0);
+            if (!pair_off(*patch.corner[0], *patch.corner[c], step, patch.pairs[c])) return std::nullopt;
+        }
+        return patch;
+    }
+
+    std::size_t count() const { return corner[0]->size(); }
+
+    /// Coons' patch of the four cubic edges, at (u, v) in 0..1, with its derivatives and the weight.
+    MapImage at(std::size_t i, double u, double v) const {
+        std::array<const MapImage*, 4> c;
+        for (std::size_t k = 0; k < 4; ++k) c[k] = &(*corner[k])[pairs[k][i]];
+        const auto edge = [&](std::size_t a, std::size_t b, int axis, double t) {
+            return cubic_hermite(c[a]->position, size[axis] * c[a]->jacobian[axis], c[b]->position,
+                                 size[axis] * c[b]->jacobian[axis], t);
+        };
+        const CubicValue top = edge(0, 1, 0, u), bottom = edge(2, 3, 0, u);
+        const CubicValue left = edge(0, 2, 1, v), right = edge(1, 3, 1, v);
+        const Vec2 &p00 = c[0]->position, &p10 = c[1]->position, &p01 = c[2]->position, &p11 = c[3]->position;
+        MapImage image = *c[0];
+        image.position = (1 - v) * top.value + v * bottom.value + (1 - u) * left.value + u * right.value -
+                         (1 - v) * ((1 - u) * p00 + u * p10) - v * ((1 - u) * p01 + u * p11);
+        image.jacobian[0] = ((1 - v) * top.slope + v * bottom.slope + right.value - left.value -
+                             (1 - v) * (p10 - p00) - v * (p11 - p01)) /
+                            size.x;
+        image.jacobian[1] = (bottom.value - top.value + (1 - u) * left.slope + u * right.slope -
+                             (1 - u) * (p01 - p00) - u * (p11 - p10)) /
+                            size.y;
+        image.weight = (1 - v) * ((1 - u) * c[0]->weight + u * c[1]->weight) +
+                       v * ((1 - u) * c[2]->weight + u * c[3]->weight);
+        return image;
+    }
+};
+
+SampledMap::SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, const Progress& progress)
+    : lattice_(lattice) {
+    const int width = lattice.width, height = lattice.height, step = std::max(1, lattice.cell);
+    at_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kNone);
+    std::vector<Cell> cells;
+    for (int y = 0; y == 0 || y < height - 1; y += step)
+        for (int x = 0; x == 0 || x < width - 1; x += step)
+            cells.push_back({x, y, std::min(x + step, width - 1), std::min(y + step, height - 1)});
+
+    // Level by level: all corners and middles of a level are evaluated together.
+    double settled_pixels = 0;
+    while (!cells.empty()) {
+        std::vector<Cell> finer;
+        for (std::size_t from = 0; from < cells.size(); from += kBatch) {
+            std::vector<Cell> some(
+                cells.begin() + static_cast<std::ptrdiff_t>(from),
+                cells.begin() + static_cast<std::ptrdiff_t>(std::min(from + kBatch, cells.size())));
+            evaluate_level(some, evaluate);
+            std::vector<double> error(some.size());
+            parallel_for(some.size(), 256, [&](std::size_t first, std::size_t last) {
+                for (std::size_t i = first; i < last; ++i) error[i] = error_at_middle(some[i]);
+            });
+            for (std::size_t i = 0; i < some.size(); ++i) {
+                const Cell& cell = some[i];
+                if (error[i] <= lattice.tolerance) {
+                    worst_ = std::max(worst_, error[i]);
+                    settled_.push_back(cell);
+                    settled_pixels += double(cell.x1 - cell.x0) * (cell.y1 - cell.y0);
+                    continue;
+                }
+                const int mx = (cell.x0 + cell.x1) / 2, my = (cell.y0 + cell.y1) / 2;
+                const bool wide = mx > cell.x0, high = my > cell.y0;
+                finer.push_back({cell.x0, cell.y0, wide ? mx : cell.x1, high ? my : cell.y1});
+                if (wide) finer.push_back({mx, cell.y0, cell.x1, high ? my : cell.y1});
+                if (high) finer.push_back({cell.x0, my, wide ? mx : cell.x1, cell.y1});
+                if (wide && high) finer.push_back({mx, my, cell.x1, cell.y1});
+            }
+            if (progress.cancelled()) throw Interrupted();
+            progress(std::min(1.0, settled_pixels / (double(width) * height)));
+        }
+        cells = std::move(finer);
+    }
+    at_ = {};
+}
+
+void SampledMap::evaluate_level(std::vector<Cell>& cells, const EvaluateMap& evaluate) {
+    std::vector<Vec2> places;
+    const auto ask = [&](int x, int y) {
+        Id& sample = sample_at(x, y);
+        if (sample != kNone) return sample;
+        sample = static_cast<Id>(images_.size() + places.size());
+        places.emplace_back(x + 0.5, y + 0.5);
+        return sample;
+    };
+    for (Cell& cell : cells) {
+        cell.sample = {ask(cell.x0, cell.y0), ask(cell.x1, cell.y0), ask(cell.x0, cell.y1),
+                       ask(cell.x1, cell.y1)};
+        if (!is_exact(cell)) ask((cell.x0 + cell.x1) / 2, (cell.y0 + cell.y1) / 2);
+    }
+    const std::size_t before = images_.size();
+    images_.resize(before + places.size());
+    evaluate(places, std::span(images_).subspan(before));
+}
+
+double SampledMap::error_at_middle(const Cell& cell) const {
+    if (is_exact(cell)) return 0;
+    constexpr double kNot = std::numeric_limits<double>::infinity();
+    const std::optional<Patch> patch = Patch::of(*this, cell);
+    if (!patch) return kNot;
+    const int mx = (cell.x0 + cell.x1) / 2, my = (cell.y0 + cell.y1) / 2;
+    const MapImages& middle =
+        images_[at_[static_cast<std::size_t>(my) * static_cast<std::size_t>(lattice_.width) +
+                    static_cast<std::size_t>(mx)]];
+    if (middle.size() != patch->count()) return kNot;
+    double worst = 0;
+    for (std::size_t i = 0; i < patch->count(); ++i) {
+        const MapImage predicted =
+            patch->at(i, (mx - cell.x0) / patch->size.x, (my - cell.y0) / patch->size.y);
+        double nearest = kNot;
+        for (const MapImage& exact : middle)
+            if (exact.history == predicted.history)
+                nearest = std::min(nearest, length(exact.position - predicted.position));
+        worst = std::max(worst, nearest);
+    }
+    return worst;
+}
+
+void SampledMap::for_each_pixel(
+    const std::function<void(int x, int y, std::span<const MapImage> images)>& use) const {
+    parallel_for(settled_.size(), 64, [&](std::size_t first, std::size_t last) {
+        std::vector<MapImage> images;
+        for (std::size_t i = first; i < last; ++i) {
+            const Cell& cell = settled_[i];
+            // A pixel on an edge belongs to the cell to its right and below, where there is one.
+            const int end_x = cell.x1 == lattice_.width - 1 ? cell.x1 + 1 : cell.x1;
+            const int end_y = cell.y1 == lattice_.height - 1 ? cell.y1 + 1 : cell.y1;
+            const std::optional<Patch> patch = is_exact(cell) ? std::nullopt : Patch::of(*this, cell);
+            for (int y = cell.y0; y < end_y; ++y)
+                for (int x = cell.x0; x < end_x; ++x) {
+                    const bool at_x0 = x == cell.x0, at_x1 = x == cell.x1, at_y0 = y == cell.y0;
+                    if (!patch || ((at_x0 || at_x1) && (at_y0 || y == cell.y1))) {
+                        use(x, y, images_[cell.sample[(at_x0 ? 0u : 1u) + (at_y0 ? 0u : 2u)]]);
+                        continue;
+                    }
+                    images.clear();
+                    for (std::size_t k = 0; k < patch->count(); ++k)
+                        images.push_back(
+                            patch->at(k, (x - cell.x0) / patch->size.x, (y - cell.y0) / patch->size.y));
+                    use(x, y, images);
+                }
+        }
+    });
+}
+
+std::vector<SampledMap::Pixel> SampledMap::pixels() const {
+    const auto width = static_cast<std::size_t>(lattice_.width);
+    std::vector<Pixel> pixels(width * static_cast<std::size_t>(lattice_.height));
+    for_each_pixel([&](int x, int y, std::span<const MapImage> images) {
+        if (!images.empty())
+            pixels[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = {true, images[0]};
+    });
+    return pixels;
+}
+
+}  // namespace trilens

@@ -1,0 +1,84 @@
+// Adaptive sampling of an exact map on a lattice of pixels: a quadtree of Hermite patches (Coons patches
+// whose edges are cubic), each checked at its middle, down to single pixels where the map is not smooth.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/math/vec.h"
+#include "base/util/ids.h"
+#include "base/util/progress.h"
+
+namespace trilens {
+
+/// One value of a map at a place of its lattice: a position elsewhere, as of a world point's image on a film.
+struct MapImage {
+    Vec2 position{0};
+    Mat2 jacobian{0};           // columns: how the position moves with the place's x, and with its y
+    Vec3 weight{1};             // what goes with it and is interpolated linearly
+    std::uint64_t history = 0;  // values continue one another only where these are equal
+};
+using MapImages = std::vector<MapImage>;
+
+/// Exact values at places (pixels from the top left, centres at .5): images[i] gets those of places[i], none
+/// where the map has none there. Called from one thread.
+using EvaluateMap = std::function<void(std::span<const Vec2> places, std::span<MapImages> images)>;
+
+struct MapLattice {
+    int width = 1, height = 1;
+    int cell = 8;             // pixels between the first nodes
+    double tolerance = 0.01;  // that the positions of a patch may be off, in their own unit
+};
+
+/// A map known at every pixel centre of a lattice: exactly, or between exact ones to the tolerance (as found
+/// at the middle of each patch; the error of a patch falls with the fourth power of its size). What is
+/// smaller than a cell and shows at none of its corners nor in its middle is missed.
+class SampledMap {
+  public:
+    /// Throws Interrupted once `progress` says so, and what `evaluate` throws.
+    SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, const Progress& progress = {});
+
+    int width() const { return lattice_.width; }
+    int height() const { return lattice_.height; }
+    std::size_t exact_count() const { return images_.size(); }  // places that were evaluated
+    double worst_accepted() const { return worst_; }            // at the middle of a patch
+
+    /// Calls use(x, y, images) once for every pixel, from several threads; the images in the order of the
+    /// patch's first corner. The span is valid during the call only.
+    void for_each_pixel(const std::function<void(int x, int y, std::span<const MapImage> images)>& use) const;
+
+    /// The same, pixel by pixel of one map that has one value at most: `width * height`, rows from the top.
+    struct Pixel {
+        bool known = false;
+        MapImage image;
+    };
+    std::vector<Pixel> pixels() const;
+
+  private:
+    struct Cell {  // nodes at its corners, inclusive
+        int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+        std::array<Id, 4> sample{kNone, kNone, kNone,
+                                 kNone};  // of images_: (x0,y0), (x1,y0), (x0,y1), (x1,y1)
+    };
+    struct Patch;
+
+    bool is_exact(const Cell& cell) const { return cell.x1 - cell.x0 <= 1 && cell.y1 - cell.y0 <= 1; }
+    Id& sample_at(int x, int y) {
+        return at_[static_cast<std::size_t>(y) * static_cast<std::size_t>(lattice_.width) +
+                   static_cast<std::size_t>(x)];
+    }
+    void evaluate_level(std::vector<Cell>& cells, const EvaluateMap& evaluate);
+    double error_at_middle(const Cell& cell) const;
+
+    MapLattice lattice_;
+    std::vector<MapImages> images_;
+    std::vector<Id> at_;  // per pixel: its entry in images_; emptied once the cells are settled
+    std::vector<Cell> settled_;
+    double worst_ = 0;
+};
+
+}  // namespace trilens

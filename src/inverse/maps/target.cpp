@@ -1,0 +1,217 @@
+#include "inverse/maps/target.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/util/error.h"
+#include "base/util/format.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kBinSide = 64;
+
+/// Axes of a cube map's face: the direction is axis + s * right - t * up with s, t in -1..1, t downward.
+struct CubeFace {
+    Vec3 axis, right, down;
+};
+constexpr std::array<CubeFace, 6> kCubeFaces{{{{1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
+                                              {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
+                                              {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
+                                              {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
+                                              {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}},
+                                              {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}}}};
+
+TargetPlace equirect_place(const Vec2& pixel, double width, double height) {
+    const double longitude = (pixel.x / width - 0.5) * 2 * kPi, latitude = (0.5 - pixel.y / height) * kPi;
+    const double cl = std::cos(latitude), sl = std::sin(latitude), so = std::sin(longitude),
+                 co = std::cos(longitude);
+    const Vec3 east(co, 0, so), north(-so * sl, cl, co * sl);
+    return {true, {so * cl, sl, -co * cl}, 2 * kPi / width * cl * east, -kPi / height * north};
+}
+
+TargetPlace cubemap_place(const Vec2& pixel, double side) {
+    const int index = std::clamp(static_cast<int>(std::floor(pixel.x / side)), 0, 5);
+    const CubeFace& face = kCubeFaces[static_cast<std::size_t>(index)];
+    const Vec3 far = face.axis + (2 * (pixel.x - index * side) / side - 1) * face.right +
+                     (2 * pixel.y / side - 1) * face.down;
+    const double l = length(far);
+    const Vec3 d = far / l;
+    const auto across = [&](const Vec3& moved) { return (moved - d * dot(d, moved)) * (2 / (side * l)); };
+    return {true, d, across(face.right), across(face.down)};
+}
+
+std::optional<TargetPlace> fisheye_place(const Vec2& pixel, const TargetDescription& d) {
+    const double half = 0.5 * d.width, scale = d.fov / 2 * kPi / 180 / half;  // radians per pixel
+    const Vec2 from_middle = pixel - Vec2(half);
+    const double r = length(from_middle), angle = r * scale;
+    if (r > half) return std::nullopt;
+    const Vec2 way = r > 0 ? from_middle / r : Vec2(1, 0);
+    const Vec3 outward(way.x, 0, -way.y), around(-way.y, 0, -way.x);
+    const Vec3 d_radial = scale * (std::cos(angle) * outward - Vec3(0, std::sin(angle), 0));
+    const Vec3 d_around = (r > 0 ? std::sin(angle) / r : scale) * around;
+    return TargetPlace{true, std::sin(angle) * outward + Vec3(0, std::cos(angle), 0),
+                       way.x * d_radial - way.y * d_around, way.y * d_radial + way.x * d_around};
+}
+
+TargetPlace rectangle_place(const FlatRectangle& r, const Vec2& pixel, const TargetDescription& d) {
+    return {false, r.origin + pixel.x / d.width * r.u + (1 - pixel.y / d.height) * r.v, r.u / double(d.width),
+            -r.v / double(d.height)};
+}
+
+double cross2(const Vec2& a, const Vec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+}  // namespace
+
+std::optional<FlatRectangle> flat_rectangle(const ObjectMesh& object) {
+    // The normal of the whole: the sum over triangles, twice the area of each.
+    Vec3 sum{0};
+    double area = 0, size = 0;
+    for (const IdTriple& t : object.triangles) {
+        const Vec3 n =
+            cross(object.points[t[1]] - object.points[t[0]], object.points[t[2]] - object.points[t[0]]);
+        sum += n;
+        area += length(n);
+    }
+    if (!(area > 0) || length(sum) < (1 - 1e-6) * area) return std::nullopt;
+    const Vec3 normal = normalize_or_zero(sum);
+    const IdTriple& first = object.triangles[0];
+    const Vec3& start = object.points[first[0]];
+    const Vec3 right = normalize_or_zero(object.points[first[1]] - start), up = cross(normal, right);
+    Vec2 low(std::numeric_limits<double>::infinity()), high(-low);
+    double off = 0;
+    for (const IdTriple& t : object.triangles)
+        for (const Id p : t) {
+            const Vec3 way = object.points[p] - start;
+            low = glm::min(low, Vec2(dot(way, right), dot(way, up)));
+            high = glm::max(high, Vec2(dot(way, right), dot(way, up)));
+            off = std::max(off, std::fabs(dot(way, normal)));
+            size = std::max(size, length(way));
+        }
+    if (off > 1e-6 * size) return std::nullopt;
+    return FlatRectangle{start + low.x * right + low.y * up, (high.x - low.x) * right, (high.y - low.y) * up};
+}
+
+Target::Target(const TargetDescription& description, const Scene& scene) : description_(description) {
+    const TargetDescription& d = description_;
+    if (d.width < 1 || d.height < 1 || 1LL * d.width * d.height > kMostPixels)
+        throw UsageError(fmt::format("{} x {} pixels are no picture: at least 1 a side and at most {} in all",
+                                     d.width, d.height, kMostPixels));
+    if (d.kind == TargetKind::kCubemap && d.width != 6 * d.height)
+        throw UsageError("a cube map has six square faces side by side");
+    if (d.kind == TargetKind::kFisheye && (d.width != d.height || !(d.fov > 0 && d.fov <= 360)))
+        throw UsageError("a fisheye target is square, and 0 to 360 degrees across");
+    if (d.kind == TargetKind::kPlane) {
+        rectangle_ = FlatRectangle{d.origin, d.u, d.v};
+        if (!(length(cross(d.u, d.v)) > 0)) throw UsageError("the target's plane has no area");
+    }
+    if (d.kind != TargetKind::kObject) return;
+    const Mesh& mesh = scene.meshes.at(d.object);
+    if (mesh.role != Role::kObject)
+        throw InputError(scene_title(scene), mesh.name, "is an optic: pictures are unwrapped to objects");
+    object_ = &mesh.object;
+    rectangle_ = flat_rectangle(mesh.object);
+    if (rectangle_) return;
+    const auto& uvs = mesh.object.uvs;
+    if (uvs.empty())
+        throw InputError(scene_title(scene), mesh.name,
+                         "is not flat and has no texture coordinates to unwrap a picture to");
+    bins_.resize(static_cast<std::size_t>(kBinSide * kBinSide));
+    for (std::size_t t = 0; t < uvs.size(); ++t) {
+        const Vec2 low = glm::min(glm::min(uvs[t][0], uvs[t][1]), uvs[t][2]);
+        const Vec2 high = glm::max(glm::max(uvs[t][0], uvs[t][1]), uvs[t][2]);
+        if (low.x < -1e-9 || low.y < -1e-9 || high.x > 1 + 1e-9 || high.y > 1 + 1e-9)
+            throw InputError(scene_title(scene), mesh.name,
+                             "repeats its texture: coordinates beyond 0..1 have no place of their own");
+        const auto bin = [](double x) { return std::clamp(static_cast<int>(x * kBinSide), 0, kBinSide - 1); };
+        for (int y = bin(low.y); y <= bin(high.y); ++y)
+            for (int x = bin(low.x); x <= bin(high.x); ++x)
+                bins_[static_cast<std::size_t>(y * kBinSide + x)].push_back(static_cast<Id>(t));
+    }
+}
+
+std::optional<TargetPlace> Target::object_place(const Vec2& pixel) const {
+    const Vec2 uv(pixel.x / description_.width, 1 - pixel.y / description_.height);
+    const auto bin = [](double x) { return std::clamp(static_cast<int>(x * kBinSide), 0, kBinSide - 1); };
+    for (const Id t : bins_[static_cast<std::size_t>(bin(uv.y) * kBinSide + bin(uv.x))]) {
+        const auto& [a, b, c] = object_->uvs[t];
+        const double twice = cross2(b - a, c - a);
+        if (twice == 0) continue;
+        const double second = cross2(uv - a, c - a) / twice, third = cross2(b - a, uv - a) / twice;
+        if (second < 0 || third < 0 || second + third > 1) continue;
+        const IdTriple& corner = object_->triangles[t];
+        const Vec3 &p = object_->points[corner[0]], ab = object_->points[corner[1]] - p,
+                   ac = object_->points[corner[2]] - p;
+        const auto moved = [&](const Vec2& step) {
+            return cross2(step, c - a) / twice * ab + cross2(b - a, step) / twice * ac;
+        };
+        return TargetPlace{false, p + second * ab + third * ac, moved({1.0 / description_.width, 0}),
+                           moved({0, -1.0 / description_.height})};
+    }
+    return std::nullopt;
+}
+
+std::optional<TargetPlace> Target::place(const Vec2& pixel) const {
+    switch (description_.kind) {
+        case TargetKind::kEquirect:
+            return equirect_place(pixel, description_.width, description_.height);
+        case TargetKind::kCubemap:
+            return cubemap_place(pixel, description_.height);
+        case TargetKind::kFisheye:
+            return fisheye_place(pixel, description_);
+        case TargetKind::kPlane:
+        case TargetKind::kObject:
+            break;
+    }
+    if (rectangle_) return rectangle_place(*rectangle_, pixel, description_);
+    return object_place(pixel);
+}
+
+std::optional<Vec2> Target::pixel_of_direction(const Vec3& direction) const {
+    const Vec3 d = normalize_or_zero(direction);
+    if (d == Vec3(0)) return std::nullopt;
+    const double width = description_.width, height = description_.height;
+    if (description_.kind == TargetKind::kEquirect)
+        return Vec2((0.5 + std::atan2(d.x, -d.z) / (2 * kPi)) * width,
+                    std::atan2(std::hypot(d.x, d.z), d.y) / kPi * height);
+    if (description_.kind == TargetKind::kFisheye) {
+        const double across = std::hypot(d.x, d.z), angle = std::atan2(across, d.y);
+        const double r = angle / (description_.fov / 2 * kPi / 180) * 0.5 * width;
+        if (r > 0.5 * width) return std::nullopt;
+        return Vec2(0.5 * width) + (across > 0 ? r / across : 0) * Vec2(d.x, -d.z);
+    }
+    if (description_.kind != TargetKind::kCubemap) return std::nullopt;
+    std::size_t best = 0;
+    for (std::size_t f = 1; f < 6; ++f)
+        if (dot(d, kCubeFaces[f].axis) > dot(d, kCubeFaces[best].axis)) best = f;
+    const CubeFace& face = kCubeFaces[best];
+    const Vec3 far = d / dot(d, face.axis);
+    return Vec2((static_cast<double>(best) + 0.5 + 0.5 * dot(far, face.right)) * height,
+                (0.5 + 0.5 * dot(far, face.down)) * height);
+}
+
+std::optional<Vec2> Target::pixel_of_point(const Vec3& point, Id triangle, const Vec2& barycentric) const {
+    const double width = description_.width, height = description_.height;
+    if (rectangle_) {
+        // Coordinates along sides that need not be at right angles.
+        const Vec3 way = point - rectangle_->origin, n = cross(rectangle_->u, rectangle_->v);
+        const double whole = dot(n, n);
+        const Vec2 uv(dot(cross(way, rectangle_->v), n) / whole, dot(cross(rectangle_->u, way), n) / whole);
+        if (uv.x < 0 || uv.y < 0 || uv.x > 1 || uv.y > 1) return std::nullopt;
+        return Vec2(uv.x * width, (1 - uv.y) * height);
+    }
+    if (!object_ || triangle >= object_->uvs.size()) return std::nullopt;
+    const auto& [a, b, c] = object_->uvs[triangle];
+    const Vec2 uv = a + barycentric.x * (b - a) + barycentric.y * (c - a);
+    return Vec2(uv.x * width, (1 - uv.y) * height);
+}
+
+double Target::measure(const TargetPlace& place) const {
+    return length(cross(place.dx, place.dy));
+}
+
+}  // namespace trilens

@@ -1,0 +1,53 @@
+#include "inverse/unwrap/photo.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace trilens {
+namespace {
+
+/// Weights of the four neighbours -1, 0, 1, 2 at the share t of the way from 0 to 1.
+std::array<double, 4> catmull_rom(double t) {
+    const double t2 = t * t, t3 = t2 * t;
+    return {-0.5 * t + t2 - 0.5 * t3, 1 - 2.5 * t2 + 1.5 * t3, 0.5 * t + 2 * t2 - 1.5 * t3,
+            -0.5 * t2 + 0.5 * t3};
+}
+
+}  // namespace
+
+Vec3 sample_bicubic(const Texture& photo, const Vec2& at) {
+    const double x = at.x - 0.5, y = at.y - 0.5, left = std::floor(x), top = std::floor(y);
+    const std::array<double, 4> across = catmull_rom(x - left), down = catmull_rom(y - top);
+    std::array<std::size_t, 4> column;
+    for (int i = 0; i < 4; ++i)
+        column[static_cast<std::size_t>(i)] =
+            3 * static_cast<std::size_t>(std::clamp(left + i - 1, 0.0, photo.width - 1.0));
+    Vec3 sum{0};
+    for (int j = 0; j < 4; ++j) {
+        const auto row = static_cast<std::size_t>(std::clamp(top + j - 1, 0.0, photo.height - 1.0));
+        const float* values = photo.rgb.data() + 3 * row * static_cast<std::size_t>(photo.width);
+        Vec3 line{0};
+        for (std::size_t i = 0; i < 4; ++i) {
+            const float* p = values + column[i];
+            line += across[i] * Vec3(p[0], p[1], p[2]);
+        }
+        sum += down[static_cast<std::size_t>(j)] * line;
+    }
+    return glm::max(sum, Vec3(0));
+}
+
+Vec3 sample_footprint(const Texture& photo, const Vec2& at, const Mat2& jacobian) {
+    const auto count = [](const Vec2& side) {
+        return std::clamp(static_cast<int>(std::ceil(length(side) - 0.25)), 1, kMostFootprint);
+    };
+    const int m = count(jacobian[0]), n = count(jacobian[1]);
+    if (m == 1 && n == 1) return sample_bicubic(photo, at);
+    Vec3 sum{0};
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < m; ++i)
+            sum += sample_bicubic(photo, at + jacobian * Vec2((i + 0.5) / m - 0.5, (j + 0.5) / n - 0.5));
+    return sum / (double(m) * n);
+}
+
+}  // namespace trilens

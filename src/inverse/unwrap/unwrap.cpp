@@ -1,0 +1,262 @@
+#include "inverse/unwrap/unwrap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "base/util/parallel.h"
+#include "inverse/maps/film_images.h"
+#include "inverse/maps/proxy.h"
+#include "inverse/maps/resolution.h"
+#include "inverse/maps/sampled_map.h"
+#include "inverse/unwrap/photo.h"
+#include "render/frame/frame.h"
+#include "render/world/geometry.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+void check_photo(const World& world, const UnwrapPhoto& photo) {
+    const Film& film = world.scene.film;
+    if (!photo.picture) throw UsageError("a photograph is missing");
+    if (photo.camera >= world.scene.cameras.size()) throw UsageError("there is no such camera");
+    if (photo.picture->width != film.width || photo.picture->height != film.height)
+        throw InputError(
+            photo.name, "",
+            fmt::format("has {} x {} pixels and the film {} x {}: give --size {}x{} where the camera "
+                        "is the same",
+                        photo.picture->width, photo.picture->height, film.width, film.height,
+                        photo.picture->width, photo.picture->height));
+    if (photo.mask && (photo.mask->width != film.width || photo.mask->height != film.height))
+        throw InputError(photo.name, "mask", "is not of the photograph's size");
+    if (!(photo.exposure > 0) || !std::isfinite(photo.exposure))
+        throw UsageError("a photograph's exposure is a positive number");
+}
+
+/// Throws where an eye sees no front of a mirror: it stands inside or behind.
+void check_front(const World& world, const UnwrapRequest& request, const UnwrapPhoto& photo) {
+    if (request.path == Path::kDirect) return;
+    const CameraRays camera = make_camera_rays(world.scene, photo.camera);
+    if (!camera.linear || camera.linear->parallel) return;
+    for (std::size_t o = 0; o < world.optics.size(); ++o) {
+        if (!world.optics[o].mirror || (request.optic && *request.optic != o)) continue;
+        const auto facets = optic_facets(world, o, world.optics[o].resolution);
+        const SurfaceGrid& grid = facets->grid();
+        if (std::any_of(grid.facets.begin(), grid.facets.end(), [&](const IdTriple& facet) {
+                return faces_front(grid, facet,
+                                   grid.points[grid.corner_point[facet[0]]] - camera.linear->eye);
+            }))
+            return;
+    }
+    throw InputError(scene_title(world.scene), world.scene.cameras[photo.camera].name,
+                     "sees no front of the optic: it stands inside or behind it");
+}
+
+Vec3 middle_of_optics(const World& world, const std::optional<std::size_t>& optic) {
+    Box box;
+    for (std::size_t o = 0; o < world.optics.size(); ++o)
+        if (!optic || *optic == o)
+            for (const Vec3& point : optic_facets(world, o, world.optics[o].resolution)->grid().points)
+                box.include(point);
+    return box.empty() ? Vec3(0) : 0.5 * (box.low + box.high);
+}
+
+/// The output while photograph after photograph comes in.
+struct Canvas {
+    std::size_t width = 0;
+    std::vector<float> red, green, blue, least, most, x, y;
+    std::vector<Id> count, photo;
+    std::vector<double> sum;  // of the blend's weights
+
+    explicit Canvas(const TargetDescription& to) : width(static_cast<std::size_t>(to.width)) {
+        const std::size_t pixels = width * static_cast<std::size_t>(to.height);
+        for (std::vector<float>* values : {&red, &green, &blue, &least, &most}) values->assign(pixels, 0);
+        x.assign(pixels, -1);
+        y.assign(pixels, -1);
+        count.assign(pixels, 0);
+        photo.assign(pixels, kNone);
+        sum.assign(pixels, 0);
+    }
+};
+
+struct Candidate {
+    const MapImage* image = nullptr;
+    Resolution resolution;
+};
+
+/// Draws one photograph into the canvas.
+class PhotoDrawer {
+  public:
+    PhotoDrawer(const UnwrapRequest& request, const UnwrapPhoto& photo, const Target& target, Id index)
+        : request_(request), photo_(photo), target_(target), index_(index) {}
+
+    void draw(int px, int py, std::span<const MapImage> images, Canvas& canvas) const {
+        if (images.empty()) return;
+        const std::optional<TargetPlace> place = target_.place({px + 0.5, py + 0.5});
+        if (!place) return;
+        std::vector<Candidate> seen;
+        for (const MapImage& image : images) {
+            if (!may_take(image.position)) continue;
+            Resolution r = resolution_of(image.jacobian, place->dx, place->dy);
+            if (place->is_direction) r = {r.least * kDegree, r.most * kDegree};
+            if (r.least >= request_.min_resolution) seen.push_back({&image, r});
+        }
+        const std::size_t at = static_cast<std::size_t>(py) * canvas.width + static_cast<std::size_t>(px);
+        canvas.count[at] += static_cast<Id>(seen.size());
+        std::stable_sort(seen.begin(), seen.end(), [](const Candidate& a, const Candidate& b) {
+            return a.resolution.least > b.resolution.least;
+        });
+        if (request_.images == UnwrapImages::kBlend) return blend(seen, at, canvas);
+        if (seen.size() < static_cast<std::size_t>(request_.rank)) return;
+        take(seen[static_cast<std::size_t>(request_.rank - 1)], at, canvas);
+    }
+
+  private:
+    bool may_take(const Vec2& at) const {
+        if (!photo_.mask) return true;
+        const auto x = static_cast<std::size_t>(std::clamp(at.x, 0.0, photo_.mask->width - 1.0));
+        const auto y = static_cast<std::size_t>(std::clamp(at.y, 0.0, photo_.mask->height - 1.0));
+        return photo_.mask->rgb[3 * (y * static_cast<std::size_t>(photo_.mask->width) + x)] >= 0.5f;
+    }
+
+    Vec3 colour(const MapImage& image) const {
+        Vec3 colour = sample_footprint(*photo_.picture, image.position, image.jacobian) / photo_.exposure;
+        if (request_.divide_weight) colour /= glm::max(image.weight, Vec3(kLeastDivisor));
+        return colour;
+    }
+
+    /// Where this photograph resolves the pixel better than those before.
+    bool note_best(const Candidate& seen, std::size_t at, Canvas& canvas) const {
+        if (canvas.photo[at] != kNone && canvas.least[at] >= static_cast<float>(seen.resolution.least))
+            return false;
+        canvas.least[at] = static_cast<float>(seen.resolution.least);
+        canvas.most[at] = static_cast<float>(seen.resolution.most);
+        canvas.x[at] = static_cast<float>(seen.image->position.x);
+        canvas.y[at] = static_cast<float>(seen.image->position.y);
+        canvas.photo[at] = index_;
+        return true;
+    }
+
+    void take(const Candidate& seen, std::size_t at, Canvas& canvas) const {
+        if (!note_best(seen, at, canvas)) return;
+        const Vec3 c = colour(*seen.image);
+        canvas.red[at] = static_cast<float>(c.x);
+        canvas.green[at] = static_cast<float>(c.y);
+        canvas.blue[at] = static_cast<float>(c.z);
+    }
+
+    void blend(const std::vector<Candidate>& seen, std::size_t at, Canvas& canvas) const {
+        for (const Candidate& one : seen) {
+            const double w = std::pow(one.resolution.least, 4);
+            if (!(w > 0)) continue;
+            note_best(one, at, canvas);
+            const Vec3 c = colour(*one.image);
+            const double whole = canvas.sum[at] + w, old = canvas.sum[at] / whole, now = w / whole;
+            canvas.red[at] = static_cast<float>(old * canvas.red[at] + now * c.x);
+            canvas.green[at] = static_cast<float>(old * canvas.green[at] + now * c.y);
+            canvas.blue[at] = static_cast<float>(old * canvas.blue[at] + now * c.z);
+            canvas.sum[at] = whole;
+        }
+    }
+
+    const UnwrapRequest& request_;
+    const UnwrapPhoto& photo_;
+    const Target& target_;
+    Id index_;
+};
+
+void measure(const Target& target, const Canvas& canvas, Unwrapped& result) {
+    double all = 0, seen = 0;
+    std::vector<float> least;
+    for (std::size_t p = 0; p < canvas.photo.size(); ++p) {
+        const auto place = target.place(
+            {static_cast<double>(p % canvas.width) + 0.5, static_cast<double>(p / canvas.width) + 0.5});
+        if (!place) continue;
+        const double share = target.measure(*place);
+        all += share;
+        if (canvas.photo[p] == kNone) continue;
+        seen += share;
+        least.push_back(canvas.least[p]);
+    }
+    result.coverage = all > 0 ? seen / all : 0;
+    if (least.empty()) return;
+    const auto middle = least.begin() + static_cast<std::ptrdiff_t>(least.size() / 2);
+    std::nth_element(least.begin(), middle, least.end());
+    result.resolution_median = *middle;
+}
+
+Image image_of(Canvas canvas, const TargetDescription& to, bool of_several) {
+    Image image;
+    image.width = image.data_width = to.width;
+    image.height = image.data_height = to.height;
+    std::vector<float> alpha(canvas.photo.size());
+    for (std::size_t p = 0; p < alpha.size(); ++p) alpha[p] = canvas.photo[p] == kNone ? 0.0f : 1.0f;
+    image.channels = {{"R", std::move(canvas.red)},
+                      {"G", std::move(canvas.green)},
+                      {"B", std::move(canvas.blue)},
+                      {"A", std::move(alpha)},
+                      {"res.min", std::move(canvas.least)},
+                      {"res.max", std::move(canvas.most)},
+                      {"src.X", std::move(canvas.x)},
+                      {"src.Y", std::move(canvas.y)},
+                      {"image.count", std::move(canvas.count)}};
+    if (of_several) image.channels.push_back({"image.photo", std::move(canvas.photo)});
+    return image;
+}
+
+}  // namespace
+
+Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::vector<UnwrapPhoto>& photos,
+                 const Progress& progress) {
+    if (photos.empty()) throw UsageError("there is no photograph to unwrap");
+    if (request.optic && *request.optic >= world.optics.size()) throw UsageError("there is no such optic");
+    if (request.rank < 1) throw UsageError("images are counted from 1, the best");
+    if (!(request.tolerance > 0)) throw UsageError("the tolerance is a positive number of pixels");
+    for (const UnwrapPhoto& photo : photos) {
+        check_photo(world, photo);
+        check_front(world, request, photo);
+    }
+    const Target target(request.to, world.scene);
+    const Proxy proxy(request.proxy, world, request.center.value_or(middle_of_optics(world, request.optic)));
+    const auto world_place = [&](const Vec2& pixel) -> std::optional<WorldPlace> {
+        const std::optional<TargetPlace> place = target.place(pixel);
+        if (!place) return std::nullopt;
+        return place->is_direction ? proxy.along(*place) : WorldPlace{place->at, place->dx, place->dy};
+    };
+
+    Unwrapped result;
+    Canvas canvas(request.to);
+    for (std::size_t i = 0; i < photos.size(); ++i) {
+        FilmImagesParams params{request.frame, request.optic, request.path,
+                                !target.has_directions() || proxy.asks_visibility()};
+        params.frame.camera = photos[i].camera;
+        const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
+            std::vector<std::optional<WorldPlace>> places(pixels.size());
+            parallel_for(pixels.size(), 1024, [&](std::size_t first, std::size_t last) {
+                for (std::size_t p = first; p < last; ++p) places[p] = world_place(pixels[p]);
+            });
+            find_film_images(world, params, places, images);
+        };
+        const Progress part{
+            [&](double done) { progress((static_cast<double>(i) + done) / double(photos.size())); },
+            progress.cancel};
+        const SampledMap map({request.to.width, request.to.height, 8, request.tolerance}, evaluate, part);
+        result.exact_places += map.exact_count();
+        result.worst_accepted = std::max(result.worst_accepted, map.worst_accepted());
+        const PhotoDrawer drawer(request, photos[i], target, static_cast<Id>(i));
+        map.for_each_pixel(
+            [&](int x, int y, std::span<const MapImage> images) { drawer.draw(x, y, images, canvas); });
+    }
+    measure(target, canvas, result);
+    if (result.coverage == 0)
+        throw InputError(photos[0].name, "",
+                         "shows nothing of the target: no image of it lies on the film within an optic");
+    result.image = image_of(std::move(canvas), request.to, photos.size() > 1);
+    return result;
+}
+
+}  // namespace trilens
