@@ -1,7 +1,5 @@
 // trilens unwrap: photographs of mirrors into panoramas, cube maps, planes and textures.
-#include <trilens/project.h>
 #include <trilens/stopwatch.h>
-#include <trilens/text.h>
 #include <trilens/unwrap.h>
 
 #include <limits>
@@ -11,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/print/output.h"
 #include "cli/scene_options.h"
+#include "cli/target_options.h"
 #include "terminal/format.h"
 
 namespace trilens {
@@ -19,7 +18,8 @@ namespace {
 struct UnwrapOptions {
     SceneOptions scene;
     std::vector<std::string> photos, masks;
-    std::string to, center = "optic", proxy = "scene", images = "best", optic, path, output;
+    DirectionOptions direction;
+    std::string to, images = "best", output;
     double min_resolution = 0, tolerance = UnwrapRequest().tolerance;
     bool keep_weight = false;
 };
@@ -48,30 +48,13 @@ UnwrapPhoto photo_from(const std::string& text, std::size_t index, const UnwrapO
     return photo;
 }
 
-std::optional<std::size_t> optic_named(const Renderer& renderer, const std::string& name) {
-    if (name.empty()) return std::nullopt;
-    const std::vector<OpticInfo> optics = renderer.optics();
-    std::vector<std::string> names;
-    for (std::size_t o = 0; o < optics.size(); ++o) {
-        if (optics[o].name == name) return o;
-        names.push_back(optics[o].name);
-    }
-    throw UsageError("there is no optic \"" + name + "\"" + suggestion(name, names));
-}
-
 UnwrapRequest request_of(const UnwrapOptions& options, const Renderer& renderer) {
     UnwrapRequest request;
     request.to = parse_target(options.to, renderer.scene());
-    request.proxy = parse_proxy(options.proxy);
-    if (options.center != "optic") {
-        request.center = parse_point(options.center);
-        if (!request.center)
-            throw UsageError("--center is \"optic\" or X,Y,Z, not \"" + options.center + "\"");
-    }
-    request.optic = optic_named(renderer, options.optic);
-    if (options.path == "reflect") request.path = Path::kReflect;
-    if (options.path == "refract") request.path = Path::kRefract;
-    if (options.path == "direct") request.path = Path::kDirect;
+    request.proxy = parse_proxy(options.direction.proxy);
+    request.center = center_given(options.direction.center);
+    request.optic = optic_named(renderer, options.direction.optic);
+    request.path = path_given(options.direction.path);
     if (options.images == "blend") {
         request.images = UnwrapImages::kBlend;
     } else if (options.images != "best") {
@@ -143,24 +126,10 @@ Command unwrap_command() {
            .value = "FILE",
            .offer = Offer::kImage,
            .is_required = true},
-          {.names = "--center",
-           .target = &options->center,
-           .help = "where directions start: optic (the middle of the optics) or a point",
-           .value = "X,Y,Z"},
-          {.names = "--proxy",
-           .target = &options->proxy,
-           .help = "how far what a direction shows is: scene (its objects), infinity, sphere:R, "
-                   "box:x0,y0,z0,x1,y1,z1, or a mesh.obj",
-           .value = "PROXY"},
           {.names = "--images",
            .target = &options->images,
            .help = "of several images: best (resolved), blend, or the N-th best",
            .value = "best|blend|N"},
-          {.names = "--optic", .target = &options->optic, .help = "only over this optic", .value = "NAME"},
-          {.names = "--path",
-           .target = &options->path,
-           .help = "how light comes from the optic; default: reflect by mirrors, refract by glass",
-           .choices = {"reflect", "refract", "direct"}},
           {.names = "--min-resolution",
            .target = &options->min_resolution,
            .help = "leave out what the photograph resolves worse, in its pixels per degree or unit",
@@ -177,6 +146,7 @@ Command unwrap_command() {
           {.names = "--keep-weight",
            .target = &options->keep_weight,
            .help = "do not divide by what mirrors and glass leave of the light"}},
+         direction_options(options->direction),
          scene_overrides(options->scene)});
     command.body = [options](Console& console) { return run(*options, console); };
     return command;

@@ -17,8 +17,8 @@ Command make_commands() {
     root.commands = render_commands();
     for (Command& command :
          std::vector<Command>{compare_command(), sweep_command(), report_command(), test_command(),
-                              project_command(), shoot_command(), unwrap_command(), scene_command(),
-                              info_command()})
+                              project_command(), shoot_command(), unwrap_command(), map_command(),
+                              anamorph_command(), scene_command(), info_command()})
         root.commands.push_back(std::move(command));
     add_examples(root, root.name);
     return root;

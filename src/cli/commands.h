@@ -17,6 +17,8 @@ Command report_command();
 Command project_command();
 Command shoot_command();
 Command unwrap_command();
+Command map_command();
+Command anamorph_command();
 Command test_command();
 Command scene_command();
 Command info_command();

@@ -4,12 +4,14 @@
 //     trilens::write_image("mine.exr", renderer.draw({}).image);
 #pragma once
 
+#include <trilens/anamorph.h>
 #include <trilens/animation.h>
 #include <trilens/camera.h>
 #include <trilens/compare.h>
 #include <trilens/error.h>
 #include <trilens/files.h>
 #include <trilens/image.h>
+#include <trilens/map.h>
 #include <trilens/project.h>
 #include <trilens/ray_mesh.h>
 #include <trilens/regions.h>

@@ -6,6 +6,7 @@
 
 #include "base/files/file_bytes.h"
 #include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "intersect/tracer.h"
 #include "inverse/maps/number_list.h"
 #include "render/world/geometry.h"
@@ -163,6 +164,20 @@ Vec3 Proxy::direction_met(const Ray& ray) const {
     const Tracer& tracer = tracer_ ? *tracer_ : object_tracer(world_);
     const Hit hit = tracer.first_hit(ray);
     return hit.seen() ? from + hit.t * ray.direction : ray.direction;
+}
+
+std::vector<std::optional<WorldPlace>> world_places(const Target& target, const Proxy& proxy,
+                                                    std::span<const Vec2> pixels) {
+    std::vector<std::optional<WorldPlace>> places(pixels.size());
+    parallel_for(pixels.size(), 1024, [&](std::size_t first, std::size_t last) {
+        for (std::size_t p = first; p < last; ++p) {
+            const std::optional<TargetPlace> place = target.place(pixels[p]);
+            if (!place) continue;
+            places[p] =
+                place->is_direction ? proxy.along(*place) : WorldPlace{place->at, place->dx, place->dy};
+        }
+    });
+    return places;
 }
 
 }  // namespace trilens

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "base/math/box.h"
 #include "base/raymesh/triangle_scene.h"
@@ -45,6 +48,10 @@ class Proxy {
     TriangleScene triangles_;         // kMesh
     std::unique_ptr<Tracer> tracer_;  // of these
 };
+
+/// What the target's pixels show in the world; none where a pixel shows nothing. Directions go to the proxy.
+std::vector<std::optional<WorldPlace>> world_places(const Target& target, const Proxy& proxy,
+                                                    std::span<const Vec2> pixels);
 
 /// A box around all that the scene has: objects, optics, its cameras' eyes.
 Box scene_box(const World& world);

@@ -194,7 +194,7 @@ std::optional<Vec2> Target::pixel_of_direction(const Vec3& direction) const {
                 (0.5 + 0.5 * dot(far, face.down)) * height);
 }
 
-std::optional<Vec2> Target::pixel_of_point(const Vec3& point, Id triangle, const Vec2& barycentric) const {
+std::optional<Vec2> Target::pixel_of_point(const Vec3& point, Id triangle) const {
     const double width = description_.width, height = description_.height;
     if (rectangle_) {
         // Coordinates along sides that need not be at right angles.
@@ -206,7 +206,13 @@ std::optional<Vec2> Target::pixel_of_point(const Vec3& point, Id triangle, const
     }
     if (!object_ || triangle >= object_->uvs.size()) return std::nullopt;
     const auto& [a, b, c] = object_->uvs[triangle];
-    const Vec2 uv = a + barycentric.x * (b - a) + barycentric.y * (c - a);
+    const IdTriple& corner = object_->triangles[triangle];
+    const Vec3 &p = object_->points[corner[0]], ab = object_->points[corner[1]] - p,
+               ac = object_->points[corner[2]] - p, n = cross(ab, ac);
+    const double whole = dot(n, n);
+    if (!(whole > 0)) return std::nullopt;
+    const Vec2 uv =
+        a + dot(cross(point - p, ac), n) / whole * (b - a) + dot(cross(ab, point - p), n) / whole * (c - a);
     return Vec2(uv.x * width, (1 - uv.y) * height);
 }
 

@@ -81,9 +81,9 @@ class Target {
     /// Back: where a direction (any length) lies; none for planes and objects, and outside the circle of a
     /// fisheye.
     std::optional<Vec2> pixel_of_direction(const Vec3& direction) const;
-    /// Where a point of the target's own plane or object lies. `triangle`, `barycentric` (weights of the
-    /// second and third corner): of the object, asked for where it is not flat.
-    std::optional<Vec2> pixel_of_point(const Vec3& point, Id triangle, const Vec2& barycentric) const;
+    /// Where a point of the target's own plane or object lies. `triangle`: of the object, asked for where
+    /// that is not flat.
+    std::optional<Vec2> pixel_of_point(const Vec3& point, Id triangle) const;
     /// The rectangle, of a plane or a flat object.
     const std::optional<FlatRectangle>& rectangle() const { return rectangle_; }
 

@@ -8,6 +8,7 @@
 #include "base/util/format.h"
 #include "base/util/parallel.h"
 #include "inverse/maps/film_images.h"
+#include "inverse/maps/film_map.h"
 #include "inverse/maps/proxy.h"
 #include "inverse/maps/resolution.h"
 #include "inverse/maps/sampled_map.h"
@@ -54,15 +55,6 @@ void check_front(const World& world, const UnwrapRequest& request, const UnwrapP
     }
     throw InputError(scene_title(world.scene), world.scene.cameras[photo.camera].name,
                      "sees no front of the optic: it stands inside or behind it");
-}
-
-Vec3 middle_of_optics(const World& world, const std::optional<std::size_t>& optic) {
-    Box box;
-    for (std::size_t o = 0; o < world.optics.size(); ++o)
-        if (!optic || *optic == o)
-            for (const Vec3& point : optic_facets(world, o, world.optics[o].resolution)->grid().points)
-                box.include(point);
-    return box.empty() ? Vec3(0) : 0.5 * (box.low + box.high);
 }
 
 /// The output while photograph after photograph comes in.
@@ -221,12 +213,7 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
         check_front(world, request, photo);
     }
     const Target target(request.to, world.scene);
-    const Proxy proxy(request.proxy, world, request.center.value_or(middle_of_optics(world, request.optic)));
-    const auto world_place = [&](const Vec2& pixel) -> std::optional<WorldPlace> {
-        const std::optional<TargetPlace> place = target.place(pixel);
-        if (!place) return std::nullopt;
-        return place->is_direction ? proxy.along(*place) : WorldPlace{place->at, place->dx, place->dy};
-    };
+    const Proxy proxy(request.proxy, world, center_of_directions(world, request.center, request.optic));
 
     Unwrapped result;
     Canvas canvas(request.to);
@@ -235,11 +222,7 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
                                 !target.has_directions() || proxy.asks_visibility()};
         params.frame.camera = photos[i].camera;
         const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
-            std::vector<std::optional<WorldPlace>> places(pixels.size());
-            parallel_for(pixels.size(), 1024, [&](std::size_t first, std::size_t last) {
-                for (std::size_t p = first; p < last; ++p) places[p] = world_place(pixels[p]);
-            });
-            find_film_images(world, params, places, images);
+            find_film_images(world, params, world_places(target, proxy, pixels), images);
         };
         const Progress part{
             [&](double done) { progress((static_cast<double>(i) + done) / double(photos.size())); },

@@ -1,0 +1,95 @@
+#include "inverse/maps/film_map.h"
+
+#include <algorithm>
+
+#include "base/util/error.h"
+#include "base/util/parallel.h"
+#include "inverse/maps/film_images.h"
+#include "inverse/maps/film_targets.h"
+#include "inverse/maps/resolution.h"
+#include "render/frame/frame.h"
+#include "render/world/geometry.h"
+
+namespace trilens {
+namespace {
+
+FilmMap empty_map(int width, int height, int source_width, int source_height) {
+    FilmMap map{width, height, source_width, source_height};
+    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    map.x.assign(pixels, -1);
+    map.y.assign(pixels, -1);
+    for (std::vector<float>& values : map.jacobian) values.assign(pixels, 0);
+    map.valid.assign(pixels, 0);
+    return map;
+}
+
+/// The image whose derivative has the largest smaller singular value.
+const MapImage& best_of(std::span<const MapImage> images) {
+    const MapImage* best = &images[0];
+    for (const MapImage& image : images)
+        if (singular_values(image.jacobian).least > singular_values(best->jacobian).least) best = &image;
+    return *best;
+}
+
+void fill(const SampledMap& sampled, FilmMap& map) {
+    sampled.for_each_pixel([&](int x, int y, std::span<const MapImage> images) {
+        if (images.empty()) return;
+        const MapImage& image = best_of(images);
+        const std::size_t at =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x);
+        map.x[at] = static_cast<float>(image.position.x);
+        map.y[at] = static_cast<float>(image.position.y);
+        for (int k = 0; k < 4; ++k) map.jacobian[k][at] = static_cast<float>(image.jacobian[k % 2][k / 2]);
+        map.valid[at] = 1;
+    });
+    map.exact_places = sampled.exact_count();
+    map.worst_accepted = sampled.worst_accepted();
+}
+
+}  // namespace
+
+std::size_t FilmMap::valid_count() const {
+    return static_cast<std::size_t>(std::count(valid.begin(), valid.end(), 1));
+}
+
+Vec3 center_of_directions(const World& world, const std::optional<Vec3>& asked,
+                          const std::optional<std::size_t>& optic) {
+    if (asked) return *asked;
+    Box box;
+    for (std::size_t o = 0; o < world.optics.size(); ++o)
+        if (!optic || *optic == o)
+            for (const Vec3& point : optic_facets(world, o, world.optics[o].resolution)->grid().points)
+                box.include(point);
+    return box.empty() ? Vec3(0) : 0.5 * (box.low + box.high);
+}
+
+FilmMap make_film_map(const World& world, const FilmMapRequest& request, const Progress& progress) {
+    if (request.optic && *request.optic >= world.optics.size()) throw UsageError("there is no such optic");
+    if (!(request.tolerance > 0)) throw UsageError("the tolerance is a positive number of pixels");
+    const Target target(request.target, world.scene);
+    const Proxy proxy(request.proxy, world, center_of_directions(world, request.center, request.optic));
+    const Film& film = world.scene.film;
+    const int wide = request.target.width, high = request.target.height;
+    const bool unwraps = request.way == MapWay::kUnwrap;
+
+    const FilmImagesParams to_film{request.frame, request.optic, request.path,
+                                   !target.has_directions() || proxy.asks_visibility()};
+    FilmTargetsParams from_film;
+    from_film.shoot = {request.frame.camera, request.word};
+    from_film.optic = request.optic;
+    from_film.over_optics = !world.optics.empty();
+    const EvaluateMap evaluate = [&](std::span<const Vec2> pixels, std::span<MapImages> images) {
+        if (!unwraps) return find_film_targets(world, from_film, target, proxy, pixels, images);
+        find_film_images(world, to_film, world_places(target, proxy, pixels), images);
+    };
+    FilmMap map = unwraps ? empty_map(wide, high, film.width, film.height)
+                          : empty_map(film.width, film.height, wide, high);
+    fill(SampledMap({map.width, map.height, 8, request.tolerance}, evaluate, progress), map);
+    if (map.valid_count() == 0)
+        throw InputError(scene_title(world.scene), "",
+                         unwraps ? "nothing of the target is seen on the film within an optic"
+                                 : "the film shows nothing of the target");
+    return map;
+}
+
+}  // namespace trilens

@@ -1,0 +1,81 @@
+#include "inverse/maps/film_targets.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/util/parallel.h"
+#include "render/world/world.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kStep = 0.01;  // film pixels to each side
+
+std::uint64_t history_of(const ShotRays& shots, const ShotRay& shot) {
+    std::uint64_t hash = (14695981039346656037ull ^ shot.object) * 1099511628211ull;  // FNV-1a
+    for (const PathEvent& event : shots.events_of(shot))
+        hash = (hash ^ (std::uint64_t{event.optic} << 2 | static_cast<std::uint64_t>(event.event))) *
+               1099511628211ull;
+    return hash;
+}
+
+/// Of two places of a picture that wraps around, the second nearer to the first.
+Vec2 unwrapped(const Vec2& from, Vec2 to, double period) {
+    if (period > 0) to.x -= period * std::round((to.x - from.x) / period);
+    return to;
+}
+
+}  // namespace
+
+std::optional<Vec2> target_of(const ShotRay& shot, const Target& target, const Proxy& proxy) {
+    const Ray last{shot.origin, shot.direction};
+    if (target.has_directions()) return target.pixel_of_direction(proxy.direction_met(last));
+    if (target.description().kind == TargetKind::kObject) {
+        if (shot.state != ShotState::kSeen || shot.object != target.description().object) return std::nullopt;
+        return target.pixel_of_point(shot.position, shot.primitive);
+    }
+    const FlatRectangle& plane = *target.rectangle();
+    const double t = dot(plane.origin - last.origin, plane.normal()) / dot(last.direction, plane.normal());
+    if (!(t > 0) || !std::isfinite(t)) return std::nullopt;
+    if (shot.state == ShotState::kSeen && shot.t < t * (1 - 1e-9)) return std::nullopt;  // something hides it
+    return target.pixel_of_point(last.origin + t * last.direction, kNone);
+}
+
+void find_film_targets(const World& world, const FilmTargetsParams& params, const Target& target,
+                       const Proxy& proxy, std::span<const Vec2> places, std::span<MapImages> images) {
+    // Each place, and the four around it.
+    constexpr std::array<Vec2, 5> kAround{{{0, 0}, {-kStep, 0}, {kStep, 0}, {0, -kStep}, {0, kStep}}};
+    std::vector<Vec2> asked;
+    asked.reserve(kAround.size() * places.size());
+    for (const Vec2& place : places)
+        for (const Vec2& step : kAround) asked.push_back(place + step);
+    const ShotRays shots = shoot_places(world, params.shoot, asked);
+    const double period = target.description().kind == TargetKind::kEquirect ? target.description().width : 0;
+
+    parallel_for(places.size(), 256, [&](std::size_t first, std::size_t last) {
+        for (std::size_t p = first; p < last; ++p) {
+            std::array<std::optional<Vec2>, 5> found;
+            for (std::size_t k = 0; k < kAround.size(); ++k) {
+                const ShotRay& shot = shots.rays[kAround.size() * p + k];
+                if (!shot.followed() || (params.over_optics && shot.event_count == 0)) continue;
+                if (params.optic && shot.event_count > 0 && shots.events_of(shot)[0].optic != *params.optic)
+                    continue;
+                found[k] = target_of(shot, target, proxy);
+            }
+            if (!found[0]) continue;
+            const ShotRay& shot = shots.rays[kAround.size() * p];
+            MapImage image{*found[0], Mat2(0), shot.weight, history_of(shots, shot)};
+            for (int axis = 0; axis < 2; ++axis) {
+                const auto before = static_cast<std::size_t>(1 + 2 * axis);
+                if (!found[before] || !found[before + 1]) continue;
+                image.jacobian[axis] = (unwrapped(*found[0], *found[before + 1], period) -
+                                        unwrapped(*found[0], *found[before], period)) /
+                                       (2 * kStep);
+            }
+            images[p].push_back(image);
+        }
+    });
+}
+
+}  // namespace trilens
