@@ -312,6 +312,7 @@ void bind_renderer(py::module_& module) {
     bind_line_drawing(module, renderer);
     bind_project(renderer);
     bind_shoot(renderer);
+    bind_unwrap(renderer, module);
     bind_explain(renderer);
     bind_facts(renderer);
     module.def("layer_names", layer_names, "The layers that may be asked for beside R G B A.");

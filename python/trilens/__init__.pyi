@@ -263,6 +263,53 @@ class Renderer:
     def explain(
         self, x: int, y: int, resolution: int = 0, camera: Optional[str] = None, engine: str = "exact"
     ) -> dict[str, Any]: ...
+    def unwrap(
+        self,
+        photo: Union[Image, _File, Sequence[Union[Image, _File]]],
+        to: str,
+        *,
+        cameras: Optional[Sequence[str]] = None,
+        masks: Optional[Sequence[Union[Image, _File]]] = None,
+        exposures: Optional[Sequence[float]] = None,
+        center: Optional[_Triple] = None,
+        proxy: str = "scene",
+        optic: Optional[str] = None,
+        path: Optional[str] = None,
+        images: Union[str, int] = "best",
+        min_resolution: float = 0.0,
+        tolerance: float = 0.01,
+        divide_weight: bool = True,
+        progress: _Progress = None,
+    ) -> Image: ...
+    def map(
+        self,
+        to: str,
+        way: str = "unwrap",
+        camera: Optional[str] = None,
+        *,
+        center: Optional[_Triple] = None,
+        proxy: str = "scene",
+        optic: Optional[str] = None,
+        path: Optional[str] = None,
+        word: Optional[str] = None,
+        tolerance: float = 0.01,
+        file: Optional[_File] = None,
+        progress: _Progress = None,
+    ) -> dict[str, NDArray[Any]]: ...
+    def warp_mesh(
+        self,
+        to: str,
+        columns: int = 0,
+        rows: int = 0,
+        camera: Optional[str] = None,
+        *,
+        max_error: float = 0.5,
+        center: Optional[_Triple] = None,
+        proxy: str = "scene",
+        optic: Optional[str] = None,
+        word: Optional[str] = None,
+        file: Optional[_File] = None,
+    ) -> dict[str, Any]: ...
     def draw_lines(
         self,
         resolution: int = 0,
@@ -277,6 +324,22 @@ class Renderer:
     ) -> LineDrawing: ...
 
 def layer_names() -> list[str]: ...
+def anamorph(
+    renderer: Renderer,
+    picture: Union[Image, _File],
+    page: str,
+    *,
+    paper: Optional[str] = None,
+    dpi: float = 300.0,
+    unit: str = "cm",
+    bleed: float = 2.0,
+    window: Optional[Sequence[float]] = None,
+    optic: Optional[str] = None,
+    camera: Optional[str] = None,
+    verify: bool = False,
+    file: Optional[_File] = None,
+    progress: _Progress = None,
+) -> dict[str, Any]: ...
 
 class Metrics:
     @property
