@@ -315,7 +315,8 @@ void bind_renderer(py::module_& module) {
     bind_unwrap(renderer, module);
     bind_explain(renderer);
     bind_facts(renderer);
-    module.def("layer_names", layer_names, "The layers that may be asked for beside R G B A.");
+    module.def("layer_names", layer_names, "The layers that may be asked for beside R G B A. \"position\" is what the camera sees itself (directID, "
+               "directP); a\npath's own layer (\"reflect\") has the positions that it shows.");
 }
 
 }  // namespace trilens::python
