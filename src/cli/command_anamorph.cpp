@@ -35,8 +35,8 @@ PaperSize paper_of(const AnamorphOptions& options, const Scene& scene, Id page) 
     return paper;
 }
 
-FilmWindow window_of(const std::string& text) {
-    FilmWindow window{};
+PictureWindow window_of(const std::string& text) {
+    PictureWindow window{};
     std::istringstream stream(text);
     std::string part;
     std::size_t count = 0;

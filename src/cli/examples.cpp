@@ -67,7 +67,8 @@ std::vector<Example> examples_of(const std::string& called) {
            "what it shows of an object, as that object's texture"}}},
         {"trilens map",
          {{"trilens map ball.json --to equirect:4096x2048 -o unwrap.exr",
-           "an STMap that unwraps photographs: oiiotool photo.exr unwrap.exr --st_warp -o panorama.exr"},
+           "an STMap that unwraps photographs: oiiotool photo.exr --crop 4096x2048+0+0 unwrap.exr --st_warp "
+           "-o panorama.exr"},
           {"trilens map dome.json --to fisheye:2048 --proxy sphere:3 --center 0,0,0 -o warp.data",
            "a projector's warp mesh over a mirror ball into a dome"}}},
         {"trilens anamorph",

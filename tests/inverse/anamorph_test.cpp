@@ -78,7 +78,7 @@ TEST_CASE("the page of a flat mirror is the picture, mirrored, at true scale", "
         R"({"eye": [0, 30, 25], "at": [0, 0, -5], "up": [0, 1, 0]})", 16));
     const auto world = world_of(json);
     AnamorphRequest request = request_for(*world);
-    request.window = FilmWindow{60, 30, 100, 70};
+    request.window = PictureWindow{60, 30, 100, 70};
     const Anamorph made = make_anamorph(*world, request);
     // ymag 8: 160 film pixels are 16 units, 10 pixels a unit, 1 mm a pixel (units of 1 cm): 40 mm across.
     // Left and right are exchanged by no upright mirror that is seen from above, but near and far are.
@@ -200,9 +200,9 @@ TEST_CASE("an anamorphosis that cannot be is refused", "[inverse][bad-input]") {
     request = request_for(*world, "mirror");
     CHECK_THROWS_WITH(make_anamorph(*world, request), Catch::Contains("optic"));
     request = request_for(*world);
-    request.window = FilmWindow{0, 0, 4, 4};  // beside the mirror
+    request.window = PictureWindow{0, 0, 4, 4};  // beside the mirror
     CHECK_THROWS_WITH(make_anamorph(*world, request), Catch::Contains("not seen"));
-    request.window = FilmWindow{4, 4, 4, 8};
+    request.window = PictureWindow{4, 4, 4, 8};
     CHECK_THROWS_AS(make_anamorph(*world, request), UsageError);
     request = request_for(*world);
     request.unit = 1000;

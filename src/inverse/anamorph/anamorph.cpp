@@ -103,7 +103,7 @@ std::vector<unsigned char> shows_paper(const World& world, const AnamorphRequest
 }
 
 /// Middles of columns x rows cells of a window.
-std::vector<Vec2> cell_middles(const FilmWindow& window, int columns, int rows) {
+std::vector<Vec2> cell_middles(const PictureWindow& window, int columns, int rows) {
     std::vector<Vec2> places;
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x)
@@ -112,13 +112,13 @@ std::vector<Vec2> cell_middles(const FilmWindow& window, int columns, int rows) 
     return places;
 }
 
-FilmWindow find_window(const World& world, const AnamorphRequest& request, const PaperPlace& place,
-                       const PaperSize& paper) {
+PictureWindow find_window(const World& world, const AnamorphRequest& request, const PaperPlace& place,
+                          const PaperSize& paper) {
     const Film& film = world.scene.film;
     const double step = std::max(1.0, std::max(film.width, film.height) / double(kMostCells));
     const int columns = std::max(1, static_cast<int>(film.width / step)),
               rows = std::max(1, static_cast<int>(film.height / step));
-    const FilmWindow whole{0, 0, double(film.width), double(film.height)};
+    const PictureWindow whole{0, 0, double(film.width), double(film.height)};
     const auto window = largest_window(
         shows_paper(world, request, place, paper, cell_middles(whole, columns, rows)), columns, rows,
         {film.width, film.height}, double(request.picture->width) / request.picture->height);
@@ -131,7 +131,7 @@ FilmWindow find_window(const World& world, const AnamorphRequest& request, const
 /// Colours of the page, pixel by pixel.
 class PagePainter {
   public:
-    PagePainter(const AnamorphRequest& request, const FilmWindow& window, double dot_mm)
+    PagePainter(const AnamorphRequest& request, const PictureWindow& window, double dot_mm)
         : request_(request), window_(window), dot_mm_(dot_mm) {
         scale_ = Vec2(request.picture->width / (window[2] - window[0]),
                       request.picture->height / (window[3] - window[1]));
@@ -187,7 +187,7 @@ class PagePainter {
     }
 
     const AnamorphRequest& request_;
-    FilmWindow window_;
+    PictureWindow window_;
     double dot_mm_;
     Vec2 scale_{1};
 };
@@ -216,12 +216,12 @@ void paint_page(const SampledMap& map, const PagePainter& painter, Anamorph& mad
         x0 = std::min(x0, at % width), x1 = std::max(x1, at % width + 1);
         y0 = std::min(y0, at / width), y1 = std::max(y1, at / width + 1);
     }
-    const FilmWindow& w = made.window;
+    const PictureWindow& w = made.window;
     made.conflict = std::min(1.0, sum / ((w[2] - w[0]) * (w[3] - w[1])));
     if (x1 == 0) return;
-    const double dot_mm = 25.4 / page.dpi, top = page.paper.height;
-    made.extents = {double(x0) * dot_mm, top - double(y1) * dot_mm, double(x1) * dot_mm,
-                    top - double(y0) * dot_mm};
+    const double wide = page.paper.width / page.width, high = page.paper.height / page.height,
+                 top = page.paper.height;
+    made.extents = {double(x0) * wide, top - double(y1) * high, double(x1) * wide, top - double(y0) * high};
 }
 
 void check_request(const World& world, const AnamorphRequest& request) {
@@ -239,7 +239,7 @@ void check_request(const World& world, const AnamorphRequest& request) {
         throw UsageError(
             "dots per inch, unit and tolerance are positive numbers, and the bleed is at least 0");
     if (!request.window) return;
-    const FilmWindow& w = *request.window;
+    const PictureWindow& w = *request.window;
     if (!(w[0] < w[2] && w[1] < w[3])) throw UsageError("the window is x0,y0,x1,y1 with x0 < x1 and y0 < y1");
 }
 

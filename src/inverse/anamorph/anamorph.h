@@ -21,14 +21,14 @@ namespace trilens {
 struct World;
 
 /// x0, y0, x1, y1 on the film, pixels from its top left.
-using FilmWindow = std::array<double, 4>;
+using PictureWindow = std::array<double, 4>;
 
 struct AnamorphRequest {
     std::shared_ptr<const Texture> picture;  // what the mirror is to show
     std::string picture_name;                // what messages call it
     Id page = kNone;                         // index into Scene::meshes: a flat object
     std::optional<std::size_t> optic;        // index into World::optics; none: all mirrors
-    std::optional<FilmWindow> window;        // where the picture is to be seen; none: the largest that fits
+    std::optional<PictureWindow> window;        // where the picture is to be seen; none: the largest that fits
     std::optional<PaperSize> paper;  // centred on the page, its width along the page's first side; none: the
                                      // page's own size
     double dpi = 300;
@@ -55,13 +55,13 @@ struct AnamorphPage {
 
 struct Anamorph {
     AnamorphPage page;
-    FilmWindow window{};
+    PictureWindow window{};
     /// Share of the window whose rays end on the paper over a mirror.
     double coverage = 0;
     /// Share of the window that shows places of the page which it shows elsewhere, larger, too: what is
     /// printed there fits the larger one.
     double conflict = 0;
-    FilmWindow extents{};  // of what is printed, millimetres from the page's lower left: x0, y0, x1, y1
+    PictureWindow extents{};  // of what is printed, millimetres from the page's lower left: x0, y0, x1, y1
     std::size_t exact_places = 0;
     double worst_accepted = 0;  // film pixels that an interpolated place was found to be off
 };
@@ -83,7 +83,7 @@ AnamorphCheck verify_anamorph(const World& world, const AnamorphRequest& request
 
 /// The largest window of this aspect (width over height) inside the film's places for which `covered` is set;
 /// none where there is none. `covered`: columns x rows cells that make up the film, rows from the top.
-std::optional<FilmWindow> largest_window(const std::vector<unsigned char>& covered, int columns, int rows,
+std::optional<PictureWindow> largest_window(const std::vector<unsigned char>& covered, int columns, int rows,
                                          const Vec2& film, double aspect);
 
 }  // namespace trilens

@@ -36,7 +36,7 @@ class AreaTable {
 
 }  // namespace
 
-std::optional<FilmWindow> largest_window(const std::vector<unsigned char>& covered, int columns, int rows,
+std::optional<PictureWindow> largest_window(const std::vector<unsigned char>& covered, int columns, int rows,
                                          const Vec2& film, double aspect) {
     const AreaTable table(covered, columns, rows);
     const Vec2 cell = film / Vec2(columns, rows);
@@ -77,7 +77,7 @@ std::optional<FilmWindow> largest_window(const std::vector<unsigned char>& cover
     const auto& [x, y, wide, high] = *best;
     const double width = wide * cell.x, height = width / aspect;
     const Vec2 corner(x * cell.x, (y + 0.5 * high) * cell.y - 0.5 * height);
-    return FilmWindow{corner.x, corner.y, corner.x + width, corner.y + height};
+    return PictureWindow{corner.x, corner.y, corner.x + width, corner.y + height};
 }
 
 }  // namespace trilens

@@ -61,7 +61,7 @@ AnamorphCheck verify_anamorph(const World& world, const AnamorphRequest& request
     AnamorphCheck check;
     check.seen = draw_picture(*printed_world, picture, progress, {}).image;
     const Channel* object = check.seen.find("reflectID.object");
-    const FilmWindow& w = made.window;
+    const PictureWindow& w = made.window;
     const Vec2 scale(request.picture->width / (w[2] - w[0]), request.picture->height / (w[3] - w[1]));
     const Mat2 footprint(Vec2(scale.x, 0), Vec2(0, scale.y));
     std::array<const std::vector<float>*, 3> seen;

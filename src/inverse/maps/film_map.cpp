@@ -14,7 +14,11 @@ namespace trilens {
 namespace {
 
 FilmMap empty_map(int width, int height, int source_width, int source_height) {
-    FilmMap map{width, height, source_width, source_height};
+    FilmMap map;
+    map.width = width;
+    map.height = height;
+    map.source_width = source_width;
+    map.source_height = source_height;
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     map.x.assign(pixels, -1);
     map.y.assign(pixels, -1);

@@ -12,6 +12,7 @@
 namespace trilens {
 namespace {
 
+constexpr double kMiddleShare = 0.5;     // of the tolerance: where the map bends most, others are off by more
 constexpr std::size_t kBatch = 1 << 16;  // places evaluated between two looks at the progress
 
 struct CubicValue {
@@ -120,7 +121,7 @@ SampledMap::SampledMap(const MapLattice& lattice, const EvaluateMap& evaluate, c
             });
             for (std::size_t i = 0; i < some.size(); ++i) {
                 const Cell& cell = some[i];
-                if (error[i] <= lattice.tolerance) {
+                if (error[i] <= kMiddleShare * lattice.tolerance) {
                     worst_ = std::max(worst_, error[i]);
                     settled_.push_back(cell);
                     settled_pixels += double(cell.x1 - cell.x0) * (cell.y1 - cell.y0);

@@ -35,8 +35,8 @@ struct MapLattice {
 };
 
 /// A map known at every pixel centre of a lattice: exactly, or between exact ones to the tolerance (as found
-/// at the middle of each patch; the error of a patch falls with the fourth power of its size). What is
-/// smaller than a cell and shows at none of its corners nor in its middle is missed.
+/// at the middle of each patch, to half of it; the error of a patch falls with the fourth power of its size).
+/// What is smaller than a cell and shows at none of its corners nor in its middle is missed.
 class SampledMap {
   public:
     /// Throws Interrupted once `progress` says so, and what `evaluate` throws.

@@ -51,8 +51,13 @@ double spread_of(const MapImage& image, const Target& target) {
 
 WarpMesh nodes_of(const MeshMaker& maker, int columns, int rows) {
     const Film& film = maker.world.scene.film;
-    WarpMesh mesh{
-        columns, rows, film.width, film.height, maker.request.target.width, maker.request.target.height};
+    WarpMesh mesh;
+    mesh.columns = columns;
+    mesh.rows = rows;
+    mesh.film_width = film.width;
+    mesh.film_height = film.height;
+    mesh.target_width = maker.request.target.width;
+    mesh.target_height = maker.request.target.height;
     std::vector<Vec2> places;
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x) places.push_back(node_place(mesh, x, y));
