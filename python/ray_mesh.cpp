@@ -198,11 +198,13 @@ void bind_makers(py::module_& module) {
         "The film, width x height pixels, as two facets; t is the depth along the view axis. Raises "
         "InputError "
         "for\na film without pixels.");
-    module.def("mirror_mesh", make_mirror_mesh, py::arg("grid"), py::arg("camera"), released,
-               "What the camera sees in a mirror of this grid; facet f is facet f of the grid, also where the camera "
-               "sees its\nback: leave out those with (corner - eye) . normal > 0 before following rays. Raises "
-               "InputError for\n"
-               "numbers that are not finite or too large.");
+    module.def(
+        "mirror_mesh", make_mirror_mesh, py::arg("grid"), py::arg("camera"), released,
+        "What the camera sees in a mirror of this grid; facet f is facet f of the grid, also where the "
+        "camera "
+        "sees its\nback: leave out those with (corner - eye) . normal > 0 before following rays. Raises "
+        "InputError for\n"
+        "numbers that are not finite or too large.");
     module.def("lens_mesh", make_lens_mesh, py::arg("grid"), py::arg("camera"), py::arg("ior"), released,
                "What it sees through one interface. ior: the refractive index behind the grid's front over "
                "that before\n"
@@ -230,7 +232,8 @@ void bind_ray_mesh(py::module_& module) {
         .def_property_readonly(
             "screen",
             [](const py::object& self) { return constant_view(self.cast<const RayMesh&>().screen, self); },
-            "(C, 3), homogeneous: (x w, y w, w), x and y in pixels from the film's top left, w the depth along "
+            "(C, 3), homogeneous: (x w, y w, w), x and y in pixels from the film's top left, w the depth "
+            "along "
             "the view\naxis (1 where places are affine).")
         .def_property_readonly(
             "facets",

@@ -28,7 +28,7 @@ struct AnamorphRequest {
     std::string picture_name;                // what messages call it
     Id page = kNone;                         // index into Scene::meshes: a flat object
     std::optional<std::size_t> optic;        // index into World::optics; none: all mirrors
-    std::optional<PictureWindow> window;        // where the picture is to be seen; none: the largest that fits
+    std::optional<PictureWindow> window;     // where the picture is to be seen; none: the largest that fits
     std::optional<PaperSize> paper;  // centred on the page, its width along the page's first side; none: the
                                      // page's own size
     double dpi = 300;
@@ -84,6 +84,6 @@ AnamorphCheck verify_anamorph(const World& world, const AnamorphRequest& request
 /// The largest window of this aspect (width over height) inside the film's places for which `covered` is set;
 /// none where there is none. `covered`: columns x rows cells that make up the film, rows from the top.
 std::optional<PictureWindow> largest_window(const std::vector<unsigned char>& covered, int columns, int rows,
-                                         const Vec2& film, double aspect);
+                                            const Vec2& film, double aspect);
 
 }  // namespace trilens

@@ -37,7 +37,7 @@ class AreaTable {
 }  // namespace
 
 std::optional<PictureWindow> largest_window(const std::vector<unsigned char>& covered, int columns, int rows,
-                                         const Vec2& film, double aspect) {
+                                            const Vec2& film, double aspect) {
     const AreaTable table(covered, columns, rows);
     const Vec2 cell = film / Vec2(columns, rows);
     Vec2 middle(0);

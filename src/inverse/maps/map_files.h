@@ -11,8 +11,8 @@ namespace trilens {
 
 /// An STMap: R and G are where to look, 0..1 over the source's width and height from its top left (`t_up`: G
 /// from its bottom, as Nuke has it), -1 where nothing is; B is 0; A is 1 where something is; jacobian.XX,
-/// .XY, .YX, .YY are source pixels per pixel (dx/dx, dx/dy, dy/dx, dy/dy). `oiiotool photo.exr map.exr
-/// --st_warp` warps by it.
+/// .XY, .YX, .YY are source pixels per pixel (dx/dx, dx/dy, dy/dx, dy/dy). `oiiotool
+/// photo.exr --crop WxH+0+0 map.exr --st_warp` warps by it, WxH the map's size.
 Image stmap_of(const FilmMap& map, bool t_up = false);
 
 /// A numpy archive (.npz, stored): map_x and map_y, float32, for cv2.remap (a pixel's centre at whole
