@@ -205,6 +205,7 @@ std::optional<SpecularPoint> refine_from(const Surface& surface, const Iterate& 
     SpecularPoint image;
     image.at = rest.iterate.at;
     image.position = point.position;
+    image.normal = point.normal;
     image.pixel = Vec2(screen.x, screen.y) / screen.z;
     image.distance = path.point_distance;
     image.t = path.point_distance / length(incident_direction(query.camera, point.position));

@@ -34,6 +34,7 @@ struct SpecularQuery {
 struct SpecularPoint {
     SurfaceParameter at;
     Vec3 position{0};     // world frame, on the surface
+    Vec3 normal{0};       // there: unit, the surface's
     Vec2 pixel{0};        // where the camera sees it, from the film's top left; may lie outside the film
     double distance = 0;  // from position to the point, scene units
     double t = 0;         // the same in units of the incident direction's length, as along a corner ray

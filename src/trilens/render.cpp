@@ -1,5 +1,6 @@
 #include "trilens/render.h"
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "image/exr_strips.h"
 #include "render/frame/frame.h"
 #include "render/picture/picture.h"
+#include "render/project/point_projector.h"
 #include "scene/data/check_scene.h"
 #include "scene/data/scene_digest.h"
 #include "vector/drawing.h"
@@ -31,7 +33,42 @@ bool is_finite(const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+void check_points(std::span<const Vec3> points) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec3& p = points[i];
+        if (!is_finite(p)) throw InputError("", fmt::format("points/{}", i), "is not finite");
+        if (std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > kLargestCoordinate)
+            throw InputError("", fmt::format("points/{}", i),
+                             "is farther away than 1e30: project its direction instead");
+    }
+}
+
 }  // namespace
+
+/// The projector of the last request: its facets and search trees serve the next call.
+class Renderer::KeptProjector {
+  public:
+    std::shared_ptr<const PointProjector> of(const World& world, const ProjectRequest& request) {
+        {
+            const std::scoped_lock lock(mutex_);
+            if (projector_ && request == request_) return projector_;
+        }
+        auto made = std::make_shared<const PointProjector>(world, request);
+        const std::scoped_lock lock(mutex_);
+        projector_ = made;
+        request_ = request;
+        return made;
+    }
+    void drop() {
+        const std::scoped_lock lock(mutex_);
+        projector_.reset();
+    }
+
+  private:
+    std::mutex mutex_;
+    ProjectRequest request_;
+    std::shared_ptr<const PointProjector> projector_;
+};
 
 /// Who uses the world: many that draw, or one that changes it.
 class Renderer::Users {
@@ -68,7 +105,9 @@ class Renderer::Users {
 };
 
 Renderer::Renderer(Scene scene, const Warn& warn)
-    : world_(make_checked_world(std::move(scene), warn)), users_(std::make_unique<Users>()) {}
+    : world_(make_checked_world(std::move(scene), warn)),
+      users_(std::make_unique<Users>()),
+      projector_(std::make_unique<KeptProjector>()) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
@@ -76,6 +115,7 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 SceneReuse Renderer::change(Scene scene, const Warn& warn) {
     check_scene(scene);
     const auto use = users_->change();
+    projector_->drop();
     return change_scene(*world_, std::move(scene), warn);
 }
 
@@ -162,13 +202,47 @@ SeenTriangle Renderer::seen_triangle(const Hit& hit) const {
     return {objects.object[hit.triangle], objects.primitive[hit.triangle], position(objects, hit)};
 }
 
-std::vector<PointProjection> Renderer::project(std::span<const Vec3> points,
-                                               const ProjectRequest& request) const {
+std::vector<PointProjection> Renderer::project(std::span<const Vec3> points, const ProjectRequest& request,
+                                               const Progress& progress) const {
     const auto use = users_->draw();
     check_frame(*world_, request.frame);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (!is_finite(points[i])) throw InputError("", fmt::format("points/{}", i), "is not finite");
-    return project_points(*world_, request, points);
+    check_points(points);
+    std::vector<ProjectedPoint> asked;
+    for (const Vec3& point : points) asked.push_back({point});
+    return project_each(*projector_->of(*world_, request), asked, progress);
+}
+
+std::vector<PointProjection> Renderer::project_directions(std::span<const Vec3> directions,
+                                                          const ProjectRequest& request,
+                                                          const Progress& progress) const {
+    const auto use = users_->draw();
+    check_frame(*world_, request.frame);
+    std::vector<ProjectedPoint> asked;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        asked.push_back({normalize_or_zero(directions[i]), true});
+        if (!is_finite(directions[i]) || asked.back().place == Vec3(0))
+            throw InputError("", fmt::format("directions/{}", i), "is no direction");
+    }
+    return project_each(*projector_->of(*world_, request), asked, progress);
+}
+
+std::vector<std::optional<WorldImage>> Renderer::refine(std::span<const Vec3> points,
+                                                        std::span<const ImageStart> starts,
+                                                        const ProjectRequest& request) const {
+    const auto use = users_->draw();
+    check_frame(*world_, request.frame);
+    check_points(points);
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+        if (starts[i].point >= points.size())
+            throw UsageError(
+                fmt::format("start {} is of point {}, but there are {}", i, starts[i].point, points.size()));
+        for (const PathEvent& event : starts[i].events)
+            if (event.optic >= world_->optics.size() ||
+                event.face >= world_->optics[event.optic].surface->face_count() ||
+                !std::isfinite(event.uv.x) || !std::isfinite(event.uv.y))
+                throw UsageError(fmt::format("start {} is none of this scene's optics and faces", i));
+    }
+    return refine_images(*world_, request, points, starts);
 }
 
 ShotRays Renderer::shoot(std::span<const Vec2> places, const ShootRequest& request) const {

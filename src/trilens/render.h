@@ -118,11 +118,24 @@ class Renderer {
     /// What a hit of an explanation is. Throws UsageError for one that is unset or of another scene.
     SeenTriangle seen_triangle(const Hit& hit) const;
 
-    /// Where world points appear: for each point its images, direct and over every optic. Throws InputError
-    /// for points that are not finite, and where the camera cannot show what the scene has; UsageError for a
-    /// camera, resolution or largest error that there is not.
-    std::vector<PointProjection> project(std::span<const Vec3> points,
-                                         const ProjectRequest& request = {}) const;
+    /// Where world points appear: for each point its images, direct and over every optic. What it builds for
+    /// the search is kept for the next call with the same request. Throws InputError for points that are not
+    /// within kLargestCoordinate, and where the camera cannot show what the scene has; UsageError for a
+    /// camera, resolution or largest error that there is not; Interrupted once `progress` says so.
+    std::vector<PointProjection> project(std::span<const Vec3> points, const ProjectRequest& request = {},
+                                         const Progress& progress = {}) const;
+
+    /// The same of points at infinity: directions from the scene to them, of any length but 0.
+    std::vector<PointProjection> project_directions(std::span<const Vec3> directions,
+                                                    const ProjectRequest& request = {},
+                                                    const Progress& progress = {}) const;
+
+    /// Moves known images to where they are now, by Newton's method alone: nothing is searched, and nothing
+    /// but surfaces built. One for each start; none where there is none near. Throws UsageError for starts
+    /// that are none of this scene's optics and faces.
+    std::vector<std::optional<WorldImage>> refine(std::span<const Vec3> points,
+                                                  std::span<const ImageStart> starts,
+                                                  const ProjectRequest& request = {}) const;
 
     /// What the rays through places of a camera's film meet; pixels from the top left, a pixel's centre at
     /// .5. Throws UsageError for a camera that there is not, InputError for places that are not finite.
@@ -150,9 +163,11 @@ class Renderer {
 
   private:
     class Users;
+    class KeptProjector;
 
     std::unique_ptr<World> world_;
     std::unique_ptr<Users> users_;
+    std::unique_ptr<KeptProjector> projector_;
 };
 
 }  // namespace trilens

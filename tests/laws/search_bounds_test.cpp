@@ -25,8 +25,7 @@ TEST_CASE(
     const Surface& lens = *world->optics[0].surface;
     const std::vector<Vec3> points{{0, -0.5, 0.1}, {0.2, -0.4, 0}, {-0.1, 0, 0.3}, {0.1, 0.1, -0.2}};
 
-    SpecularQuery query =
-        specular_query(*world, 0, Path::kRefract, *make_camera_rays(world->scene, 0).linear);
+    SpecularQuery query = specular_query(*world, make_frame(*world, {0, 4}, {}), 0, Path::kRefract);
     const CellBvh cells(lens);
     for (const ViewedSide side : {ViewedSide::kFront, ViewedSide::kBack}) {
         query.viewed = side;

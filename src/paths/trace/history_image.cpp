@@ -16,41 +16,52 @@ constexpr int kMostWalks = 40, kMostShorter = 12;
 /// The path from one film position.
 struct Exit {
     Ray ray;  // unit, after the last optic
-    std::vector<Vec3> corners;
+    std::vector<PathEvent> events;
     double first_way = 0;
     Vec3 weight{1};     // of light from where the last ray starts to the eye
     Id medium = kNone;  // the body in whose glass the last ray runs; kNone: air
 };
 
-/// Of the light that leaves the first optic along a history's first step, the way to the eye included.
-Vec3 first_weight(const HistoryQuery& query, const PathStart& start) {
-    const PathSegment& begin = query.history[0];
-    for (const Branch& branch : branches(*query.world, start.first, start.around, kAllColours))
-        if (branch.step == begin.step && branch.colours == begin.colours)
-            return branch.weight *
-                   body_transmittance(*query.world, active_medium(*query.world, start.around), start.way);
-    return Vec3(0);
+/// The branch that a segment takes; null where there is none.
+const Branch* branch_of(const std::vector<Branch>& ways, const PathSegment& like) {
+    for (const Branch& one : ways)
+        if (one.step == like.step && one.colours == like.colours) return &one;
+    return nullptr;
 }
 
+/// Follows the camera's ray over the history's steps, one after the other.
 std::optional<Exit> exit_at(const HistoryQuery& query, const Vec2& pixel) {
+    const PathWorld& world = *query.world;
     const Ray ray = query.camera_ray(pixel);
     const Id optic = query.history[0].step.optic;
-    const std::optional<SurfaceHit> hit = query.world->optics[optic].tracer->first_hit(ray);
+    std::optional<SurfaceHit> hit = world.optics[optic].tracer->first_hit(ray);
     if (!hit) return std::nullopt;
     Exit exit;
     exit.first_way = hit->t * length(ray.direction);
     const Vec3 incoming = normalize_or_zero(ray.direction);
-    const Meeting first{optic, incoming, hit->point.position, hit->point.normal,
-                        dot(incoming, hit->point.normal) <= 0};
-    const PathStart start{first, exit.first_way, query.around ? query.around(ray) : Media()};
-    for (const auto& segment : repeat_paths(*query.world, start, query.history)) {
-        if (!segment) return std::nullopt;
-        exit.ray = segment->ray;
-        exit.weight = segment->weight;
-        exit.medium = segment->medium;
-        exit.corners.push_back(segment->ray.origin);
+    Meeting at{optic, incoming, hit->point.position, hit->point.normal,
+               dot(incoming, hit->point.normal) <= 0};
+    Media media = query.around ? query.around(ray) : Media();
+    exit.weight = body_transmittance(world, active_medium(world, media), exit.first_way);
+    Colours colours = kAllColours;
+    for (const PathSegment& segment : query.history) {
+        const std::vector<Branch> ways = branches(world, at, media, colours);
+        const Branch* branch = branch_of(ways, segment);
+        if (!branch) return std::nullopt;
+        media = branch->media;
+        colours = branch->colours;
+        exit.events.push_back(
+            {at.optic, segment.step.event, at.front, hit->face, hit->uv, at.point, at.normal});
+        exit.ray = {at.point, branch->direction};
+        exit.weight *= branch->weight;
+        exit.medium = active_medium(world, media);
+        if (segment.ends) continue;
+        const std::optional<NextOptic> next = next_optic(world, {exit.ray, at.optic, media});
+        if (!next) return std::nullopt;
+        exit.weight *= body_transmittance(world, exit.medium, next->distance);
+        at = next->meeting;
+        hit = next->hit;
     }
-    exit.weight *= first_weight(query, start);
     return exit;
 }
 
@@ -95,7 +106,31 @@ std::optional<Linear> linearised(const HistoryQuery& query, const Vec2& pixel, c
     return linear;
 }
 
+/// What a path is as an image of the point; none where it passes it by.
+std::optional<HistoryImage> image_of(const HistoryQuery& query, const Vec2& pixel, const Exit& exit) {
+    HistoryImage image;
+    image.pixel = pixel;
+    image.events = exit.events;
+    image.first_way = exit.first_way;
+    image.distance = dot(query.point - exit.ray.origin, exit.ray.direction);
+    image.weight = exit.weight * body_transmittance(*query.world, exit.medium, image.distance);
+    image.residual = length(miss(exit, query.point));
+    if (!(image.distance > 0) || image.residual > kMostResidual * (image.distance + image.first_way))
+        return std::nullopt;
+    return image;
+}
+
 }  // namespace
+
+std::vector<PathEvent> history_events(const HistoryQuery& query, const Vec2& pixel) {
+    const std::optional<Exit> exit = exit_at(query, pixel);
+    return exit ? exit->events : std::vector<PathEvent>();
+}
+
+std::optional<HistoryImage> history_image_at(const HistoryQuery& query, const Vec2& pixel) {
+    const std::optional<Exit> exit = exit_at(query, pixel);
+    return exit ? image_of(query, pixel, *exit) : std::nullopt;
+}
 
 std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, const Vec2& start) {
     Vec2 pixel = start;
@@ -126,21 +161,14 @@ std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, cons
         if (!nearer || length(step) < kPixelsDone) break;
     }
 
-    HistoryImage image;
-    image.pixel = pixel;
-    image.corners = exit->corners;
-    image.first_way = exit->first_way;
-    image.distance = dot(query.point - exit->ray.origin, exit->ray.direction);
-    image.weight = exit->weight * body_transmittance(*query.world, exit->medium, image.distance);
-    image.residual = size;
-    if (!(image.distance > 0) || size > kMostResidual * (image.distance + image.first_way))
-        return std::nullopt;
+    std::optional<HistoryImage> image = image_of(query, pixel, *exit);
+    if (!image) return std::nullopt;
     const std::optional<Linear> linear = linearised(query, pixel, *exit);
     if (!linear) return std::nullopt;
     for (int k = 0; k < 3; ++k) {
         const Vec2 moved = linear->against(linear->axis[0][k], linear->axis[1][k]);
-        image.derivative[0][k] = moved.x;
-        image.derivative[1][k] = moved.y;
+        image->derivative[0][k] = moved.x;
+        image->derivative[1][k] = moved.y;
     }
     return image;
 }

@@ -22,9 +22,9 @@ struct HistoryQuery {
 /// One image of the point.
 struct HistoryImage {
     Vec2 pixel{0};
-    std::vector<Vec3> corners;  // where the path meets the optics, the last of them included
-    double first_way = 0;       // from the eye to the first of them
-    double distance = 0;        // from the last of them to the point
+    std::vector<PathEvent> events;  // the path's meetings with optics
+    double first_way = 0;           // from the eye to the first of them
+    double distance = 0;            // from the last of them to the point
     /// The share of each colour of the point's light that comes to the camera this way.
     Vec3 weight{1};
     double residual = 0;  // distance from the ray to the point, scene units
@@ -36,5 +36,13 @@ struct HistoryImage {
 /// paths from there with another history. What hides the image is not looked at, but for the first optic,
 /// which the camera meets where it meets it first.
 std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, const Vec2& start);
+
+/// The path of the camera's ray through a film place over this history, meeting by meeting; empty where the
+/// ray has another one. Its first optic it meets as the first, whatever hides it.
+std::vector<PathEvent> history_events(const HistoryQuery& query, const Vec2& pixel);
+
+/// The image at a place where it is known to be, without a derivative; none where the camera's ray there has
+/// another history, or passes the point by at more than refine_history_image lets stand.
+std::optional<HistoryImage> history_image_at(const HistoryQuery& query, const Vec2& pixel);
 
 }  // namespace trilens

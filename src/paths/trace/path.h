@@ -34,6 +34,17 @@ struct Step {
     bool operator==(const Step&) const = default;
 };
 
+/// One meeting of a path with an optic, and where it is, on the exact surface.
+struct PathEvent {
+    Id optic = kNone;  // index into PathWorld::optics
+    Event event = Event::kReflect;
+    bool front = true;  // the path comes to the surface's front
+    Id face = kNone;    // of the surface: the cage's, or the primitive's
+    Vec2 uv{0};         // in the face's domain, the unit square or triangle
+    Vec3 point{0};      // world
+    Vec3 normal{0};     // unit, world, on the surface's front side whichever side the path is on
+};
+
 /// Which of the three colours of light a path carries: light parts into them where glass disperses.
 using Colours = std::int8_t;
 inline constexpr Colours kAllColours = -1;  // else 0, 1, 2: red, green, blue

@@ -211,11 +211,14 @@ SeenGrid seen_grid(const Frame& frame, const FramedOptic& framed) {
 }  // namespace
 
 std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
-                                             const NestedOptics* nested) {
+                                             const NestedOptics* nested, const PathWorld* followed) {
     const FramedOptic& framed = frame.optics[optic];
     const bool for_error = frame.max_error > 0 && frame.max_error != kAnyError;
     const SeenGrid seen = seen_grid(frame, framed);
-    ProbeContext context{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
+    ProbeContext context{followed ? followed : &path_world(world),
+                         static_cast<Id>(optic),
+                         world.optics[optic].surface.get(),
+                         {}};
     const Vec2 film(world.scene.film.width, world.scene.film.height);
     DivideParams params;
     params.fit = framed.rays == CornerRays::kFitted;

@@ -56,10 +56,12 @@ CornerRays optic_rays(const World& world, std::size_t optic, const FrameParams& 
 PathCamera path_camera(const LinearCamera& camera);
 PathCamera path_camera(const CameraRays& camera, double depth);
 
-/// The paths over an optic's facets, as far as the scene has them followed. The frame must live longer, and
-/// `nested optics`: what is seen in the optic as nested optics; null: nothing.
+/// The paths over an optic's facets, as far as the scene has them followed, or `followed`, another
+/// path_world. The frame must live longer, and `nested optics`: what is seen in the optic as nested optics;
+/// null: nothing.
 std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
-                                             const NestedOptics* nested = nullptr);
+                                             const NestedOptics* nested = nullptr,
+                                             const PathWorld* followed = nullptr);
 
 /// What all nested optics of this camera have in common; none where it has no eye in air.
 std::optional<NestedStage> make_nested_stage(const World& world, const Frame& frame);

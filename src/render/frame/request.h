@@ -24,6 +24,8 @@ struct FrameParams {
     std::optional<CornerRays> rays = std::nullopt;   // of every optic; none: each optic's own
     std::optional<double> max_error = std::nullopt;  // RenderSettings::max_error; none: the scene's
     std::optional<bool> layered = std::nullopt;  // of every optic, as Mesh::layered; none: each optic's own
+
+    bool operator==(const FrameParams&) const = default;
 };
 
 /// kExact: the projector. kClassic: the thesis' engine. kFacetsTruth: Embree on the rays of the same facets.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/raymesh/check_data.h"
+#include "render/frame/camera_media.h"
 
 namespace trilens {
 namespace {
@@ -15,16 +16,40 @@ constexpr double kFreeShare = 1e-6;
 /// facet's size on the screen.
 constexpr double kRefineReach = 2;
 
+/// A camera for the law of reflection alone: all rays leave the eye, and every point is in front of it.
+LinearCamera law_of_eye(const Vec3& eye) {
+    LinearCamera camera;
+    camera.eye = eye;
+    camera.screen_x = {1, 0, 0, 0};
+    camera.screen_y = {0, 1, 0, 0};
+    camera.screen_w = {0, 0, 0, 1};
+    return camera;
+}
+
 }  // namespace
 
-SpecularQuery specular_query(const World& world, std::size_t index, Path path, const LinearCamera& camera) {
+SpecularQuery specular_query(const World& world, const Frame& frame, std::size_t index, Path path) {
     const Optic& optic = world.optics[index];
     SpecularQuery query;
-    query.camera = camera;
+    query.camera = frame.camera.linear ? *frame.camera.linear : law_of_eye(*frame.camera.model->eye());
     query.event = path == Path::kReflect ? SpecularEvent::kReflect : SpecularEvent::kRefract;
     query.own_normals = world.scene.meshes[optic.mesh].normals.type == NormalOverride::Type::kSmooth;
-    if (path == Path::kRefract) query.point_index = world.scene.materials[optic.material].ior;
+    if (path == Path::kRefract) query.point_index = relative_ior(world, index, frame.camera_media.fixed);
     return query;
+}
+
+OpticImage optic_image(const SpecularPoint& exact, Id facet, const Vec2& pixel) {
+    OpticImage image;
+    image.facet = facet;
+    image.pixel = pixel;
+    image.t = exact.t;
+    image.length = exact.distance;
+    image.from = exact.position;
+    image.at = exact.at;
+    image.normal = exact.normal;
+    image.refined = true;
+    image.front = exact.front;
+    return image;
 }
 
 FacetImages::FacetImages(const World& world, const Frame& frame, std::size_t optic, const PathMesh& path)
@@ -80,7 +105,7 @@ std::optional<SpecularPoint> FacetImages::refined(const MeshPointImage& image, c
         high = glm::max(high, Vec2(s.x, s.y) / s.z);
     }
 
-    SpecularQuery query = specular_query(world_, optic_, path_.path, *frame_.camera.linear);
+    SpecularQuery query = specular_query(world_, frame_, optic_, path_.path);
     query.point = point;
     const Vec3& at = grid.points[grid.corner_point[corner[0]]];
     if (!faces_front(grid, corner, incident_direction(query.camera, at)))
@@ -116,15 +141,20 @@ std::vector<OpticImage> FacetImages::images(const Vec3& point, bool refine,
         if (!is_shown(found) || hidden(found)) continue;
         const Ray ray = interpolated_ray(path_.mesh, found.facet, found.weights);
         const Id facet = frame_.optics[optic_].grid_facet(found.facet);
-        OpticImage image{facet,      found.screen, found.t,           found.t * length(ray.direction),
-                         ray.origin, false,        shows_front(found)};
+        OpticImage image;
+        image.facet = facet;
+        image.pixel = found.screen;
+        image.t = found.t;
+        image.length = found.t * length(ray.direction);
+        image.from = ray.origin;
+        image.front = shows_front(found);
         if (const auto exact = refine ? refined(found, point) : std::nullopt) {
             known.push_back(*exact);
             if (distinct_images(known).size() < known.size()) {
                 known.pop_back();
                 continue;
             }
-            image = {facet, exact->pixel, exact->t, exact->distance, exact->position, true, exact->front};
+            image = optic_image(*exact, facet, exact->pixel);
         }
         images.push_back(image);
     }

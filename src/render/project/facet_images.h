@@ -19,12 +19,18 @@ struct OpticImage {
     double t = 0;       // along the ray that leaves the optic, in units of its direction
     double length = 0;  // the same in scene units
     Vec3 from{0};       // where light leaves the optic: on the exact surface where refined, else on the facet
+    SurfaceParameter at{};  // where refined
+    Vec3 normal{0};         // there
     bool refined = false;
     bool front = true;  // the camera sees the optic's front there
 };
 
-/// The law by which the optic images `point` on this path; for glass seen from its front.
-SpecularQuery specular_query(const World& world, std::size_t optic, Path path, const LinearCamera& camera);
+/// An image on the exact surface, seen at a pixel.
+OpticImage optic_image(const SpecularPoint& exact, Id facet, const Vec2& pixel);
+
+/// The law by which the optic images `point` on this path; for glass seen from its front. The camera has an
+/// eye or parallel rays; of one whose film is not linear pixels mean nothing.
+SpecularQuery specular_query(const World& world, const Frame& frame, std::size_t optic, Path path);
 
 /// Copies what it needs of the mesh; world, frame and path must outlive it. Thread-safe to read.
 class FacetImages {

@@ -4,6 +4,7 @@
 
 #include "base/math/box.h"
 #include "base/util/parallel.h"
+#include "render/project/image_chain.h"
 #include "render/world/geometry.h"
 #include "specular/specular_point.h"
 
@@ -115,12 +116,55 @@ HistoryQuery history_query(const World& world, const Frame& frame, const std::ve
     return query;
 }
 
-SeveralOpticsImages::SeveralOpticsImages(const World& world, const Frame& frame, std::size_t optic)
-    : world_(world), frame_(frame), paths_(make_optic_paths(world, frame, optic)) {
+namespace {
+
+/// Paths as deep as the word goes, those alone that may begin it.
+PathWorld world_of_word(const World& world, const EventWord& word) {
+    PathWorld paths = path_world(world);
+    if (!word.asks()) return paths;
+    paths.max_depth = static_cast<int>(word.size()) - 1;
+    paths.reflect = paths.reflect && word.allows(0, Event::kReflect);
+    paths.refract = paths.refract && word.allows(0, Event::kTransmit);
+    return paths;
+}
+
+}  // namespace
+
+SeveralOpticsImages::SeveralOpticsImages(const World& world, const Frame& frame, std::size_t optic,
+                                         const SeveralOpticsChoice& choice)
+    : world_(world),
+      frame_(frame),
+      choice_(choice),
+      followed_(world_of_word(world, choice.word)),
+      paths_(make_optic_paths(world, frame, optic, nullptr, &followed_)) {
     paths_->prepare(facets_in_view(*paths_, frame.optics[optic].facets->grid(), world.scene.film));
     add_nodes();
     add_lone_rays();
-    may_miss_ = !histories_.empty();
+    drop_histories();
+}
+
+/// Those that are not asked for.
+void SeveralOpticsImages::drop_histories() {
+    std::erase_if(histories_, [&](const History& history) {
+        return !choice_.word.is(history.steps) || history.most_light < 0.5 * choice_.min_weight;
+    });
+    places_.clear();
+    history_at_.clear();
+}
+
+/// By the chain of surfaces where the camera has an eye, from the start's own path; else, or where the image
+/// lies on faces that the chain does not come to, on the film.
+std::optional<HistoryImage> SeveralOpticsImages::refine(const HistoryQuery& query, const Vec2& start) const {
+    const std::vector<PathEvent> events = history_events(query, start);
+    if (events.empty()) return std::nullopt;
+    if (const auto solved = solve_image(world_, frame_, events, {query.point}, start)) {
+        std::optional<HistoryImage> image = history_image_at(query, solved->film.pixel);
+        if (image && solved->is_regular) {
+            image->derivative = solved->derivative;
+            return image;
+        }
+    }
+    return refine_history_image(query, start);
 }
 
 void SeveralOpticsImages::add_nodes() {
@@ -140,6 +184,8 @@ void SeveralOpticsImages::add_nodes() {
             segments[i].parent = i == 0 ? kNone : static_cast<Id>(i - 1);
         History& history = history_of(segments, static_cast<Id>(segments.size() - 1));
         history.seeds = std::make_unique<MeshPointImages>(nodes[n].mesh);
+        for (const Vec3& weight : nodes[n].weight)
+            history.most_light = std::max(history.most_light, of_worst_colour(weight));
         for (const Id leaf : nodes[n].leaves) history.grid_facet.push_back(paths_->leaves()[leaf].facet);
     }
 }
@@ -187,7 +233,7 @@ void SeveralOpticsImages::add_lone_rays() {
 }
 
 std::vector<PathSegment> SeveralOpticsImages::followed_from(const Vec2& pixel) const {
-    const PathWorld& world = path_world(world_);
+    const PathWorld& world = followed_;
     const Id optic = paths_->context().optic;
     const Ray ray = history_query(world_, frame_, {}, {}).camera_ray(pixel);
     const std::optional<SurfaceHit> hit = world.optics[optic].tracer->first_hit(ray);
@@ -204,7 +250,9 @@ void SeveralOpticsImages::add_lone_rays(const PathLeaf& leaf, const std::vector<
     for (std::size_t i = 0; i < followed.size(); ++i) {
         const PathSegment& segment = followed[i];
         if (segment.parent == kNone || (segment.colours != kAllColours && segment.colours != 1)) continue;
-        history_of(followed, static_cast<Id>(i)).lone.push_back({lone_pixel(leaf), leaf.facet, segment.ray});
+        History& history = history_of(followed, static_cast<Id>(i));
+        history.lone.push_back({lone_pixel(leaf), leaf.facet, segment.ray});
+        history.most_light = std::max(history.most_light, of_worst_colour(segment.weight));
     }
 }
 
@@ -241,7 +289,7 @@ std::vector<SeveralOpticsImage> SeveralOpticsImages::images(const Vec3& point) c
             Search& search = searches[i];
             if (search.history != asked) query.history = search.history->chain;
             asked = search.history;
-            search.exact = refine_history_image(query, search.start);
+            search.exact = refine(query, search.start);
         }
     });
 

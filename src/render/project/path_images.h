@@ -11,6 +11,7 @@
 #include "paths/facets/facet_paths.h"
 #include "paths/trace/history_image.h"
 #include "render/frame/frame.h"
+#include "render/shoot/event_word.h"
 #include "trilinear/points/mesh_point_images.h"
 
 namespace trilens {
@@ -24,19 +25,22 @@ struct SeveralOpticsImage {
     HistoryImage exact;
 };
 
+/// Which of the paths over several optics are looked for.
+struct SeveralOpticsChoice {
+    EventWord word;         // only its histories, and no deeper than it goes
+    double min_weight = 0;  // histories that nowhere carry half of it in any colour are left out
+};
+
 /// Looks through all facets of one optic that lie on the film; where facets are traced, from the exact rays
 /// that pass nearest to the point. World and frame must outlive it. Thread-safe
 /// to read.
 class SeveralOpticsImages {
   public:
-    SeveralOpticsImages(const World& world, const Frame& frame, std::size_t optic);
+    SeveralOpticsImages(const World& world, const Frame& frame, std::size_t optic,
+                        const SeveralOpticsChoice& choice = {});
 
     /// Every image that a facet leads to, each once. Images that something hides are among them.
     std::vector<SeveralOpticsImage> images(const Vec3& point) const;
-
-    /// Whether there may be images that no facet leads to: some history has several steps, or some facet is
-    /// not drawn by its corner rays.
-    bool may_miss() const { return may_miss_; }
 
   private:
     /// A film position in a part of a facet that has no corner rays, and where its path leaves the optics.
@@ -52,6 +56,7 @@ class SeveralOpticsImages {
         std::unique_ptr<MeshPointImages> seeds;  // null: no facet has it
         std::vector<Id> grid_facet;              // per facet of the seeds' mesh
         std::vector<LoneRay> lone;
+        double most_light = 0;  // of any colour, at any corner or lone ray
     };
 
     /// Histories told apart: a step after a place, kNone the beginning, is a place too.
@@ -72,14 +77,17 @@ class SeveralOpticsImages {
     std::vector<PathSegment> followed_from(const Vec2& pixel) const;
     History& history_of(const std::vector<PathSegment>& segments, Id last);
     std::vector<std::pair<Vec2, Id>> starts(const History& history, const Vec3& point) const;
+    void drop_histories();
+    std::optional<HistoryImage> refine(const HistoryQuery& query, const Vec2& start) const;
 
     const World& world_;
     const Frame& frame_;
+    SeveralOpticsChoice choice_;
+    PathWorld followed_;  // as deep as the word goes
     std::unique_ptr<OpticPaths> paths_;
     std::vector<History> histories_;
     std::map<StepFrom, Id> places_;
     std::map<HistoryEnd, std::size_t> history_at_;
-    bool may_miss_ = false;
 };
 
 /// The exact image over one history, from a first guess; see refine_history_image.

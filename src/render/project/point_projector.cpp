@@ -1,7 +1,10 @@
 #include "render/project/point_projector.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 
+#include "base/math/box.h"
 #include "reflect/mirror.h"
 #include "render/project/image_weight.h"
 
@@ -21,15 +24,13 @@ constexpr double kFilmReach = 16;
 /// The cosine of the angle by which an image that only facets have may miss its point, on the exact surface.
 constexpr double kLeastCosine = 0.866;
 
-/// A camera for the law of reflection alone: all rays leave the eye, and every point is in front of it.
-LinearCamera law_of_eye(const Vec3& eye) {
-    LinearCamera camera;
-    camera.eye = eye;
-    camera.screen_x = {1, 0, 0, 0};
-    camera.screen_y = {0, 1, 0, 0};
-    camera.screen_w = {0, 0, 0, 1};
-    return camera;
-}
+/// Points farther from the middle than this many times the size of the optics and the eye about them are
+/// searched for at that distance, and then moved: beyond it rounding tells images of neighbouring faces
+/// apart.
+constexpr double kReachInSizes = 1e6;
+/// An image of a point that was searched for within reach is another one if it moves by more pixels than
+/// this.
+constexpr double kMostMove = 8;
 
 /// Exact images need facets as places to start from alone: those that are seen, with the rays at their
 /// corners.
@@ -47,6 +48,14 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
       frame_(make_frame(world, frame_of_seeds(request), {})),
       sight_(world, frame_, request.refine) {
     object_tracer(world);
+    Box box;
+    const std::optional<Ray> middle = exact_ray(camera_, 0.5 * Vec2(camera_.film.width, camera_.film.height));
+    if (middle) box.include(middle->origin);
+    for (const FramedOptic& optic : frame_.optics)
+        for (const Vec3& point : optic.facets->grid().points) box.include(point);
+    middle_ = 0.5 * (box.low + box.high);
+    const double size = length(box.size());
+    reach_ = kReachInSizes * (size > 0 && std::isfinite(size) ? size : 1);
     if (!camera_.linear && !camera_.model) {
         camera_mesh_ = std::make_unique<MeshPointImages>(camera_.mesh);
         return;
@@ -54,21 +63,34 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
     for (std::size_t i = 0; i < frame_.optics.size(); ++i) add_optic(i);
 }
 
+/// Whether light may come over several optics at all: not over one that no ray that leaves it meets again.
+bool PointProjector::may_have_several() const {
+    if (request_.path.asks() ? request_.path.size() == 1 : world_.scene.render.max_depth == 0) return false;
+    const std::vector<PathOptic>& optics = path_world(world_).optics;
+    return !optics.empty() && !(optics.size() == 1 && optics[0].mirror && optics[0].convex);
+}
+
 void PointProjector::add_optic(std::size_t index) {
     const OpticFacets& facets = *frame_.optics[index].facets;
     facets.tracer();
+    may_have_several_ = may_have_several();
+    const bool asks_one = !request_.path.asks() || request_.path.size() == 1;
     if (searches_surfaces()) {
         limit_tracer(world_, index);
-        searcher_.push_back(std::make_unique<SpecularSearcher>(*world_.optics[index].surface));
+        searcher_.push_back(asks_one ? std::make_unique<SpecularSearcher>(*world_.optics[index].surface)
+                                     : nullptr);
         facets_at_.emplace_back(facets.grid(), world_.optics[index].surface->face_count());
     }
-    for (const PathMesh& path : frame_.optics[index].paths)
-        if (!path.mesh.facets.empty())
+    for (const PathMesh& path : frame_.optics[index].paths) {
+        const Event event = path.path == Path::kReflect ? Event::kReflect : Event::kTransmit;
+        if (asks_one && request_.path.allows(0, event) && !path.mesh.facets.empty())
             paths_.push_back({path.path, static_cast<Id>(index),
                               std::make_unique<FacetImages>(world_, frame_, index, path)});
+    }
     path_world(world_);
-    if (world_.scene.render.max_depth > 0)
-        several_.push_back(std::make_unique<SeveralOpticsImages>(world_, frame_, index));
+    if (may_have_several_)
+        several_.push_back(std::make_unique<SeveralOpticsImages>(
+            world_, frame_, index, SeveralOpticsChoice{request_.path, request_.min_weight}));
 }
 
 bool PointProjector::on_film(const Vec2& pixel) const {
@@ -76,21 +98,81 @@ bool PointProjector::on_film(const Vec2& pixel) const {
            pixel.y <= world_.scene.film.height;
 }
 
-/// By the exact paths around the image.
-void PointProjector::differentiate(WorldImage& image, const Vec3& point) const {
-    const auto exact = refine_history_image(history_query(world_, frame_, image.steps, point), image.pixel);
+/// By the chain of the image's surfaces; where the camera has no eye, by the exact paths around the image.
+void PointProjector::differentiate(WorldImage& image, const ProjectedPoint& point) const {
+    if (const auto solved = solve_image(world_, frame_, image.events, point, image.pixel)) {
+        if (!solved->is_regular || length(solved->film.pixel - image.pixel) > kSamePixels) return;
+        image.has_derivative = true;
+        image.derivative = solved->derivative;
+        return;
+    }
+    if (point.is_direction) return;
+    const auto exact =
+        refine_history_image(history_query(world_, frame_, image.steps, point.place), image.pixel);
     if (!exact || length(exact->pixel - image.pixel) > kSamePixels) return;
     image.has_derivative = true;
     image.derivative = exact->derivative;
 }
 
+/// Where a point is searched for.
+Vec3 PointProjector::within_reach(const ProjectedPoint& point) const {
+    if (point.is_direction) return middle_ + reach_ * point.place;
+    const Vec3 way = point.place - middle_;
+    return length(way) <= reach_ ? point.place : middle_ + reach_ * normalize_or_zero(way);
+}
+
+/// Moves images of a point that was searched for within reach to those of the point itself.
+void PointProjector::move_to(const ProjectedPoint& point, PointProjection& result) const {
+    for (WorldImage& image : result.images) {
+        if (image.path == Path::kDirect) continue;
+        image.has_derivative = false;
+        const auto solved = solve_image(world_, frame_, image.events, point, image.pixel);
+        if (!solved || length(solved->film.pixel - image.pixel) > kMostMove) {
+            image.refined = false;
+            image.off = kUnknownOffset;
+            result.complete = false;
+            continue;
+        }
+        image.pixel = solved->film.pixel;
+        image.inside = on_film(image.pixel);
+        image.events = solved->events;
+        image.length = point.is_direction ? std::numeric_limits<double>::infinity()
+                                          : length(point.place - image.events.back().point);
+        image.t = image.length /
+                  length(image.events.front().point - exact_ray(camera_, image.pixel).value_or(Ray{}).origin);
+        image.has_derivative = solved->is_regular;
+        image.derivative = solved->derivative;
+    }
+}
+
+/// Of a list that is too long the images that carry the most, in their order.
+void PointProjector::keep_strongest(PointProjection& result) const {
+    std::erase_if(result.images, [&](const WorldImage& image) {
+        return of_worst_colour(image.weight) < request_.min_weight;
+    });
+    if (request_.max_images == 0 || result.images.size() <= request_.max_images) return;
+    const auto light = [](const WorldImage& image) {
+        return image.weight.x + image.weight.y + image.weight.z;
+    };
+    std::vector<double> lights;
+    for (const WorldImage& image : result.images) lights.push_back(light(image));
+    std::nth_element(lights.begin(), lights.begin() + static_cast<std::ptrdiff_t>(request_.max_images - 1),
+                     lights.end(), std::greater<>());
+    const double least = lights[request_.max_images - 1];
+    auto equal = static_cast<std::ptrdiff_t>(request_.max_images) -
+                 std::count_if(lights.begin(), lights.end(), [&](double one) { return one > least; });
+    std::erase_if(result.images, [&](const WorldImage& image) {
+        return light(image) < least || (light(image) == least && equal-- <= 0);
+    });
+    result.complete = false;
+}
+
 void PointProjector::add_several(const SeveralOpticsImages& several, const Vec3& point,
                                  PointProjection& result) const {
-    if (several.may_miss()) result.complete = false;
     for (const SeveralOpticsImage& found : several.images(point)) {
-        const std::vector<Vec3>& corner = found.exact.corners;
+        const std::vector<PathEvent>& events = found.exact.events;
         const std::optional<Ray> view = exact_ray(camera_, found.exact.pixel);
-        if (!view || !sight_.goes_straight(corner.back(), point)) continue;
+        if (!view || !sight_.goes_straight(events.back().point, point)) continue;
         WorldImage image;
         image.weight = found.exact.weight;
         if (image.weight == Vec3(0)) continue;  // no light comes this way
@@ -103,19 +185,24 @@ void PointProjector::add_several(const SeveralOpticsImages& several, const Vec3&
         image.t = found.exact.distance / found.exact.first_way;
         image.refined = true;
         image.steps = found.steps;
+        image.events = events;
         image.has_derivative = true;
         image.derivative = found.exact.derivative;
         image.inside = on_film(image.pixel);
         image.visible = request_.visibility && image.inside &&
-                        sight_.is_free_of_objects(corner.back(), point) &&
-                        sight_.sees(view->origin, corner.front());
-        for (std::size_t i = 0; i + 1 < corner.size() && image.visible; ++i)
-            image.visible = sight_.is_free_of_objects(corner[i], corner[i + 1]);
+                        sight_.is_free_of_objects(events.back().point, point) &&
+                        sight_.sees(view->origin, events.front().point);
+        for (std::size_t i = 0; i + 1 < events.size() && image.visible; ++i)
+            image.visible = sight_.is_free_of_objects(events[i].point, events[i + 1].point);
         result.images.push_back(std::move(image));
     }
 }
 
-void PointProjector::add_direct(const Vec3& point, PointProjection& result) const {
+void PointProjector::add_direct(const ProjectedPoint& asked, PointProjection& result) const {
+    // At infinity the direction counts from the eye.
+    const std::optional<ChainEnd> eye = chain_eye(camera_);
+    if (asked.is_direction && (!eye || eye->is_direction)) return;
+    const Vec3 point = asked.is_direction ? eye->place + reach_ * asked.place : asked.place;
     for (const FilmImage& found : film_positions(camera_, point)) {
         // The eye itself has no image, which rounding may put in front of it.
         const double least = kLeastDepth * (length(found.origin) + length(point));
@@ -124,6 +211,7 @@ void PointProjector::add_direct(const Vec3& point, PointProjection& result) cons
         image.pixel = found.pixel;
         image.t = found.t;
         image.length = length(point - found.origin);
+        if (asked.is_direction) image.t = image.length = std::numeric_limits<double>::infinity();
         image.inside = on_film(image.pixel);
         image.refined = true;
         image.weight = weight_of_direct(world_, frame_, {found.origin, point - found.origin}, image.length);
@@ -135,7 +223,8 @@ void PointProjector::add_direct(const Vec3& point, PointProjection& result) cons
             for (int axis = 0; axis < 2; ++axis) {
                 const Vec4& row = axis == 0 ? camera_.linear->screen_x : camera_.linear->screen_y;
                 image.derivative[static_cast<std::size_t>(axis)] =
-                    (Vec3(row) - image.pixel[axis] * Vec3(camera_.linear->screen_w)) / depth;
+                    (Vec3(row) - image.pixel[axis] * Vec3(camera_.linear->screen_w)) *
+                    ((asked.is_direction ? reach_ : 1) / depth);
             }
         }
         result.images.push_back(image);
@@ -162,8 +251,7 @@ void PointProjector::add_camera_mesh(const Vec3& point, PointProjection& result)
 std::vector<SpecularSearch> PointProjector::search(const OpticPath& path,
                                                    std::span<const Vec3> points) const {
     if (!searches_surfaces()) return std::vector<SpecularSearch>(points.size());
-    const SpecularQuery query = specular_query(
-        world_, path.optic, path.path, camera_.linear ? *camera_.linear : law_of_eye(*camera_.model->eye()));
+    const SpecularQuery query = specular_query(world_, frame_, path.optic, path.path);
     const SpecularSearcher& searcher = *searcher_[path.optic];
     return path.path == Path::kRefract ? searcher.find_each_in_body(query, points)
                                        : searcher.find_each(query, points);
@@ -175,15 +263,30 @@ std::vector<OpticImage> PointProjector::images_on_film(const OpticPath& path,
     std::vector<OpticImage> images;
     for (const SpecularPoint& exact : searched.images) {
         const Id facet = facets_at_[path.optic].at(exact.at.face, exact.at.uv);
-        const auto add = [&](const Vec2& pixel) {
-            images.push_back({facet, pixel, exact.t, exact.distance, exact.position, true, exact.front});
-        };
+        const auto add = [&](const Vec2& pixel) { images.push_back(optic_image(exact, facet, pixel)); };
         if (camera_.linear) add(exact.pixel);
         if (camera_.model)
             for (const FilmImage& image : film_positions(camera_, exact.position)) add(image.pixel);
     }
     return images;
 }
+
+namespace {
+
+/// A facets' image, moved to an exact one.
+OpticImage on_film_image(const HistoryImage& exact, OpticImage image) {
+    const PathEvent& last = exact.events.back();
+    image.pixel = exact.pixel;
+    image.t = exact.distance / exact.first_way;
+    image.length = exact.distance;
+    image.from = last.point;
+    image.at = {last.face, last.uv};
+    image.normal = last.normal;
+    image.refined = true;
+    return image;
+}
+
+}  // namespace
 
 /// Through a camera without one eye: each image of the facets is moved to where the exact ray passes through
 /// the point; two that come to one place count once.
@@ -194,10 +297,7 @@ void PointProjector::refine_on_film(const OpticPath& path, const Vec3& point,
     std::vector<OpticImage> kept;
     for (OpticImage image : images) {
         const auto exact = refine_history_image(query, image.pixel);
-        if (exact && length(exact->pixel - image.pixel) < kFilmReach)
-            image = {image.facet,     exact->pixel,          exact->distance / exact->first_way,
-                     exact->distance, exact->corners.back(), true,
-                     image.front};
+        if (exact && length(exact->pixel - image.pixel) < kFilmReach) image = on_film_image(*exact, image);
         const bool known = std::any_of(kept.begin(), kept.end(), [&](const OpticImage& one) {
             return one.refined && image.refined && length(one.pixel - image.pixel) < kSamePixels;
         });
@@ -261,7 +361,10 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, co
             weight_over_one(world_, frame_, {path.optic, path.path, *view, one.from, one.front, point});
         if (image.weight == Vec3(0)) continue;  // no light comes this way
         image.path = path.path;
-        image.steps = {{path.optic, path.path == Path::kReflect ? Event::kReflect : Event::kTransmit}};
+        const Event event = path.path == Path::kReflect ? Event::kReflect : Event::kTransmit;
+        image.steps = {{path.optic, event}};
+        if (one.refined)
+            image.events = {{path.optic, event, one.front, one.at.face, one.at.uv, one.from, one.normal}};
         image.optic = path.optic;
         image.object = world_.optics[path.optic].mesh;
         image.facet = one.facet;
@@ -273,29 +376,32 @@ void PointProjector::add_optic_path(const OpticPath& path, const Vec3& point, co
         image.inside = on_film(image.pixel);
         image.visible = request_.visibility && image.inside && is_between_planes(t) &&
                         sight_.is_free_of_objects(one.from, point) && sight_.sees(eye, one.from, on_facet);
-        if (request_.derivatives && image.refined) differentiate(image, point);
+        if (request_.derivatives && image.refined) differentiate(image, {point});
         result.images.push_back(std::move(image));
     }
 }
 
-void PointProjector::project(std::span<const Vec3> points, std::span<const std::size_t> some,
+void PointProjector::project(std::span<const ProjectedPoint> points, std::span<const std::size_t> some,
                              std::span<PointProjection> result) const {
     std::vector<Vec3> of_some;
-    for (const std::size_t p : some) of_some.push_back(points[p]);
+    for (const std::size_t p : some) of_some.push_back(within_reach(points[p]));
     std::vector<std::vector<SpecularSearch>> searched;
     for (const OpticPath& path : paths_) searched.push_back(search(path, of_some));
     for (std::size_t k = 0; k < some.size(); ++k) {
         const Vec3& point = of_some[k];
+        const ProjectedPoint& asked = points[some[k]];
         PointProjection& found = result[some[k]];
-        found.complete = true;
+        found.complete = !may_have_several_;
         std::size_t most = 1;
         for (const std::vector<SpecularSearch>& on_path : searched) most += on_path[k].images.size();
         found.images.reserve(most);
         if (camera_mesh_) add_camera_mesh(point, found);
-        if (!camera_mesh_ && world_.scene.render.direct) add_direct(point, found);
+        if (!camera_mesh_ && world_.scene.render.direct && !request_.path.asks()) add_direct(asked, found);
         for (std::size_t i = 0; i < paths_.size(); ++i)
             add_optic_path(paths_[i], point, searched[i][k], found);
         for (const auto& several : several_) add_several(*several, point, found);
+        if (asked.is_direction || point != asked.place) move_to(asked, found);
+        if (request_.min_weight > 0 || request_.max_images > 0) keep_strongest(found);
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "render/frame/facet_lookup.h"
 #include "render/project/facet_images.h"
+#include "render/project/image_chain.h"
 #include "render/project/occlusion.h"
 #include "render/project/path_images.h"
 #include "render/project/project.h"
@@ -28,18 +29,22 @@ class PointProjector {
 
     /// Adds to result[p] the images of points[p], for each p of `some`; points that lie close together take
     /// less time.
-    void project(std::span<const Vec3> points, std::span<const std::size_t> some,
+    void project(std::span<const ProjectedPoint> points, std::span<const std::size_t> some,
                  std::span<PointProjection> result) const;
 
   private:
     void add_optic(std::size_t index);
-    void add_direct(const Vec3& point, PointProjection& result) const;
+    void add_direct(const ProjectedPoint& point, PointProjection& result) const;
     void add_camera_mesh(const Vec3& point, PointProjection& result) const;
     void add_optic_path(const OpticPath& path, const Vec3& point, const SpecularSearch& searched,
                         PointProjection& result) const;
     bool leads_towards(const Ray& view, const OpticPath& path, const Vec3& point) const;
     void add_several(const SeveralOpticsImages& several, const Vec3& point, PointProjection& result) const;
-    void differentiate(WorldImage& image, const Vec3& point) const;
+    void differentiate(WorldImage& image, const ProjectedPoint& point) const;
+    Vec3 within_reach(const ProjectedPoint& point) const;
+    void move_to(const ProjectedPoint& point, PointProjection& result) const;
+    bool may_have_several() const;
+    void keep_strongest(PointProjection& result) const;
     std::vector<SpecularSearch> search(const OpticPath& path, std::span<const Vec3> points) const;
     std::vector<OpticImage> optic_images(const OpticPath& path, const Vec3& point,
                                          const SpecularSearch& searched, PointProjection& result) const;
@@ -64,6 +69,14 @@ class PointProjector {
     std::vector<FacetLookup> facets_at_;                       // per optic; kComplete
     std::vector<OpticPath> paths_;
     std::vector<std::unique_ptr<SeveralOpticsImages>> several_;  // per optic, where paths go on
+    bool may_have_several_ = false;
+    Vec3 middle_{0};    // of the optics and the eye
+    double reach_ = 0;  // points farther from the middle are searched for there
 };
+
+/// The images of all points by one projector, on all threads. Throws Interrupted once `progress` says so.
+std::vector<PointProjection> project_each(const PointProjector& projector,
+                                          std::span<const ProjectedPoint> points,
+                                          const Progress& progress = {});
 
 }  // namespace trilens

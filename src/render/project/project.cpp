@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <mutex>
 #include <numeric>
 
 #include "base/math/spatial_split.h"
+#include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "render/project/point_projector.h"
 
@@ -23,23 +25,63 @@ void order_in_space(std::span<const Vec3> points, std::span<std::size_t> some, s
                       [&] { order_in_space(points, some.subspan(half), most); }});
 }
 
+/// Reports how many points are done, one call at a time, and stops where that is asked for.
+class PointProgress {
+  public:
+    PointProgress(const Progress& progress, std::size_t count) : progress_(progress), count_(count) {}
+
+    void check() const {
+        if (progress_.cancelled()) throw Interrupted();
+    }
+    void add(std::size_t done) {
+        if (!progress_.report) return;
+        const std::scoped_lock lock(mutex_);
+        done_ += done;
+        progress_(static_cast<double>(done_) / static_cast<double>(count_));
+    }
+
+  private:
+    const Progress& progress_;
+    std::size_t count_, done_ = 0;
+    std::mutex mutex_;
+};
+
 }  // namespace
 
-std::vector<PointProjection> project_points(const World& world, const ProjectRequest& request,
-                                            std::span<const Vec3> points) {
-    const PointProjector projector(world, request);
+std::vector<PointProjection> project_each(const PointProjector& projector,
+                                          std::span<const ProjectedPoint> points, const Progress& progress) {
     std::vector<PointProjection> result(points.size());
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     const std::size_t share = points.size() / (kPiecesPerThread * static_cast<std::size_t>(thread_count()));
     const std::size_t piece = std::clamp(std::bit_floor(share), kLeastPiece, kMostPiece);
-    order_in_space(points, order, piece);
+    std::vector<Vec3> places;
+    for (const ProjectedPoint& point : points) places.push_back(point.place);
+    order_in_space(places, order, piece);
+    PointProgress done(progress, points.size());
     parallel_for((points.size() + piece - 1) / piece, 1, [&](std::size_t from, std::size_t to) {
-        for (std::size_t i = from * piece; i < std::min(to * piece, points.size()); i += piece)
-            projector.project(points, std::span(order).subspan(i, std::min(piece, points.size() - i)),
-                              result);
+        for (std::size_t i = from * piece; i < std::min(to * piece, points.size()); i += piece) {
+            done.check();
+            const auto some = std::span(order).subspan(i, std::min(piece, points.size() - i));
+            projector.project(points, some, result);
+            done.add(some.size());
+        }
     });
     return result;
+}
+
+std::vector<PointProjection> project_points(const World& world, const ProjectRequest& request,
+                                            std::span<const Vec3> points, const Progress& progress) {
+    std::vector<ProjectedPoint> asked;
+    for (const Vec3& point : points) asked.push_back({point});
+    return project_each(PointProjector(world, request), asked, progress);
+}
+
+std::vector<PointProjection> project_directions(const World& world, const ProjectRequest& request,
+                                                std::span<const Vec3> directions, const Progress& progress) {
+    std::vector<ProjectedPoint> asked;
+    for (const Vec3& direction : directions) asked.push_back({normalize_or_zero(direction), true});
+    return project_each(PointProjector(world, request), asked, progress);
 }
 
 }  // namespace trilens

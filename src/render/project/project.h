@@ -3,12 +3,15 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/math/vec.h"
+#include "base/util/progress.h"
 #include "paths/trace/path.h"
 #include "render/frame/request.h"
+#include "render/shoot/event_word.h"
 
 namespace trilens {
 
@@ -24,7 +27,8 @@ struct WorldImage {
     Id object = kNone;     // its index in Scene::meshes
     Id facet = kNone;      // of the optic's grid (of the camera's mesh for a rayMesh camera)
     Vec2 pixel{0};         // from the film's top left; a pixel's centre is at .5
-    double t = 0;          // along the last ray, in units of its direction (direct: depth)
+    double t = 0;          // along the last ray, in units of its direction (direct: depth); of a direction
+                           // infinite, as is `length`
     double length = 0;     // the same in scene units
     bool inside = false;   // on the film
     bool visible = false;  // nothing lies between the eye, the optic and the point
@@ -36,9 +40,12 @@ struct WorldImage {
     // `ior`, and paths over several those of green, the only colour that is then not 0.
     Vec3 weight{1};
     std::vector<Step> steps;  // the meetings with optics, the first among them; none for the direct path
+    std::vector<PathEvent>
+        events;  // the same with their places on the exact surfaces; empty where not refined
 
-    /// How the pixel moves with the point: row 0 for x, row 1 for y, in pixels per scene unit. Set where
-    /// `has_derivative`: images on exact surfaces in a linear camera, but for those on a fold.
+    /// How the pixel moves with the point: row 0 for x, row 1 for y, in pixels per scene unit; with a
+    /// direction in pixels per radian. Set where `has_derivative`: images on exact surfaces, but for those on
+    /// a fold.
     bool has_derivative = false;
     std::array<Vec3, 2> derivative{};
 };
@@ -46,8 +53,9 @@ struct WorldImage {
 /// All images of one point.
 struct PointProjection {
     std::vector<WorldImage> images;
-    bool complete = false;  // proven: there is no other; never for paths over several optics, so where the
-                            // facets show any such path it is false
+    bool complete = false;  // proven: there is no other; never for paths over several optics, so it is false
+                            // where the scene may have any (maxDepth above 0, and more than one convex
+                            // mirror), unless a word of one event is asked for
 };
 
 /// kComplete: every part of the exact surfaces is searched or excluded. kFacets: images through the facets
@@ -61,6 +69,12 @@ struct ProjectRequest {
     bool refine = true;        // kFacets: else images are left as the facets have them
     bool visibility = true;    // else `visible` stays false
     bool derivatives = false;  // of images over one optic too; the others have them anyway
+    EventWord path;  // only images of these events, however many the scene's maxDepth follows; none direct
+    std::size_t max_images =
+        0;                  // of a point: the strongest; 0: all. Of a list that was cut `complete` is false
+    double min_weight = 0;  // images that carry less in every colour are left out
+
+    bool operator==(const ProjectRequest&) const = default;
 };
 
 /// The images of every point: direct, after one event at each optic and, as far as the scene has paths
@@ -70,6 +84,27 @@ struct ProjectRequest {
 /// are left out. A list that is not complete (points near a caustic, overridden normals, kFacets) holds what
 /// the facets lead to as well.
 std::vector<PointProjection> project_points(const World& world, const ProjectRequest& request,
-                                            std::span<const Vec3> points);
+                                            std::span<const Vec3> points, const Progress& progress = {});
+
+/// The same of points at infinity: unit directions from the scene to them. What is listed is searched for at
+/// a finite distance of 1e6 times the scene's size, and then moved to where the direction itself is seen;
+/// that what is proven of the one holds for the other is not.
+std::vector<PointProjection> project_directions(const World& world, const ProjectRequest& request,
+                                                std::span<const Vec3> directions,
+                                                const Progress& progress = {});
+
+/// Where an image was, or is thought to be.
+struct ImageStart {
+    std::size_t point = 0;          // index of the point that it is an image of
+    std::vector<PathEvent> events;  // `optic`, `event`, `front`, `face` and `uv` are asked
+};
+
+/// Moves known images to where they are now: Newton's method alone, no search and nothing built for one, so
+/// that a point takes microseconds. An image for each start, in their order; none where Newton's method finds
+/// none near, or the camera has no eye and no parallel rays. `inside` is set, `visible` only says so where
+/// the request asks.
+std::vector<std::optional<WorldImage>> refine_images(const World& world, const ProjectRequest& request,
+                                                     std::span<const Vec3> points,
+                                                     std::span<const ImageStart> starts);
 
 }  // namespace trilens

@@ -21,6 +21,7 @@ class EventWord {
     /// Throws UsageError for other letters, none at all, or more than kMost.
     explicit EventWord(std::string_view letters);
 
+    bool operator==(const EventWord&) const = default;
     bool asks() const { return !letters_.empty(); }
     std::size_t size() const { return letters_.size(); }
     const std::string& letters() const { return letters_; }

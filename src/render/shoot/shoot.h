@@ -13,17 +13,6 @@ namespace trilens {
 
 struct World;
 
-/// One meeting of a path with an optic, on its exact surface.
-struct PathEvent {
-    Id optic = kNone;  // index into World::optics, as everywhere
-    Event event = Event::kReflect;
-    bool front = true;  // the path comes to the surface's front
-    Id face = kNone;    // of the surface: the cage's, or the primitive's
-    Vec2 uv{0};         // in the face's domain, the unit square or triangle
-    Vec3 point{0};      // world
-    Vec3 normal{0};     // unit, world, on the surface's front side whichever side the path is on
-};
-
 /// kSeen: it ends at an object. kEscapes: it ends in the environment. kNoCameraRay: the camera has no ray at
 /// that place of the film. kOtherPath: its path is not the word's. kLost: it is inside of more bodies of
 /// glass at once than can be told.

@@ -1,0 +1,177 @@
+#include "render/project/image_chain.h"
+
+#include <cmath>
+
+#include "render/frame/camera_media.h"
+#include "shade/optic_weights.h"
+
+namespace trilens {
+namespace {
+
+/// Pixels move by differences of a step of this share of the distance, where the camera has no linear map.
+constexpr double kPlaceStep = 1e-6;
+
+double index_of(const ChainModel& model, Id body, int colour) {
+    return body == kNone ? 1 : ior_of(model.scene->materials[model.materials[body]], colour);
+}
+
+std::optional<Vec2> nearest_pixel(const Camera& camera, const Vec3& place, const Vec2& near) {
+    std::optional<Vec2> best;
+    for (const FilmImage& image : film_positions(camera, place))
+        if (!best || length(image.pixel - near) < length(*best - near)) best = image.pixel;
+    return best;
+}
+
+ChainModel model_of(const World& world, const Frame& frame, std::vector<const Surface*>& surfaces,
+                    std::vector<Id>& materials) {
+    for (const Optic& optic : world.optics) {
+        surfaces.push_back(optic.surface.get());
+        materials.push_back(optic.material);
+    }
+    return {&world.scene, &frame.camera, surfaces, materials};
+}
+
+}  // namespace
+
+std::optional<ChainEnd> chain_eye(const Camera& camera) {
+    if (camera.linear)
+        return camera.linear->parallel ? ChainEnd{normalize(camera.linear->view_direction), true}
+                                       : ChainEnd{camera.linear->eye, false};
+    if (camera.model)
+        if (const auto eye = camera.model->eye()) return ChainEnd{*eye, false};
+    return std::nullopt;
+}
+
+std::optional<std::vector<EventMedia>> event_media(const World& world, const Media& around,
+                                                   std::span<const PathEvent> events) {
+    const auto active = [&](const Media& media) {
+        return media.active([&](Id optic) { return world.scene.meshes[world.optics[optic].mesh].priority; });
+    };
+    std::vector<EventMedia> media;
+    Media now = around;
+    for (const PathEvent& event : events) {
+        if (world.optics[event.optic].mirror) {
+            media.push_back({active(now), active(now)});
+            continue;
+        }
+        const std::optional<MediaSides> sides = sides_of(now, event.optic, event.front);
+        if (!sides) return std::nullopt;
+        const bool reflects = event.event == Event::kReflect;
+        now = reflects ? sides->before : sides->after;
+        media.push_back({active(sides->before), active(now)});
+    }
+    return media;
+}
+
+std::optional<PathChain> make_chain(const ChainModel& model, std::span<const PathEvent> events,
+                                    std::span<const EventMedia> media, const ProjectedPoint& point) {
+    const std::optional<ChainEnd> eye = chain_eye(*model.camera);
+    if (!eye || events.empty()) return std::nullopt;
+    PathChain chain;
+    chain.eye = *eye;
+    chain.point = {point.place, point.is_direction};
+    const int colour = events.size() > 1 ? 1 : -1;
+    for (std::size_t i = 0; i < events.size(); ++i)
+        chain.events.push_back({model.surfaces[events[i].optic], index_of(model, media[i].before, colour),
+                                index_of(model, media[i].after, colour), events[i].event == Event::kReflect});
+    return chain;
+}
+
+std::optional<FilmPlace> film_place(const Camera& camera, const Vec3& place, const Vec2& near) {
+    FilmPlace found;
+    if (camera.linear) {
+        const Vec3 screen = screen_from_world(*camera.linear, place);
+        if (!(screen.z > 0)) return std::nullopt;
+        found.pixel = Vec2(screen) / screen.z;
+        for (int axis = 0; axis < 2; ++axis) {
+            const Vec4& row = axis == 0 ? camera.linear->screen_x : camera.linear->screen_y;
+            found.slope[static_cast<std::size_t>(axis)] =
+                (Vec3(row) - found.pixel[axis] * Vec3(camera.linear->screen_w)) / screen.z;
+        }
+        return found;
+    }
+    const std::optional<Vec2> pixel = nearest_pixel(camera, place, near);
+    if (!pixel || !camera.model || !camera.model->eye()) return std::nullopt;
+    found.pixel = *pixel;
+    const double step = kPlaceStep * length(place - *camera.model->eye());
+    for (int k = 0; k < 3; ++k) {
+        Vec3 by(0);
+        by[k] = step;
+        const auto after = nearest_pixel(camera, place + by, *pixel),
+                   before = nearest_pixel(camera, place - by, *pixel);
+        if (!after || !before) return std::nullopt;
+        for (int axis = 0; axis < 2; ++axis)
+            found.slope[static_cast<std::size_t>(axis)][k] = ((*after)[axis] - (*before)[axis]) / (2 * step);
+    }
+    return found;
+}
+
+std::optional<ChainImage> solve_image(const World& world, const Frame& frame,
+                                      std::span<const PathEvent> start, const ProjectedPoint& point,
+                                      const Vec2& near) {
+    if (start.empty()) return std::nullopt;
+    std::vector<const Surface*> surfaces;
+    std::vector<Id> materials;
+    const ChainModel model = model_of(world, frame, surfaces, materials);
+    Media around;
+    if (!frame.camera_media.none()) {
+        const std::optional<Ray> view = exact_ray(frame.camera, near);
+        if (!view) return std::nullopt;
+        around = frame.camera_media.of(*view);
+    }
+    const auto media = event_media(world, around, start);
+    const auto chain = media ? make_chain(model, start, *media, point) : std::nullopt;
+    if (!chain) return std::nullopt;
+
+    std::vector<SurfaceParameter> at;
+    for (const PathEvent& event : start) at.push_back({event.face, event.uv});
+    const auto find = [&](std::size_t event, const Vec3& from,
+                          const Vec3& towards) -> std::optional<SurfaceParameter> {
+        const LimitTracer& tracer = limit_tracer(world, start[event].optic);
+        const Ray ray{from, towards - from};
+        const auto hit = tracer.first_hit(ray, event == 0 ? 0 : tracer.self_hit_t_min(ray));
+        if (!hit) return std::nullopt;
+        return SurfaceParameter{hit->face, hit->uv};
+    };
+    const std::optional<ChainShape> shape = solve_chain(*chain, at, find);
+    if (!shape) return std::nullopt;
+
+    ChainImage image;
+    image.events.assign(start.begin(), start.end());
+    const ChainBend bend = chain_bend(*chain, shape->points);
+    for (std::size_t i = 0; i < start.size(); ++i) {
+        const SurfacePoint& p = shape->points[i];
+        PathEvent& event = image.events[i];
+        event.face = shape->at[i].face;
+        event.uv = shape->at[i].uv;
+        event.point = p.position;
+        event.normal = p.normal;
+        if ((dot(bend.way[i], p.normal) <= 0) != event.front) return std::nullopt;
+    }
+    const auto film = film_place(frame.camera, image.events.front().point, near);
+    if (!film) return std::nullopt;
+    image.film = *film;
+
+    const ChainHessian hessian(*chain, bend, shape->points);
+    image.is_regular = hessian.is_regular();
+    if (!image.is_regular) return image;
+    // F of the last event changes by -H_k dX along its tangents; at infinity the way itself turns by dX.
+    const std::size_t last = start.size() - 1;
+    const double index = chain->events[last].index_after;
+    const SurfacePoint &first = shape->points.front(), &end = shape->points.back();
+    for (int k = 0; k < 3; ++k) {
+        Vec3 by(0);
+        by[k] = 1;
+        const Vec3& way = bend.way[last + 1];
+        const Vec3 turn =
+            index / (point.is_direction ? 1 : bend.length[last + 1]) * (by - dot(way, by) * way);
+        std::vector<Vec2> right(start.size(), Vec2(0));
+        right[last] = {dot(turn, end.du), dot(turn, end.dv)};
+        const Vec2 moved = hessian.solve(right).front();
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            image.derivative[axis][k] = dot(image.film.slope[axis], moved.x * first.du + moved.y * first.dv);
+    }
+    return image;
+}
+
+}  // namespace trilens

@@ -1,0 +1,142 @@
+// Warm-started projection: Newton's method on the chain of surfaces from where images were.
+#include <algorithm>
+
+#include "base/util/check.h"
+#include "base/util/parallel.h"
+#include "render/frame/camera_media.h"
+#include "render/project/image_chain.h"
+#include "render/project/image_weight.h"
+#include "render/project/occlusion.h"
+#include "render/project/project.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::size_t kStartsPerTask = 64;
+
+/// The optics' glass and mirrors, without their surfaces: enough to tell how light parts.
+PathWorld materials_alone(const World& world) {
+    PathWorld paths;
+    paths.fresnel = world.scene.render.fresnel;
+    for (const Optic& optic : world.optics)
+        paths.optics.push_back({nullptr, &world.scene.materials[optic.material], optic.mirror,
+                                world.scene.meshes[optic.mesh].priority, false});
+    return paths;
+}
+
+/// What a path over several optics carries; none where light cannot part so.
+std::optional<Vec3> weight_over_several(const PathWorld& paths, Media media, const Vec3& eye,
+                                        std::span<const PathEvent> events, const Vec3& point) {
+    Vec3 weight(1), from = eye;
+    Colours colours = kAllColours;
+    for (const PathEvent& event : events) {
+        const Vec3 way = event.point - from;
+        weight *= body_transmittance(paths, active_medium(paths, media), length(way));
+        const Meeting at{event.optic, normalize_or_zero(way), event.point, event.normal, event.front};
+        const Branch* taken = nullptr;
+        const std::vector<Branch> ways = branches(paths, at, media, colours);
+        for (const Branch& one : ways)  // of several colours green, the first of them
+            if (!taken && one.step.event == event.event) taken = &one;
+        if (!taken) return std::nullopt;
+        weight *= taken->weight;
+        media = taken->media;
+        colours = taken->colours;
+        from = event.point;
+    }
+    return weight * body_transmittance(paths, active_medium(paths, media), length(point - from));
+}
+
+/// Refines images of one camera.
+class ImageRefiner {
+  public:
+    ImageRefiner(const World& world, const ProjectRequest& request)
+        : world_(world), request_(request), materials_(materials_alone(world)), sight_(world, frame_, true) {
+        frame_.camera = make_camera_rays(world.scene, request.frame.camera);
+        frame_.camera_media = camera_media_of(world, frame_.camera);
+    }
+
+    std::optional<WorldImage> refine(const ImageStart& start, const Vec3& point) const;
+
+  private:
+    std::optional<Vec3> weight_of(std::span<const PathEvent> events, const Ray& view,
+                                  const Vec3& point) const;
+    bool is_visible(const WorldImage& image, const Vec3& eye, const Vec3& point) const;
+
+    const World& world_;
+    const ProjectRequest& request_;
+    Frame frame_;  // camera alone
+    PathWorld materials_;
+    OcclusionQueries sight_;
+};
+
+std::optional<Vec3> ImageRefiner::weight_of(std::span<const PathEvent> events, const Ray& view,
+                                            const Vec3& point) const {
+    if (events.size() == 1) {
+        const PathEvent& one = events.front();
+        const Path path = one.event == Event::kReflect ? Path::kReflect : Path::kRefract;
+        return weight_over_one(world_, frame_, {one.optic, path, view, one.point, one.front, point});
+    }
+    return weight_over_several(materials_,
+                               frame_.camera_media.none() ? Media() : frame_.camera_media.of(view),
+                               view.origin, events, point);
+}
+
+bool ImageRefiner::is_visible(const WorldImage& image, const Vec3& eye, const Vec3& point) const {
+    const std::vector<PathEvent>& events = image.events;
+    if (!sight_.sees(eye, events.front().point) || !sight_.is_free_of_objects(events.back().point, point))
+        return false;
+    for (std::size_t i = 0; i + 1 < events.size(); ++i)
+        if (!sight_.is_free_of_objects(events[i].point, events[i + 1].point)) return false;
+    return true;
+}
+
+std::optional<WorldImage> ImageRefiner::refine(const ImageStart& start, const Vec3& point) const {
+    if (start.events.empty()) return std::nullopt;
+    // The film place of the start tells a branch of the camera apart, where it has several.
+    const PathEvent& first = start.events.front();
+    const Vec3 there = world_.optics[first.optic].surface->eval(first.face, first.uv).position;
+    const std::vector<FilmImage> seen = film_positions(frame_.camera, there);
+    const auto solved =
+        solve_image(world_, frame_, start.events, {point}, seen.empty() ? Vec2(0) : seen.front().pixel);
+    if (!solved) return std::nullopt;
+    const std::optional<Ray> view = exact_ray(frame_.camera, solved->film.pixel);
+    const std::optional<Vec3> weight = view ? weight_of(solved->events, *view, point) : std::nullopt;
+    if (!weight) return std::nullopt;
+
+    WorldImage image;
+    image.path = first.event == Event::kReflect ? Path::kReflect : Path::kRefract;
+    image.optic = first.optic;
+    image.object = world_.optics[first.optic].mesh;
+    image.pixel = solved->film.pixel;
+    image.events = solved->events;
+    for (const PathEvent& event : image.events) image.steps.push_back({event.optic, event.event});
+    image.length = length(point - image.events.back().point);
+    image.t = image.length / length(image.events.front().point - view->origin);
+    image.refined = true;
+    image.weight = *weight;
+    image.has_derivative = solved->is_regular;
+    image.derivative = solved->derivative;
+    const Film& film = world_.scene.film;
+    image.inside = image.pixel.x >= 0 && image.pixel.y >= 0 && image.pixel.x <= film.width &&
+                   image.pixel.y <= film.height;
+    image.visible = request_.visibility && image.inside && is_visible(image, view->origin, point);
+    return image;
+}
+
+}  // namespace
+
+std::vector<std::optional<WorldImage>> refine_images(const World& world, const ProjectRequest& request,
+                                                     std::span<const Vec3> points,
+                                                     std::span<const ImageStart> starts) {
+    const ImageRefiner refiner(world, request);
+    std::vector<std::optional<WorldImage>> images(starts.size());
+    parallel_for(starts.size(), kStartsPerTask, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            TRILENS_CHECK(starts[i].point < points.size(), "a start is of a point");
+            images[i] = refiner.refine(starts[i], points[starts[i].point]);
+        }
+    });
+    return images;
+}
+
+}  // namespace trilens

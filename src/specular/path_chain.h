@@ -1,0 +1,94 @@
+// Chains of reflections and refractions by Fermat's principle: Newton's method, and the implicit function
+// theorem for how they move.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/raymesh/surface.h"
+
+namespace trilens {
+
+/// An end of a light path, world frame: a point, or one at infinity.
+struct ChainEnd {
+    Vec3 place{0};  // the point; at infinity: the unit direction of the stretch that touches it, from the eye
+                    // to the point
+    bool is_direction = false;
+};
+
+/// One meeting with a surface; a mirror has the same index on both sides.
+struct ChainEvent {
+    const Surface* surface = nullptr;
+    double index_before = 1, index_after = 1;  // refractive, on the eye's side of the path and on the point's
+    bool reflects = true;                      // else it is refracted
+};
+
+/// A path from the eye over surfaces to a point.
+struct PathChain {
+    ChainEnd eye, point;
+    std::vector<ChainEvent> events;  // at least one
+};
+
+/// A path's shape: where it meets each surface.
+struct ChainShape {
+    std::vector<SurfaceParameter> at;
+    std::vector<SurfacePoint> points;  // there
+};
+
+/// What the optical path's first derivatives are made of. With P_0 the eye, P_1 .. P_k the events and
+/// P_(k+1) the point, e_i the unit direction from P_i to P_(i+1) and n_i the index along it, the bend at an
+/// event is g_i = n_(i-1) e_(i-1) - n_i e_i; the path is one of light (Fermat) where g_i is along the normal:
+/// g_i . du = g_i . dv = 0.
+struct ChainBend {
+    std::vector<Vec3> way;       // e_0 .. e_k
+    std::vector<double> length;  // of each stretch, scene units; infinite at an end at infinity
+    std::vector<Vec3> bend;      // g_1 .. g_k
+};
+
+ChainBend chain_bend(const PathChain& chain, std::span<const SurfacePoint> points);
+
+/// F: (g_i . du, g_i . dv) of every event.
+std::vector<Vec2> chain_law(const ChainBend& bend, std::span<const SurfacePoint> points);
+
+/// The largest part of a bend that lies along its surface: 0 for light; in 0 .. n_before + n_after.
+double chain_residual(const ChainBend& bend, std::span<const SurfacePoint> points);
+
+/// The second derivatives of the optical path in the events' parameters, block tridiagonal, factored.
+/// Solves A x = b by Gaussian elimination with partial pivoting inside the band.
+class ChainHessian {
+  public:
+    ChainHessian(const PathChain& chain, const ChainBend& bend, std::span<const SurfacePoint> points);
+
+    /// False at a caustic, where the path is no function of what it depends on.
+    bool is_regular() const { return is_regular_; }
+    /// `right`: two numbers per event.
+    std::vector<Vec2> solve(std::span<const Vec2> right) const;
+
+  private:
+    double& at(std::size_t row, std::size_t column) { return matrix_[row * size_ + column]; }
+    double at(std::size_t row, std::size_t column) const { return matrix_[row * size_ + column]; }
+    void factor();
+
+    std::size_t size_ = 0;
+    std::vector<double> matrix_;
+    std::vector<std::size_t> pivot_;
+    bool is_regular_ = true;
+};
+
+/// Where a step leaves its face: the parameter of the surface near a point of space, seen from another place;
+/// none where there is none.
+using FindParameter =
+    std::function<std::optional<SurfaceParameter>(std::size_t event, const Vec3& from, const Vec3& towards)>;
+
+/// The path of light near `start`, to rounding, by Newton's method whose steps are shortened until the law's
+/// residual falls. None where it finds none: no solution nearby, one beyond a face that `find` does not carry
+/// it over, or a path of another kind (reflected through a surface, refracted back from it).
+std::optional<ChainShape> solve_chain(const PathChain& chain, std::span<const SurfaceParameter> start,
+                                      const FindParameter& find = {});
+
+/// Whether each event leaves light on the side of the surface that its kind says.
+bool chain_sides_fit(const PathChain& chain, const ChainBend& bend, std::span<const SurfacePoint> points);
+
+}  // namespace trilens
