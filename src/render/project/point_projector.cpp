@@ -56,6 +56,9 @@ PointProjector::PointProjector(const World& world, const ProjectRequest& request
     middle_ = 0.5 * (box.low + box.high);
     const double size = length(box.size());
     reach_ = kReachInSizes * (size > 0 && std::isfinite(size) ? size : 1);
+    if (!request.parameters.empty())
+        parameters_ =
+            std::make_unique<ParameterDerivatives>(world, frame_, request.frame.camera, request.parameters);
     if (!camera_.linear && !camera_.model) {
         camera_mesh_ = std::make_unique<MeshPointImages>(camera_.mesh);
         return;
@@ -402,6 +405,8 @@ void PointProjector::project(std::span<const ProjectedPoint> points, std::span<c
         for (const auto& several : several_) add_several(*several, point, found);
         if (asked.is_direction || point != asked.place) move_to(asked, found);
         if (request_.min_weight > 0 || request_.max_images > 0) keep_strongest(found);
+        if (parameters_)
+            for (WorldImage& image : found.images) image.by_parameter = parameters_->of(image, asked);
     }
 }
 

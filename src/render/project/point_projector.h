@@ -9,6 +9,7 @@
 #include "render/project/facet_images.h"
 #include "render/project/image_chain.h"
 #include "render/project/occlusion.h"
+#include "render/project/parameter_derivatives.h"
 #include "render/project/path_images.h"
 #include "render/project/project.h"
 #include "specular/specular_search.h"
@@ -69,6 +70,7 @@ class PointProjector {
     std::vector<FacetLookup> facets_at_;                       // per optic; kComplete
     std::vector<OpticPath> paths_;
     std::vector<std::unique_ptr<SeveralOpticsImages>> several_;  // per optic, where paths go on
+    std::unique_ptr<ParameterDerivatives> parameters_;           // where some are asked for
     bool may_have_several_ = false;
     Vec3 middle_{0};    // of the optics and the eye
     double reach_ = 0;  // points farther from the middle are searched for there

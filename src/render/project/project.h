@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/math/vec.h"
@@ -48,6 +49,10 @@ struct WorldImage {
     /// a fold.
     bool has_derivative = false;
     std::array<Vec3, 2> derivative{};
+
+    /// How the pixel moves with the numbers that ProjectRequest::parameters names, in their order, pixels per
+    /// unit of each; empty where that is not known.
+    std::vector<Vec2> by_parameter;
 };
 
 /// All images of one point.
@@ -69,9 +74,12 @@ struct ProjectRequest {
     bool refine = true;        // kFacets: else images are left as the facets have them
     bool visibility = true;    // else `visible` stays false
     bool derivatives = false;  // of images over one optic too; the others have them anyway
-    EventWord path;  // only images of these events, however many the scene's maxDepth follows; none direct
-    std::size_t max_images =
-        0;                  // of a point: the strongest; 0: all. Of a list that was cut `complete` is false
+    // Only images of these events, however many the scene's maxDepth follows; none direct.
+    EventWord path;
+    // JSON pointers to numbers, or arrays of them, of the scene: how images move with each; see find_numbers.
+    std::vector<std::string> parameters;
+    // Of a point: the strongest; 0: all. Of a list that was cut `complete` is false.
+    std::size_t max_images = 0;
     double min_weight = 0;  // images that carry less in every colour are left out
 
     bool operator==(const ProjectRequest&) const = default;

@@ -72,6 +72,19 @@ NormalField normal_field(const NormalOverride& from) {
     return field;
 }
 
+}  // namespace
+
+std::shared_ptr<const Surface> make_optic_surface(const Scene& scene, Id id, const Warn& warn) {
+    const Mesh& mesh = scene.meshes[id];
+    std::unique_ptr<Surface> surface = mesh.primitive ? make_primitive_surface(*mesh.primitive)
+                                                      : make_limit_surface(mesh.cage, mesh.name, warn);
+    if (mesh.normals.type != NormalOverride::Type::kSmooth)
+        surface = with_normals(std::move(surface), normal_field(mesh.normals));
+    return surface;
+}
+
+namespace {
+
 Optic make_optic(const Scene& scene, Id id, const Warn& warn) {
     const Mesh& mesh = scene.meshes[id];
     Optic optic;
@@ -79,11 +92,7 @@ Optic make_optic(const Scene& scene, Id id, const Warn& warn) {
     optic.resolution = mesh.resolution;
     optic.material = mesh.material;
     optic.mirror = is_mirror(scene.materials[mesh.material]);
-    std::unique_ptr<Surface> surface = mesh.primitive ? make_primitive_surface(*mesh.primitive)
-                                                      : make_limit_surface(mesh.cage, mesh.name, warn);
-    if (mesh.normals.type != NormalOverride::Type::kSmooth)
-        surface = with_normals(std::move(surface), normal_field(mesh.normals));
-    optic.surface = std::move(surface);
+    optic.surface = make_optic_surface(scene, id, warn);
     return optic;
 }
 

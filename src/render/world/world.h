@@ -47,6 +47,10 @@ struct World {
     std::vector<std::string> mesh_digests;  // of scene.meshes, once change_scene has asked for them
 };
 
+/// The exact surface of an optic, as a world of that scene has it. Throws InputError where its cage cannot be
+/// used.
+std::shared_ptr<const Surface> make_optic_surface(const Scene& scene, Id mesh, const Warn& warn);
+
 /// Builds the surfaces and gathers the triangles. Throws InputError where a cage cannot be used.
 std::unique_ptr<World> make_world(Scene scene, const Warn& warn);
 

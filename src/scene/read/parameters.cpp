@@ -1,0 +1,98 @@
+#include "scene/read/parameters.h"
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+
+#include "base/description/texture.h"
+#include "base/util/format.h"
+#include "scene/json/json_check.h"
+#include "scene/load.h"
+#include "scene/read/override.h"
+#include "scene/read/reading.h"
+
+namespace trilens {
+namespace {
+
+/// What a missing key of a transform means; null for every other key.
+Json default_of(const std::string& pointer) {
+    const auto ends_with = [&](const char* end) { return pointer.ends_with(end); };
+    if (ends_with("/transform/translate")) return {0, 0, 0};
+    if (ends_with("/transform/rotate")) return {0, 0, 0, 1};
+    if (ends_with("/transform/scale")) return {1, 1, 1};
+    return nullptr;
+}
+
+std::string text_of(double value) {
+    char room[64];
+    return {room, std::to_chars(room, room + sizeof room, value).ptr};
+}
+
+/// The pointer with entries that are named by their "name" replaced by their places.
+std::string placed(const Json& root, const std::string& pointer, const std::string& file) {
+    std::string done;
+    const Json* at = &root;
+    for (std::size_t from = 1; from <= pointer.size();) {
+        const std::size_t end = std::min(pointer.find('/', from), pointer.size());
+        std::string key = pointer.substr(from, end - from);
+        if (at && at->is_array()) {
+            std::size_t place = at->size();
+            for (std::size_t i = 0; i < at->size(); ++i)
+                if ((*at)[i].is_object() && (*at)[i].value("name", Json()) == Json(key)) place = i;
+            if (place < at->size()) key = std::to_string(place);
+        }
+        done += '/' + key;
+        const Json::json_pointer next(done);
+        at = root.contains(next) ? &root.at(next) : nullptr;
+        from = end + 1;
+    }
+    if (pointer.empty() || pointer[0] != '/')
+        fail_at(file, pointer, "is no JSON pointer: it must begin with '/'");
+    return done;
+}
+
+void add_numbers(const Json& value, const std::string& pointer, const std::string& file,
+                 std::vector<SceneNumber>& numbers) {
+    if (value.is_number()) {
+        numbers.push_back({pointer, value.get<double>()});
+        return;
+    }
+    if (!value.is_array() || value.empty())
+        fail_at(file, pointer, "is no number and no array of numbers, but " + describe(value));
+    for (std::size_t i = 0; i < value.size(); ++i)
+        add_numbers(value[i], pointer + '/' + std::to_string(i), file, numbers);
+}
+
+}  // namespace
+
+std::vector<SceneNumber> find_numbers(const Scene& scene, std::span<const std::string> pointers) {
+    const Json root = resolved_json(scene);
+    const std::string file = scene_title(scene);
+    std::vector<SceneNumber> numbers;
+    for (const std::string& asked : pointers) {
+        const std::string pointer = placed(root, asked, file);
+        const Json::json_pointer at(pointer);
+        const Json value = root.contains(at) ? root.at(at) : default_of(pointer);
+        if (value.is_null())
+            fail_at(file, asked, "is not in the scene: derivatives are of numbers that it has");
+        add_numbers(value, pointer, file, numbers);
+    }
+    return numbers;
+}
+
+Scene scene_with(const Scene& scene, const SceneNumber& number) {
+    const Json root = resolved_json(scene);
+    std::vector<SceneOverride> changes;
+    const std::string parent = number.pointer.substr(0, number.pointer.rfind('/'));
+    if (!root.contains(Json::json_pointer(parent)) && !default_of(parent).is_null())
+        changes.push_back({parent, default_of(parent).dump()});
+    changes.push_back({number.pointer, text_of(number.value)});
+    const auto blank = std::make_shared<const Texture>();
+    const TextureReader no_textures{
+        [&](const std::string&) { return blank; },
+        [&](std::span<const unsigned char>, const std::string&) { return blank; }};
+    return load_scene_text(scene.resolved, SceneSource(scene_title(scene), scene.folder), changes,
+                           no_textures);
+}
+
+}  // namespace trilens
