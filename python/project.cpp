@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "arrays.h"
@@ -24,19 +25,22 @@ struct ImageRow {
 };
 
 struct StepRow {
-    Id optic;
+    Id optic, face;
     char32_t event[8];
+    bool front;
+    double uv[2], point[3], normal[3];
 };
 
-/// Rows of one length: each an ImageRow and so many StepRow.
+/// Rows of one length: each an ImageRow, so many StepRow, and two numbers for each parameter.
 struct Rows {
-    std::size_t steps = 1;
+    std::size_t steps = 1, parameters = 0;
     std::vector<std::byte> bytes;
 
-    std::size_t row_size() const { return sizeof(ImageRow) + steps * sizeof(StepRow); }
+    std::size_t parameters_at() const { return sizeof(ImageRow) + steps * sizeof(StepRow); }
+    std::size_t row_size() const { return parameters_at() + 2 * parameters * sizeof(double); }
 };
 
-py::dict row_type(std::size_t steps) {
+py::dict row_type(const Rows& rows) {
     RecordType type;
     type.add("point", "i8", offsetof(ImageRow, point));
     type.add("x", "f8", offsetof(ImageRow, x));
@@ -59,8 +63,17 @@ py::dict row_type(std::size_t steps) {
     RecordType step;
     step.add("optic", "u4", offsetof(StepRow, optic));
     step.add("event", "U8", offsetof(StepRow, event));
-    type.add("steps", py::make_tuple(step.of_size(sizeof(StepRow)), py::make_tuple(steps)), sizeof(ImageRow));
-    return type.of_size(sizeof(ImageRow) + steps * sizeof(StepRow));
+    step.add("front", "?", offsetof(StepRow, front));
+    step.add("face", "u4", offsetof(StepRow, face));
+    step.add("uv", "(2,)f8", offsetof(StepRow, uv));
+    step.add("point", "(3,)f8", offsetof(StepRow, point));
+    step.add("normal", "(3,)f8", offsetof(StepRow, normal));
+    type.add("steps", py::make_tuple(step.of_size(sizeof(StepRow)), py::make_tuple(rows.steps)),
+             sizeof(ImageRow));
+    if (rows.parameters > 0)
+        type.add("by_parameter", py::make_tuple("f8", py::make_tuple(2, rows.parameters)),
+                 rows.parameters_at());
+    return type.of_size(rows.row_size());
 }
 
 ImageRow row_of(const WorldImage& image) {
@@ -78,36 +91,117 @@ ImageRow row_of(const WorldImage& image) {
     return row;
 }
 
-StepRow row_of(const Step* step) {
+StepRow row_of(const WorldImage& image, std::size_t place) {
     auto row = empty_record<StepRow>();
-    row.optic = step ? step->optic : kNone;
-    if (step) copy_text(event_name(step->event), row.event);
+    row.optic = row.face = kNone;
+    if (place >= image.steps.size()) return row;
+    row.optic = image.steps[place].optic;
+    copy_text(event_name(image.steps[place].event), row.event);
+    if (place >= image.events.size()) return row;
+    const PathEvent& event = image.events[place];
+    row.front = event.front;
+    row.face = event.face;
+    row.uv[0] = event.uv.x, row.uv[1] = event.uv.y;
+    copy_vector(event.point, row.point);
+    copy_vector(event.normal, row.normal);
     return row;
 }
 
-Rows rows_of(const std::vector<PointProjection>& points) {
-    Rows rows;
-    for (const PointProjection& point : points)
-        for (const WorldImage& image : point.images) rows.steps = std::max(rows.steps, image.steps.size());
-    const auto append = [&](const auto& row) {
-        const std::size_t at = rows.bytes.size();
-        rows.bytes.resize(at + sizeof row);
-        std::memcpy(rows.bytes.data() + at, &row, sizeof row);
-    };
-    for (std::size_t p = 0; p < points.size(); ++p)
-        for (const WorldImage& image : points[p].images) {
-            ImageRow row = row_of(image);
-            row.point = static_cast<std::int64_t>(p);
-            row.complete = points[p].complete;
-            append(row);
-            for (std::size_t i = 0; i < rows.steps; ++i)
-                append(row_of(i < image.steps.size() ? &image.steps[i] : nullptr));
+/// Adds rows to a list whose numbers of steps and parameters are known.
+class RowWriter {
+  public:
+    explicit RowWriter(Rows& rows) : rows_(rows) {}
+
+    void add(const WorldImage& image, std::size_t point, bool complete) {
+        ImageRow row = row_of(image);
+        row.point = static_cast<std::int64_t>(point);
+        row.complete = complete;
+        append(&row, sizeof row);
+        for (std::size_t i = 0; i < rows_.steps; ++i) {
+            const StepRow step = row_of(image, i);
+            append(&step, sizeof step);
         }
+        for (int axis = 0; axis < 2; ++axis)
+            for (std::size_t k = 0; k < rows_.parameters; ++k) {
+                const double moved =
+                    k < image.by_parameter.size() ? image.by_parameter[k][axis] : std::nan("");
+                append(&moved, sizeof moved);
+            }
+    }
+
+  private:
+    void append(const void* data, std::size_t size) {
+        const std::size_t at = rows_.bytes.size();
+        rows_.bytes.resize(at + size);
+        std::memcpy(rows_.bytes.data() + at, data, size);
+    }
+
+    Rows& rows_;
+};
+
+Rows rows_of(const std::vector<PointProjection>& points, std::size_t parameters) {
+    Rows rows;
+    rows.parameters = parameters;
+    std::size_t count = 0;
+    for (const PointProjection& point : points) {
+        count += point.images.size();
+        for (const WorldImage& image : point.images) rows.steps = std::max(rows.steps, image.steps.size());
+    }
+    rows.bytes.reserve(count * rows.row_size());
+    RowWriter writer(rows);
+    for (std::size_t p = 0; p < points.size(); ++p)
+        for (const WorldImage& image : points[p].images) writer.add(image, p, points[p].complete);
     return rows;
 }
 
+/// One row per start; where there is no image it has no place.
+Rows rows_of(const std::vector<std::optional<WorldImage>>& images, const std::vector<ImageStart>& starts) {
+    Rows rows;
+    for (const ImageStart& start : starts) rows.steps = std::max(rows.steps, start.events.size());
+    rows.bytes.reserve(images.size() * rows.row_size());
+    RowWriter writer(rows);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        WorldImage lost;
+        lost.pixel = Vec2(std::nan(""));
+        lost.off = kUnknownOffset;
+        for (const PathEvent& event : starts[i].events) lost.steps.push_back({event.optic, event.event});
+        writer.add(images[i] ? *images[i] : lost, starts[i].point, false);
+    }
+    return rows;
+}
+
+/// The paths of images that an earlier call has returned.
+std::vector<ImageStart> starts_of(const py::object& images) {
+    const auto numbers = [](const py::object& field) { return Indices(field); };
+    const py::object steps = images["steps"];
+    const Indices point = numbers(images["point"]), count = numbers(images["step_count"]),
+                  optic = numbers(steps["optic"]), face = numbers(steps["face"]),
+                  front = numbers(steps["front"]);
+    const Indices reflects = numbers(steps["event"].attr("__eq__")("reflect")),
+                  passes = numbers(steps["event"].attr("__eq__")("pass"));
+    const Doubles uv = Doubles(py::array_t<double, py::array::c_style | py::array::forcecast>(steps["uv"]));
+    const auto wide = static_cast<std::size_t>(optic.ndim() == 2 ? optic.shape(1) : 0);
+    std::vector<ImageStart> starts(static_cast<std::size_t>(point.size()));
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+        starts[i].point = static_cast<std::size_t>(point.data()[i]);
+        const auto used =
+            std::min(wide, static_cast<std::size_t>(std::max<std::int64_t>(0, count.data()[i])));
+        for (std::size_t k = i * wide; k < i * wide + used; ++k) {
+            PathEvent& event = starts[i].events.emplace_back();
+            event.optic = static_cast<Id>(optic.data()[k]);
+            event.face = static_cast<Id>(face.data()[k]);
+            event.front = front.data()[k] != 0;
+            event.event = reflects.data()[k] != 0 ? Event::kReflect
+                          : passes.data()[k] != 0 ? Event::kPass
+                                                  : Event::kTransmit;
+            event.uv = {uv.data()[2 * k], uv.data()[2 * k + 1]};
+        }
+    }
+    return starts;
+}
+
 py::array rows_array(const Rows& rows) {
-    return record_array(row_type(rows.steps), rows.bytes.data(), rows.bytes.size() / rows.row_size());
+    return record_array(row_type(rows), rows.bytes.data(), rows.bytes.size() / rows.row_size());
 }
 
 /// What the facets have is all that can be told without refining.
@@ -119,32 +213,98 @@ ImageSearch search_of(const std::string& search, bool refine) {
 
 }  // namespace
 
+namespace {
+
+/// What project is told.
+struct ProjectArguments {
+    std::optional<Doubles> points, directions;
+    std::optional<py::object> start;
+    py::object derivatives;
+};
+
+/// True, False, or pointers; returns how many columns these have.
+std::size_t set_derivatives(const Renderer& renderer, const py::object& derivatives,
+                            ProjectRequest& request) {
+    if (py::isinstance<py::bool_>(derivatives)) {
+        request.derivatives = derivatives.cast<bool>();
+        return 0;
+    }
+    request.derivatives = true;
+    if (py::isinstance<py::str>(derivatives))
+        request.parameters = {derivatives.cast<std::string>()};
+    else
+        request.parameters = derivatives.cast<std::vector<std::string>>();
+    return find_numbers(renderer.scene(), request.parameters).size();
+}
+
+py::array project(const Renderer& self, const ProjectArguments& given, ProjectRequest request,
+                  const py::object& progress) {
+    if (given.points.has_value() == given.directions.has_value())
+        throw UsageError("project needs either points or directions");
+    const std::size_t columns = set_derivatives(self, given.derivatives, request);
+    const std::vector<Vec3> places =
+        given.points ? points_of(*given.points, "points") : points_of(*given.directions, "directions");
+    PythonCall call(progress);
+    if (given.start) {
+        if (!given.points || columns > 0)
+            throw UsageError("start goes with points, and without derivatives by parameters");
+        const std::vector<ImageStart> starts = starts_of(*given.start);
+        return rows_array(call.run([&] { return rows_of(self.refine(places, starts, request), starts); }));
+    }
+    return rows_array(call.run([&] {
+        const Progress told = call.progress("project");
+        return rows_of(given.points ? self.project(places, request, told)
+                                    : self.project_directions(places, request, told),
+                       columns);
+    }));
+}
+
+}  // namespace
+
 void bind_project(RendererClass& renderer) {
     renderer.def(
         "project",
-        [](const Renderer& self, const Doubles& points, int resolution,
-           const std::optional<std::string>& camera, const std::string& search, bool refine, bool visibility,
-           bool derivatives) {
-            const std::vector<Vec3> given = points_of(points, "points");
+        [](const Renderer& self, const std::optional<Doubles>& points, int resolution,
+           const std::optional<std::string>& camera, const std::optional<Doubles>& directions,
+           const std::optional<std::string>& path, const std::string& search, bool refine, bool visibility,
+           const py::object& derivatives, std::size_t max_images, double min_weight,
+           const std::optional<py::object>& start, const py::object& progress) {
             ProjectRequest request;
             request.frame = frame_params(self, resolution, camera);
             request.search = search_of(search, refine);
             request.refine = refine;
             request.visibility = visibility;
-            request.derivatives = derivatives;
-            return rows_array(PythonCall().run([&] { return rows_of(self.project(given, request)); }));
+            if (path) request.path = EventWord(*path);
+            request.max_images = max_images;
+            request.min_weight = min_weight;
+            return project(self, {points, directions, start, derivatives}, request, progress);
         },
-        py::arg("points"), py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(),
+        py::arg("points") = py::none(), py::arg("resolution") = 0, py::arg("camera") = py::none(),
+        py::kw_only(), py::arg("directions") = py::none(), py::arg("path") = py::none(),
         py::arg("search") = "complete", py::arg("refine") = true, py::arg("visibility") = true,
-        py::arg("derivatives") = false,
+        py::arg("derivatives") = false, py::arg("max_images") = 0, py::arg("min_weight") = 0.0,
+        py::arg("start") = py::none(), py::arg("progress") = py::none(),
         "Where world points appear: directly and over every optic, all images of all points.\n\n"
         "points: (N, 3), world frame.\n"
+        "directions: instead, (N, 3): points at infinity, from the scene towards them; of any length.\n"
+        "path: a word of events, R reflected, T transmitted, ? either: only images of these events, whatever "
+        "the scene's\nmaxDepth; \"R\", \"TT\". None: all, as deep as the scene follows paths.\n"
         "search: \"complete\" looks at every part of the exact surfaces; \"facets\" only near what the "
         "facets show,\n"
         "faster, and may miss images.\n"
         "refine: on the exact surface; False: as the facets have it, which only \"facets\" can say.\n"
         "visibility: ask what hides each image; else visible is False.\n"
-        "derivatives: of the pixel with respect to the point, for images over one optic too.\n"
+        "derivatives: of the pixel with respect to the point, for images over one optic too. A list of JSON "
+        "pointers into\nScene.json, to numbers or arrays of them: with respect to these as well, "
+        "by_parameter.\n"
+        "max_images: of a point, the strongest; 0: all. min_weight: images that carry less in every colour "
+        "are "
+        "left out.\n"
+        "start: images that an earlier call returned: each is moved to where it is now by Newton's method, "
+        "without a search;\none entry for each, in their order, x and y nan and refined False where none is "
+        "near; complete is then False.\n"
+        "With visibility=False nothing but surfaces is built for it.\n"
+        "progress: called with (done, \"project\"), done in 0..1; returning False stops.\n"
         "Returns a structured array with one entry per image, in the order of the points:\n"
         "  point    index into points\n"
         "  x, y     pixels from the film's top left; a pixel's centre is at .5\n"
@@ -161,13 +321,15 @@ void bind_project(RendererClass& renderer) {
         "  derivative      (2, 3): how x and y move with the point, pixels per scene unit; set where\n"
         "  has_derivative\n"
         "  step_count      meetings with optics\n"
-        "  steps           which optic, and what happened there: \"reflect\", \"transmit\" or \"pass\"; as "
-        "many "
-        "as the\n"
-        "                  longest path of all has, behind step_count of them NONE and \"\"\n"
-        "Raises InputError for points that are not finite, UsageError for a camera, resolution or search "
-        "that "
-        "there\nis not.");
+        "  steps           as many as the longest path of all has, behind step_count of them NONE and \"\":\n"
+        "    optic, event  which, and what happened there: \"reflect\", \"transmit\" or \"pass\"\n"
+        "    front, face, uv (2,), point (3,), normal (3,)  where, as in Renderer.shoot; where refined\n"
+        "  by_parameter    (2, C), where derivatives names numbers: pixels per unit of each, in their order, "
+        "arrays\n"
+        "                  entry by entry; nan where not known\n"
+        "Of directions t and length are inf, and derivative is per radian.\n"
+        "Raises InputError for points beyond 1e30 or not finite and for pointers that name no number, "
+        "UsageError for a\ncamera, resolution, search or path that there is not.");
 }
 
 }  // namespace trilens::python

@@ -242,14 +242,20 @@ class Renderer:
     ) -> Image: ...
     def project(
         self,
-        points: ArrayLike,
+        points: Optional[ArrayLike] = None,
         resolution: int = 0,
         camera: Optional[str] = None,
         *,
+        directions: Optional[ArrayLike] = None,
+        path: Optional[str] = None,
         search: str = "complete",
         refine: bool = True,
         visibility: bool = True,
-        derivatives: bool = False,
+        derivatives: Union[bool, str, Sequence[str]] = False,
+        max_images: int = 0,
+        min_weight: float = 0.0,
+        start: Optional[NDArray[np.void]] = None,
+        progress: _Progress = None,
     ) -> NDArray[np.void]: ...
     def shoot(
         self,

@@ -5,27 +5,27 @@
 namespace trilens {
 
 Json picture_fields(const Renderer& renderer, const Picture& picture) {
-    return {
-        {"width", picture.image.width},
-        {"height", picture.image.height},
-        {"triangles", renderer.triangle_count()},
-        {"facets", renderer.facet_count()},
-        {"optic_pixels", picture.statistics.optic_pixels},
-        {"pixels_without_ray", picture.statistics.pixels_without_ray},
-        {"subdivided_pixels", picture.statistics.subdivided_pixels},
-        {"traced_pixels", picture.statistics.traced_pixels},
-        {"layered_pixels", picture.statistics.layered_pixels},
-        {"projected_facets", picture.statistics.projected_facets},
-        {"predicted_error", picture.statistics.predicted_error},
-        {"outline_pixels", picture.statistics.outline_pixels},
-        {"fragment_pixels", picture.statistics.fragment_pixels},
-        {"fragments", picture.statistics.fragments},
-        {"rays_by_sample", picture.statistics.rays_by_sample},
-        {"left_out", {{"faint", picture.statistics.faint_light},
-                      {"deep", picture.statistics.deep_light},
-                      {"deep_pixels", picture.statistics.deep_pixels}}},
-        {"prepare_seconds", picture.prepare_seconds},
-        {"draw_seconds", picture.draw_seconds}};
+    return {{"width", picture.image.width},
+            {"height", picture.image.height},
+            {"triangles", renderer.triangle_count()},
+            {"facets", renderer.facet_count()},
+            {"optic_pixels", picture.statistics.optic_pixels},
+            {"pixels_without_ray", picture.statistics.pixels_without_ray},
+            {"subdivided_pixels", picture.statistics.subdivided_pixels},
+            {"traced_pixels", picture.statistics.traced_pixels},
+            {"layered_pixels", picture.statistics.layered_pixels},
+            {"projected_facets", picture.statistics.projected_facets},
+            {"predicted_error", picture.statistics.predicted_error},
+            {"outline_pixels", picture.statistics.outline_pixels},
+            {"fragment_pixels", picture.statistics.fragment_pixels},
+            {"fragments", picture.statistics.fragments},
+            {"rays_by_sample", picture.statistics.rays_by_sample},
+            {"left_out",
+             {{"faint", picture.statistics.faint_light},
+              {"deep", picture.statistics.deep_light},
+              {"deep_pixels", picture.statistics.deep_pixels}}},
+            {"prepare_seconds", picture.prepare_seconds},
+            {"draw_seconds", picture.draw_seconds}};
 }
 
 Json drawing_fields(const Film& film, const LineChoice& choice, const LineDrawing& drawing) {

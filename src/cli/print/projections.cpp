@@ -8,6 +8,7 @@
 #include <future>
 #include <utility>
 
+#include "cli/print/shots.h"
 #include "cli/print/values.h"
 
 namespace trilens {
@@ -17,7 +18,15 @@ std::string optic_name(const Renderer& renderer, const WorldImage& image) {
     return image.optic == kNone ? "" : renderer.scene().meshes[image.object].name;
 }
 
-Json image_json(const Renderer& renderer, const WorldImage& image) {
+/// The places too, where they are known.
+Json image_steps_json(const Renderer& renderer, std::span<const OpticInfo> optics, const WorldImage& image) {
+    if (image.events.size() != image.steps.size()) return steps_json(renderer, image.steps);
+    Json list = Json::array();
+    for (const PathEvent& event : image.events) list.push_back(event_json(optics, event));
+    return list;
+}
+
+Json image_json(const Renderer& renderer, std::span<const OpticInfo> optics, const WorldImage& image) {
     Json fields = {{"x", json_number(image.pixel.x)},
                    {"y", json_number(image.pixel.y)},
                    {"t", json_number(image.t)},
@@ -30,9 +39,17 @@ Json image_json(const Renderer& renderer, const WorldImage& image) {
                    {"refined", image.refined},
                    {"off", json_number(image.off)},
                    {"weight", vector_json(image.weight)},
-                   {"steps", steps_json(renderer, image.steps)}};
+                   {"steps", image_steps_json(renderer, optics, image)}};
     if (image.has_derivative)
         fields["derivative"] = {vector_json(image.derivative[0]), vector_json(image.derivative[1])};
+    if (!image.by_parameter.empty()) {
+        Json x = Json::array(), y = Json::array();
+        for (const Vec2& moved : image.by_parameter) {
+            x.push_back(json_number(moved.x));
+            y.push_back(json_number(moved.y));
+        }
+        fields["by_parameter"] = {std::move(x), std::move(y)};
+    }
     return fields;
 }
 
@@ -89,16 +106,28 @@ std::string lines_of(const Renderer& renderer, std::span<PointProjection> images
 
 Json points_json(const Renderer& renderer, std::span<const Vec3> points,
                  std::span<const PointProjection> images) {
+    const std::vector<OpticInfo> optics = renderer.optics();
     Json list = Json::array();
     for (std::size_t p = 0; p < points.size(); ++p) {
         Json entry{{"point", {points[p].x, points[p].y, points[p].z}},
                    {"complete", images[p].complete},
                    {"images", Json::array()}};
         for (const WorldImage& image : images[p].images)
-            entry["images"].push_back(image_json(renderer, image));
+            entry["images"].push_back(image_json(renderer, optics, image));
         list.push_back(std::move(entry));
     }
     return list;
+}
+
+std::string point_steps_text(const Renderer& renderer, std::span<const PointProjection> images) {
+    const std::vector<OpticInfo> optics = renderer.optics();
+    std::string text = "point,image,step,optic,event,front,face,u,v,x,y,z,normal_x,normal_y,normal_z\n";
+    for (std::size_t p = 0; p < images.size(); ++p)
+        for (std::size_t i = 0; i < images[p].images.size(); ++i)
+            for (std::size_t s = 0; s < images[p].images[i].events.size(); ++s)
+                text += std::to_string(p) + ',' + std::to_string(i) + ',' + std::to_string(s) + ',' +
+                        event_csv(optics, images[p].images[i].events[s]) + '\n';
+    return text;
 }
 
 std::string points_text(const Renderer& renderer, std::vector<PointProjection> images) {

@@ -15,6 +15,9 @@ namespace trilens {
 Json points_json(const Renderer& renderer, std::span<const Vec3> points,
                  std::span<const PointProjection> images);
 
+/// A header and a line per meeting with an optic, of refined images.
+std::string point_steps_text(const Renderer& renderer, std::span<const PointProjection> images);
+
 /// A header and a line per image.
 std::string points_text(const Renderer& renderer, std::vector<PointProjection> images);
 

@@ -56,6 +56,14 @@ Json event_json(std::span<const OpticInfo> optics, const PathEvent& event) {
             {"normal", vector_json(event.normal)}};
 }
 
+std::string event_csv(std::span<const OpticInfo> optics, const PathEvent& event) {
+    std::string text = fmt::format("{},{},{:d},{},{:.12g},{:.12g}", csv_text(optics[event.optic].name),
+                                   event_name(event.event), event.front, event.face, event.uv.x, event.uv.y);
+    add_vector(text, event.point);
+    add_vector(text, event.normal);
+    return text;
+}
+
 Json shots_json(const Renderer& renderer, const ShotRays& shots) {
     const std::vector<OpticInfo> optics = renderer.optics();
     Json list = Json::array();
@@ -94,11 +102,7 @@ std::string shot_events_text(const Renderer& renderer, const ShotRays& shots) {
     for (std::size_t i = 0; i < shots.rays.size(); ++i) {
         std::size_t step = 0;
         for (const PathEvent& event : shots.events_of(shots.rays[i])) {
-            fmt::format_to(std::back_inserter(text), "{},{},{},{},{:d},{},{:.12g},{:.12g}", i, step++,
-                           csv_text(optics[event.optic].name), event_name(event.event), event.front,
-                           event.face, event.uv.x, event.uv.y);
-            add_vector(text, event.point);
-            add_vector(text, event.normal);
+            text += std::to_string(i) + ',' + std::to_string(step++) + ',' + event_csv(optics, event);
             text += '\n';
         }
     }

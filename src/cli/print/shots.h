@@ -17,6 +17,9 @@ std::string shots_text(const Renderer& renderer, const ShotRays& shots);
 /// A header and a line per meeting.
 std::string shot_events_text(const Renderer& renderer, const ShotRays& shots);
 
+/// The same as fields of CSV, from optic to normal_z.
+std::string event_csv(std::span<const OpticInfo> optics, const PathEvent& event);
+
 /// One meeting with an optic, as JSON; `optics`: Renderer::optics().
 Json event_json(std::span<const OpticInfo> optics, const PathEvent& event);
 

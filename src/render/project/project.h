@@ -103,8 +103,9 @@ std::vector<PointProjection> project_directions(const World& world, const Projec
 
 /// Where an image was, or is thought to be.
 struct ImageStart {
-    std::size_t point = 0;          // index of the point that it is an image of
-    std::vector<PathEvent> events;  // `optic`, `event`, `front`, `face` and `uv` are asked
+    std::size_t point = 0;  // index of the point that it is an image of
+    std::vector<PathEvent>
+        events;  // empty: the direct image; `optic`, `event`, `front`, `face` and `uv` are asked
 };
 
 /// Moves known images to where they are now: Newton's method alone, no search and nothing built for one, so

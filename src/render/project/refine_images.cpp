@@ -58,6 +58,8 @@ class ImageRefiner {
     std::optional<WorldImage> refine(const ImageStart& start, const Vec3& point) const;
 
   private:
+    std::optional<WorldImage> refine_direct(const Vec3& point) const;
+    bool on_film(const Vec2& pixel) const;
     std::optional<Vec3> weight_of(std::span<const PathEvent> events, const Ray& view,
                                   const Vec3& point) const;
     bool is_visible(const WorldImage& image, const Vec3& eye, const Vec3& point) const;
@@ -90,8 +92,31 @@ bool ImageRefiner::is_visible(const WorldImage& image, const Vec3& eye, const Ve
     return true;
 }
 
+bool ImageRefiner::on_film(const Vec2& pixel) const {
+    const Film& film = world_.scene.film;
+    return pixel.x >= 0 && pixel.y >= 0 && pixel.x <= film.width && pixel.y <= film.height;
+}
+
+std::optional<WorldImage> ImageRefiner::refine_direct(const Vec3& point) const {
+    const std::vector<FilmImage> found = film_positions(frame_.camera, point);
+    if (found.empty()) return std::nullopt;
+    WorldImage image;
+    image.pixel = found.front().pixel;
+    image.t = found.front().t;
+    image.length = length(point - found.front().origin);
+    image.refined = true;
+    image.weight =
+        weight_of_direct(world_, frame_, {found.front().origin, point - found.front().origin}, image.length);
+    image.inside = on_film(image.pixel);
+    image.visible = request_.visibility && image.inside && sight_.sees(found.front().origin, point);
+    const std::optional<FilmPlace> film = film_place(frame_.camera, point, image.pixel);
+    image.has_derivative = film.has_value();
+    if (film) image.derivative = film->slope;
+    return image;
+}
+
 std::optional<WorldImage> ImageRefiner::refine(const ImageStart& start, const Vec3& point) const {
-    if (start.events.empty()) return std::nullopt;
+    if (start.events.empty()) return refine_direct(point);
     // The film place of the start tells a branch of the camera apart, where it has several.
     const PathEvent& first = start.events.front();
     const Vec3 there = world_.optics[first.optic].surface->eval(first.face, first.uv).position;
@@ -116,9 +141,7 @@ std::optional<WorldImage> ImageRefiner::refine(const ImageStart& start, const Ve
     image.weight = *weight;
     image.has_derivative = solved->is_regular;
     image.derivative = solved->derivative;
-    const Film& film = world_.scene.film;
-    image.inside = image.pixel.x >= 0 && image.pixel.y >= 0 && image.pixel.x <= film.width &&
-                   image.pixel.y <= film.height;
+    image.inside = on_film(image.pixel);
     image.visible = request_.visibility && image.inside && is_visible(image, view->origin, point);
     return image;
 }
