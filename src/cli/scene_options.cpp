@@ -152,7 +152,7 @@ std::vector<Option> window_options(SceneOptions& options) {
          .target = &options.aov,
          .help =
              "layers beside RGBA: all, or a list of Z,optic,direct,reflect,refract,path,stat,magnification,"
-             "position; without it, all but the last four",
+             "position,ray; without it, all but the last five",
          .value = "LIST"}};
 }
 

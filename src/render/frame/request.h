@@ -77,8 +77,8 @@ std::string classic_name(const ClassicParams& params);
 /// The window of the film that is drawn, in pixels [x0, x1) x [y0, y1), and its layers.
 struct LayerRequest {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
-    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat", "magnification" and
-    // "position".
+    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat", "magnification", "position"
+    // and "ray".
     std::vector<std::string> layers;
 };
 
@@ -134,8 +134,9 @@ struct Picture {
 };
 
 /// The layers that may be asked for beside R G B A: "Z", "optic", "direct", the paths' names, "path",
-/// "stat", "magnification" (which goes with a path's own layer) and "position" (directID and directP: what
-/// the camera sees itself, where no optic is first).
+/// "stat", "magnification" (which goes with a path's own layer), "position" (directID and directP: what the
+/// camera sees itself, where no optic is first) and "ray" (reflectD and reflectO, refractD and refractO: the
+/// last ray's unit direction and its origin, world frame; with a path's own layer).
 const std::vector<std::string>& layer_names();
 
 }  // namespace trilens

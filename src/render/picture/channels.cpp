@@ -14,6 +14,7 @@ constexpr float kFarDepth = 1e30f;
 
 constexpr std::array kPaths{Path::kDirect, Path::kReflect, Path::kRefract};
 constexpr std::array kColours{"R", "G", "B", "A"};
+constexpr std::array kAxes{"X", "Y", "Z"};
 
 }  // namespace
 
@@ -47,6 +48,7 @@ const std::vector<std::string>& layer_names() {
         all.push_back("stat");
         all.push_back("magnification");
         all.push_back("position");
+        all.push_back("ray");
         return all;
     }();
     return names;
@@ -65,7 +67,8 @@ std::size_t Canvas::add_ids(const std::string& name) {
 Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std::move(image)) {
     const auto wanted = [&](const std::string& layer) {
         if (layers.empty())
-            return layer != "path" && layer != "stat" && layer != "magnification" && layer != "position";
+            return layer != "path" && layer != "stat" && layer != "magnification" && layer != "position" &&
+                   layer != "ray";
         return std::find(layers.begin(), layers.end(), layer) != layers.end();
     };
     for (std::size_t c = 0; c < 4; ++c) rgba_[c] = add_floats(kColours[c]);
@@ -93,6 +96,11 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
         end.z = add_floats(layer + "P.Z");
         end.length = add_floats(layer + "P.length");
         if (path != Path::kDirect && wanted("magnification")) end.area = add_floats(layer + "M.area");
+        if (path != Path::kDirect && wanted("ray"))
+            for (std::size_t k = 0; k < 3; ++k) {
+                end.direction[k] = add_floats(layer + "D." + kAxes[k]);
+                end.origin[k] = add_floats(layer + "O." + kAxes[k]);
+            }
         ends_.push_back(end);
     }
     if (wanted("path")) path_count_ = add_ids("path.count");
@@ -155,6 +163,11 @@ void Canvas::put_end(const World& world, const PathEnd* end, const EndChannels& 
     floats(channels.z)[pixel] = static_cast<float>(point.z);
     if (channels.area != kNone)
         floats(channels.area)[pixel] = end ? static_cast<float>(end->magnification) : 0;
+    const Ray last = end ? Ray{end->ray.origin, normalize_or_zero(end->ray.direction)} : Ray{};
+    for (std::size_t k = 0; k < 3 && channels.direction[k] != kNone; ++k) {
+        floats(channels.direction[k])[pixel] = static_cast<float>(last.direction[static_cast<int>(k)]);
+        floats(channels.origin[k])[pixel] = static_cast<float>(last.origin[static_cast<int>(k)]);
+    }
     floats(channels.length)[pixel] = seen ? static_cast<float>(path_length(*end)) : 0.0f;
 }
 

@@ -33,6 +33,7 @@ class Canvas {
         Path path = Path::kReflect;
         std::size_t object = kNone, primitive = kNone, x = kNone, y = kNone, z = kNone, length = kNone;
         std::size_t area = kNone;
+        std::array<std::size_t, 3> direction{kNone, kNone, kNone}, origin{kNone, kNone, kNone};
     };
 
     std::size_t add_floats(const std::string& name);
