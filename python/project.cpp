@@ -200,8 +200,8 @@ std::vector<ImageStart> starts_of(const py::object& images) {
     return starts;
 }
 
-py::array rows_array(const Rows& rows) {
-    return record_array(row_type(rows), rows.bytes.data(), rows.bytes.size() / rows.row_size());
+py::array rows_array(Rows rows) {
+    return record_array(row_type(rows), std::move(rows.bytes));
 }
 
 /// What the facets have is all that can be told without refining.

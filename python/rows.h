@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bindings.h"
@@ -37,11 +39,16 @@ class RecordType {
     py::list names_, formats_, offsets_;
 };
 
-/// A copy of records that stand one behind the other.
-inline py::array record_array(const py::dict& type, const void* data, std::size_t count) {
+/// Records that stand one behind the other; the array takes the list over, without a copy.
+template <class Record>
+py::array record_array(const py::dict& type, std::vector<Record> records) {
     const py::object dtype = py::module_::import("numpy").attr("dtype")(type);
-    return py::array(py::dtype::from_args(dtype), {static_cast<py::ssize_t>(count)},
-                     {type["itemsize"].cast<py::ssize_t>()}, data);
+    const auto size = type["itemsize"].cast<py::ssize_t>();
+    const auto count = static_cast<py::ssize_t>(records.size() * sizeof(Record)) / size;
+    auto owned = std::make_unique<std::vector<Record>>(std::move(records));
+    const void* data = owned->data();
+    const py::capsule owner(owned.release(), [](void* p) { delete static_cast<std::vector<Record>*>(p); });
+    return py::array(py::dtype::from_args(dtype), {count}, {size}, data, owner);
 }
 
 /// A record of zeros, its gaps too: equal records, equal bytes.

@@ -131,10 +131,10 @@ void bind_shoot(RendererClass& renderer) {
             if (path) request.path = EventWord(*path);
             const std::vector<Vec2> places = pixels ? places_of(*pixels) : std::vector<Vec2>();
             const std::vector<Ray> rays = pixels ? std::vector<Ray>() : rays_of(*origins, *directions);
-            const ShotRows rows = PythonCall().run(
+            ShotRows rows = PythonCall().run(
                 [&] { return shot_rows(pixels ? self.shoot(places, request) : self.shoot(rays, request)); });
-            return py::make_tuple(record_array(ray_type(), rows.rays.data(), rows.rays.size()),
-                                  record_array(event_type(), rows.events.data(), rows.events.size()));
+            return py::make_tuple(record_array(ray_type(), std::move(rows.rays)),
+                                  record_array(event_type(), std::move(rows.events)));
         },
         py::arg("pixels") = py::none(), py::arg("camera") = py::none(), py::kw_only(),
         py::arg("origins") = py::none(), py::arg("directions") = py::none(), py::arg("path") = py::none(),

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "base/util/check.h"
 #include "specular/batch_search.h"
 #include "specular/branch_and_bound.h"
 #include "specular/cell_bvh.h"
+#include "specular/sphere_search.h"
 
 namespace trilens {
 
@@ -21,6 +23,10 @@ struct SpecularSearcher::Impl {
     std::mutex guard;
     std::vector<std::unique_ptr<BatchSearch>> idle;  // batches of earlier calls
 
+    std::vector<SpecularSearch> find_in_cells(const SpecularQuery& query, std::span<const Vec3> points,
+                                              const SearchLimits& limits);
+    std::vector<SpecularSearch> find_on_sphere(const SphereSearch& sphere, const SpecularQuery& query,
+                                               std::span<const Vec3> points, const SearchLimits& limits);
     std::unique_ptr<BatchSearch> take(const SpecularQuery& query, const SearchLimits& limits);
     void give_back(std::unique_ptr<BatchSearch> batch);
 };
@@ -44,6 +50,33 @@ void SpecularSearcher::Impl::give_back(std::unique_ptr<BatchSearch> batch) {
     const std::lock_guard lock(guard);
     if (idle.size() == kMostIdle) idle.erase(idle.begin());
     idle.push_back(std::move(batch));
+}
+
+std::vector<SpecularSearch> SpecularSearcher::Impl::find_in_cells(const SpecularQuery& query,
+                                                                  std::span<const Vec3> points,
+                                                                  const SearchLimits& limits) {
+    std::unique_ptr<BatchSearch> batch = take(query, limits);
+    std::vector<SpecularSearch> found = batch->run(points);
+    give_back(std::move(batch));
+    return found;
+}
+
+/// Of points that the sphere's own search says nothing of through the cells.
+std::vector<SpecularSearch> SpecularSearcher::Impl::find_on_sphere(const SphereSearch& sphere,
+                                                                   const SpecularQuery& query,
+                                                                   std::span<const Vec3> points,
+                                                                   const SearchLimits& limits) {
+    std::vector<std::optional<SpecularSearch>> known = sphere.find(points);
+    std::vector<Vec3> open;
+    for (std::size_t p = 0; p < points.size(); ++p)
+        if (!known[p]) open.push_back(points[p]);
+    std::vector<SpecularSearch> rest;
+    if (!open.empty()) rest = find_in_cells(query, open, limits);
+    std::vector<SpecularSearch> found;
+    found.reserve(points.size());
+    for (std::size_t p = 0, next = 0; p < points.size(); ++p)
+        found.push_back(known[p] ? std::move(*known[p]) : std::move(rest[next++]));
+    return found;
 }
 
 SpecularSearcher::SpecularSearcher(const Surface& surface)
@@ -80,6 +113,8 @@ SpecularSearch together(SpecularSearch search, const SpecularSearch& other) {
 
 SpecularSearch SpecularSearcher::find(const SpecularQuery& query, const SearchLimits& limits) const {
     check(query, limits);
+    if (const SphereSearch sphere(impl_->surface, query, limits); sphere.applies())
+        if (auto found = std::move(sphere.find({&query.point, 1}).front())) return std::move(*found);
     if (impl_->cells.bounder() && query.own_normals) {
         ViewTree tree(impl_->surface, impl_->cells, query);
         return BranchAndBound(impl_->surface, *impl_->cells.bounder(), tree, limits).run(query);
@@ -98,12 +133,9 @@ std::vector<SpecularSearch> SpecularSearcher::find_each(const SpecularQuery& que
                                                         std::span<const Vec3> points,
                                                         const SearchLimits& limits) const {
     check(query, limits);
-    if (impl_->cells.bounder() && query.own_normals) {
-        std::unique_ptr<BatchSearch> batch = impl_->take(query, limits);
-        std::vector<SpecularSearch> found = batch->run(points);
-        impl_->give_back(std::move(batch));
-        return found;
-    }
+    if (const SphereSearch sphere(impl_->surface, query, limits); sphere.applies())
+        return impl_->find_on_sphere(sphere, query, points, limits);
+    if (impl_->cells.bounder() && query.own_normals) return impl_->find_in_cells(query, points, limits);
     std::vector<SpecularSearch> found;
     SpecularQuery one = query;
     for (const Vec3& point : points) {

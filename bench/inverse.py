@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+"""Measures projection and the inverse problems on it, in this process, and prints one table:
+
+    PYTHONPATH=build/release/python bench/inverse.py [--threads T] [--points N] [--json FILE] [NAME...]
+
+Each row is a function named row_NAME: what was done, microseconds a point (the best of three), and how far it is from
+an independent answer. Published figures beside them: a projection by quadrics on a sphere 10 us, catadioptric cameras
+20 to 50 us (Agrawal, Taguchi and Ramalingam, Beyond Alhazen's problem, CVPR 2011).
+"""
+import argparse
+import json
+import time
+
+import numpy as np
+
+import trilens
+
+FILM = {"width": 1024, "height": 768}
+CAMERA = {"name": "main", "type": "perspective", "yfov": 40, "lookAt": {"eye": [0.2, 0.3, 4.5], "at": [0, 0, 0]}}
+BOX = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [0, 4, 7, 3], [1, 2, 6, 5]]
+
+
+def scene(meshes, materials, depth=0):
+    return trilens.Renderer(trilens.parse_scene(
+        {"version": 1, "film": FILM, "cameras": [CAMERA], "materials": materials, "meshes": meshes,
+         "render": {"maxDepth": depth}}, warn=lambda message: None))
+
+
+def box(name, low, high, material):
+    x, y, z = zip(low, high)
+    points = [[x[0], y[0], z[0]], [x[1], y[0], z[0]], [x[1], y[1], z[0]], [x[0], y[1], z[0]],
+              [x[0], y[0], z[1]], [x[1], y[0], z[1]], [x[1], y[1], z[1]], [x[0], y[1], z[1]]]
+    return {"name": name, "role": "optic", "material": material, "points": points, "faceVertexCounts": [4] * 6,
+            "faceVertexIndices": sum(BOX, []), "subdivisionScheme": "bilinear", "resolution": 4}
+
+
+def creased_cage():
+    """A bar of 3 x 1 x 1 cubes, 14 faces, its front edge creased."""
+    grid = {}
+    points, faces = [], []
+
+    def corner(x, y, z):
+        if (x, y, z) not in grid:
+            grid[x, y, z] = len(points)
+            points.append([x / 1.5 - 1, y * 1.2 - 0.6, z * 1.2 - 0.6])
+        return grid[x, y, z]
+
+    for x in range(3):
+        for a, b, c, d in (((0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)), ((0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)),
+                           ((0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)), ((0, 1, 0), (0, 1, 1), (1, 1, 1), (1, 1, 0))):
+            faces.append([corner(x + p[0], p[1], p[2]) for p in (a, b, c, d)])
+    faces.append([corner(0, *p) for p in ((0, 0), (0, 1), (1, 1), (1, 0))])
+    faces.append([corner(3, *p) for p in ((0, 0), (1, 0), (1, 1), (0, 1))])
+    return {"name": "bar", "role": "optic", "material": "chrome", "points": points, "faceVertexCounts": [4] * 14,
+            "faceVertexIndices": sum(faces, []), "creaseIndices": [corner(x, 1, 1) for x in range(4)],
+            "creaseLengths": [4], "creaseSharpnesses": [2], "resolution": 8}
+
+
+CHROME = {"name": "chrome", "metallicFactor": 1, "roughnessFactor": 0}
+SPHERE = {"name": "ball", "role": "optic", "material": "chrome", "primitive": {"type": "sphere", "radius": 1}}
+
+
+def points_around(count, seed=1):
+    draw = np.random.default_rng(seed)
+    way = draw.normal(size=(count, 3))
+    return way / np.linalg.norm(way, axis=1)[:, None] * draw.uniform(1.8, 6, (count, 1))
+
+
+def best_of(work, times=3):
+    least, answer = np.inf, None
+    for _ in range(times):
+        start = time.perf_counter()
+        answer = work()
+        least = min(least, time.perf_counter() - start)
+    return least, answer
+
+
+def miss_of(renderer, points, images, path=None):
+    """How far the rays of images' places pass by their points, over what a pixel moves them: pixels, the worst."""
+    some = np.linspace(0, len(images) - 1, min(2000, len(images))).astype(int)
+    some = images[some]
+    some = some[(some["step_count"] > 0) & some["inside"]]
+    rays, _ = renderer.shoot(np.stack([some["x"], some["y"]], axis=1), path=path)
+    good = np.isin(rays["state"], ["seen", "escapes"])
+    to = points[some["point"]] - rays["origin"]
+    miss = to - np.sum(to * rays["direction"], axis=1)[:, None] * rays["direction"]
+    moved = np.einsum("nij,nj->ni", some["derivative"], miss)
+    good &= some["has_derivative"] & (np.linalg.norm(miss, axis=1) < 0.01)
+    return float(np.linalg.norm(moved[good], axis=1).max()), int(good.sum())
+
+
+def projected(what, renderer, points, path=None):
+    renderer.project(points[:10], path=path, visibility=False)
+    seconds, images = best_of(lambda: renderer.project(points, path=path, visibility=False))
+    error, count = miss_of(renderer, points,
+                           renderer.project(points[:4000], path=path, derivatives=True, visibility=False), path)
+    return {"what": what, "us": 1e6 * seconds / len(points), "error": error, "unit": "px",
+            "note": f"{len(images)} images, {count} checked by rays"}
+
+
+def row_sphere(count):
+    return projected("projection, mirror sphere", scene([SPHERE], [CHROME]), points_around(count))
+
+
+def row_cage(count):
+    return projected("projection, creased cage of 14 faces", scene([creased_cage()], [CHROME]),
+                     points_around(max(count // 10, 1)))
+
+
+def port(window):
+    """A camera in air behind glass, water beyond: what a flat or a dome port of an underwater housing does."""
+    glass = {"name": "glass", "transmissionFactor": 1, "ior": 1.52}
+    water = {"name": "water", "transmissionFactor": 1, "ior": 1.335}
+    return scene([window, box("water", [-40, -40, -40], [40, 40, 3.9], "water")], [glass, water], 2)
+
+
+def row_flat_port(count):
+    draw = np.random.default_rng(2)
+    points = np.stack([draw.uniform(-1.5, 1.5, count // 10), draw.uniform(-1, 1, count // 10),
+                       draw.uniform(-3, 2, count // 10)], axis=1)
+    return projected("projection, flat port (air, glass, water)", port(box("port", [-2, -2, 3.9], [2, 2, 4], "glass")),
+                     points, "TT")
+
+
+def row_warm_sphere(count):
+    renderer, points = scene([SPHERE], [CHROME]), points_around(count)
+    start = renderer.project(points, visibility=False)
+    start = start[start["path"] == "reflect"]
+    moved = points + 1e-3
+    seconds, warm = best_of(lambda: renderer.project(moved, start=start, visibility=False))
+    cold = renderer.project(moved, visibility=False)
+    cold = cold[cold["path"] == "reflect"]
+    key = {(image["point"], image["steps"]["front"][0]): image for image in cold[:3000]}
+    errors = [np.hypot(a["x"] - b["x"], a["y"] - b["y"]) for a in warm[:2000] if a["refined"]
+              for b in [key.get((a["point"], a["steps"]["front"][0]))] if b is not None]
+    return {"what": "warm start, mirror sphere", "us": 1e6 * seconds / len(start), "error": float(max(errors)),
+            "unit": "px", "note": f"{len(start)} images, a step of 1.7e-3"}
+
+
+def row_derivatives(count):
+    renderer, points = scene([SPHERE], [CHROME]), points_around(count)
+    pointers = ["/meshes/0/primitive/center", "/meshes/0/primitive/radius", "/cameras/0/yfov"]
+    plain, _ = best_of(lambda: renderer.project(points, visibility=False))
+    seconds, images = best_of(lambda: renderer.project(points, visibility=False, derivatives=pointers))
+    step, few = 1e-4, points[:2000]
+    places = []
+    for sign in (1, -1):
+        ball = {**SPHERE, "primitive": {"type": "sphere", "radius": 1 + sign * step}}
+        start = renderer.project(few, visibility=False)
+        moved = scene([ball], [CHROME]).project(few, start=start, visibility=False)
+        places.append(np.stack([moved["x"], moved["y"]], axis=1))
+    difference = (places[0] - places[1]) / (2 * step)
+    exact = renderer.project(few, visibility=False, derivatives=pointers)["by_parameter"][:, :, 3]
+    error = np.linalg.norm(exact - difference, axis=1) / np.maximum(np.linalg.norm(difference, axis=1), 1)
+    return {"what": "derivatives by 5 numbers, mirror sphere", "us": 1e6 * seconds / len(points),
+            "error": float(np.nanquantile(error, 0.99)), "unit": "relative, p99",
+            "note": f"{seconds / plain:.2f} of the projection alone"}
+
+
+def row_shoot(count):
+    renderer = scene([SPHERE], [CHROME])
+    pixels = np.random.default_rng(4).uniform([0, 0], [FILM["width"], FILM["height"]], (count, 2))
+    seconds, (rays, events) = best_of(lambda: renderer.shoot(pixels))
+    return {"what": "shoot, mirror sphere", "us": 1e6 * seconds / count, "note": f"{len(events)} events"}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--points", type=int, default=100_000)
+    parser.add_argument("--json")
+    options = parser.parse_args()
+    trilens.set_threads(options.threads)
+    rows = {name[4:]: row for name, row in globals().items() if name.startswith("row_")}
+    unknown = set(options.names) - set(rows)
+    if unknown:
+        parser.error(f"there is no row {', '.join(sorted(unknown))}: there are {', '.join(rows)}")
+    measured = []
+    for name in options.names or rows:
+        measured.append({"name": name, **rows[name](options.points)})
+        one = measured[-1]
+        error = f"{one['error']:.2g} {one['unit']}" if "error" in one else ""
+        print(f"{one['what']:45s} {one.get('us', float('nan')):9.2f} us  {error:24s} {one.get('note', '')}", flush=True)
+    if options.json:
+        with open(options.json, "w") as file:
+            json.dump(measured, file, indent=1)
+
+
+if __name__ == "__main__":
+    main()
