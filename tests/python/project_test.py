@@ -70,7 +70,7 @@ def around(count, seed, near=1.6, far=6.0):
 
 def test_words_choose_histories():
     renderer = renderer_of(scene_of(mirror_and_lens, maxDepth=2))
-    points = around(4, 1)
+    points = around(16, 1)
     every = renderer.project(points)
     words = {"reflect": "R", "transmit": "T"}
     word_of = lambda image: "".join(words[s] for s in image["steps"]["event"][:image["step_count"]])
@@ -120,7 +120,7 @@ def test_directions_are_points_without_end(change):
         if image["inside"] and ray["event_count"][0] == 1:
             np.testing.assert_allclose(ray["direction"][0], unit, atol=1e-9)
     far = renderer.project(1e11 * directions)
-    for image in far[far["refined"]]:
+    for image in far[far["refined"] & far["inside"]]:
         same = images[images["point"] == image["point"]]
         assert np.min(np.hypot(same["x"] - image["x"], same["y"] - image["y"])) < 1e-6
     with pytest.raises(trilens.InputError, match="farther"):
@@ -193,7 +193,7 @@ def test_derivatives_are_those_of_differences(kind):
     """Against central differences of whole projections, warm-started so that each follows its image."""
     change, depth, path, pointers = KINDS[kind]
     scene = scene_of(change, maxDepth=depth)
-    points = around(14, 17)
+    points = around(30, 17)
     renderer = renderer_of(scene)
     images = renderer.project(points, path=path, derivatives=pointers)
     columns = [(pointer, at) for pointer in pointers for at in numbers_of(value_at(scene, pointer))]
@@ -220,7 +220,7 @@ def test_derivatives_are_those_of_differences(kind):
         error = np.linalg.norm(images["by_parameter"][good][:, :, column] - difference[good], axis=1) / scale
         worst.append(error.max())
         assert np.median(error) < 1e-6, (pointer, at)
-    assert max(worst) < 2e-5, list(zip(columns, worst))
+    assert max(worst) < 1e-5, list(zip(columns, worst))
 
 
 def test_pointers_without_numbers_are_refused():
