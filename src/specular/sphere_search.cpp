@@ -34,23 +34,32 @@ SphereSearch::SphereSearch(const Surface& surface, const SpecularQuery& query, c
     sphere_.center = at.position - sphere_.radius * at.normal;
 }
 
-/// Newton's method along the circle through eye, point and normal; from seven digits of the rough zero, so
-/// that the result does not depend on how the processor came by it.
+/// Newton's method on the sphere, whose Hessian is diagonal in the plane of eye, point and centre and across
+/// it; from seven digits of the rough zero, so that the result does not depend on how the processor came by
+/// it.
 std::optional<SphereSearch::Zero> SphereSearch::settle(const Vec3& rough, const Vec3& point) const {
     const double by_radius = 1 / sphere_.radius;
     const Vec3 from[2] = {by_radius * (query_.camera.eye - sphere_.center),
                           by_radius * (point - sphere_.center)};
     Vec3 normal = normalize_or_zero(in_single(rough));
+    Vec3 across = normalize_or_zero(cross(from[0], from[1]));
+    if (across == Vec3(0))
+        across = normalize(cross(normal, std::fabs(normal.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
     for (int step = 0; step < kLastSphereSteps; ++step) {
         Vec3 bend(0);
-        double slope = 0;
+        double slope_along = 0, slope_across = 0;
         for (const Vec3& start : from) {
             const Vec3 way = normal - start;
             const double by_distance = 1 / length(way), cosine = by_distance * dot(way, normal);
             bend += by_distance * way;
-            slope += cosine * (cosine * by_distance - 1);
+            slope_along += cosine * (cosine * by_distance - 1);
+            slope_across += by_distance - cosine;
         }
-        normal = normalize_or_zero(normal - (bend - dot(bend, normal) * normal) / slope);
+        // The second derivatives along a great circle: those of the path, less what the sphere bends away.
+        const Vec3 along = cross(across, normal);
+        bend -= dot(bend, normal) * normal;
+        normal = normalize_or_zero(normal - dot(bend, along) / slope_along * along -
+                                   dot(bend, across) / slope_across * across);
     }
     SpecularQuery query = query_;
     query.point = point;
