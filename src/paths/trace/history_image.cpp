@@ -122,9 +122,10 @@ std::optional<HistoryImage> image_of(const HistoryQuery& query, const Vec2& pixe
 
 }  // namespace
 
-std::vector<PathEvent> history_events(const HistoryQuery& query, const Vec2& pixel) {
+std::optional<HistoryPath> history_path(const HistoryQuery& query, const Vec2& pixel) {
     const std::optional<Exit> exit = exit_at(query, pixel);
-    return exit ? exit->events : std::vector<PathEvent>();
+    if (!exit) return std::nullopt;
+    return HistoryPath{exit->events, exit->ray};
 }
 
 std::optional<HistoryImage> history_image_at(const HistoryQuery& query, const Vec2& pixel) {

@@ -37,9 +37,15 @@ struct HistoryImage {
 /// which the camera meets where it meets it first.
 std::optional<HistoryImage> refine_history_image(const HistoryQuery& query, const Vec2& start);
 
-/// The path of the camera's ray through a film place over this history, meeting by meeting; empty where the
-/// ray has another one. Its first optic it meets as the first, whatever hides it.
-std::vector<PathEvent> history_events(const HistoryQuery& query, const Vec2& pixel);
+/// A camera's ray over a history.
+struct HistoryPath {
+    std::vector<PathEvent> events;
+    Ray exit;  // the last ray, unit
+};
+
+/// The path of the camera's ray through a film place; none where that ray has another history. Its first
+/// optic it meets as the first, whatever hides it.
+std::optional<HistoryPath> history_path(const HistoryQuery& query, const Vec2& pixel);
 
 /// The image at a place where it is known to be, without a derivative; none where the camera's ray there has
 /// another history, or passes the point by at more than refine_history_image lets stand.

@@ -16,6 +16,8 @@ constexpr std::size_t kLoneStarts = 6;
 /// A point is free if what its ray meets lies within this share of the way.
 constexpr double kPathFreeShare = 1e-6;
 constexpr std::size_t kPathFacetsPerTask = 256, kLonePerTask = 4;
+/// The cosine of the angle at which a ray still passes near a point.
+constexpr double kNearCosine = 0.9995;
 /// Traced parts whose paths are held at once, until their rays are added to their histories.
 constexpr std::size_t kLoneBatch = 1024;
 
@@ -152,18 +154,20 @@ void SeveralOpticsImages::drop_histories() {
     history_at_.clear();
 }
 
-/// By the chain of surfaces where the camera has an eye, from the start's own path; else, or where the image
-/// lies on faces that the chain does not come to, on the film.
+/// By the chain of surfaces where the camera has an eye, from the start's own path; else, or where the chain
+/// comes to no image but the start's ray passes near the point, on the film.
 std::optional<HistoryImage> SeveralOpticsImages::refine(const HistoryQuery& query, const Vec2& start) const {
-    const std::vector<PathEvent> events = history_events(query, start);
-    if (events.empty()) return std::nullopt;
-    if (const auto solved = solve_image(world_, frame_, events, {query.point}, start)) {
+    const std::optional<HistoryPath> path = history_path(query, start);
+    if (!path) return std::nullopt;
+    if (const auto solved = solve_image(world_, frame_, path->events, {query.point}, start)) {
         std::optional<HistoryImage> image = history_image_at(query, solved->film.pixel);
         if (image && solved->is_regular) {
             image->derivative = solved->derivative;
             return image;
         }
     }
+    const double along = dot(path->exit.direction, normalize_or_zero(query.point - path->exit.origin));
+    if (along < kNearCosine && chain_eye(frame_.camera)) return std::nullopt;
     return refine_history_image(query, start);
 }
 
