@@ -2,7 +2,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "arrays.h"
 #include "python_call.h"
@@ -263,7 +265,7 @@ void bind_design(py::module_& module) {
                 if (!self.sphere) return py::none();
                 py::dict values = errors_dict(self.sphere->errors);
                 values["radius"] = self.sphere->radius;
-                return std::move(values);
+                return py::object(values);
             },
             "The same of the best sphere with its \"radius\" (positive: convex); None where it was not asked "
             "for.")

@@ -15,7 +15,7 @@ namespace trilens {
 namespace {
 
 struct DesignOptions {
-    std::string wish, output, stl, obj, sag, compare, method = "gauss-newton";
+    std::string wish, output, stl, obj, sag, sphere, compare, method = "gauss-newton";
     bool schema = false, example = false;
     double thickness = 0;
 };
@@ -60,6 +60,8 @@ void write_files(const DesignOptions& options, const DesignWish& wish, const Des
     }
     if (!options.obj.empty()) replace_text_file(options.obj, design_obj(design));
     if (!options.sag.empty()) replace_text_file(options.sag, design_sag_table(design));
+    if (!options.sphere.empty())
+        replace_text_file(options.sphere, design_scene(wish, design_of_sphere(wish, design)));
 }
 
 Answer run(const DesignOptions& options, Console& console) {
@@ -72,7 +74,7 @@ Answer run(const DesignOptions& options, Console& console) {
     console.files().reads({options.wish});
     const DesignWish wish = read_wish(options.wish);
     check_output(options.output, console);
-    for (const std::string& file : {options.stl, options.obj, options.sag})
+    for (const std::string& file : {options.stl, options.obj, options.sag, options.sphere})
         if (!file.empty()) {
             if (is_standard_stream(file)) throw UsageError("only -o may write to standard output");
             check_output(file, console);
@@ -80,7 +82,7 @@ Answer run(const DesignOptions& options, Console& console) {
 
     DesignRequest request;
     request.method = options.method == "picard" ? DesignMethod::kPicard : DesignMethod::kGaussNewton;
-    request.compare_sphere = options.compare == "sphere";
+    request.compare_sphere = options.compare == "sphere" || !options.sphere.empty();
     const Stopwatch watch;
     const Design design = design_mirror(wish, request, console.progress("design"));
     const double seconds = watch.seconds();

@@ -164,6 +164,13 @@ TEST_CASE("a driver's mirror beats the best sphere, on and off its axis, and cur
     fine.patch.controls = {20, 20};
     CHECK(std::abs(design_mirror(fine).errors.mean / off.errors.mean - 1) < 0.02);
 
+    // The sphere as control points is the sphere.
+    const DesignWish wish = driver_wish();
+    const HeightField sphere = design_of_sphere(wish, off).surface;
+    for (const Vec2& at : patch_samples(wish.patch.size, {6, 5}))
+        CHECK(std::abs(sphere.height(at).z - sphere_height(1 / off.sphere->radius, off.sphere->tilt, at)->z) <
+              1e-6);
+
     // Without its anchor the surface would slide along the rays; with it its middle stays in the rectangle.
     CHECK(std::abs(off.surface.height({0, 0}).z) < 1e-6);
     CHECK(off.sag < 0.05);

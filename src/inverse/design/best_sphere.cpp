@@ -3,6 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/util/check.h"
+#include "base/util/error.h"
+#include "inverse/solve/cholesky.h"
 #include "inverse/solve/levenberg_marquardt.h"
 
 namespace trilens {
@@ -76,11 +79,31 @@ BestSphere best_sphere(const DesignWish& wish, const WishedRays& rays, std::span
 
     BestSphere best;
     best.radius = shape.curvature != 0 ? 1 / shape.curvature : std::numeric_limits<double>::infinity();
+    best.tilt = shape.tilt;
     std::vector<double> degrees;
     for (const Vec2& at : samples)
         degrees.push_back(ray_error(rays, at, *sphere_height(shape.curvature, shape.tilt, at - wish.anchor)));
     best.errors = design_errors(std::move(degrees));
     return best;
+}
+
+Design design_of_sphere(const DesignWish& wish, const Design& design) {
+    TRILENS_CHECK(design.sphere.has_value(), "the best sphere was found");
+    const double curvature = std::isinf(design.sphere->radius) ? 0 : 1 / design.sphere->radius;
+    Design sphere;
+    sphere.surface = HeightField(wish.patch.size, wish.patch.controls);
+    sphere.errors = design.sphere->errors;
+    NormalEquations equations(sphere.surface.heights.size());
+    for (const Vec2& at :
+         patch_samples(wish.patch.size, {4 * wish.patch.controls[0], 4 * wish.patch.controls[1]})) {
+        const std::optional<Height> h = sphere_height(curvature, design.sphere->tilt, at - wish.anchor);
+        if (!h) throw ComputationError("the best sphere does not reach over the whole rectangle");
+        const HeightBasis basis = sphere.surface.basis(at);
+        equations.add(basis.index, basis.z, h->z);
+    }
+    sphere.surface.heights = equations.solve();
+    TRILENS_CHECK(!sphere.surface.heights.empty(), "four samples a knot fix all control points");
+    return sphere;
 }
 
 }  // namespace trilens

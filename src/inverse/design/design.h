@@ -36,6 +36,7 @@ struct DesignRequest {
 /// The sphere (or plane) through the anchor that comes nearest to the wish.
 struct BestSphere {
     double radius = 0;  // positive: convex towards the eye; infinite: a plane
+    Vec2 tilt{0};       // its slopes at the anchor
     DesignErrors errors;
 };
 
@@ -59,6 +60,10 @@ struct Design {
 /// leave the rectangle's front), Interrupted.
 Design design_mirror(const DesignWish& wish, const DesignRequest& request = {},
                      const Progress& progress = {});
+
+/// The best sphere as a design with the same control points, whose heights are within 1e-6 of its sag for a
+/// dozen of them each way; `design` must have it.
+Design design_of_sphere(const DesignWish& wish, const Design& design);
 
 /// Its control net in the world, whose limit surface it is (no boundary interpolated).
 Cage design_cage(const DesignWish& wish, const Design& design);

@@ -47,8 +47,8 @@ struct FitRequest {
     /// JSON pointers of what is unknown: a number, an array of numbers, or a mesh's quaternion
     /// transform/rotate, which turns about the world's axes. Only cameras, optics and their materials move
     /// images.
-    std::vector<std::string> free;
-    std::vector<PriorValue> priors;
+    std::vector<std::string> free = {};
+    std::vector<PriorValue> priors = {};
     /// What happens at the optics that a ray meets, in order: R reflected, T transmitted, ? either; D:
     /// nothing, the point is seen directly. Empty: mirrors reflect, glass transmits.
     std::string path;
