@@ -16,7 +16,7 @@
 namespace trilens {
 namespace {
 
-struct FitOptions {
+struct CalibrationOptions {
     SceneOptions scene;
     std::string points, output, report, path;
     std::vector<std::string> free, prior;
@@ -80,7 +80,7 @@ void warn_of_folder(const std::string& output, const Scene& scene, Console& cons
                      " lies in another folder than the scene: relative names of files in it start there");
 }
 
-Answer run(const FitOptions& options, Console& console) {
+Answer run(const CalibrationOptions& options, Console& console) {
     FitRequest request;
     request.free = pointers_of(options.free);
     for (const std::string& prior : options.prior) request.priors.push_back(prior_of(prior));
@@ -129,7 +129,7 @@ Answer run(const FitOptions& options, Console& console) {
 }  // namespace
 
 Command fit_command() {
-    auto options = std::make_shared<FitOptions>();
+    auto options = std::make_shared<CalibrationOptions>();
     Command command{.name = "fit",
                     .summary = "parameters of mirrors, glass and cameras from pairs of pixels and points",
                     .schema = "fit"};
