@@ -128,7 +128,8 @@ TEST_CASE("rows of a design's rays are their derivatives", "[inverse][law]") {
 
 TEST_CASE("the map of a known paraboloid has no curl on it, and gives it back by both solvers",
           "[inverse][law]") {
-    const DesignWish wish = wish_of_surface(paraboloid, 161);
+    DesignWish wish = wish_of_surface(paraboloid, 161);
+    wish.fairness = 0;
     const WishedRays rays(wish);
     for (const Vec2& at : patch_samples(wish.patch.size, {7, 5}))
         CHECK(std::abs(slope_curl(rays, Vec3(at, paraboloid(at).z), 1e-5)) < 1e-3);

@@ -144,7 +144,7 @@ std::string wish_example() {
   "eye": [0.4218, 0, 0.7609],
   "patch": { "center": [0, 0, 0], "normal": [0, 0, 1], "tangent": [1, 0, 0], "size": [0.2, 0.11], "controls": [12, 12] },
   "wish": { "type": "plane", "origin": [-7.652, -2.603, 7.654], "u": [7.65, 0, 3.169], "v": [0, 5.206, 0] },
-  "fairness": 1e-7 }
+  "fairness": 1e-10 }
 )";
 }
 

@@ -153,7 +153,7 @@ double rms_of(const std::vector<FitPair>& pairs, std::span<const double> residua
 std::string events_of(const FitPair& pair) {
     if (pair.word == "D") return "D";
     std::string word;
-    for (const PathEvent& event : pair.path) word += event.reflects ? 'R' : 'T';
+    for (const OpticEvent& event : pair.path) word += event.reflects ? 'R' : 'T';
     return word;
 }
 

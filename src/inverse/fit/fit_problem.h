@@ -28,7 +28,7 @@ struct FitPair {
     std::size_t events = 0;  // of its path
     bool is_lost = false;
     std::array<Vec3, 2> metric{};  // dx/dX at the last linearisation
-    std::vector<PathEvent> path = {};
+    std::vector<OpticEvent> path = {};
 };
 
 /// Residuals are in units of the pairs' sigmas; unknowns in the parameters' scales.

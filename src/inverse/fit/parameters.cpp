@@ -44,6 +44,16 @@ std::optional<std::size_t> find_entry(const Json& array, const std::string& key)
     return std::nullopt;
 }
 
+/// The default that the schema of an object gives its key; null where it gives none.
+const Json* default_of(const Json& object_schema, const std::string& key, const Json& root) {
+    const Json& object = resolve_schema(object_schema, root);
+    if (!object.contains("properties") || !object.at("properties").contains(key)) return nullptr;
+    const Json& part = object.at("properties").at(key);  // beside a "$ref" its own goes first
+    if (part.contains("default")) return &part.at("default");
+    const Json& resolved = resolve_schema(part, root);
+    return resolved.contains("default") ? &resolved.at("default") : nullptr;
+}
+
 /// A pointer followed through document and schema; missing keys with defaults are added.
 struct Followed {
     Json* value = nullptr;
@@ -75,10 +85,8 @@ Followed follow(Json& document, const std::string& pointer, const std::string& f
                                 (schema ? suggestion(key, known_keys(resolve_schema(*schema, root)))
                                         : std::string()));
                 const Json& resolved = resolve_schema(*part, root);
-                if (part->contains("default"))
-                    (*found.value)[key] = part->at("default");
-                else if (resolved.contains("default"))
-                    (*found.value)[key] = resolved.at("default");
+                if (const Json* usual = default_of(*schema, key, root))
+                    (*found.value)[key] = *usual;
                 else if (resolved.contains("type") && resolved.at("type") == "object")
                     (*found.value)[key] = Json::object();
                 else

@@ -25,8 +25,8 @@ Vec3 eye_of(const Camera& camera) {
     return camera.linear ? camera.linear->eye : *camera.model->eye();
 }
 
-std::vector<Stretch> stretches(const FitScene& scene, const Camera& camera, std::span<const PathEvent> events,
-                               const Vec3& point) {
+std::vector<Stretch> stretches(const FitScene& scene, const Camera& camera,
+                               std::span<const OpticEvent> events, const Vec3& point) {
     std::vector<Stretch> all;
     const auto place = [&](std::size_t i) { return i < events.size() ? events[i].point.position : point; };
     for (std::size_t i = 0; i <= events.size(); ++i) {
@@ -119,13 +119,13 @@ bool is_same(const FitOptic& a, const FitOptic& b) {
            a.moved.translation == b.moved.translation;
 }
 
-SurfacePoint point_on(const FitOptic& optic, const FitOptic& nominal, const PathEvent& event) {
+SurfacePoint point_on(const FitOptic& optic, const FitOptic& nominal, const OpticEvent& event) {
     return moved_point(
         optic, optic.surface == nominal.surface ? event.as_built : optic.surface->eval(event.face, event.uv));
 }
 
 PlaceDifference difference_of(const FitScene& scene, const ParameterDifference& parameter,
-                              const PathEvent& event) {
+                              const OpticEvent& event) {
     const FitOptic &minus = parameter.minus.optics[event.optic], &plus = parameter.plus.optics[event.optic];
     if (is_same(minus, plus)) return {};
     const FitOptic& nominal = scene.optics[event.optic];
@@ -139,8 +139,8 @@ PlaceDifference difference_of(const FitScene& scene, const ParameterDifference& 
 /// The whole path, ready to be asked.
 struct StationaryPath {
     const FitScene& scene;
-    FilmPlace film;
-    std::span<const PathEvent> events;
+    ShownPlace film;
+    std::span<const OpticEvent> events;
     Vec3 point;
     std::vector<Stretch> stretch;
     std::array<Vec3, 2> gradient;  // of the camera's place at the first event, or at the point
@@ -178,7 +178,7 @@ bool solve(StationaryPath& path) {
 std::array<double, 2> by_parameter(const StationaryPath& path, const ParameterDifference& parameter) {
     const std::size_t k = path.events.size();
     std::vector<PlaceDifference> moves;
-    for (const PathEvent& event : path.events) moves.push_back(difference_of(path.scene, parameter, event));
+    for (const OpticEvent& event : path.events) moves.push_back(difference_of(path.scene, parameter, event));
     const double factor = 1 / (2 * parameter.step);
     const Camera &minus = parameter.minus.cameras[path.film.camera],
                  &plus = parameter.plus.cameras[path.film.camera];
@@ -236,8 +236,8 @@ std::optional<Vec2> film_place(const Camera& camera, const Vec3& point, const Ve
     return best;
 }
 
-std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const FilmPlace& place,
-                                                std::span<const PathEvent> events, const Vec3& point,
+std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const ShownPlace& place,
+                                                std::span<const OpticEvent> events, const Vec3& point,
                                                 std::span<const ParameterDifference> parameters) {
     StationaryPath path{scene, place, events, point, {}, {}, {}};
     const Camera& camera = path.camera();

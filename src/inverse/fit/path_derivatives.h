@@ -25,7 +25,7 @@ struct PathDerivatives {
 };
 
 /// A place on the film and the camera that it is of.
-struct FilmPlace {
+struct ShownPlace {
     std::size_t camera = 0;
     Vec2 pixel{0};
 };
@@ -37,8 +37,8 @@ struct FilmPlace {
 /// direction, H_i = n_i / l_i (1 - e_i e_i^T). The path is stationary: F_i = (dP_i/du)^T (n_i-1 e_i-1 -
 /// n_i e_i) = 0, with symmetric block tridiagonal Hessian A = dF/du; so du/dtheta = -A^-1 dF/dtheta, at fixed
 /// u. Only the first event's u moves the image, so two solutions with A serve any number of parameters.
-std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const FilmPlace& place,
-                                                std::span<const PathEvent> events, const Vec3& point,
+std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const ShownPlace& place,
+                                                std::span<const OpticEvent> events, const Vec3& point,
                                                 std::span<const ParameterDifference> parameters);
 
 /// Where the camera shows a world point, nearest to `near`; none where it does not.

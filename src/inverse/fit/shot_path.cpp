@@ -38,8 +38,8 @@ std::optional<OpticMeeting> meet(const FitScene& scene, const Ray& ray, std::siz
     return std::isfinite(first.t) ? std::optional(first) : std::nullopt;
 }
 
-PathEvent event_at(const FitScene& scene, const OpticMeeting& met) {
-    PathEvent event;
+OpticEvent event_at(const FitScene& scene, const OpticMeeting& met) {
+    OpticEvent event;
     event.optic = met.optic;
     event.face = met.hit.face;
     event.uv = met.hit.uv;
@@ -79,7 +79,7 @@ std::optional<ShotPath> shoot_path(const FitScene& scene, const Camera& camera, 
         path.reach.push_back(met ? met->t : std::numeric_limits<double>::infinity());
         if (is_done || !met) break;
 
-        PathEvent event = event_at(scene, *met);
+        OpticEvent event = event_at(scene, *met);
         const FitOptic& optic = scene.optics[event.optic];
         on = event.optic;
         const bool front = dot(ray.direction, event.point.normal) <= 0;

@@ -11,7 +11,7 @@
 namespace trilens {
 
 /// One meeting with an optic.
-struct PathEvent {
+struct OpticEvent {
     std::size_t optic = 0;  // of FitScene::optics
     Id face = kNone;
     Vec2 uv{0};
@@ -24,7 +24,7 @@ struct PathEvent {
 /// A path from the camera: its events, and the ray that leaves the last of them.
 struct ShotPath {
     Ray view;  // the camera's ray, unit direction
-    std::vector<PathEvent> events;
+    std::vector<OpticEvent> events;
     Ray last;  // unit direction
     /// Per number of events k: the ray after k of them, and how far it goes to the next event.
     std::vector<Ray> after;
