@@ -95,12 +95,16 @@ TEST_CASE("a fit of projected points gives the scene's parameters back", "[inver
 TEST_CASE("the ray residual and the image residual lead to the same parameters", "[inverse][law]") {
     for (const FitCase& one : fit_cases()) {
         INFO(one.name);
-        const Scene start = parse_scene(one.json, "", one.start);
+        const Scene scene = parse_scene(one.json);
         std::vector<FitPair> pairs;
-        for (const Correspondence& from : pairs_of(one))
+        for (const Correspondence& from : std::span(pairs_of(one)).first(30))
             pairs.push_back({from.pixel, from.point, 0.5, 0, one.word, from.pixel, one.word.size()});
-        Json document = resolved_json(start);
+        Json document = resolved_json(scene);
         const std::vector<FitParameter> free = find_parameters(document, one.free, "scene", 3);
+        double side = 0.003;  // near enough for images, which are looked for near their pixels
+        for (const FitParameter& parameter : free)
+            move_parameter(part_of(document, parameter), parameter, (side = -side) * parameter.scale);
+        const Scene start = parse_scene(document.dump());
         std::vector<std::vector<double>> found;
         for (const FitResidual residual : {FitResidual::kRay, FitResidual::kImage}) {
             FitProblem problem(start, document, free, pairs);
@@ -138,7 +142,7 @@ TEST_CASE("a fit's Jacobian is the difference of projected images", "[inverse][l
         // A cage's search is built anew for every pose: one turn tells.
         const bool is_cage = one.name[0] == 's';
         for (std::size_t p = is_cage ? 4 : 0; p < free.size(); p += is_cage ? 6 : 1) {
-            const double step = 1e-4 * free[p].scale;
+            const double step = 2e-5 * free[p].scale;
             std::vector<std::vector<PointProjection>> seen;
             for (const double amount : {-step, step}) {
                 Json moved = document;
@@ -158,7 +162,7 @@ TEST_CASE("a fit's Jacobian is the difference of projected images", "[inverse][l
                 }
                 const Vec2 difference = (place[1] - place[0]) / (2 * step);
                 const Vec2 implicit = Vec2(at.jacobian(2 * i, p), at.jacobian(2 * i + 1, p)) / free[p].scale;
-                CHECK(length(difference - implicit) <= 2e-5 * length(implicit) + 1e-4 / free[p].scale);
+                CHECK(length(difference - implicit) <= 2e-5 * length(implicit) + 1e-3 / free[p].scale);
             }
         }
     }

@@ -31,7 +31,8 @@ struct FitPair {
     std::vector<OpticEvent> path = {};
 };
 
-/// Residuals are in units of the pairs' sigmas; unknowns in the parameters' scales.
+/// Residuals are in units of the pairs' sigmas; unknowns in the parameters' scales. The scene must live
+/// longer.
 class FitProblem {
   public:
     FitProblem(const Scene& scene, Json document, std::vector<FitParameter> parameters,
