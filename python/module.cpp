@@ -56,6 +56,7 @@ PYBIND11_MODULE(_trilens, module) {
     bindings::bind_compare(module);
     bindings::bind_sweep(module);
     bindings::bind_suite(module);
+    bindings::bind_inverse(module);
     bindings::refuse_new_without_init(module);
     pybind11::delattr(module, "__module__");
 }

@@ -15,10 +15,10 @@ Command make_commands() {
     Command root{.name = "trilens",
                  .summary = "draw what curved mirrors and glass show, by projection, and measure its error"};
     root.commands = render_commands();
-    for (Command& command :
-         std::vector<Command>{compare_command(), sweep_command(), report_command(), test_command(),
-                              project_command(), shoot_command(), unwrap_command(), map_command(),
-                              anamorph_command(), scene_command(), info_command()})
+    for (Command& command : std::vector<Command>{
+             compare_command(), sweep_command(), report_command(), test_command(), project_command(),
+             shoot_command(), fit_command(), design_command(), unwrap_command(), map_command(),
+             anamorph_command(), scene_command(), info_command()})
         root.commands.push_back(std::move(command));
     add_examples(root, root.name);
     return root;

@@ -19,6 +19,8 @@ Command shoot_command();
 Command unwrap_command();
 Command map_command();
 Command anamorph_command();
+Command fit_command();
+Command design_command();
 Command test_command();
 Command scene_command();
 Command info_command();

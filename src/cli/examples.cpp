@@ -74,6 +74,15 @@ std::vector<Example> examples_of(const std::string& called) {
         {"trilens anamorph",
          {{"trilens anamorph cylinder.json --picture p.png --page page --paper A4 --verify -o page.pdf",
            "a page to print at true scale, and how near the picture is seen"}}},
+        {"trilens fit",
+         {{"trilens fit scene.json --points pairs.csv --free "
+           "/meshes/0/primitive/center,/meshes/0/primitive/radius "
+           "-o fitted.json --report fit.html",
+           "where the ball is and how large, and how sure that is"}}},
+        {"trilens design",
+         {{"trilens design --example > wish.json", "a wish to start from: a driver's mirror"},
+          {"trilens design wish.json -o mirror.json --compare sphere --stl mirror.stl",
+           "the mirror as a scene and for a mill, beside the best sphere"}}},
         {"trilens scene validate", {{"trilens scene validate scene.json", "before long work"}}},
         {"trilens scene info", {{"trilens scene info scene.json", "cameras, optics, triangles, bounds"}}},
         {"trilens scene schema",

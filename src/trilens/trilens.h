@@ -8,8 +8,10 @@
 #include <trilens/animation.h>
 #include <trilens/camera.h>
 #include <trilens/compare.h>
+#include <trilens/design.h>
 #include <trilens/error.h>
 #include <trilens/files.h>
+#include <trilens/fit.h>
 #include <trilens/image.h>
 #include <trilens/map.h>
 #include <trilens/project.h>

@@ -1,0 +1,203 @@
+#include "inverse/design/design.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "inverse/design/best_sphere.h"
+#include "inverse/design/reflection_rows.h"
+#include "inverse/solve/cholesky.h"
+
+namespace trilens {
+namespace {
+
+/// Of the anchor's row, over the rectangle's side: so heavy that nothing slides along the rays.
+constexpr double kAnchorWeight = 1e4;
+/// A step in heights, over the rectangle's side, after which the surface rests.
+constexpr double kRests = 1e-11;
+constexpr double kDifferenceShare = 1e-4;  // of the rectangle's side, for curls
+/// 1 / side: a curl above this is told as a warning: about 0.06 degrees over a rectangle of side 1.
+constexpr double kTellingCurl = 0.005;
+
+/// Builds and solves one linear least squares problem for all heights.
+class HeightSolver {
+  public:
+    HeightSolver(const DesignWish& wish, const HeightField& field)
+        : wish_(wish), equations_(field.heights.size()) {
+        add_fairness(field);
+        const HeightBasis at = field.basis(wish.anchor);
+        add(at, at.z, 0, std::pow(kAnchorWeight / side(), 2));
+    }
+
+    double side() const { return std::max(wish_.patch.size.x, wish_.patch.size.y); }
+
+    void add(const HeightBasis& at, const std::array<double, 16>& coefficients, double value, double weight) {
+        equations_.add(at.index, coefficients, value, weight);
+    }
+    std::vector<double> solve() const { return equations_.solve(); }
+
+  private:
+    /// Second differences of the control points in x and in y: changes of slope over the whole rectangle.
+    void add_fairness(const HeightField& field) {
+        const int columns = field.controls[0], rows = field.controls[1];
+        const Vec2 step = field.spacing();
+        const double weight = wish_.fairness / (static_cast<double>(columns) * rows);
+        const auto index = [&](int column, int row) {
+            return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                   static_cast<std::size_t>(column);
+        };
+        const auto bend = [&](std::array<std::size_t, 3> three, double spacing) {
+            const double scale = side() / (spacing * spacing);
+            equations_.add(three, std::array<double, 3>{scale, -2 * scale, scale}, 0, weight);
+        };
+        for (int row = 0; row < rows; ++row)
+            for (int column = 0; column < columns; ++column) {
+                if (column + 2 < columns)
+                    bend({index(column, row), index(column + 1, row), index(column + 2, row)}, step.x);
+                if (row + 2 < rows)
+                    bend({index(column, row), index(column, row + 1), index(column, row + 2)}, step.y);
+            }
+    }
+
+    const DesignWish& wish_;
+    NormalEquations equations_;
+};
+
+[[noreturn]] void fail_at_place(const Vec2& at) {
+    throw ComputationError(
+        fmt::format("no mirror reflects the eye's ray at ({:.4g}, {:.4g}) of the rectangle as wished: the "
+                    "normal would lie in it",
+                    at.x, at.y));
+}
+
+std::vector<double> solved(const HeightSolver& solver) {
+    std::vector<double> heights = solver.solve();
+    if (heights.empty())
+        throw ComputationError(
+            "the samples do not fix all control points: take more samples, fewer controls, or a "
+            "fairness above 0");
+    return heights;
+}
+
+/// One linear step; the largest change of a height.
+double picard_step(const DesignWish& wish, const WishedRays& rays, std::span<const Vec2> samples,
+                   HeightField& field) {
+    HeightSolver solver(wish, field);
+    const double weight = 1.0 / static_cast<double>(samples.size());
+    for (const Vec2& at : samples) {
+        const HeightBasis basis = field.basis(at);
+        const NeededSlopes needed = needed_slopes(rays, Vec3(at, field.height(at).z));
+        if (!needed.is_possible) fail_at_place(at);
+        solver.add(basis, basis.x, needed.slopes.x, weight);
+        solver.add(basis, basis.y, needed.slopes.y, weight);
+    }
+    const std::vector<double> heights = solved(solver);
+    double change = 0;
+    for (std::size_t i = 0; i < heights.size(); ++i)
+        change = std::max(change, std::abs(heights[i] - field.heights[i]));
+    field.heights = heights;
+    return change;
+}
+
+/// Of the rays, their rows linear in the heights about the present ones.
+double gauss_newton_step(const DesignWish& wish, const WishedRays& rays, std::span<const Vec2> samples,
+                         HeightField& field) {
+    HeightSolver solver(wish, field);
+    const double weight = 1.0 / static_cast<double>(samples.size());
+    for (const Vec2& at : samples) {
+        const HeightBasis basis = field.basis(at);
+        const Height now = field.height(at);
+        const RayRows rows = ray_rows(rays, at, now, solver.side());
+        for (int k = 0; k < 3; ++k) {
+            std::array<double, 16> row{};
+            for (std::size_t c = 0; c < 16; ++c)
+                row[c] = rows.by_z[k] * basis.z[c] + rows.by_x[k] * basis.x[c] + rows.by_y[k] * basis.y[c];
+            // residual + row . (new - now) = 0
+            const double there = rows.by_z[k] * now.z + rows.by_x[k] * now.x + rows.by_y[k] * now.y;
+            solver.add(basis, row, there - rows.residual[k], weight);
+        }
+    }
+    const std::vector<double> heights = solved(solver);
+    double change = 0;
+    for (std::size_t i = 0; i < heights.size(); ++i)
+        change = std::max(change, std::abs(heights[i] - field.heights[i]));
+    field.heights = heights;
+    return change;
+}
+
+double rms(std::span<const double> values) {
+    double sum = 0;
+    for (const double value : values) sum += value * value;
+    return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+/// What is told of the surface that was found.
+void measure(const DesignWish& wish, const WishedRays& rays, std::span<const Vec2> samples, Design& design) {
+    const double step = kDifferenceShare * std::max(wish.patch.size.x, wish.patch.size.y);
+    design.error_map = design.curl_map = {wish.samples[0], wish.samples[1], {}};
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest, curvature = 0;
+    std::vector<double> flat;
+    for (const Vec2& at : samples) {
+        const Height h = design.surface.height(at);
+        lowest = std::min(lowest, h.z), highest = std::max(highest, h.z);
+        curvature = std::max(curvature, largest_curvature(h));
+        design.error_map.values.push_back(ray_error(rays, at, h));
+        design.curl_map.values.push_back(slope_curl(rays, Vec3(at, h.z), step));
+        flat.push_back(slope_curl(rays, Vec3(at, 0), step));
+    }
+    design.errors = design_errors(design.error_map.values);
+    design.curl = rms(design.curl_map.values);
+    design.curl_flat = rms(flat);
+    design.sag = highest - lowest;
+    design.smallest_radius = 1 / curvature;
+    if (design.curl * std::max(wish.patch.size.x, wish.patch.size.y) > kTellingCurl)
+        design.warnings.push_back(
+            fmt::format("no mirror does what is wished: the slopes that it needs have a curl of "
+                        "{:.3g} per unit of length (rms), and {:.3g} degrees are left in the mean",
+                        design.curl, design.errors.mean));
+}
+
+}  // namespace
+
+DesignErrors design_errors(std::vector<double> degrees) {
+    DesignErrors errors;
+    if (degrees.empty()) return errors;
+    std::sort(degrees.begin(), degrees.end());
+    for (const double one : degrees) errors.mean += one / static_cast<double>(degrees.size());
+    errors.p95 = degrees[(degrees.size() - 1) * 95 / 100];
+    errors.max = degrees.back();
+    return errors;
+}
+
+Design design_mirror(const DesignWish& wish, const DesignRequest& request, const Progress& progress) {
+    check_wish(wish);
+    const WishedRays rays(wish);
+    const std::vector<Vec2> samples = patch_samples(wish.patch.size, wish.samples);
+    Design design;
+    design.surface = HeightField(wish.patch.size, wish.patch.controls);
+    const double rest = kRests * std::max(wish.patch.size.x, wish.patch.size.y);
+    const auto iterate = [&](auto step, int most) {
+        design.converged = false;
+        for (int k = 0; k < most && !design.converged; ++k) {
+            if (progress.cancelled()) throw Interrupted();
+            design.converged = step(wish, rays, samples, design.surface) < rest;
+            ++design.iterations;
+        }
+    };
+    constexpr int kRoughSteps = 3;  // from which Gauss and Newton's method is at its goal in as many
+    const bool is_picard = request.method == DesignMethod::kPicard;
+    iterate(picard_step,
+            is_picard ? request.most_iterations : std::min(kRoughSteps, request.most_iterations));
+    if (!is_picard) iterate(gauss_newton_step, request.most_iterations);
+    if (!all_finite(design.surface.heights)) throw ComputationError("the surface's heights are not finite");
+    if (!design.converged)
+        design.warnings.push_back(
+            fmt::format("the surface still moves after {} iterations", design.iterations));
+    measure(wish, rays, samples, design);
+    if (request.compare_sphere) design.sphere = best_sphere(wish, rays, samples);
+    return design;
+}
+
+}  // namespace trilens

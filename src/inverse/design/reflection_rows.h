@@ -1,0 +1,38 @@
+// One sample of a mirror in design: its reflected ray, the slopes that the wish needs, and their derivatives.
+#pragma once
+
+#include <array>
+
+#include "inverse/design/height_field.h"
+#include "inverse/design/wish.h"
+
+namespace trilens {
+
+/// Where the samples of a rectangle lie: middles of columns x rows equal parts, row by row.
+std::vector<Vec2> patch_samples(const Vec2& size, const std::array<int, 2>& counts);
+
+/// Slopes dz/dx, dz/dy for which the eye's ray at a place leaves in the wished direction (both of them unit:
+/// the normal halves their angle). The z of the normal is 0 or less where no mirror does it.
+struct NeededSlopes {
+    Vec2 slopes{0};
+    bool is_possible = true;
+};
+NeededSlopes needed_slopes(const WishedRays& wish, const Vec3& place);
+
+/// The reflected ray minus the wished one, both unit, at (at, h.z) with the slopes of h.
+Vec3 ray_residual(const WishedRays& wish, const Vec2& at, const Height& h);
+
+/// How that residual moves with z at fixed slopes, and with either slope at fixed z.
+struct RayRows {
+    Vec3 residual{0}, by_z{0}, by_x{0}, by_y{0};
+};
+RayRows ray_rows(const WishedRays& wish, const Vec2& at, const Height& h, double length_scale);
+
+/// The angle between the reflected ray and the wished one, degrees.
+double ray_error(const WishedRays& wish, const Vec2& at, const Height& h);
+
+/// (p_y + p_z q) - (q_x + q_z p) of the needed slopes p, q at (x, y, z): 0 where they are some surface's
+/// (Frobenius). By central differences of `step`.
+double slope_curl(const WishedRays& wish, const Vec3& place, double step);
+
+}  // namespace trilens

@@ -1,0 +1,289 @@
+#include "inverse/fit/fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/math/box.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "base/util/suggestion.h"
+#include "inverse/fit/fit_problem.h"
+#include "inverse/solve/uncertainty.h"
+#include "render/project/project.h"
+#include "render/world/world.h"
+#include "scene/read/override.h"
+
+namespace trilens {
+namespace {
+
+constexpr double kHighCorrelation = 0.95;
+
+std::size_t camera_named(const Scene& scene, const std::string& name, std::size_t pair) {
+    if (name.empty()) return scene.own_camera;
+    std::vector<std::string> names;
+    for (std::size_t c = 0; c < scene.cameras.size(); ++c) {
+        if (scene.cameras[c].name == name || std::to_string(c) == name) return c;
+        names.push_back(scene.cameras[c].name);
+    }
+    throw UsageError(
+        fmt::format("pair {}: there is no camera \"{}\"{}", pair, name, suggestion(name, names)));
+}
+
+bool is_finite(const Vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+std::vector<FitPair> prepare_pairs(const Scene& scene, std::span<const Correspondence> given,
+                                   const FitRequest& request) {
+    std::vector<FitPair> pairs;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        const Correspondence& from = given[i];
+        if (!is_finite(from.point) || !is_finite(Vec3(from.pixel, from.sigma)) || from.sigma < 0)
+            throw InputError("", fmt::format("pairs/{}", i), "is not finite, or has a negative sigma");
+        FitPair pair;
+        pair.pixel = pair.guess = from.pixel;
+        pair.point = from.point;
+        pair.sigma = from.sigma > 0 ? from.sigma : request.sigma;
+        pair.camera = camera_named(scene, from.camera, i);
+        pair.word = from.path.empty() ? request.path : from.path;
+        check_path_word(pair.word);
+        pairs.push_back(std::move(pair));
+    }
+    return pairs;
+}
+
+/// How far the points and the cameras reach.
+double extent_of(const Scene& scene, std::span<const FitPair> pairs) {
+    Box box;
+    for (const FitPair& pair : pairs) {
+        box.include(pair.point);
+        box.include(scene.cameras[pair.camera].eye);
+    }
+    const double extent = box.empty() ? 0 : length(box.high - box.low);
+    return extent > 0 ? extent / 2 : 1;
+}
+
+std::string word_of(const WorldImage& image) {
+    if (image.path == Path::kDirect) return "D";
+    std::string word;
+    for (const Step& step : image.steps)
+        if (step.event != Event::kPass) word += step.event == Event::kReflect ? 'R' : 'T';
+    return word;
+}
+
+/// Whether an image's events are those that a word asks for.
+bool fits(const std::string& word, const std::string& asked) {
+    if (asked.empty()) return word != "D";
+    if (word.size() != asked.size()) return false;
+    return std::equal(word.begin(), word.end(), asked.begin(),
+                      [](char is, char wanted) { return is == wanted || (wanted == '?' && is != 'D'); });
+}
+
+/// Starts each pair at an image of its point in the scene as it is.
+void match_images(const Scene& scene, std::span<const Correspondence> given, FitMatch match,
+                  std::vector<FitPair>& pairs) {
+    const std::unique_ptr<World> world = make_world(scene, {});
+    for (std::size_t c = 0; c < scene.cameras.size(); ++c) {
+        std::vector<Vec3> points;
+        std::vector<std::size_t> of_pair;
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            if (pairs[i].camera == c) points.push_back(pairs[i].point), of_pair.push_back(i);
+        if (points.empty()) continue;
+        ProjectRequest request;
+        request.frame.camera = c;
+        const std::vector<PointProjection> found = project_points(*world, request, points);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            FitPair& pair = pairs[of_pair[k]];
+            const int wanted = given[of_pair[k]].image;
+            const WorldImage* best = nullptr;
+            const std::vector<WorldImage>& images = found[k].images;
+            for (std::size_t m = 0; m < images.size(); ++m) {
+                if (match == FitMatch::kId ? static_cast<int>(m) != wanted
+                                           : !fits(word_of(images[m]), pair.word))
+                    continue;
+                if (!best || length(images[m].pixel - pair.pixel) < length(best->pixel - pair.pixel))
+                    best = &images[m];
+            }
+            pair.is_lost = !best;
+            if (!best) continue;
+            pair.guess = best->pixel;
+            pair.word = word_of(*best);
+            pair.events = pair.word == "D" ? 0 : pair.word.size();
+        }
+    }
+}
+
+std::vector<FitProblem::Prior> find_priors(const FitRequest& request, Json& document,
+                                           const std::vector<FitParameter>& parameters,
+                                           const std::string& file) {
+    std::vector<FitProblem::Prior> found;
+    for (const PriorValue& prior : request.priors) {
+        const std::vector<std::string> pointer{prior.pointer};
+        const std::vector<FitParameter> named = find_parameters(document, pointer, file, 1);
+        if (!(prior.sigma > 0) || !std::isfinite(prior.sigma))
+            throw InputError(file, prior.pointer, "a prior's sigma must be above 0");
+        if (prior.values.size() != 1 && prior.values.size() != named.size())
+            throw InputError(
+                file, prior.pointer,
+                fmt::format("a prior here needs 1 value or {}, not {}", named.size(), prior.values.size()));
+        for (std::size_t k = 0; k < named.size(); ++k) {
+            const auto free = std::find_if(parameters.begin(), parameters.end(),
+                                           [&](const FitParameter& p) { return p.name == named[k].name; });
+            if (free == parameters.end())
+                throw InputError(file, named[k].name, "has a prior, but is not free");
+            found.push_back({static_cast<std::size_t>(free - parameters.begin()),
+                             prior.values[prior.values.size() == 1 ? 0 : k], prior.sigma});
+        }
+    }
+    return found;
+}
+
+double rms_of(const std::vector<FitPair>& pairs, std::span<const double> residuals) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (pairs[i].is_lost) continue;
+        sum += std::pow(residuals[2 * i] * pairs[i].sigma, 2) +
+               std::pow(residuals[2 * i + 1] * pairs[i].sigma, 2);
+        ++count;
+    }
+    return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
+}
+
+std::string events_of(const FitPair& pair) {
+    if (pair.word == "D") return "D";
+    std::string word;
+    for (const OpticEvent& event : pair.path) word += event.reflects ? 'R' : 'T';
+    return word;
+}
+
+void tell_pairs(FitProblem& problem, const Linearisation& at, double huber, FitResult& result) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    double squares = 0;
+    for (std::size_t i = 0; i < problem.pairs().size(); ++i) {
+        const FitPair& pair = problem.pairs()[i];
+        FittedPair told{PairState::kLost, Vec2(none), events_of(pair)};
+        if (!pair.is_lost) {
+            told.residual = pair.sigma * Vec2(at.residuals[2 * i], at.residuals[2 * i + 1]);
+            const double size = length(told.residual);
+            told.state = size > huber ? PairState::kOutlier : PairState::kUsed;
+            if (told.state == PairState::kUsed) squares += size * size;
+        }
+        result.used += told.state == PairState::kUsed;
+        result.lost += told.state == PairState::kLost;
+        result.outliers += told.state == PairState::kOutlier;
+        result.pairs.push_back(std::move(told));
+    }
+    const double freedom = 2.0 * static_cast<double>(result.used) - static_cast<double>(result.rank);
+    if (freedom > 0) result.noise = std::sqrt(squares / freedom);
+}
+
+void tell_uncertainty(const FitProblem& problem, const Uncertainty& found, FitResult& result) {
+    const std::vector<FitParameter>& parameters = problem.parameters();
+    const std::size_t n = parameters.size();
+    const DenseMatrix correlation = correlations(found.covariance);
+    result.covariance.assign(n, std::vector<double>(n));
+    result.correlation = result.covariance;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) {
+            result.covariance[i][j] = found.covariance(i, j) * parameters[i].scale * parameters[j].scale;
+            result.correlation[i][j] = correlation(i, j);
+            if (j < i && std::abs(correlation(i, j)) > kHighCorrelation)
+                result.warnings.push_back(
+                    fmt::format("{} and {} are correlated, {:.3f}: these pairs hardly separate "
+                                "them",
+                                parameters[j].name, parameters[i].name, correlation(i, j)));
+        }
+    for (std::size_t i = 0; i < n; ++i) result.parameters[i].sigma = std::sqrt(result.covariance[i][i]);
+    result.rank = found.rank;
+    result.null_vectors = found.null_vectors;
+    for (const std::vector<double>& motion : found.null_vectors)
+        result.undetermined.push_back(describe_motion(parameters, motion));
+}
+
+void tell_changes(const FitProblem& problem, FitResult& result) {
+    for (const FitParameter& parameter : problem.parameters()) {
+        const char* array = parameter.part == ScenePart::kCamera ? "/cameras/"
+                            : parameter.part == ScenePart::kMesh ? "/meshes/"
+                                                                 : "/materials/";
+        const std::string pointer = array + std::to_string(parameter.index) + parameter.inside;
+        const Json& value = part_of(problem.document(), parameter).at(Json::json_pointer(parameter.inside));
+        if (result.changes.empty() || result.changes.back().pointer != pointer)
+            result.changes.push_back({pointer, value.dump()});
+    }
+}
+
+bool all_lost(std::vector<FitPair>& pairs) {
+    return std::all_of(pairs.begin(), pairs.end(), [](const FitPair& pair) { return pair.is_lost; });
+}
+
+}  // namespace
+
+FitResult fit_scene(const Scene& scene, std::span<const Correspondence> given, const FitRequest& request,
+                    const Progress& progress) {
+    const std::string file = scene_title(scene);
+    if (scene.resolved.empty())
+        throw InputError(file, "", "a scene built in memory has no JSON whose numbers could be fitted");
+    if (request.free.empty()) throw UsageError("a fit needs something that is free");
+    if (!(request.sigma > 0) || !(request.huber > 0)) throw UsageError("sigma and huber are above 0");
+    std::vector<FitPair> pairs = prepare_pairs(scene, given, request);
+    Json document = resolved_json(scene);
+    const std::vector<FitParameter> parameters =
+        find_parameters(document, request.free, file, extent_of(scene, pairs));
+    const std::vector<FitProblem::Prior> priors = find_priors(request, document, parameters, file);
+    if (2 * pairs.size() + priors.size() < parameters.size())
+        throw InputError(file, "",
+                         fmt::format("{} pairs are too few for {} unknowns: each tells of two", pairs.size(),
+                                     parameters.size()));
+
+    FitProblem problem(scene, document, parameters, std::move(pairs));
+    problem.priors = priors;
+    problem.huber = request.huber / request.sigma;
+    problem.progress = &progress;
+    FitResult result;
+    LeastSquaresParams params;
+    params.most_iterations = request.most_iterations;
+    if (request.match == FitMatch::kRay) {
+        const Linearisation first = problem.linearise();
+        if (all_lost(problem.pairs()))
+            throw ComputationError(
+                "every pair is lost: no ray through a pixel meets the optics as its path says");
+        result.rms_start = rms_of(problem.pairs(), first.residuals);
+        // The metric moves with the parameters: what is left is for the exact images.
+        LeastSquaresParams rough = params;
+        rough.step_tolerance = 1e-7, rough.cost_tolerance = 1e-3;
+        result.iterations += minimise(problem.least_squares(), rough).iterations;
+        problem.linearise();  // guesses and events of the end
+    } else {
+        match_images(scene, given, request.match, problem.pairs());
+    }
+
+    problem.residual = FitResidual::kImage;
+    if (request.match != FitMatch::kRay) {
+        const Linearisation first = problem.linearise();
+        result.rms_start = rms_of(problem.pairs(), first.residuals);
+    }
+    const LeastSquaresReport report = minimise(problem.least_squares(), params);
+    result.iterations += report.iterations;
+    result.converged = report.converged;
+    const Linearisation last = problem.linearise();
+    if (all_lost(problem.pairs()))
+        throw ComputationError("every pair is lost: no point has an image near its pixel");
+
+    for (const FitParameter& parameter : parameters)
+        result.parameters.push_back({parameter.name, parameter_value(document, parameter, document),
+                                     parameter_value(problem.document(), parameter, document), 0});
+    tell_uncertainty(problem, uncertainty_of(reweighted(problem.least_squares(), last).jacobian), result);
+    tell_pairs(problem, last, request.huber, result);
+    result.rms = rms_of(problem.pairs(), last.residuals);
+    if (result.lost > 0)
+        result.warnings.push_back(
+            fmt::format("{} of {} pairs are lost: their rays miss the optics, or their points "
+                        "have no image near",
+                        result.lost, given.size()));
+    tell_changes(problem, result);
+    result.document = problem.document().dump(2) + "\n";
+    return result;
+}
+
+}  // namespace trilens

@@ -1,0 +1,73 @@
+"""Fits and designed mirrors from Python."""
+import numpy as np
+import pytest
+
+import trilens
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return trilens.parse_scene(trilens.scene_examples()["mirror-sphere"], warn=lambda message: None)
+
+
+@pytest.fixture(scope="module")
+def pairs(ball):
+    points = np.random.default_rng(1).uniform([-3, -1, 1], [3, 2, 3], (40, 3))
+    images = trilens.Renderer(ball).project(points)
+    images = images[(images["path"] == "reflect") & images["inside"]]
+    return np.stack([images["x"], images["y"]], axis=1), points[images["point"]]
+
+
+FREE = ["/meshes/ball/primitive/center", "/meshes/ball/primitive/radius"]
+
+
+def test_a_fit_finds_the_ball(ball, pairs):
+    start = ball.with_overrides({"/meshes/ball/primitive/radius": 0.95}, warn=lambda message: None)
+    found = trilens.fit(start, *pairs, FREE)
+    assert found.converged and found.rank == 4 and found.rms < 1e-6 < found.rms_start
+    assert found.states == ["used"] * len(pairs[0])
+    assert found.residuals.shape == (len(pairs[0]), 2)
+    true = ball.to_dict()["meshes"]
+    radius = next(mesh for mesh in true if mesh["name"] == "ball")["primitive"]["radius"]
+    assert found.parameters[3].value == pytest.approx(radius, abs=1e-8)
+    assert np.sqrt(np.diag(found.covariance)) == pytest.approx([one.sigma for one in found.parameters])
+    again = trilens.fit(found.scene, *pairs, FREE, match="nearest")
+    assert again.rms_start < 1e-6
+
+
+def test_misuse_of_a_fit_is_named(ball, pairs):
+    pixels, points = pairs
+    with pytest.raises(trilens.UsageError, match="pixels"):
+        trilens.fit(ball, pixels[:, :1], points, FREE)
+    with pytest.raises(trilens.UsageError, match="for"):
+        trilens.fit(ball, pixels[:3], points, FREE)
+    with pytest.raises(trilens.InputError, match="no number"):
+        trilens.fit(ball, pixels, points, ["/meshes/ball/name"])
+    with pytest.raises(trilens.InputError, match="too few"):
+        trilens.fit(ball, pixels[:1], points[:1], FREE)
+    with pytest.raises(trilens.ComputationError, match="lost"):
+        trilens.fit(ball, np.full_like(pixels, 0.5), points, FREE)
+    with pytest.raises(trilens.UsageError, match="match"):
+        trilens.fit(ball, pixels, points, FREE, match="best")
+
+
+def test_a_design_is_nearer_to_its_wish_than_a_sphere(tmp_path):
+    wish = trilens.wish_example()
+    mirror = trilens.design_mirror(wish, compare_sphere=True)
+    assert mirror.errors["mean"] < 0.5 * mirror.sphere["mean"]
+    assert mirror.error_map.shape == (40, 40) and mirror.heights.shape == (12, 12)
+    assert mirror.error_map.mean() == pytest.approx(mirror.errors["mean"])
+    assert [mesh.name for mesh in mirror.scene.meshes][0] == "mirror"
+    mirror.save_stl(tmp_path / "m.stl")
+    assert (tmp_path / "m.stl").stat().st_size > 84
+
+    t, s = np.mgrid[0:1:33j, 0:1:65j]
+    plane = wish.pop("wish")
+    origin, u, v = (np.array(plane[key]) for key in ("origin", "u", "v"))
+    wall = origin + s[..., None] * u + t[..., None] * v
+    same = trilens.design_mirror(wish, target=wall)
+    assert same.errors["mean"] == pytest.approx(mirror.errors["mean"], rel=1e-5)
+    with pytest.raises(trilens.InputError, match="eye"):
+        trilens.design_mirror({**wish, "eye": [0, 0, -1]}, target=wall)
+    with pytest.raises(trilens.UsageError, match="target"):
+        trilens.design_mirror(wish, target=wall[0])
