@@ -54,8 +54,8 @@ void bind_unwrap_itself(RendererClass& renderer) {
         [](const Renderer& self, const std::variant<Photo, std::vector<Photo>>& photo, const std::string& to,
            const std::optional<std::vector<std::string>>& cameras,
            const std::optional<std::vector<Photo>>& masks,
-           const std::optional<std::vector<double>>& exposures, const std::optional<Triple>& center,
-           const std::string& proxy, const Name& optic, const Name& path,
+           const std::optional<std::vector<double>>& exposures, double white,
+           const std::optional<Triple>& center, const std::string& proxy, const Name& optic, const Name& path,
            const std::variant<std::string, int>& images, double min_resolution, double tolerance,
            bool divide_weight, const py::object& progress) {
             UnwrapRequest request;
@@ -83,6 +83,7 @@ void bind_unwrap_itself(RendererClass& renderer) {
                                                  : i;
                 if (masks) one.mask = photo_from((*masks)[i]).picture;
                 if (exposures) one.exposure = (*exposures)[i];
+                one.white = white;
                 photos.push_back(std::move(one));
             }
             PythonCall call(progress);
@@ -95,9 +96,9 @@ void bind_unwrap_itself(RendererClass& renderer) {
             return HeldImage{std::move(made.image), statistics};
         },
         py::arg("photo"), py::arg("to"), py::kw_only(), py::arg("cameras") = py::none(),
-        py::arg("masks") = py::none(), py::arg("exposures") = py::none(), py::arg("center") = py::none(),
-        py::arg("proxy") = "scene", py::arg("optic") = py::none(), py::arg("path") = py::none(),
-        py::arg("images") = "best", py::arg("min_resolution") = 0.0,
+        py::arg("masks") = py::none(), py::arg("exposures") = py::none(), py::arg("white") = 0.0,
+        py::arg("center") = py::none(), py::arg("proxy") = "scene", py::arg("optic") = py::none(),
+        py::arg("path") = py::none(), py::arg("images") = "best", py::arg("min_resolution") = 0.0,
         py::arg("tolerance") = UnwrapRequest().tolerance, py::arg("divide_weight") = true,
         py::arg("progress") = py::none(),
         "A photograph of mirrors or glass as a panorama, a cube map, a plane or an object's texture.\n\n"
@@ -112,7 +113,8 @@ void bind_unwrap_itself(RendererClass& renderer) {
         "scene's in "
         "order.\n"
         "masks: pictures of the film's size, one for each photograph; where they are dark nothing is taken.\n"
-        "exposures: what each photograph's values are divided by.\n"
+        "exposures: what each photograph's values are divided by; longer ones are taken first.\n"
+        "white: values from here on are clipped, and taken only where nothing else is; 0: none.\n"
         "center: where directions start, world; None: the middle of the optics.\n"
         "proxy: how far what a direction shows is: \"scene\" (its objects), \"infinity\", \"sphere:R\",\n"
         "\"box:x0,y0,z0,x1,y1,z1\" or a file \"room.obj\".\n"

@@ -277,6 +277,7 @@ class Renderer:
         cameras: Optional[Sequence[str]] = None,
         masks: Optional[Sequence[Union[Image, _File]]] = None,
         exposures: Optional[Sequence[float]] = None,
+        white: float = 0.0,
         center: Optional[_Triple] = None,
         proxy: str = "scene",
         optic: Optional[str] = None,

@@ -2,8 +2,10 @@
 #include <trilens/stopwatch.h>
 #include <trilens/unwrap.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
+#include <sstream>
 #include <utility>
 
 #include "cli/commands.h"
@@ -17,10 +19,10 @@ namespace {
 
 struct UnwrapOptions {
     SceneOptions scene;
-    std::vector<std::string> photos, masks;
+    std::vector<std::string> photos, masks, exposures;
     DirectionOptions direction;
     std::string to, images = "best", output;
-    double min_resolution = 0, tolerance = UnwrapRequest().tolerance;
+    double white = 0, min_resolution = 0, tolerance = UnwrapRequest().tolerance;
     bool keep_weight = false;
 };
 
@@ -45,6 +47,12 @@ UnwrapPhoto photo_from(const std::string& text, std::size_t index, const UnwrapO
         console.files().reads({options.masks[index]});
         photo.mask = read_photo(options.masks[index]).picture;
     }
+    if (index < options.exposures.size()) {
+        std::istringstream number(options.exposures[index]);
+        if (!(number >> photo.exposure) || !number.eof() || !(photo.exposure > 0))
+            throw UsageError("--exposure is a positive number, not \"" + options.exposures[index] + "\"");
+    }
+    photo.white = options.white;
     return photo;
 }
 
@@ -70,8 +78,8 @@ Answer run(const UnwrapOptions& options, Console& console) {
     console.files().reads({options.scene.scene});
     check_output(options.output, console);
     if (!is_standard_stream(options.output)) image_format(options.output);
-    if (options.masks.size() > options.photos.size())
-        throw UsageError("there are more masks than photographs");
+    if (std::max(options.masks.size(), options.exposures.size()) > options.photos.size())
+        throw UsageError("there are more masks or exposures than photographs");
     const Renderer renderer = load_renderer(options.scene, console);
     const UnwrapRequest request = request_of(options, renderer);
     std::vector<UnwrapPhoto> photos;
@@ -139,6 +147,15 @@ Command unwrap_command() {
            .help = "of each photograph: where it is dark nothing is taken",
            .value = "FILE",
            .offer = Offer::kImage},
+          {.names = "--exposure",
+           .target = &options->exposures,
+           .help = "of each photograph: what its values are divided by; longer ones are taken first",
+           .value = "E"},
+          {.names = "--white",
+           .target = &options->white,
+           .help =
+               "photographs' values from here on are clipped, and taken only where nothing else is; 0: none",
+           .range = {0, std::numeric_limits<double>::infinity()}},
           {.names = "--tolerance",
            .target = &options->tolerance,
            .help = "pixels of the photograph that places between exact ones may be off",

@@ -87,6 +87,37 @@ TEST_CASE("two photographs fill each other's blind cone; a mask leaves one out",
     CHECK(one.coverage < 0.99);
 }
 
+TEST_CASE("two exposures make one panorama of high dynamic range", "[inverse]") {
+    const auto world = ball_under_sky(128, 128, 4, 256);
+    const auto exposed = [&](double exposure) {
+        auto photo = std::make_shared<Texture>(*photograph(*world));
+        for (float& value : photo->rgb) value = std::min(1.0f, static_cast<float>(exposure) * value);
+        UnwrapPhoto shot{"photo", photo, 0};
+        shot.exposure = exposure;
+        shot.white = 0.99;
+        return shot;
+    };
+    UnwrapRequest request = to_equirect(128);
+    for (const UnwrapImages images : {UnwrapImages::kBest, UnwrapImages::kBlend}) {
+        request.images = images;
+        const Unwrapped made = unwrap(*world, request, {exposed(2), exposed(0.5)});
+        double worst = 0;
+        int count = 0, longer = 0;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 128; ++x) {
+                const auto at = static_cast<std::size_t>(y * 128 + x);
+                if (made.image.find("res.min")->floats()[at] < 0.6f) continue;
+                worst = std::max(worst, std::fabs(made.image.find("R")->floats()[at] -
+                                                  sky_colour(direction_of(x, y, 128)).x));
+                longer += made.image.find("image.photo")->ids()[at] == 0;
+                ++count;
+            }
+        CHECK(worst < 0.1);
+        CHECK(longer > count / 10);
+        CHECK(longer < count * 9 / 10);
+    }
+}
+
 TEST_CASE("forward by facets and backward by exact search meet with the square of the facets",
           "[inverse][law]") {
     // Places of the same directions through n x n facets, unrefined, against the exact ones.

@@ -56,6 +56,10 @@ std::size_t FilmMap::valid_count() const {
     return static_cast<std::size_t>(std::count(valid.begin(), valid.end(), 1));
 }
 
+int first_cell(bool visibility) {
+    return visibility ? 8 : 16;
+}
+
 Vec3 center_of_directions(const World& world, const std::optional<Vec3>& asked,
                           const std::optional<std::size_t>& optic) {
     if (asked) return *asked;
@@ -88,7 +92,9 @@ FilmMap make_film_map(const World& world, const FilmMapRequest& request, const P
     };
     FilmMap map = unwraps ? empty_map(wide, high, film.width, film.height)
                           : empty_map(film.width, film.height, wide, high);
-    fill(SampledMap({map.width, map.height, 8, request.tolerance}, evaluate, progress), map);
+    fill(SampledMap({map.width, map.height, first_cell(unwraps && to_film.visibility), request.tolerance},
+                    evaluate, progress),
+         map);
     if (map.valid_count() == 0)
         throw InputError(scene_title(world.scene), "",
                          unwraps ? "nothing of the target is seen on the film within an optic"

@@ -59,6 +59,9 @@ struct FilmMap {
 /// scene does not have, InputError where nothing is mapped; Interrupted.
 FilmMap make_film_map(const World& world, const FilmMapRequest& request, const Progress& progress = {});
 
+/// Pixels between the first exact places: fewer where objects may hide what is seen, of any shape.
+int first_cell(bool visibility);
+
 /// The centre of directions: as asked, or the middle of the optics (of one, where that is asked for).
 Vec3 center_of_directions(const World& world, const std::optional<Vec3>& asked,
                           const std::optional<std::size_t>& optic);

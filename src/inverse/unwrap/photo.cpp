@@ -38,15 +38,21 @@ Vec3 sample_bicubic(const Texture& photo, const Vec2& at) {
 }
 
 Vec3 sample_footprint(const Texture& photo, const Vec2& at, const Mat2& jacobian) {
-    const auto count = [](const Vec2& side) {
-        return std::clamp(static_cast<int>(std::ceil(length(side) - 0.25)), 1, kMostFootprint);
-    };
-    const int m = count(jacobian[0]), n = count(jacobian[1]);
+    // A pixel of the photograph is a mean over itself already: variances of boxes add up (L^2 / 12).
+    std::array<int, 2> count{};
+    Mat2 sides = jacobian;
+    for (int k = 0; k < 2; ++k) {
+        const double whole = length(jacobian[k]), left = std::sqrt(std::max(0.0, whole * whole - 1));
+        sides[k] = whole > 1 ? left / whole * jacobian[k] : Vec2(0);
+        count[static_cast<std::size_t>(k)] =
+            std::clamp(static_cast<int>(std::ceil(left - 0.25)), 1, kMostFootprint);
+    }
+    const auto [m, n] = count;
     if (m == 1 && n == 1) return sample_bicubic(photo, at);
     Vec3 sum{0};
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < m; ++i)
-            sum += sample_bicubic(photo, at + jacobian * Vec2((i + 0.5) / m - 0.5, (j + 0.5) / n - 0.5));
+            sum += sample_bicubic(photo, at + sides * Vec2((i + 0.5) / m - 0.5, (j + 0.5) / n - 0.5));
     return sum / (double(m) * n);
 }
 

@@ -11,8 +11,9 @@ namespace trilens {
 /// nearest pixels are repeated.
 Vec3 sample_bicubic(const Texture& photo, const Vec2& at);
 
-/// The mean over the parallelogram `jacobian` * [-1/2, 1/2]^2 about the place: m x n bicubic samples, as many
-/// along each side as it is pixels long, 1 to kMostFootprint.
+/// The mean over the parallelogram `jacobian` * [-1/2, 1/2]^2 about the place, less what the photograph's own
+/// pixels have averaged already: m x n bicubic samples, as many along each side as it is pixels long, 1 to
+/// kMostFootprint.
 Vec3 sample_footprint(const Texture& photo, const Vec2& at, const Mat2& jacobian);
 
 inline constexpr int kMostFootprint = 32;

@@ -60,13 +60,14 @@ void check_front(const World& world, const UnwrapRequest& request, const UnwrapP
 /// The output while photograph after photograph comes in.
 struct Canvas {
     std::size_t width = 0;
-    std::vector<float> red, green, blue, least, most, x, y;
+    std::vector<float> red, green, blue, least, most, rank, x, y;
     std::vector<Id> count, photo;
     std::vector<double> sum;  // of the blend's weights
 
     explicit Canvas(const TargetDescription& to) : width(static_cast<std::size_t>(to.width)) {
         const std::size_t pixels = width * static_cast<std::size_t>(to.height);
-        for (std::vector<float>* values : {&red, &green, &blue, &least, &most}) values->assign(pixels, 0);
+        for (std::vector<float>* values : {&red, &green, &blue, &least, &most, &rank})
+            values->assign(pixels, 0);
         x.assign(pixels, -1);
         y.assign(pixels, -1);
         count.assign(pixels, 0);
@@ -78,6 +79,7 @@ struct Canvas {
 struct Candidate {
     const MapImage* image = nullptr;
     Resolution resolution;
+    double rank = 0;  // the larger the better
 };
 
 /// Draws one photograph into the canvas.
@@ -95,13 +97,12 @@ class PhotoDrawer {
             if (!may_take(image.position)) continue;
             Resolution r = resolution_of(image.jacobian, place->dx, place->dy);
             if (place->is_direction) r = {r.least * kDegree, r.most * kDegree};
-            if (r.least >= request_.min_resolution) seen.push_back({&image, r});
+            if (r.least >= request_.min_resolution) seen.push_back({&image, r, rank_of(image.position, r)});
         }
         const std::size_t at = static_cast<std::size_t>(py) * canvas.width + static_cast<std::size_t>(px);
         canvas.count[at] += static_cast<Id>(seen.size());
-        std::stable_sort(seen.begin(), seen.end(), [](const Candidate& a, const Candidate& b) {
-            return a.resolution.least > b.resolution.least;
-        });
+        std::stable_sort(seen.begin(), seen.end(),
+                         [](const Candidate& a, const Candidate& b) { return a.rank > b.rank; });
         if (request_.images == UnwrapImages::kBlend) return blend(seen, at, canvas);
         if (seen.size() < static_cast<std::size_t>(request_.rank)) return;
         take(seen[static_cast<std::size_t>(request_.rank - 1)], at, canvas);
@@ -115,6 +116,19 @@ class PhotoDrawer {
         return photo_.mask->rgb[3 * (y * static_cast<std::size_t>(photo_.mask->width) + x)] >= 0.5f;
     }
 
+    /// Longer exposures are less noisy; clipped pixels come last.
+    double rank_of(const Vec2& at, const Resolution& resolution) const {
+        constexpr double kClipped = 1e-9;
+        const double rank = resolution.least * std::sqrt(photo_.exposure);
+        if (!(photo_.white > 0)) return rank;
+        const Texture& picture = *photo_.picture;
+        const auto x = static_cast<std::size_t>(std::clamp(at.x, 0.0, picture.width - 1.0));
+        const auto y = static_cast<std::size_t>(std::clamp(at.y, 0.0, picture.height - 1.0));
+        const float* rgb = &picture.rgb[3 * (y * static_cast<std::size_t>(picture.width) + x)];
+        return std::max({rgb[0], rgb[1], rgb[2]}) >= static_cast<float>(photo_.white) ? kClipped * rank
+                                                                                      : rank;
+    }
+
     Vec3 colour(const MapImage& image) const {
         Vec3 colour = sample_footprint(*photo_.picture, image.position, image.jacobian) / photo_.exposure;
         if (request_.divide_weight) colour /= glm::max(image.weight, Vec3(kLeastDivisor));
@@ -123,8 +137,8 @@ class PhotoDrawer {
 
     /// Where this photograph resolves the pixel better than those before.
     bool note_best(const Candidate& seen, std::size_t at, Canvas& canvas) const {
-        if (canvas.photo[at] != kNone && canvas.least[at] >= static_cast<float>(seen.resolution.least))
-            return false;
+        if (canvas.photo[at] != kNone && canvas.rank[at] >= static_cast<float>(seen.rank)) return false;
+        canvas.rank[at] = static_cast<float>(seen.rank);
         canvas.least[at] = static_cast<float>(seen.resolution.least);
         canvas.most[at] = static_cast<float>(seen.resolution.most);
         canvas.x[at] = static_cast<float>(seen.image->position.x);
@@ -143,7 +157,7 @@ class PhotoDrawer {
 
     void blend(const std::vector<Candidate>& seen, std::size_t at, Canvas& canvas) const {
         for (const Candidate& one : seen) {
-            const double w = std::pow(one.resolution.least, 4);
+            const double w = std::pow(one.rank, 4) / photo_.exposure;
             if (!(w > 0)) continue;
             note_best(one, at, canvas);
             const Vec3 c = colour(*one.image);
@@ -227,7 +241,9 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
         const Progress part{
             [&](double done) { progress((static_cast<double>(i) + done) / double(photos.size())); },
             progress.cancel};
-        const SampledMap map({request.to.width, request.to.height, 8, request.tolerance}, evaluate, part);
+        const SampledMap map(
+            {request.to.width, request.to.height, first_cell(params.visibility), request.tolerance}, evaluate,
+            part);
         result.exact_places += map.exact_count();
         result.worst_accepted = std::max(result.worst_accepted, map.worst_accepted());
         const PhotoDrawer drawer(request, photos[i], target, static_cast<Id>(i));

@@ -26,12 +26,15 @@ struct UnwrapPhoto {
     std::shared_ptr<const Texture> picture;  // of the film's size
     std::size_t camera = 0;                  // index into Scene::cameras
     double exposure = 1;                     // its values are divided by this
+    double white =
+        0;  // pixels with a colour from here on are clipped: taken only where nothing else is; 0: none
     std::shared_ptr<const Texture> mask =
         nullptr;  // of the film's size; where it is below 0.5 nothing is taken
 };
 
 /// What is taken where a pixel is seen several times. kBest: the image that the photograph resolves best, by
-/// the smaller singular value of the derivative. kBlend: the mean of all, weighted by its fourth power.
+/// the smaller singular value of the derivative (times the root of the exposure, of photographs that differ
+/// in it). kBlend: the mean of all, weighted by its fourth power (times the exposure).
 enum class UnwrapImages { kBest, kBlend };
 
 template <>
