@@ -166,7 +166,10 @@ void bind_image(py::module_& module) {
             "pixels_without_ray,\n"
             "subdivided_pixels (of a part of a facet), traced_pixels and layered_pixels (an optic seen in an "
             "optic);\n"
-            "projected_facets; predicted_error: pixels, the most that was left; outline_pixels: predicted, "
+            "projected_facets; looks: a dict for each optic of which facets are traced for what looking into "
+            "them\ncosts: object (id), surveyed_facets (looked into first), least_samples (facets with fewer "
+            "are traced),\nlook, saved (in paths of samples: a look, and what each sample then saves); "
+            "predicted_error: pixels, the most that was left; outline_pixels: predicted, "
             "those between the outlines of optics and of their facets; deep_pixels: that lack light for "
             "maxDepth;\nfragment_pixels (shaded once or a few times for all their samples), fragments (of "
             "these pixels),\nrays_by_sample (shaded each for itself); prepare_seconds, draw_seconds.")

@@ -271,6 +271,7 @@ void bind_project(RendererClass& renderer) {
            const std::optional<py::object>& start, const py::object& progress) {
             ProjectRequest request;
             request.frame = frame_params(self, resolution, camera);
+            request.frame.facets = FacetUse::kAll;  // an image is in whatever facet it is
             request.search = search_of(search, refine);
             request.refine = refine;
             request.visibility = visibility;

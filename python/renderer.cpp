@@ -36,6 +36,7 @@ struct FacetArguments {
     std::optional<double> max_error;
     std::optional<std::string> grid;
     std::optional<std::string> seen_optics = {};
+    std::optional<std::string> facets = {};
 
     FrameParams of(FrameParams frame) const {
         if (grid) frame.grid = require_named<GridKind>("grid", *grid);
@@ -44,6 +45,7 @@ struct FacetArguments {
             require_known("seen_optics", *seen_optics, Names{"layers", "divided"});
             frame.layered = *seen_optics == "layers";
         }
+        if (facets) frame.facets = require_named<FacetUse>("facets", *facets);
         frame.max_error = max_error;
         return frame;
     }
@@ -103,6 +105,17 @@ HeldImage draw(const Renderer& renderer, const PictureRequest& request, const Jo
     statistics["layered_pixels"] = picture.statistics.layered_pixels;
     statistics["projected_facets"] = picture.statistics.projected_facets;
     statistics["predicted_error"] = picture.statistics.predicted_error;
+    py::list looks;
+    for (const OpticLooks& one : picture.statistics.looks) {
+        py::dict of_optic;
+        of_optic["object"] = one.object;
+        of_optic["surveyed_facets"] = one.surveyed;
+        of_optic["least_samples"] = one.least_samples;
+        of_optic["look"] = one.look;
+        of_optic["saved"] = one.saved;
+        looks.append(of_optic);
+    }
+    statistics["looks"] = looks;
     statistics["outline_pixels"] = picture.statistics.outline_pixels;
     statistics["deep_pixels"] = picture.statistics.deep_pixels;
     statistics["fragment_pixels"] = picture.statistics.fragment_pixels;
@@ -121,11 +134,11 @@ void bind_pictures(RendererClass& renderer) {
            const std::optional<std::string>& curves, const std::optional<std::string>& clip,
            std::optional<int> pieces, std::optional<double> tolerance, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
-           const std::optional<std::string>& seen_optics, const std::string& shading, const File& file,
-           const py::object& progress, const py::object& warn) {
+           const std::optional<std::string>& seen_optics, const std::optional<std::string>& facets,
+           const std::string& shading, const File& file, const py::object& progress, const py::object& warn) {
             PythonCall call(progress, warn);
             return draw(self,
-                        {FacetArguments{rays, max_error, grid, seen_optics}.of(
+                        {FacetArguments{rays, max_error, grid, seen_optics, facets}.of(
                              frame_params(self, resolution, camera)),
                          projecting_engine(engine, {curves, clip, pieces, tolerance}),
                          layer_request(layers, window), require_named<Shading>("shading", shading)},
@@ -135,8 +148,9 @@ void bind_pictures(RendererClass& renderer) {
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("curves") = py::none(), py::arg("clip") = py::none(), py::arg("pieces") = py::none(),
         py::arg("tolerance") = py::none(), py::arg("rays") = py::none(), py::arg("max_error") = py::none(),
-        py::arg("grid") = py::none(), py::arg("seen_optics") = py::none(), py::arg("shading") = "fragment",
-        py::arg("file") = py::none(), py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        py::arg("grid") = py::none(), py::arg("seen_optics") = py::none(), py::arg("facets") = py::none(),
+        py::arg("shading") = "fragment", py::arg("file") = py::none(), py::arg("progress") = py::none(),
+        py::arg("warn") = py::none(),
         "Draws the scene by projection. The same pixels for any number of threads.\n\n"
         "resolution: 1..1024, of every optic's grid; 0: as the scene says.\n"
         "camera: by name; None: the scene's own.\n"
@@ -157,6 +171,8 @@ void bind_pictures(RendererClass& renderer) {
         "seen_optics: \"layers\" (optics seen in mirrors are layers of their own, where they can be) or "
         "\"divided\";\n"
         "None: as the scene says.\n"
+        "facets: \"worthwhile\" (those that it takes longer to look into than to follow the rays of their "
+        "samples\nare traced) or \"all\" (none is for that); None: worthwhile.\n"
         "shading: where pixels have several samples: \"fragment\" (once for those that see one triangle by "
         "one "
         "way,\nthe classic engine each) or \"sample\".\n"
@@ -179,15 +195,16 @@ void bind_pictures(RendererClass& renderer) {
            const std::optional<std::string>& camera, const std::optional<Names>& layers,
            const std::optional<Window>& window, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
-           const std::optional<std::string>& seen_optics, const File& file, const py::object& progress,
-           const py::object& warn) {
+           const std::optional<std::string>& seen_optics, const std::optional<std::string>& facets,
+           const File& file, const py::object& progress, const py::object& warn) {
             require_known("surface", surface, Names{"limit", "facets"});
-            if (surface == "limit" && (rays || max_error || grid || seen_optics))
+            if (surface == "limit" && (rays || max_error || grid || seen_optics || facets))
                 throw UsageError(
-                    "rays, max_error, grid and seen_optics are about facets; add surface=\"facets\"");
+                    "rays, max_error, grid, seen_optics and facets are about facets; add "
+                    "surface=\"facets\"");
             PythonCall call(progress, warn);
             return draw(self,
-                        {FacetArguments{rays, max_error, grid, seen_optics}.of(
+                        {FacetArguments{rays, max_error, grid, seen_optics, facets}.of(
                              frame_params(self, resolution, camera)),
                          engine_choice(surface), layer_request(layers, window)},
                         {"trace", file}, call);
@@ -195,11 +212,12 @@ void bind_pictures(RendererClass& renderer) {
         py::arg("surface") = "limit", py::arg("resolution") = 0, py::arg("camera") = py::none(),
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("rays") = py::none(), py::arg("max_error") = py::none(), py::arg("grid") = py::none(),
-        py::arg("seen_optics") = py::none(), py::arg("file") = py::none(), py::arg("progress") = py::none(),
-        py::arg("warn") = py::none(),
+        py::arg("seen_optics") = py::none(), py::arg("facets") = py::none(), py::arg("file") = py::none(),
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the same scene by ray tracing: the truth.\n\n"
         "surface: \"limit\" (the exact surfaces) or \"facets\" (the rays that render's facets interpolate).\n"
-        "rays, max_error, grid and seen_optics are about facets: UsageError without surface=\"facets\". The "
+        "rays, max_error, grid, seen_optics and facets are about facets: UsageError without "
+        "surface=\"facets\". The "
         "other\narguments, and what is raised, are those of render.");
 }
 
@@ -268,7 +286,9 @@ void bind_facts(RendererClass& renderer) {
 }  // namespace
 
 FrameParams frame_params(const Renderer& renderer, int resolution, const std::optional<std::string>& camera) {
-    return {find_camera(renderer.scene(), camera.value_or("")), resolution};
+    FrameParams frame{find_camera(renderer.scene(), camera.value_or("")), resolution};
+    frame.facets = FacetUse::kWorthwhile;
+    return frame;
 }
 
 EngineChoice engine_choice(const std::string& name) {

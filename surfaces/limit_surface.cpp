@@ -6,6 +6,7 @@
 
 #include "surfaces/checked_cage.h"
 #include "surfaces/edge_numbers.h"
+#include "surfaces/face_hulls.h"
 #include "surfaces/limit_patches.h"
 #include "surfaces/polynomial/polynomial_bounds.h"
 #include "surfaces/surfaces.h"
@@ -104,11 +105,35 @@ Vec2 clamp_to_domain(FaceDomain domain, const Vec2& uv) {
     return inside;
 }
 
-class LimitSurface final : public Surface {
+/// Per face of the cage a box around it and the faces that touch it: the control points of its limit surface,
+/// whose weights are not negative and add up to one (Catmull and Clark 1978, Loop 1987), so it lies within.
+std::vector<Box> hulls_of(const CheckedCage& cage) {
+    constexpr double kRoom = 1e-4;  // of the box's size: what approximations of patches and rounding take
+    std::vector<Box> around(cage.points.size()), hulls(static_cast<std::size_t>(cage.face_count()));
+    const auto for_each_corner = [&](int face, const auto& use) {
+        for (int k = 0; k < cage.face_size(face); ++k)
+            use(static_cast<std::size_t>(cage.vertices[static_cast<std::size_t>(cage.first[face] + k)]));
+    };
+    for (int face = 0; face < cage.face_count(); ++face) {
+        Box own;
+        for_each_corner(face, [&](std::size_t v) { own.include(cage.points[v]); });
+        for_each_corner(face, [&](std::size_t v) { around[v].include(own); });
+    }
+    for (int face = 0; face < cage.face_count(); ++face) {
+        Box& hull = hulls[static_cast<std::size_t>(face)];
+        for_each_corner(face, [&](std::size_t v) { hull.include(around[v]); });
+        const Vec3 room(kRoom * length(hull.size()));
+        hull = {hull.low - room, hull.high + room};
+    }
+    return hulls;
+}
+
+class LimitSurface final : public Surface, public HasHulls {
   public:
     LimitSurface(const CheckedCage& cage, const std::string& name, const Warn& warn, double memory)
         : domain_(cage.scheme == SubdivisionScheme::kLoop ? FaceDomain::kTriangle : FaceDomain::kSquare),
-          patches_(cage, name, memory) {
+          patches_(cage, name, memory),
+          hulls_(hulls_of(cage)) {
         std::vector<bool> is_hole(static_cast<std::size_t>(cage.face_count()), false);
         for (int hole : cage.holes) is_hole[static_cast<std::size_t>(hole)] = true;
 
@@ -130,7 +155,10 @@ class LimitSurface final : public Surface {
     FaceDomain domain(Id) const override { return domain_; }
     FaceBorder border(Id face) const override { return faces_[face].border; }
     std::size_t bytes_held() const override {
-        return faces_.capacity() * sizeof(SurfaceFace) + patches_.bytes();
+        return faces_.capacity() * sizeof(SurfaceFace) + hulls_.capacity() * sizeof(Box) + patches_.bytes();
+    }
+    std::optional<Box> hull(Id face) const override {
+        return hulls_[static_cast<std::size_t>(faces_[face].cage_face)];
     }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override {
@@ -191,6 +219,7 @@ class LimitSurface final : public Surface {
 
     FaceDomain domain_;
     LimitPatches patches_;
+    std::vector<Box> hulls_;  // per face of the cage
     std::vector<SurfaceFace> faces_;
 };
 

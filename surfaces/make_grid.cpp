@@ -8,6 +8,7 @@
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
+#include "surfaces/face_hulls.h"
 #include "surfaces/lattice.h"
 #include "surfaces/surfaces.h"
 
@@ -191,6 +192,35 @@ void add_facets(const GridFace& face, Id number, CornerNumbers& corners, Surface
 }
 
 }  // namespace
+
+std::vector<Box> face_hulls(const Surface& surface) {
+    std::vector<Box> hulls;
+    const auto* known = dynamic_cast<const HasHulls*>(&surface);
+    for (Id face = 0; known && face < surface.face_count(); ++face) {
+        const std::optional<Box> hull = known->hull(face);
+        if (!hull) return {};
+        hulls.push_back(*hull);
+    }
+    return hulls;
+}
+
+SurfaceGrid make_face_grid(const Surface& surface, Id face, int n) {
+    TRILENS_CHECK(n >= 1 && n <= kMostSteps, "a grid has 1 to 1024 steps");
+    const Lattice lattice(surface.domain(face), n, {});
+    SurfaceGrid grid;
+    for (const Vec2& uv : lattice.uv()) {
+        const SurfacePoint point = surface.eval_first_order(face, uv);
+        grid.corner_point.push_back(static_cast<Id>(grid.points.size()));
+        grid.points.push_back(point.position);
+        grid.corner_normal.push_back(point.normal);
+    }
+    for (const auto& [a, b, c] : lattice.facets(grid.points)) {
+        grid.facets.push_back({static_cast<Id>(a), static_cast<Id>(b), static_cast<Id>(c)});
+        grid.facet_face.push_back(face);
+        grid.facet_uv.push_back({lattice.uv()[a], lattice.uv()[b], lattice.uv()[c]});
+    }
+    return grid;
+}
 
 SurfaceGrid make_grid(const Surface& surface, int n) {
     TRILENS_CHECK(n >= 1 && n <= kMostSteps, "a grid has 1 to 1024 steps");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/util/check.h"
+#include "surfaces/face_hulls.h"
 
 namespace trilens {
 namespace {
@@ -72,7 +73,7 @@ Vec3 tilted(const NormalField& field, const Vec3& position, const Vec3& own) {
 }
 
 /// A surface that answers with another normal.
-class BorrowedNormals final : public Surface {
+class BorrowedNormals final : public Surface, public HasHulls {
   public:
     BorrowedNormals(std::shared_ptr<const Surface> surface, const NormalField& field)
         : surface_(std::move(surface)), field_(field) {}
@@ -87,6 +88,10 @@ class BorrowedNormals final : public Surface {
     }
 
     std::size_t bytes_held() const override { return surface_->bytes_held(); }
+    std::optional<Box> hull(Id face) const override {
+        const auto* known = dynamic_cast<const HasHulls*>(surface_.get());
+        return known ? known->hull(face) : std::nullopt;
+    }
 
     bool has_closed_form() const override { return surface_->has_closed_form(); }
     std::optional<SurfaceHit> intersect(const Ray& ray, double t_min) const override {

@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/description/cage.h"
+#include "base/math/box.h"
 #include "base/raymesh/surface.h"
 #include "base/util/progress.h"
 #include "surfaces/machine_memory.h"
@@ -58,6 +60,12 @@ inline constexpr double kSameNormal = 1e-3;
 /// No cracks and no T-junctions: an edge between a quad and an n-gon has 2n segments (the n-gon brings two
 /// sub-faces to it), and the quad's n squares along it have a fifth corner and three facets.
 SurfaceGrid make_grid(const Surface& surface, int n);
+
+/// Per face a box that holds it, told without preparing it; empty where nothing is known of the faces.
+std::vector<Box> face_hulls(const Surface& surface);
+
+/// The same as make_grid of one face alone, whose points nothing shares.
+SurfaceGrid make_face_grid(const Surface& surface, Id face, int n);
 
 /// make_grid(surface, n).facets.size(), without the grid; n >= 1.
 std::size_t count_facets(const Surface& surface, int n);

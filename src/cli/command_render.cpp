@@ -134,8 +134,10 @@ std::vector<Command> render_commands() {
                                 .help = "facets: the rays of render's facets; limit: the exact surface",
                                 .choices = {"facets", "limit"}}}});
     by_rays.body = [trace](Console& console) {
-        if (trace->surface == "limit" && (trace->rays + trace->grid != "" || trace->max_error >= 0))
-            throw UsageError("--rays, --grid and --max-error are about facets; add --surface facets");
+        if (trace->surface == "limit" &&
+            (trace->rays + trace->grid + trace->facets != "" || trace->max_error >= 0))
+            throw UsageError(
+                "--rays, --grid, --facets and --max-error are about facets; add --surface facets");
         return run(*trace, "trace", trace->surface == "facets" ? Engine::kFacetsTruth : Engine::kLimitTruth,
                    console);
     };

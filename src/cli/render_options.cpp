@@ -75,6 +75,12 @@ std::vector<Option> facet_options(RenderOptions& options) {
          .help = "of every optic's facets, whatever the scene says: fitted to the exact rays in the mean, or "
                  "exact at the corners and interpolated between them",
          .choices = names_of<CornerRays>()},
+        {.names = "--facets",
+         .target = &options.facets,
+         .help =
+             "worthwhile: facets that it takes longer to look into than to follow the rays of their samples "
+             "are traced, by a count of samples; all: none is for that",
+         .choices = names_of<FacetUse>()},
         {.names = "--max-error",
          .target = &options.max_error,
          .help = "divide facets until they show things this many pixels from their place at most, as "
@@ -150,6 +156,7 @@ PictureRequest picture_request(const RenderOptions& options, const EngineChoice&
     request.layers = layer_request(options.scene);
     request.frame.rays = find_named<CornerRays>(options.rays);
     request.frame.grid = find_named<GridKind>(options.grid);
+    request.frame.facets = find_named<FacetUse>(options.facets).value_or(FacetUse::kWorthwhile);
     if (options.max_error >= 0) request.frame.max_error = options.max_error;
     return request;
 }

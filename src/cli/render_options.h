@@ -31,6 +31,7 @@ struct RenderOptions {
     std::string format;  // empty: by the output's ending
     bool wire = false, folds = false;
     std::string rays;       // empty: each optic's own
+    std::string facets;     // empty: those that are worthwhile
     double max_error = -1;  // < 0: as the scene says
     std::string grid;       // empty: as the scene says
     double exposure = 0;    // stops
@@ -46,7 +47,7 @@ struct RenderOptions {
 std::vector<Option> picture_options(RenderOptions& options, const std::string& formats);
 /// --frames and --turntable.
 std::vector<Option> frame_options(FrameOptions& options);
-/// --rays and --max-error.
+/// --rays, --facets and --max-error.
 std::vector<Option> facet_options(RenderOptions& options);
 /// --engine and the classic engine's own.
 std::vector<Option> engine_options(RenderOptions& options);

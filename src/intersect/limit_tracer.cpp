@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "base/util/check.h"
@@ -116,14 +118,48 @@ Vec3 chord_normal(const Patch& patch) {
     return normalize_or_zero(cross(patch.corner[1] - patch.corner[0], patch.corner[2] - patch.corner[0]));
 }
 
+/// The patches of all faces of a surface, each made when it is first asked for. Thread-safe.
+class FacePatches {
+  public:
+    FacePatches(const Surface& surface, std::function<SurfaceGrid(Id face)> grid)
+        : surface_(surface), grid_(std::move(grid)), faces_(surface.face_count()) {}
+    FacePatches(const FacePatches&) = delete;
+    FacePatches& operator=(const FacePatches&) = delete;
+    ~FacePatches() {
+        for (const auto& face : faces_) delete face.load();
+    }
+
+    const std::vector<Patch>& of(Id face) const {
+        const std::vector<Patch>* known = faces_[face].load(std::memory_order_acquire);
+        if (known) return *known;
+        const SurfaceGrid grid = grid_(face);
+        auto made = std::make_unique<std::vector<Patch>>(grid.facets.size());
+        for (std::size_t f = 0; f < made->size(); ++f) (*made)[f] = make_patch(surface_, grid, f);
+        // Another thread may have made the same meanwhile.
+        if (faces_[face].compare_exchange_strong(known, made.get())) return *made.release();
+        return *known;
+    }
+
+    /// Of the numbers of patches, which are those of a face and then those of the next: face and place in it.
+    static constexpr Id kMostOfFace = 64;
+    static Id number(Id face, std::size_t patch) { return face * kMostOfFace + static_cast<Id>(patch); }
+    const Patch& patch(Id number) const { return of(number / kMostOfFace)[number % kMostOfFace]; }
+
+  private:
+    const Surface& surface_;
+    std::function<SurfaceGrid(Id face)> grid_;
+    mutable std::vector<std::atomic<const std::vector<Patch>*>> faces_;
+};
+
 }  // namespace
 
 struct LimitTracer::Data {
     const Surface& surface;
     std::vector<Patch> patches;
-    double largest_patch = 0;  // no patch is longer along any ray, its stray included
-    double size = 0;           // half diagonal of a box about every face's corners and middle
-    Box around;                // holds every hit
+    std::unique_ptr<FacePatches> by_face;  // else these, where the tree is one of faces
+    double largest_patch = 0;              // no patch is longer along any ray, its stray included
+    double size = 0;                       // half diagonal of a box about every face's corners and middle
+    Box around;                            // holds every hit
     BoxTree tree;
 
     Data(const Surface& exact, const SurfaceGrid& fine, const std::string& isa)
@@ -133,7 +169,26 @@ struct LimitTracer::Data {
           size(half_diagonal(exact)),
           around(box_around()),
           tree(boxes(), isa) {}
+    Data(const Surface& exact, const FaceByFace& fine, const std::string& isa)
+        : surface(exact),
+          by_face(std::make_unique<FacePatches>(exact, fine.grid)),
+          largest_patch(largest_hull(fine.hulls)),
+          size(0.5 * length(box_of_all(fine.hulls).size())),
+          around(box_of_all(fine.hulls)),
+          tree(fine.hulls, isa) {}
 
+    const Patch& patch(Id number) const { return by_face ? by_face->patch(number) : patches[number]; }
+
+    static double largest_hull(const std::vector<Box>& hulls) {
+        double largest = 0;
+        for (const Box& hull : hulls) largest = std::max(largest, length(hull.size()));
+        return kRayStraySafety * largest;
+    }
+    static Box box_of_all(const std::vector<Box>& hulls) {
+        Box box;
+        for (const Box& hull : hulls) box.include(hull);
+        return box;
+    }
     static std::vector<Patch> make_patches(const Surface& surface, const SurfaceGrid& fine) {
         if (surface.has_closed_form()) return {};
         std::vector<Patch> patches(fine.facets.size());
@@ -171,7 +226,7 @@ struct LimitTracer::Data {
         return result;
     }
 
-    std::optional<Candidate> candidate(const RayFrame& frame, Id index, double t_min) const;
+    static std::optional<Candidate> candidate(const RayFrame& frame, const Patch& patch, double t_min);
     struct Query {
         const Ray& ray;
         const RayFrame& frame;
@@ -183,8 +238,8 @@ struct LimitTracer::Data {
 };
 
 // Keeps the patch if the ray passes within its stray, and some of it lies after t_min.
-std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, Id index, double t_min) const {
-    const Patch& patch = patches[index];
+std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, const Patch& patch,
+                                                      double t_min) {
     PlaneTriangle seen;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 local = patch.corner[k] - frame.origin;
@@ -202,7 +257,7 @@ std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, Id 
     return Candidate{(z[low] - patch.stray) / frame.speed,
                      t_far,
                      nearest.distance == 0,
-                     index,
+                     kNone,
                      nearest.weights,
                      low,
                      high};
@@ -214,12 +269,20 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
     double& complete_to = candidates.complete_to;
     // A ray comes into the box of a candidate no later than so much after its t_near.
     const double beyond = largest_patch / query.frame.speed;
-    tree.visit(query.ray, query.t_min, kUnbounded, [&](Id index) {
-        const auto one = candidate(query.frame, index, query.t_min);
-        if (one && one->t_near <= complete_to) {
-            found.push_back(*one);
-            if (reach == Reach::kToFirst && one->is_crossed && one->t_near > query.t_min)
-                complete_to = std::min(complete_to, one->t_far);
+    const auto look_at = [&](const Patch& patch, Id number) {
+        const auto one = candidate(query.frame, patch, query.t_min);
+        if (!one || one->t_near > complete_to) return;
+        found.push_back(*one);
+        found.back().patch = number;
+        if (reach == Reach::kToFirst && one->is_crossed && one->t_near > query.t_min)
+            complete_to = std::min(complete_to, one->t_far);
+    };
+    tree.visit(query.ray, query.t_min, kUnbounded, [&](Id box) {
+        if (!by_face) {
+            look_at(patches[box], box);
+        } else {
+            const std::vector<Patch>& of_face = by_face->of(box);
+            for (std::size_t i = 0; i < of_face.size(); ++i) look_at(of_face[i], FacePatches::number(box, i));
         }
         return complete_to + beyond;
     });
@@ -236,7 +299,7 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
 template <typename Use>
 void LimitTracer::Data::for_each_hit(const Ray& ray, const RayFrame& frame, const Candidate& candidate,
                                      Use&& use) const {
-    const Patch& patch = patches[candidate.patch];
+    const Patch& patch = this->patch(candidate.patch);
     const auto solve = [&](const Vec2& uv) {
         const auto hit = solve_surface_hit(surface, frame, {patch.face, uv, patch.reach});
         if (hit) use(*hit);
@@ -261,6 +324,8 @@ void LimitTracer::Data::for_each_hit(const Ray& ray, const RayFrame& frame, cons
 
 LimitTracer::LimitTracer(const Surface& surface, const SurfaceGrid& fine, const std::string& isa)
     : data_(std::make_unique<Data>(surface, fine, isa)) {}
+LimitTracer::LimitTracer(const Surface& surface, const FaceByFace& fine, const std::string& isa)
+    : data_(std::make_unique<Data>(surface, fine, isa)) {}
 LimitTracer::~LimitTracer() = default;
 LimitTracer::LimitTracer(LimitTracer&&) noexcept = default;
 LimitTracer& LimitTracer::operator=(LimitTracer&&) noexcept = default;
@@ -278,7 +343,7 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
         for (const Candidate& candidate : candidates.found) {
             if (candidate.t_near <= tried) continue;
             if (first && candidate.t_near > first->t) return first;
-            const Patch& patch = data_->patches[candidate.patch];
+            const Patch& patch = data_->patch(candidate.patch);
             data_->for_each_hit(ray, *frame, candidate, [&](const SurfaceHit& hit) {
                 if (!(hit.t > t_min) || (first && !(hit.t < first->t))) return;
                 first = hit;

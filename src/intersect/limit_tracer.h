@@ -1,10 +1,13 @@
 // First hits of rays with the exact surface of one optic: no facet is left in the answer.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "base/math/box.h"
 #include "base/raymesh/segments.h"
 #include "base/raymesh/surface.h"
 
@@ -27,6 +30,13 @@ class LimitTracer {
     /// is nearly flat (n of 16 or more per face); it is not kept, and not used where the surface has a closed
     /// form. Throws UsageError on an unknown `isa` (see Tracer), ComputationError where Embree fails.
     LimitTracer(const Surface& surface, const SurfaceGrid& fine, const std::string& isa = "");
+    /// For surfaces of so many faces that most of them no ray comes near: the facets of a face are made when
+    /// a ray first meets its hull, by whatever thread.
+    struct FaceByFace {
+        std::vector<Box> hulls;  // per face a box that holds it, finite and not empty
+        std::function<SurfaceGrid(Id face)> grid;
+    };
+    LimitTracer(const Surface& surface, const FaceByFace& fine, const std::string& isa = "");
     ~LimitTracer();
     LimitTracer(LimitTracer&&) noexcept;
     LimitTracer& operator=(LimitTracer&&) noexcept;

@@ -145,7 +145,7 @@ void add(const LayerRequest& window, Digest& digest) {
 }
 
 void add(const FrameParams& frame, Digest& digest) {
-    [[maybe_unused]] const auto& [camera, resolution, grid, rays, max_error, layered] = frame;
+    [[maybe_unused]] const auto& [camera, resolution, grid, rays, max_error, layered, facets] = frame;
     const auto add_own = [&](const auto& own) {
         digest.add(own.has_value());
         if (own) digest.add(*own);
@@ -155,6 +155,7 @@ void add(const FrameParams& frame, Digest& digest) {
     add_own(rays);
     add_own(max_error);
     add_own(layered);
+    digest.add(facets);
 }
 
 void add(const EngineChoice& choice, Digest& digest) {

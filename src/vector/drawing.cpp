@@ -117,6 +117,7 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     FrameParams plain = params;
     plain.max_error = kAnyError;
     plain.layered = false;
+    plain.facets = FacetUse::kAll;
     // Caustics are where neighbouring rays meet: of rays that are exact at the corners. A fit is nearer in
     // between, but its slopes are not: rays that stay parallel would meet far away.
     if (lines.caustics) plain.rays = CornerRays::kInterpolated;

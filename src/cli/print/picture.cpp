@@ -1,8 +1,33 @@
 #include "cli/print/picture.h"
 
+#include <algorithm>
+
 #include "terminal/format.h"
 
 namespace trilens {
+namespace {
+
+/// Of the optics' pixels: projected through whole facets or layers, through parts of facets, and traced.
+Json shares_of(const LayerStatistics& counts) {
+    const auto all = static_cast<double>(std::max<std::size_t>(counts.optic_pixels, 1));
+    const auto share = [&](std::size_t pixels) { return static_cast<double>(pixels) / all; };
+    return {{"projected", share(counts.optic_pixels - counts.subdivided_pixels - counts.traced_pixels)},
+            {"divided", share(counts.subdivided_pixels)},
+            {"traced", share(counts.traced_pixels)}};
+}
+
+Json looks_of(const Renderer& renderer, const LayerStatistics& counts) {
+    Json all = Json::array();
+    for (const OpticLooks& one : counts.looks)
+        all.push_back({{"object", renderer.scene().meshes[one.object].name},
+                       {"surveyed_facets", one.surveyed},
+                       {"least_samples", one.least_samples},
+                       {"look", one.look},
+                       {"saved", one.saved}});
+    return all;
+}
+
+}  // namespace
 
 Json picture_fields(const Renderer& renderer, const Picture& picture) {
     return {{"width", picture.image.width},
@@ -14,6 +39,8 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
             {"subdivided_pixels", picture.statistics.subdivided_pixels},
             {"traced_pixels", picture.statistics.traced_pixels},
             {"layered_pixels", picture.statistics.layered_pixels},
+            {"shares", shares_of(picture.statistics)},
+            {"looks", looks_of(renderer, picture.statistics)},
             {"projected_facets", picture.statistics.projected_facets},
             {"predicted_error", picture.statistics.predicted_error},
             {"outline_pixels", picture.statistics.outline_pixels},

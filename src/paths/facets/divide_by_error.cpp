@@ -110,7 +110,8 @@ void OpticPaths::divide_batch_by_error(std::vector<FittedLeaf> open) {
         parallel_for(open.size(), kLeavesPerTask, [&](std::size_t from, std::size_t to) {
             for (std::size_t i = from; i < to; ++i) {
                 error[i] = predicted(open[i]);
-                if (error[i] > params_.max_error) divided[i] = divide_part(context_, *open[i].part, params_);
+                if (error[i] > params_.max_error)
+                    divided[i] = divide_part(context_, *open[i].part, params_, looks_.plan);
             }
         });
         set_ray_scales(divided);

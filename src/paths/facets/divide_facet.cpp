@@ -18,12 +18,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Divider {
   public:
-    Divider(const ProbeContext& context, ProbeSide side, double reach, const DivideParams& params)
+    struct Looks {
+        ProbeSide side;
+        double reach;
+        const LookPlan& plan;
+    };
+    Divider(const ProbeContext& context, const Looks& looks, const DivideParams& params)
         : context_(context),
-          side_(side),
+          side_(looks.side),
           params_(params),
-          reach_(reach),
-          probes_(context, {side, reach, !params.estimates}) {
+          plan_(looks.plan),
+          reach_(looks.reach),
+          probes_(context, {looks.side, looks.reach, !params.estimates}) {
         mirror_ = context.world->optics[context.optic].mirror;
     }
     DividedFacet divide(const std::array<PartCorner, 3>& from);
@@ -39,7 +45,7 @@ class Divider {
     }
     void divide(Id cell, const Triangle& corners, int level);
     void split(Id cell, const Triangle& corners, const Inside& inside, int level);
-    bool is_least(const Triangle& corners, int level) const;
+    bool is_least(const Triangle& corners, int level, bool looked) const;
     bool has_break(const Triangle& corners) const;
     bool project(const Triangle& corners, std::span<const FacetPoint> inside, int level);
     bool is_proven(const Triangle& corners) const;
@@ -58,6 +64,7 @@ class Divider {
     const ProbeContext& context_;
     ProbeSide side_ = ProbeSide::kFront;
     const DivideParams& params_;
+    const LookPlan& plan_;
     double reach_ = 0;
     bool mirror_ = true;
     ProbeCache probes_;
@@ -196,8 +203,12 @@ std::array<Vec3, 3> on_screen(const std::array<FacetPoint, 3>& corners) {
     return {corners[0].screen, corners[1].screen, corners[2].screen};
 }
 
-bool Divider::is_least(const Triangle& corners, int level) const {
-    return level >= params_.most_levels || screen_area(on_screen(corners)) < params_.least_area;
+/// Whether a part is not to be divided. `looked`: it was looked into.
+bool Divider::is_least(const Triangle& corners, int level, bool looked) const {
+    const double area = screen_area(on_screen(corners));
+    if (level >= params_.most_levels) return true;
+    if (plan_.decides()) return !plan_.is_worth_dividing(level, plan_.samples_in(area), looked);
+    return area < params_.least_area;
 }
 
 /// Whether projected_ stands for the part. Sets the centre, and has all paths followed, where the principal
@@ -217,11 +228,22 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
     // Nobody sees what is off the film.
     if (level > 0 && !may_reach_film(on_screen(corners), context_.camera.film))
         return trace(cell, corners, level);
-    // Nobody looks into a part that would be traced anyway.
-    if (is_least(corners, level) && !may_project(corners)) return trace(cell, corners, level);
+    // Nobody looks into a part that would be traced anyway, or for more than tracing it takes.
+    const bool agree = may_project(corners);
+    LookTally::Level& tally = divided_.tally.at(level);
+    ++tally.parts;
+    tally.agree += agree;
+    if (!agree && is_least(corners, level, false)) return trace(cell, corners, level);
+    if (agree && plan_.decides() &&
+        !plan_.is_worth_inside(level, plan_.samples_in(screen_area(on_screen(corners)))))
+        return trace(cell, corners, level);
+    tally.looked += agree;
     Inside inside{probes_.middle_of(corners[1], corners[2]), probes_.middle_of(corners[2], corners[0]),
                   probes_.middle_of(corners[0], corners[1])};
-    if (probe_inside(corners, inside, level)) return end(cell, std::move(projected_));
+    if (probe_inside(corners, inside, level)) {
+        ++tally.projected;
+        return end(cell, std::move(projected_));
+    }
     split(cell, corners, inside, level);
 }
 
@@ -244,7 +266,7 @@ bool Divider::divide_plain(Id cell, const Triangle& corners) {
 }
 
 void Divider::split(Id cell, const Triangle& corners, const Inside& inside, int level) {
-    if (is_least(corners, level)) return trace(cell, corners, level);
+    if (is_least(corners, level, true)) return trace(cell, corners, level);
     const Id first = static_cast<Id>(divided_.cells.size());
     divided_.cells[cell].children = first;
     divided_.cells.resize(divided_.cells.size() + 4);
@@ -289,12 +311,12 @@ DividedFacet Divider::divide_on(const FacetPart& part) {
 
 }  // namespace
 
-DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet,
-                          const DivideParams& params) {
+DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet, const DivideParams& params,
+                          const LookPlan& plan) {
     double reach = facet.reach;
     for (std::size_t k = 0; k < 3 && facet.reach == 0; ++k)
         reach = std::max(reach, length(facet.corners[k].chord - facet.corners[(k + 1) % 3].chord));
-    return Divider(context, facet.side, reach, params).divide(facet.corners);
+    return Divider(context, {facet.side, reach, plan}, params).divide(facet.corners);
 }
 
 DividedFacet traced_facet(const std::array<Vec3, 3>& screen) {
@@ -306,8 +328,9 @@ DividedFacet traced_facet(const std::array<Vec3, 3>& screen) {
     return divided;
 }
 
-DividedFacet divide_part(const ProbeContext& context, const FacetPart& part, const DivideParams& params) {
-    return Divider(context, part.side, part.reach, params).divide_on(part);
+DividedFacet divide_part(const ProbeContext& context, const FacetPart& part, const DivideParams& params,
+                         const LookPlan& plan) {
+    return Divider(context, {part.side, part.reach, plan}, params).divide_on(part);
 }
 
 }  // namespace trilens

@@ -54,6 +54,7 @@ struct DividedFacet {
     std::vector<FacetPart> parts;
     std::deque<PathProbe> probes;  // at points that are no corners of the grid
     CutPaths cut;                  // the most at any point
+    LookTally tally;               // of its parts
 };
 
 /// A facet to divide.
@@ -81,8 +82,9 @@ inline Vec3 child_weights(const Vec3& weights, int child) {
 /// the limit at the centre is found there too.
 inline constexpr double kFainter = 1.0 / 8;
 
-DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet,
-                          const DivideParams& params);
+/// As far as the plan finds it worth it.
+DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet, const DivideParams& params,
+                          const LookPlan& plan = {});
 
 /// A facet that is traced, no part of it looked at; by its corners' homogeneous screen positions.
 DividedFacet traced_facet(const std::array<Vec3, 3>& screen);
@@ -90,6 +92,7 @@ DividedFacet traced_facet(const std::array<Vec3, 3>& screen);
 /// A projected part divided in four, and on where their histories differ: cells[0] is the part, and has
 /// children. One that is too small is a traced part instead. What the part's corners point to must live as
 /// long as the result.
-DividedFacet divide_part(const ProbeContext& context, const FacetPart& part, const DivideParams& params);
+DividedFacet divide_part(const ProbeContext& context, const FacetPart& part, const DivideParams& params,
+                         const LookPlan& plan = {});
 
 }  // namespace trilens

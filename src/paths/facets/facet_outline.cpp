@@ -36,6 +36,8 @@ OpticPaths::OpticPaths(ProbeContext context, const SurfaceGrid& grid, std::span<
     }
 }
 
+OpticPaths::~OpticPaths() = default;
+
 void OpticPaths::set_places(const SurfaceGrid& grid) {
     places_.resize(grid.corner_point.size());
     for (std::size_t f = 0; f < grid.facets.size(); ++f)

@@ -163,6 +163,19 @@ void OpticPaths::keep_room() {
     crowded_out_ = static_cast<std::size_t>(std::count(has_room_.begin(), has_room_.end(), 0));
 }
 
+FacetToDivide OpticPaths::facet_to_divide(Id f) const {
+    FacetToDivide facet;
+    const IdTriple& corners = outline_.facets[f];
+    const bool front = shows_front(f);
+    facet.side = !grid_ ? ProbeSide::kNearest : front ? ProbeSide::kFront : ProbeSide::kBack;
+    facet.reach = grid_ ? 0 : 2 * window_.reach;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Id key = 2 * corners[k] + (front ? 1 : 0);
+        facet.corners[k] = {key, corner_probes_[key].get(), places_[corners[k]].point};
+    }
+    return facet;
+}
+
 void OpticPaths::prepare(std::span<const Id> facets) {
     if (ends_first_) {
         for (const Id f : facets) {
@@ -172,31 +185,31 @@ void OpticPaths::prepare(std::span<const Id> facets) {
         return;
     }
     keep_room();
+    survey();
     const std::vector<Id> fresh = wanted_facets(facets);
-    std::vector<Id> projected;
-    std::copy_if(fresh.begin(), fresh.end(), std::back_inserter(projected),
-                 [&](Id f) { return has_room_[f]; });
-    probe_corners(projected);
+    std::vector<Id> looked;
+    for (const Id f : fresh) {
+        if (!has_room_[f]) continue;
+        if (is_worth_looking(f))
+            looked.push_back(f);
+        else
+            ++looks_.not_worth;
+    }
+    probe_corners(looked);
 
     std::vector<DividedFacet> divided(fresh.size());
     parallel_for(fresh.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
-            FacetToDivide facet;
-            if (!has_room_[fresh[i]]) {
+            const auto surveyed = surveyed_.find(fresh[i]);
+            if (surveyed != surveyed_.end())
+                divided[i] = std::move(*surveyed->second);
+            else if (!has_room_[fresh[i]] || !is_worth_looking(fresh[i]))
                 divided[i] = traced_facet(screen_corners(fresh[i]));
-                continue;
-            }
-            const IdTriple& corners = outline_.facets[fresh[i]];
-            const bool front = shows_front(fresh[i]);
-            facet.side = !grid_ ? ProbeSide::kNearest : front ? ProbeSide::kFront : ProbeSide::kBack;
-            facet.reach = grid_ ? 0 : 2 * window_.reach;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Id key = 2 * corners[k] + (front ? 1 : 0);
-                facet.corners[k] = {key, corner_probes_[key].get(), places_[corners[k]].point};
-            }
-            divided[i] = divide_facet(context_, facet, params_);
+            else
+                divided[i] = divide_facet(context_, facet_to_divide(fresh[i]), params_, looks_.plan);
         }
     });
+    for (const Id f : fresh) surveyed_.erase(f);
     set_ray_scales(divided);
     std::vector<FittedLeaf> whole, open;
     for (std::size_t i = 0; i < fresh.size(); ++i) {

@@ -13,6 +13,7 @@
 
 #include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
+#include "paths/facets/look_plan.h"
 #include "paths/probe/path_probe.h"
 
 namespace trilens {
@@ -80,11 +81,22 @@ struct DivideParams {
     // Of a mirror with nested optics: whether that optic is drawn as a nested optic somewhere within these
     // bounds on the film, in pixels.
     std::function<bool(Id optic, const Vec2& low, const Vec2& high)> nested_covers = {};
+    // Samples in a square pixel, where facets and parts are looked into that are worth it (look_plan.h); 0:
+    // all are.
+    double per_pixel = 0;
 };
 
 struct DividedFacet;
 struct FacetPart;
+struct FacetToDivide;
 struct FittedLeaf;
+
+/// How it was decided which facets are looked into.
+struct LookReport {
+    std::size_t surveyed = 0;  // facets looked into first
+    LookPlan plan;
+    std::size_t not_worth = 0;  // facets, of those asked for, that are traced for what looking costs
+};
 
 /// A window of the film, in pixels, and how finely it is cut.
 struct FilmWindow {
@@ -137,6 +149,7 @@ class OpticPaths {
 
     /// Paths that end after the first optic (thesis 7.2.1, 7.3.1). No exact ray is followed.
     OpticPaths(ProbeContext context, const FirstPaths& first);
+    ~OpticPaths();
 
     /// Works out these facets, those that are known already among them. Same leaves, rays and histories
     /// whatever was asked before; only their numbers differ.
@@ -159,6 +172,7 @@ class OpticPaths {
     std::size_t projected_count() const { return projected_count_; }
     /// Facets that are traced for want of room (DivideParams::most_bytes).
     std::size_t crowded_out() const { return crowded_out_; }
+    const LookReport& looks() const { return looks_; }
     const ProbeContext& context() const { return context_; }
 
   private:
@@ -180,6 +194,9 @@ class OpticPaths {
     bool fits_alone(Id leaf) const;
     void append_part(Id leaf, FacetPart& part);
     void keep_room();
+    void survey();
+    bool is_worth_looking(Id facet) const;
+    FacetToDivide facet_to_divide(Id facet) const;
     void divide_by_error(std::span<const FittedLeaf> open);
     void divide_batch_by_error(std::vector<FittedLeaf> open);
     double predicted(const FittedLeaf& open) const;
@@ -197,6 +214,9 @@ class OpticPaths {
     std::vector<Cell> cells_;                                // one per facet, then parts
     std::vector<char> has_room_;                             // one per facet, once they are counted
     std::size_t crowded_out_ = 0;
+    LookReport looks_;
+    std::unordered_map<Id, std::unique_ptr<DividedFacet>> surveyed_;  // facets of the survey, until asked for
+    bool is_surveyed_ = false;
     std::vector<char> prepared_;
     std::vector<char> fitted_;  // one per facet: with those all around
     std::vector<PathLeaf> leaves_;

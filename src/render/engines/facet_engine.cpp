@@ -221,9 +221,10 @@ void FacetViewer::redraw_direct(const FacetSamples& owned, const SampleGrid& gri
 /// The ends of samples that no facet speaks for, by the optic that their exact rays meet first.
 void FacetViewer::trace_each(std::span<const Id> samples, const SampleGrid& grid, SampleViews& views,
                              std::vector<PathEnds>& ends) const {
-    decide_traced({*world, frame, rims, reach()}, grid, samples, views);
-    std::vector<std::vector<Id>> of_optic(frame.optics.size());
-    for (const Id s : samples) of_optic[views.samples[s].optic].push_back(s);
+    const auto met = decide_traced({*world, frame, rims, reach()}, grid, samples, views);
+    std::vector<std::vector<TracedSample>> of_optic(frame.optics.size());
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        of_optic[views.samples[samples[i]].optic].push_back({samples[i], met[i]});
     for (std::size_t i = 0; i < of_optic.size(); ++i)
         trace_samples({*world, static_cast<Id>(i), paths[i]->context().camera, grid}, of_optic[i], views,
                       ends[i]);

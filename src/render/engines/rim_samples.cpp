@@ -128,17 +128,21 @@ SampleGrid window_with_rim(const OpticRims& rims, std::size_t optic, const Sampl
             std::min(window.y1 + wider, static_cast<int>(film.height)), window.side};
 }
 
-void decide_traced(const RimParams& params, const SampleGrid& grid, std::span<const Id> samples,
-                   SampleViews& views) {
-    if (params.frame.optics.size() < 2) return;
+std::vector<std::optional<SurfaceHit>> decide_traced(const RimParams& params, const SampleGrid& grid,
+                                                     std::span<const Id> samples, SampleViews& views) {
+    std::vector<std::optional<SurfaceHit>> met(samples.size());
+    if (params.frame.optics.size() < 2) return met;
     parallel_for(samples.size(), kRimSamplesPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             SampleView& view = views.samples[samples[i]];
             const std::optional<ExactView> exact = exact_view(params, grid.position(samples[i]), view);
-            if (!exact || exact->first.optic == kNone || exact->first.optic == view.optic) continue;
-            show_optic(params, *exact, view, views.of_optics[samples[i]]);
+            if (!exact || exact->first.optic == kNone) continue;
+            if (params.frame.camera.linear) met[i] = exact->first.at;
+            if (exact->first.optic != view.optic)
+                show_optic(params, *exact, view, views.of_optics[samples[i]]);
         }
     });
+    return met;
 }
 
 void decide_rims(const RimParams& params, const SampleGrid& grid, SampleViews& views) {

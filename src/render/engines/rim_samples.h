@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "intersect/limit_tracer.h"
 #include "render/engines/optic_outline.h"
 #include "render/frame/facet_lookup.h"
 #include "render/frame/views.h"
@@ -49,8 +51,10 @@ bool may_change_order(const RimParams& params, const Ray& ray, const MetSurface&
 void decide_rims(const RimParams& params, const SampleGrid& grid, SampleViews& views);
 
 /// Of samples that are traced those that see another optic first, on the exact surfaces, than by facets: they
-/// show that one then. Else a path would start inside of a mirror that crosses the optic.
-void decide_traced(const RimParams& params, const SampleGrid& grid, std::span<const Id> samples,
-                   SampleViews& views);
+/// show that one then. Else a path would start inside of a mirror that crosses the optic. Returns for each
+/// where its ray meets the optic that it shows, as far as that was looked at: none for a lone optic, nor for
+/// a camera that is not linear.
+std::vector<std::optional<SurfaceHit>> decide_traced(const RimParams& params, const SampleGrid& grid,
+                                                     std::span<const Id> samples, SampleViews& views);
 
 }  // namespace trilens

@@ -32,8 +32,8 @@ Ray traced_ray(const PathCamera& camera, const Vec2& pixel, const Ray& of_facets
 
 }  // namespace
 
-void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samples, SampleViews& views,
-                   PathEnds& out) {
+void trace_samples(const TraceSamplesParams& params, std::span<const TracedSample> samples,
+                   SampleViews& views, PathEnds& out) {
     const PathWorld& world = path_world(params.world);
     std::vector<PathEnds> found((samples.size() + kTracedPerTask - 1) / kTracedPerTask);
     parallel_for(found.size(), 1, [&](std::size_t from, std::size_t to) {
@@ -41,12 +41,14 @@ void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samp
             PathEnds& own = found[task];
             const std::size_t last = std::min(samples.size(), (task + 1) * kTracedPerTask);
             for (std::size_t i = task * kTracedPerTask; i < last; ++i) {
-                SampleView& view = views.samples[samples[i]];
+                const Id sample = samples[i].sample;
+                SampleView& view = views.samples[sample];
                 OpticView& on_optic = views.on_optic(view);
                 view.traced = true;
                 const Ray of_facets = view.ray;
-                view.ray = traced_ray(params.camera, params.grid.position(samples[i]), of_facets);
-                const auto hit = world.optics[params.optic].tracer->first_hit(view.ray);
+                view.ray = traced_ray(params.camera, params.grid.position(sample), of_facets);
+                const auto hit =
+                    samples[i].met ? samples[i].met : world.optics[params.optic].tracer->first_hit(view.ray);
                 if (hit)
                     follow_sample(params.world, {*hit, views.around_of(view)}, view,
                                   {on_optic, own.ends, own.steps});
@@ -55,7 +57,7 @@ void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samp
                     pass_by(params.world, view, own);
                     on_optic.incidence.cosine = 0;
                 }
-                own.sample.resize(own.ends.size(), samples[i]);
+                own.sample.resize(own.ends.size(), sample);
             }
         }
     });

@@ -1,6 +1,8 @@
 // Ray traces samples on the exact surfaces: those that no facet speaks for, and the truth.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "paths/probe/path_probe.h"
@@ -18,11 +20,17 @@ struct TraceSamplesParams {
     const SampleGrid& grid;
 };
 
+/// A sample, and where its ray meets the optic, where that is known.
+struct TracedSample {
+    Id sample = kNone;
+    std::optional<SurfaceHit> met;
+};
+
 /// Appends the ends of all paths over the optic of these samples of `views`, and sets there what was not
 /// followed. Where the camera is not linear their rays are its exact ones, as in the truth, not those of its
 /// facets; one that passes the exact surface by goes straight on.
-void trace_samples(const TraceSamplesParams& params, const std::vector<Id>& samples, SampleViews& views,
-                   PathEnds& out);
+void trace_samples(const TraceSamplesParams& params, std::span<const TracedSample> samples,
+                   SampleViews& views, PathEnds& out);
 
 /// Where a sample's ray meets its optic first.
 struct FirstHit {

@@ -87,6 +87,7 @@ Frame make_frame(const World& world, CameraRays camera, const FrameParams& param
     frame.camera = std::move(camera);
     frame.camera_media = camera_media_of(world, frame.camera);
     frame.max_error = params.max_error.value_or(world.scene.render.max_error);
+    frame.facets = params.facets;
     check_facet_count(world, params.resolution);
     for (std::size_t i = 0; i < world.optics.size(); ++i) {
         frame.optics.push_back(frame_optic(world, i, frame, params));
@@ -231,6 +232,7 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
     // Where pixels have many samples a part of a few square pixels has more than its corners' paths are
     // worth.
     const int side = world.scene.film.spp;
+    if (frame.facets == FacetUse::kWorthwhile) params.per_pixel = side * side;
     params.least_area = std::min(params.least_area, kLeastSamples / (side * side));
     params.most_levels += static_cast<int>(std::ceil(std::log2(side)));
     if (nested) {

@@ -39,7 +39,8 @@ struct Frame {
     CameraMedia camera_media;         // of the camera
     std::vector<FramedOptic> optics;  // as World::optics
     double max_error = 0;             // as RenderSettings, or kAnyError
-    bool fit_all = false;             // see DivideParams; for lines that run on from facet to facet
+    FacetUse facets = FacetUse::kAll;
+    bool fit_all = false;  // see DivideParams; for lines that run on from facet to facet
 };
 
 /// Throws InputError where the optics together have too many facets to hold, or the camera cannot show them.

@@ -16,6 +16,17 @@ namespace trilens {
 /// FrameParams::max_error where no facet is divided for what it is predicted to be off by.
 inline constexpr double kAnyError = std::numeric_limits<double>::infinity();
 
+/// Which facets stand for the samples in them. kAll: each that may. kWorthwhile: those that it takes less to
+/// look into than to follow their samples' own rays, which the others' are (paths/facets/look_plan.h).
+/// Pictures are drawn so; what facets themselves are good for is seen with all.
+enum class FacetUse { kAll, kWorthwhile };
+
+template <>
+struct EnumNames<FacetUse> {
+    static constexpr std::array kTable{NamedValue<FacetUse>{FacetUse::kAll, "all"},
+                                       NamedValue<FacetUse>{FacetUse::kWorthwhile, "worthwhile"}};
+};
+
 /// What a picture's rays depend on.
 struct FrameParams {
     std::size_t camera = 0;                          // index into Scene::cameras
@@ -24,6 +35,7 @@ struct FrameParams {
     std::optional<CornerRays> rays = std::nullopt;   // of every optic; none: each optic's own
     std::optional<double> max_error = std::nullopt;  // RenderSettings::max_error; none: the scene's
     std::optional<bool> layered = std::nullopt;  // of every optic, as Mesh::layered; none: each optic's own
+    FacetUse facets = FacetUse::kAll;
 
     bool operator==(const FrameParams&) const = default;
 };
@@ -100,6 +112,15 @@ struct PictureRequest {
     Shading shading = Shading::kFragment;
 };
 
+/// How it was decided which of an optic's facets are worthwhile.
+struct OpticLooks {
+    Id object = kNone;         // index into Scene::meshes
+    std::size_t surveyed = 0;  // facets looked into first, to know what the others are likely to bring
+    double least_samples = 0;  // facets that have fewer are traced; infinite: all are
+    // In samples' paths followed: looking into a facet, and what each of its samples then saves.
+    double look = 0, saved = 0;
+};
+
 /// Counts of what the user would want to know.
 struct LayerStatistics {
     std::size_t optic_pixels = 0;
@@ -118,9 +139,10 @@ struct LayerStatistics {
     // followed, and the light of all of them together, in pixels.
     std::size_t deep_pixels = 0;
     double deep_sum = 0;
-    // Where pixels are shaded by fragments: those pixels, with the ones around them that a filter reaches; their
-    // fragments; and of the rays that these shade, those that had to be shaded at each sample.
+    // Where pixels are shaded by fragments: those pixels, with the ones around them that a filter reaches;
+    // their fragments; and of the rays that these shade, those that had to be shaded at each sample.
     std::size_t fragment_pixels = 0, fragments = 0, rays_by_sample = 0;
+    std::vector<OpticLooks> looks;  // per optic, where facets are used that are worthwhile
 };
 
 struct Picture {

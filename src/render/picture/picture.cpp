@@ -60,6 +60,19 @@ void tell_crowded_out(const LayerStatistics& statistics, const Warn& warn) {
 /// Of the light on all optics: less is not told of.
 constexpr double kToldShare = 0.002;
 
+/// What looking into the optics' facets was found to cost and to bring; empty where all of them are used.
+std::vector<OpticLooks> looks_of(const World& world, const FacetViews& views) {
+    std::vector<OpticLooks> found;
+    for (std::size_t i = 0; views.paths && i < world.optics.size(); ++i) {
+        const LookReport& looks = views.paths(i).looks();
+        if (!looks.plan.decides()) continue;
+        const LookCosts& costs = looks.plan.costs();
+        found.push_back(
+            {world.optics[i].mesh, looks.surveyed, looks.plan.least_samples(), costs.inside, costs.saved});
+    }
+    return found;
+}
+
 /// What a picture leaves out of the scene.
 void tell_omissions(const World& world, Engine engine, const LayerStatistics& statistics, const Warn& warn) {
     const RenderSettings& settings = world.scene.render;
@@ -164,6 +177,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     picture.image =
         draw_layers(world, views, layers, progress, &picture.statistics, sink ? &described : nullptr);
     picture.draw_seconds = drawing.seconds();
+    picture.statistics.looks = looks_of(world, views);
     describe(world, request, picture.image);
     if (warn) {
         tell(world, layers, picture.statistics, warn);

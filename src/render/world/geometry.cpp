@@ -17,6 +17,10 @@ constexpr int kMinFine = 4, kMaxFine = 256;
 /// Cages of so many faces that kMinFine goes beyond this have small faces, which need less: about 1 GB here.
 constexpr std::size_t kMostFineFacets = 2'000'000;
 
+/// Surfaces of more faces are prepared as far as rays come, with facets of so many steps along each face.
+constexpr std::size_t kManyFaces = 20'000;
+constexpr int kFineOfMany = 2;
+
 /// Facets of the grid whose patches beams are held against.
 constexpr std::size_t kPatches = 20'000;
 constexpr int kMostPatches = 24;  // along a face
@@ -104,6 +108,12 @@ const Tracer& object_tracer(const World& world) {
 const LimitTracer& limit_tracer(const World& world, std::size_t optic) {
     return world.geometry->optic[optic]->limit.get([&] {
         const Surface& surface = *world.optics[optic].surface;
+        if (surface.face_count() > kManyFaces)
+            if (std::vector<Box> hulls = face_hulls(surface); !hulls.empty())
+                return std::make_unique<LimitTracer>(
+                    surface, LimitTracer::FaceByFace{std::move(hulls), [&surface](Id face) {
+                                                         return make_face_grid(surface, face, kFineOfMany);
+                                                     }});
         const SurfaceGrid fine =
             surface.has_closed_form() ? SurfaceGrid{} : make_grid(surface, fine_resolution(surface));
         return std::make_unique<LimitTracer>(surface, fine);

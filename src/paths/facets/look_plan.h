@@ -1,0 +1,76 @@
+// Which facets, and which parts of them, are worth looking into: optimal stopping over their quadtree by
+// dynamic programming (Bellman), in samples of the film.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace trilens {
+
+/// What looking at facets costs and saves. The unit is following the paths of one sample: that takes as much
+/// of a scene's own time as looking at one point of a facet does, whatever the scene, so these are constants.
+/// Measured; docs/speed.md has how.
+struct LookCosts {
+    double corner = 1;   // a facet's share of the looks at the grid's corners
+    double middle = 2;   // looks at the middles of a part's edges, its principal paths alone
+    double inside = 10;  // all paths there and at the centre, the proof, the corner rays, the prediction
+    double saved = 0.7;  // by each sample that is projected instead
+
+    /// Where a pixel has `per_pixel` samples: from two on what they see is shaded by fragments.
+    static LookCosts of(double per_pixel);
+};
+
+/// Of the parts of facets on each level that were looked at.
+struct LookTally {
+    static constexpr int kLevels = 8;  // deeper ones count with the last
+    struct Level {
+        std::size_t parts = 0;      // that are on the film
+        std::size_t agree = 0;      // of them: may be projected, by their corners' principal paths
+        std::size_t looked = 0;     // of these: were looked into
+        std::size_t projected = 0;  // of these: are projected
+    };
+    std::array<Level, kLevels> level{};
+
+    Level& at(int depth) { return level[static_cast<std::size_t>(depth < kLevels ? depth : kLevels - 1)]; }
+    void add(const LookTally& other);
+};
+
+/// Decides for one optic, by what was found at some of its facets.
+class LookPlan {
+  public:
+    /// All parts are looked into.
+    LookPlan() = default;
+    /// `per_pixel`: samples in a square pixel, >= 1.
+    LookPlan(double per_pixel, const LookTally& survey);
+
+    bool decides() const { return per_pixel_ > 0; }
+    /// Samples in that many square pixels.
+    double samples_in(double area) const;
+
+    /// Whether a whole facet with so many samples is worth the looks at its corners.
+    bool is_worth_corners(double samples) const;
+    /// Whether a part whose corners agree is worth the looks inside.
+    bool is_worth_inside(int level, double samples) const;
+    /// Whether a part that is not projected is worth dividing. `looked`: it was looked into.
+    bool is_worth_dividing(int level, double samples, bool looked) const;
+
+    /// The fewest samples of a facet whose corners are looked at; infinite where none is worth it.
+    double least_samples() const;
+
+    const LookCosts& costs() const { return costs_; }
+
+  private:
+    struct Share {
+        double agree = 1, projected = 1;
+    };
+    const Share& share(int level) const;
+    double parts(int level, double samples) const;
+    double inside(int level, double samples, double of_parts) const;
+    double part(int level, double samples) const;
+
+    double per_pixel_ = 0;  // 0: all parts are looked into
+    LookCosts costs_;
+    std::array<Share, LookTally::kLevels> share_{};
+};
+
+}  // namespace trilens
