@@ -1,13 +1,16 @@
 // The limit tracer against closed forms and against marching with exact distances in long double.
 #include "intersect/limit_tracer.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 
 #include "base/util/parallel.h"
 #include "random_scene.h"
 #include "support/test.h"
+#include "surfaces/surfaces.h"
 #include "test_surfaces.h"
 
 using namespace trilens;
@@ -336,4 +339,51 @@ TEST_CASE(
         hits += many[i] ? 1 : 0;
     }
     CHECK(hits > 800);
+}
+
+TEST_CASE("a surface prepared face by face, as rays come, is met where one prepared whole is",
+          "[intersect][law]") {
+    Random random(81);
+    // An octahedron out of shape: sub-faces of triangles, or triangles under Loop.
+    for (const SubdivisionScheme scheme : {SubdivisionScheme::kCatmullClark, SubdivisionScheme::kLoop}) {
+        Cage cage;
+        cage.scheme = scheme;
+        cage.points = {{1, 0, 0}, {-1, 0.1, 0}, {0, 1.2, 0}, {0.2, -1, 0}, {0, 0, 1.5}, {0.1, 0, -1}};
+        for (const int pole : {4, 5})
+            for (int k = 0; k < 4; ++k) {
+                constexpr std::array<int, 4> kRing{0, 2, 1, 3};
+                const int a = kRing[static_cast<std::size_t>(k)],
+                          b = kRing[static_cast<std::size_t>((k + 1) % 4)];
+                cage.face_vertex_counts.push_back(3);
+                for (const int v : {pole == 4 ? a : b, pole == 4 ? b : a, pole})
+                    cage.face_vertex_indices.push_back(v);
+            }
+        const auto surface = make_limit_surface(cage, "cage", {});
+        const LimitTracer whole(*surface, make_grid(*surface, 16));
+        const std::vector<Box> hulls = face_hulls(*surface);
+        REQUIRE(hulls.size() == surface->face_count());
+        for (Id face = 0; face < surface->face_count(); ++face)
+            for (int i = 0; i < 50; ++i) {
+                double u = random.uniform(0, 1), v = random.uniform(0, 1);
+                if (surface->domain(face) == FaceDomain::kTriangle && u + v > 1) u = 1 - u, v = 1 - v;
+                CHECK(hulls[face].holds(surface->eval(face, {u, v}).position));
+            }
+        std::set<Id> made;
+        const LimitTracer by_face(*surface, {hulls, [&](Id face) {
+                                                 made.insert(face);
+                                                 return make_face_grid(*surface, face, 8);
+                                             }});
+        CHECK(made.empty());
+        int met = 0, unlike = 0;
+        for (int i = 0; i < 3000; ++i) {
+            const Vec3 from = 3.0 * random.direction(), at = 0.8 * random.uniform(0, 1) * random.direction();
+            const Ray ray{from, at - from};
+            const auto one = whole.first_hit(ray), other = by_face.first_hit(ray);
+            met += one.has_value();
+            unlike += one.has_value() != other.has_value() || (one && std::fabs(one->t - other->t) > 1e-9);
+        }
+        CHECK(met > 1500);
+        CHECK(unlike == 0);
+        CHECK(made.size() == surface->face_count());
+    }
 }

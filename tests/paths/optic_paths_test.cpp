@@ -231,13 +231,19 @@ TEST_CASE("a facet's rays do not depend on what was asked for before", "[paths][
     put_up(stage);
     const SurfaceGrid grid = make_grid(stage.surface(0), 3);
     const ProbeContext context{&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})};
-    OpticPaths at_once(context, grid, DivideParams{}), one_by_one(context, grid, DivideParams{});
+    DivideParams params;
+    params.per_pixel = GENERATE(0.0, 2e-4, 1e-2);  // all are looked into; the large ones; all but parts
+    OpticPaths at_once(context, grid, params), one_by_one(context, grid, params);
     std::vector<Id> facets = all_facets(at_once);
     at_once.prepare(facets);
     std::reverse(facets.begin(), facets.end());
     for (const Id f : facets) one_by_one.prepare(std::vector<Id>{f, f});
     one_by_one.prepare(facets);  // known already
 
+    CHECK(at_once.looks().plan.decides() == (params.per_pixel > 0));
+    CHECK(at_once.looks().surveyed == one_by_one.looks().surveyed);
+    if (params.per_pixel > 0)
+        CHECK(at_once.looks().plan.least_samples() == one_by_one.looks().plan.least_samples());
     Random random(53);
     CHECK(at_once.leaves().size() == one_by_one.leaves().size());
     CHECK(at_once.nodes().size() == one_by_one.nodes().size());
