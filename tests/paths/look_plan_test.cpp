@@ -74,7 +74,8 @@ TEST_CASE("what is worth it for some samples is so for more; few are never worth
     Random random(71);
     for (int trial = 0; trial < 200; ++trial) {
         const double per_pixel = trial % 2 ? 1 : 64;
-        const LookPlan plan(per_pixel, survey_of(random_chances(random)));
+        const LookPlan plan(per_pixel, LookCosts::of(per_pixel, trial % 3 == 0),
+                            survey_of(random_chances(random)));
         CHECK(plan.samples_in(3) == 3 * per_pixel);
         const double least = plan.least_samples();
         CHECK(least > plan.costs().inside / plan.costs().saved);
@@ -100,7 +101,7 @@ TEST_CASE("played out, no simpler rule saves more than the plan", "[paths][law]"
     Random random(72);
     for (int trial = 0; trial < 12; ++trial) {
         const Chances chances = random_chances(random);
-        const LookPlan plan(1, survey_of(chances));
+        const LookPlan plan(1, LookCosts::of(1, trial % 2 == 0), survey_of(chances));
         const double samples = std::pow(10, random.uniform(1, 3));
         constexpr int kPlays = 3000;
         // The mean and its standard error.

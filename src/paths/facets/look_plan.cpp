@@ -20,8 +20,9 @@ double blended(double prior, std::size_t some, std::size_t all) {
 
 }  // namespace
 
-LookCosts LookCosts::of(double per_pixel) {
+LookCosts LookCosts::of(double per_pixel, bool closed_form) {
     LookCosts costs;
+    if (closed_form) costs.inside = 20;
     if (per_pixel > 1) costs.saved = 1.2;
     return costs;
 }
@@ -35,8 +36,8 @@ void LookTally::add(const LookTally& other) {
     }
 }
 
-LookPlan::LookPlan(double per_pixel, const LookTally& survey)
-    : per_pixel_(per_pixel), costs_(LookCosts::of(per_pixel)) {
+LookPlan::LookPlan(double per_pixel, const LookCosts& costs, const LookTally& survey)
+    : per_pixel_(per_pixel), costs_(costs) {
     // What a level is believed to be before it is seen is what the level above it was found to be.
     Share prior{kPriorAgree, kPriorProjected};
     for (std::size_t i = 0; i < share_.size(); ++i) {

@@ -9,15 +9,16 @@ namespace trilens {
 
 /// What looking at facets costs and saves. The unit is following the paths of one sample: that takes as much
 /// of a scene's own time as looking at one point of a facet does, whatever the scene, so these are constants.
-/// Measured; docs/speed.md has how.
+/// Measured, as docs/speed.md tells.
 struct LookCosts {
     double corner = 1;   // a facet's share of the looks at the grid's corners
     double middle = 2;   // looks at the middles of a part's edges, its principal paths alone
     double inside = 10;  // all paths there and at the centre, the proof, the corner rays, the prediction
     double saved = 0.7;  // by each sample that is projected instead
 
-    /// Where a pixel has `per_pixel` samples: from two on what they see is shaded by fragments.
-    static LookCosts of(double per_pixel);
+    /// `per_pixel`: samples of a pixel; from two on what they see is shaded by fragments. `closed_form`: the
+    /// optic is met in closed form, for less than proofs take.
+    static LookCosts of(double per_pixel, bool closed_form);
 };
 
 /// Of the parts of facets on each level that were looked at.
@@ -40,8 +41,8 @@ class LookPlan {
   public:
     /// All parts are looked into.
     LookPlan() = default;
-    /// `per_pixel`: samples in a square pixel, >= 1.
-    LookPlan(double per_pixel, const LookTally& survey);
+    /// `per_pixel`: samples in a square pixel, > 0.
+    LookPlan(double per_pixel, const LookCosts& costs, const LookTally& survey);
 
     bool decides() const { return per_pixel_ > 0; }
     /// Samples in that many square pixels.

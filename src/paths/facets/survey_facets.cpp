@@ -34,7 +34,8 @@ bool OpticPaths::is_worth_looking(Id facet) const {
 void OpticPaths::survey() {
     if (is_surveyed_ || params_.per_pixel == 0) return;
     is_surveyed_ = true;
-    looks_.plan = LookPlan(params_.per_pixel, {});
+    const LookCosts costs = LookCosts::of(params_.per_pixel, context_.surface->has_closed_form());
+    looks_.plan = LookPlan(params_.per_pixel, costs, {});
     std::vector<Id> shown;
     for (Id f = 0; f < outline_.facets.size(); ++f)
         if (on_film(f) && has_room_[f] && is_worth_looking(f)) shown.push_back(f);
@@ -61,7 +62,7 @@ void OpticPaths::survey() {
         surveyed_[chosen[i]] = std::move(found[i]);
     }
     looks_.surveyed = chosen.size();
-    looks_.plan = LookPlan(params_.per_pixel, tally);
+    looks_.plan = LookPlan(params_.per_pixel, costs, tally);
 }
 
 }  // namespace trilens
