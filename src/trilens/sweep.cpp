@@ -155,7 +155,7 @@ void add(const FrameParams& frame, Digest& digest) {
     add_own(rays);
     add_own(max_error);
     add_own(layered);
-    digest.add(facets);
+    if (facets != FacetUse::kAll) digest.add(facets);  // keys of older sweeps stay
 }
 
 void add(const EngineChoice& choice, Digest& digest) {
