@@ -9,6 +9,6 @@
 #pragma once
 
 #include "render/project/project.h"
-#include "scene/read/parameters.h"
 #include "scene/formats/points_file.h"
+#include "scene/parameters.h"
 #include "trilens/render.h"

@@ -8,7 +8,7 @@
 
 #include "render/project/image_chain.h"
 #include "render/project/project.h"
-#include "scene/read/parameters.h"
+#include "scene/parameters.h"
 
 namespace trilens {
 

@@ -1,4 +1,4 @@
-#include "scene/read/parameters.h"
+#include "scene/parameters.h"
 
 #include <algorithm>
 #include <charconv>
