@@ -28,6 +28,13 @@ std::string text_of(double value) {
     return {room, std::to_chars(room, room + sizeof room, value).ptr};
 }
 
+/// The place that a key names in an array; the array's size where it names none.
+std::size_t place_of(const std::string& key, std::size_t size) {
+    std::size_t place = size;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), place);
+    return error == std::errc() && end == key.data() + key.size() ? place : size;
+}
+
 /// The pointer with entries that are named by their "name" replaced by their places.
 std::string placed(const Json& root, const std::string& pointer, const std::string& file) {
     std::string done;
@@ -42,8 +49,10 @@ std::string placed(const Json& root, const std::string& pointer, const std::stri
             if (place < at->size()) key = std::to_string(place);
         }
         done += '/' + key;
-        const Json::json_pointer next(done);
-        at = root.contains(next) ? &root.at(next) : nullptr;
+        at = !at                                                        ? nullptr
+             : at->is_object() && at->contains(key)                     ? &(*at)[key]
+             : at->is_array() && place_of(key, at->size()) < at->size() ? &(*at)[place_of(key, at->size())]
+                                                                        : nullptr;
         from = end + 1;
     }
     if (pointer.empty() || pointer[0] != '/')
@@ -63,16 +72,33 @@ void add_numbers(const Json& value, const std::string& pointer, const std::strin
         add_numbers(value[i], pointer + '/' + std::to_string(i), file, numbers);
 }
 
+/// The document's part at a pointer; null where it names none.
+Json part_at(const Json& root, const std::string& pointer, const std::string& file) {
+    try {
+        const Json::json_pointer at(pointer);
+        return root.contains(at) ? root.at(at) : Json(nullptr);
+    } catch (const Json::exception&) {
+        fail_at(file, pointer, "is no JSON pointer");
+    }
+}
+
+Json checked_json(const Scene& scene) {
+    if (scene.resolved.empty())
+        fail_at(scene_title(scene), "",
+                "was built in memory and has no JSON, whose numbers pointers could name");
+    return resolved_json(scene);
+}
+
 }  // namespace
 
 std::vector<SceneNumber> find_numbers(const Scene& scene, std::span<const std::string> pointers) {
-    const Json root = resolved_json(scene);
+    const Json root = checked_json(scene);
     const std::string file = scene_title(scene);
     std::vector<SceneNumber> numbers;
     for (const std::string& asked : pointers) {
         const std::string pointer = placed(root, asked, file);
-        const Json::json_pointer at(pointer);
-        const Json value = root.contains(at) ? root.at(at) : default_of(pointer);
+        Json value = part_at(root, pointer, file);
+        if (value.is_null()) value = default_of(pointer);
         if (value.is_null())
             fail_at(file, asked, "is not in the scene: derivatives are of numbers that it has");
         add_numbers(value, pointer, file, numbers);
@@ -81,10 +107,10 @@ std::vector<SceneNumber> find_numbers(const Scene& scene, std::span<const std::s
 }
 
 Scene scene_with(const Scene& scene, const SceneNumber& number) {
-    const Json root = resolved_json(scene);
+    const Json root = checked_json(scene);
     std::vector<SceneOverride> changes;
     const std::string parent = number.pointer.substr(0, number.pointer.rfind('/'));
-    if (!root.contains(Json::json_pointer(parent)) && !default_of(parent).is_null())
+    if (part_at(root, parent, scene_title(scene)).is_null() && !default_of(parent).is_null())
         changes.push_back({parent, default_of(parent).dump()});
     changes.push_back({number.pointer, text_of(number.value)});
     const auto blank = std::make_shared<const Texture>();

@@ -65,6 +65,9 @@ TEST_CASE("numbers and texts that are none are refused or written", "[trilens][b
         only_errors("shell_quoted", [&] { shell_quoted(text); });
         only_errors("parse_point", [&] { parse_point(text); });
         only_errors("parse_points", [&] { parse_points(text, text); });
+        only_errors("parse_numbers", [&] { parse_numbers(text, text, {2, text, text}); });
+        only_errors("find_numbers", [&] { find_numbers(callers_scene(), std::vector{text}); });
+        only_errors("scene_with", [&] { scene_with(callers_scene(), {text, 1}); });
         only_errors("require_distinct_names", [&] { require_distinct_names(std::vector{text, text}); });
         only_errors("parse_frames", [&] { parse_frames(text); });
         only_errors("frame_file", [&] { frame_file(text, -2147483647 - 1); });
@@ -73,6 +76,7 @@ TEST_CASE("numbers and texts that are none are refused or written", "[trilens][b
         only_errors("has_this_platform", [&] { has_this_platform({text}); });
         for (const auto& read : std::vector<std::pair<const char*, void (*)(const std::string&)>>{
                  {"read_points", [](const std::string& f) { read_points(f); }},
+                 {"read_numbers", [](const std::string& f) { read_numbers(f, {}); }},
                  {"read_image", [](const std::string& f) { read_image(f); }},
                  {"read_image_parts", [](const std::string& f) { read_image_parts(f); }},
                  {"read_compared_image", [](const std::string& f) { read_compared_image(f, f); }},

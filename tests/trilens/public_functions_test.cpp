@@ -20,6 +20,11 @@ namespace fs = std::filesystem;
 const std::map<std::string, std::string> kElsewhere{
     {"explain_pixel", "Renderer::explain"},
     {"project_points", "Renderer::project"},
+    {"project_directions", "Renderer::project_directions"},
+    {"refine_images", "Renderer::refine"},
+    {"shoot_places", "Renderer::shoot"},
+    {"shoot_rays", "Renderer::shoot"},
+    {"make_optic_surface", "Renderer, of scenes that are no data"},
     {"name_of", "of an enumerator"},
     {"find_named", "of any text"},
     {"is_linear", "of an enumerator"},
