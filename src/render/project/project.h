@@ -75,9 +75,9 @@ struct ProjectRequest {
     bool visibility = true;    // else `visible` stays false
     bool derivatives = false;  // of images over one optic too; the others have them anyway
     // Only images of these events, however many the scene's maxDepth follows; none direct.
-    EventWord path;
+    EventWord path = {};
     // JSON pointers to numbers, or arrays of them, of the scene: how images move with each; see find_numbers.
-    std::vector<std::string> parameters;
+    std::vector<std::string> parameters = {};
     // Of a point: the strongest; 0: all. Of a list that was cut `complete` is false.
     std::size_t max_images = 0;
     double min_weight = 0;  // images that carry less in every colour are left out

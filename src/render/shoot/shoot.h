@@ -65,7 +65,7 @@ struct ShotRays {
 /// as `cut`.
 struct ShootRequest {
     std::size_t camera = 0;  // index into Scene::cameras; of own rays not asked
-    EventWord path;
+    EventWord path = {};
 };
 
 /// The camera's rays through places of the film (pixels from its top left, a pixel's centre at .5); places
