@@ -107,36 +107,35 @@ StepRow row_of(const WorldImage& image, std::size_t place) {
     return row;
 }
 
-/// Adds rows to a list whose numbers of steps and parameters are known.
+/// Writes rows one behind the other; their numbers of steps and parameters, and how many there are, are
+/// known.
 class RowWriter {
   public:
-    explicit RowWriter(Rows& rows) : rows_(rows) {}
+    RowWriter(Rows& rows, std::size_t count) : rows_(rows) {
+        rows.bytes.resize(count * rows.row_size());
+        next_ = rows.bytes.data();
+    }
 
     void add(const WorldImage& image, std::size_t point, bool complete) {
         ImageRow row = row_of(image);
         row.point = static_cast<std::int64_t>(point);
         row.complete = complete;
-        append(&row, sizeof row);
-        for (std::size_t i = 0; i < rows_.steps; ++i) {
-            const StepRow step = row_of(image, i);
-            append(&step, sizeof step);
-        }
+        put(row);
+        for (std::size_t i = 0; i < rows_.steps; ++i) put(row_of(image, i));
         for (int axis = 0; axis < 2; ++axis)
-            for (std::size_t k = 0; k < rows_.parameters; ++k) {
-                const double moved =
-                    k < image.by_parameter.size() ? image.by_parameter[k][axis] : std::nan("");
-                append(&moved, sizeof moved);
-            }
+            for (std::size_t k = 0; k < rows_.parameters; ++k)
+                put(k < image.by_parameter.size() ? image.by_parameter[k][axis] : std::nan(""));
     }
 
   private:
-    void append(const void* data, std::size_t size) {
-        const std::size_t at = rows_.bytes.size();
-        rows_.bytes.resize(at + size);
-        std::memcpy(rows_.bytes.data() + at, data, size);
+    template <class Value>
+    void put(const Value& value) {
+        std::memcpy(next_, &value, sizeof value);
+        next_ += sizeof value;
     }
 
     Rows& rows_;
+    std::byte* next_ = nullptr;
 };
 
 Rows rows_of(const std::vector<PointProjection>& points, std::size_t parameters) {
@@ -147,8 +146,7 @@ Rows rows_of(const std::vector<PointProjection>& points, std::size_t parameters)
         count += point.images.size();
         for (const WorldImage& image : point.images) rows.steps = std::max(rows.steps, image.steps.size());
     }
-    rows.bytes.reserve(count * rows.row_size());
-    RowWriter writer(rows);
+    RowWriter writer(rows, count);
     for (std::size_t p = 0; p < points.size(); ++p)
         for (const WorldImage& image : points[p].images) writer.add(image, p, points[p].complete);
     return rows;
@@ -158,8 +156,7 @@ Rows rows_of(const std::vector<PointProjection>& points, std::size_t parameters)
 Rows rows_of(const std::vector<std::optional<WorldImage>>& images, const std::vector<ImageStart>& starts) {
     Rows rows;
     for (const ImageStart& start : starts) rows.steps = std::max(rows.steps, start.events.size());
-    rows.bytes.reserve(images.size() * rows.row_size());
-    RowWriter writer(rows);
+    RowWriter writer(rows, images.size());
     for (std::size_t i = 0; i < images.size(); ++i) {
         WorldImage lost;
         lost.pixel = Vec2(std::nan(""));

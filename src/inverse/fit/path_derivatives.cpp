@@ -8,9 +8,9 @@ namespace {
 
 using Tangents = std::array<Vec3, 2>;  // dP/du, dP/dv
 
-/// One stretch between two places: unit direction e and H = n / length (1 - e e^T); H = 0 from a parallel
+/// One leg between two places: unit direction e and H = n / length (1 - e e^T); H = 0 from a parallel
 /// camera.
-struct Stretch {
+struct PathLeg {
     Vec3 direction{0};
     double index = 1, over_length = 0;  // index / length
 
@@ -25,12 +25,12 @@ Vec3 eye_of(const Camera& camera) {
     return camera.linear ? camera.linear->eye : *camera.model->eye();
 }
 
-std::vector<Stretch> stretches(const FitScene& scene, const Camera& camera,
+std::vector<PathLeg> path_legs(const FitScene& scene, const Camera& camera,
                                std::span<const OpticEvent> events, const Vec3& point) {
-    std::vector<Stretch> all;
+    std::vector<PathLeg> all;
     const auto place = [&](std::size_t i) { return i < events.size() ? events[i].point.position : point; };
     for (std::size_t i = 0; i <= events.size(); ++i) {
-        Stretch stretch;
+        PathLeg stretch;
         stretch.index = index_of(scene, i < events.size() ? events[i].before : events[i - 1].after);
         if (i == 0 && is_parallel(camera)) {
             stretch.direction = normalize(camera.linear->view_direction);
@@ -142,7 +142,7 @@ struct StationaryPath {
     ShownPlace film;
     std::span<const OpticEvent> events;
     Vec3 point;
-    std::vector<Stretch> stretch;
+    std::vector<PathLeg> stretch;
     std::array<Vec3, 2> gradient;  // of the camera's place at the first event, or at the point
     std::vector<Mat2> z;           // A^-1 (G^T, 0, ...): see below
 
@@ -154,7 +154,7 @@ bool solve(StationaryPath& path) {
     if (k == 0) return true;
     std::vector<Mat2> diagonal, upper;
     for (std::size_t i = 0; i < k; ++i) {
-        const Stretch &before = path.stretch[i], &after = path.stretch[i + 1];
+        const PathLeg &before = path.stretch[i], &after = path.stretch[i + 1];
         const SurfacePoint& p = path.events[i].point;
         const Vec3 bend = before.index * before.direction - after.index * after.direction;
         Mat2 block = form(
@@ -205,7 +205,7 @@ std::array<double, 2> by_parameter(const StationaryPath& path, const ParameterDi
         return factor * (index_of(parameter.plus, medium) - index_of(parameter.minus, medium));
     };
     for (std::size_t i = 0; i < k; ++i) {
-        const Stretch &before = path.stretch[i], &after = path.stretch[i + 1];
+        const PathLeg &before = path.stretch[i], &after = path.stretch[i + 1];
         const Vec3 previous = i > 0 ? moves[i - 1].place : eye_move;
         const Vec3 next = i + 1 < k ? moves[i + 1].place : Vec3(0);
         Vec3 force = before.turn(moves[i].place - previous) - after.turn(next - moves[i].place);
@@ -245,7 +245,7 @@ std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const Sho
         place_gradient(camera, events.empty() ? point : events[0].point.position, place.pixel);
     if (!gradient) return std::nullopt;
     path.gradient = *gradient;
-    if (!events.empty()) path.stretch = stretches(scene, camera, events, point);
+    if (!events.empty()) path.stretch = path_legs(scene, camera, events, point);
     if (!solve(path)) return std::nullopt;
 
     PathDerivatives found;
