@@ -16,7 +16,7 @@ namespace {
 /// Of the anchor's row, over the rectangle's side: so heavy that nothing slides along the rays.
 constexpr double kAnchorWeight = 1e4;
 /// A step in heights, over the rectangle's side, after which the surface rests.
-constexpr double kRests = 1e-11;
+constexpr double kRests = 1e-9;
 constexpr double kDifferenceShare = 1e-4;  // of the rectangle's side, for curls
 /// 1 / side: a curl above this is told as a warning: about 0.06 degrees over a rectangle of side 1.
 constexpr double kTellingCurl = 0.005;
