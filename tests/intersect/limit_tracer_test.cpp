@@ -289,7 +289,7 @@ TEST_CASE("surfaces with a closed form are asked for it", "[intersect][oracle]")
         }
     };
     const Plane plane;
-    const LimitTracer tracer(plane, {});
+    const LimitTracer tracer(plane, SurfaceGrid{});
     const auto hit = tracer.first_hit({{0.25, 0.5, 2}, {0, 0, -0.5}});
     REQUIRE(hit.has_value());
     CHECK(hit->t == 4);
