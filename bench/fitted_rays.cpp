@@ -86,7 +86,7 @@ struct Study {
                 if (method[p] == 2 || found->state[p] == Shift::kNothing) continue;
                 const std::size_t near = fold[p];
                 ++count[near];
-                lost[near] += found->state[p] == Shift::kLost;
+                lost[near] += found->state[p] != Shift::kFound;
                 const double shift = std::hypot(found->shift_x[p], found->shift_y[p]);
                 off[near] += shift > 1;
                 if (shift > worst[near] && near == 0) worst_at = p;

@@ -88,7 +88,7 @@ void bind_metrics(py::module_& module) {
 /// A displacement's numbers, flat, as the command's JSON has them.
 struct Moved {
     std::optional<double> mean, p50, p95, p99, max;
-    std::size_t pixels = 0, lost = 0, beyond_radius = 0, missing = 0;
+    std::size_t pixels = 0, lost = 0, unmeasured = 0, beyond_radius = 0, missing = 0;
     std::optional<double> coverage, mean_off_folds;
     std::size_t near_folds = 0;
 };
@@ -97,7 +97,7 @@ Moved moved_of(const Displacement& d) {
     Moved moved;
     if (const auto& s = d.summary)
         moved.mean = s->mean, moved.p50 = s->p50, moved.p95 = s->p95, moved.p99 = s->p99, moved.max = s->max;
-    moved.pixels = d.pixels, moved.lost = d.lost;
+    moved.pixels = d.pixels, moved.lost = d.lost, moved.unmeasured = d.unmeasured;
     moved.beyond_radius = d.beyond_radius, moved.missing = d.missing;
     moved.coverage = d.coverage, moved.mean_off_folds = d.mean_off_folds;
     moved.near_folds = d.near_folds;
@@ -117,14 +117,17 @@ void bind_layers(py::module_& module) {
         "How far what the test's optics show lies from where the reference shows it: pixels. None where "
         "nothing "
         "was\n"
-        "measured; what could not be measured is in no mean, so read each with coverage, lost and missing.");
+        "measured; what could not be measured is in no mean, so read each with coverage, lost, missing\n"
+        "and unmeasured.");
     bind_fields(
         shift, field("mean", &Moved::mean, "Pixels."), field("p50", &Moved::p50, "Pixels."),
         field("p95", &Moved::p95, "Pixels."), field("p99", &Moved::p99, "Pixels."),
         field("max", &Moved::max, "Pixels."), field("pixels", &Moved::pixels, "How many pixels were found."),
         field("lost", &Moved::lost, "Pixels of the test whose point the reference does not show."),
+        field("unmeasured", &Moved::unmeasured,
+              "Pixels that show the same triangle in both, at a distance that nothing tells."),
         field("beyond_radius", &Moved::beyond_radius,
-              "Those lost that it shows farther away than the radius."),
+              "Those lost or unmeasured whose point it shows farther away than the radius."),
         field("missing", &Moved::missing, "Pixels of the reference whose point the test does not show."),
         field("coverage", &Moved::coverage, "Found pixels over those that show the layer, 0..1."),
         field("mean_off_folds", &Moved::mean_off_folds, "Mean away from folds of the reference, pixels."),
@@ -173,15 +176,14 @@ void bind_comparison(py::module_& module) {
         .def("displacement_arrays", displacement_arrays, py::arg("layer"),
              "Of a layer, per pixel of the window (height, width), views without a copy: state (uint8: 0 "
              "nothing\n"
-             "seen, 1 found, 2 lost), shift_x and shift_y (float32, pixels, from the test's pixel to the "
+             "seen, 1 found, 2 lost, 3 unmeasured), shift_x and shift_y (float32, pixels, from the test's pixel to the "
              "place in\n"
              "the reference, x right and y down). Raises KeyError where it was not measured.")
         .def("difference", difference,
              "The difference as an image: R G B test - reference, abs.R G B, mask.M, flip.Y; of "
              "each layer\n"
-             "that shows something <layer>.shift.X Y in pixels and <layer>.shift.M (1 found, -1 lost, 0 "
-             "nothing "
-             "seen).")
+             "that shows something <layer>.shift.X Y in pixels and <layer>.shift.M (1 found, -1 lost, "
+             "-2 unmeasured, 0 nothing seen).")
         .def("__repr__", [](const ImageComparison& self) {
             return std::string("<trilens.Comparison ") + verdict_name(self.comparison.verdict) + ", rmse " +
                    shortest_text(self.comparison.metrics.rmse) + ">";

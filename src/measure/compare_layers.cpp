@@ -48,13 +48,14 @@ struct Adding {
     void add(const Displacement& one) {
         total.pixels += one.pixels;
         total.lost += one.lost;
+        total.unmeasured += one.unmeasured;
         total.beyond_radius += one.beyond_radius;
         total.missing += one.missing;
         total.near_folds += one.near_folds;
         if (*one.coverage > 0)
             seen += static_cast<double>(one.pixels) / *one.coverage;
         else
-            seen += static_cast<double>(one.lost + one.missing);
+            seen += static_cast<double>(one.lost + one.unmeasured + one.missing);
         if (one.mean_off_folds) {
             const std::size_t count = one.pixels - one.near_folds;
             off_folds += *one.mean_off_folds * static_cast<double>(count);

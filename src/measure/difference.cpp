@@ -11,6 +11,9 @@
 namespace trilens {
 namespace {
 
+/// By Shift, in its order.
+constexpr float kShiftMarks[] = {0, 1, -1, -2};
+
 void add_channel(Image& image, const std::string& name, std::vector<float> values) {
     image.channels.push_back({name, std::move(values)});
 }
@@ -24,7 +27,7 @@ void add_shift(const std::string& layer, const Displacement& displacement, Image
             throw InputError("", layer, "its displacement is of an image of another size");
     std::vector<float> state(displacement.state.size());
     std::ranges::transform(displacement.state, state.begin(), [](Shift shift) {
-        return shift == Shift::kFound ? 1.0f : shift == Shift::kLost ? -1.0f : 0.0f;
+        return kShiftMarks[static_cast<std::size_t>(shift)];
     });
     add_channel(difference, layer + ".shift.X", displacement.shift_x);
     add_channel(difference, layer + ".shift.Y", displacement.shift_y);

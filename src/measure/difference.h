@@ -29,7 +29,7 @@ Image make_difference(const Image& reference, const Image& test, const Differenc
 
 /// Adds what `layer` ("reflect", "refract") shows, moved, to the difference of the same two images:
 ///   LAYER.shift.X Y    Displacement::shift_x, shift_y, in pixels
-///   LAYER.shift.M      1 found, -1 lost, 0 nothing seen
+///   LAYER.shift.M      1 found, -1 lost, -2 unmeasured, 0 nothing seen
 /// Throws InputError for a displacement of images of another size.
 void add_shift(const std::string& layer, const Displacement& displacement, Image& difference);
 

@@ -74,11 +74,12 @@ void add_displacement(const Layers& layers, const std::string& prefix, std::vect
     }
 
     Metric off_folds, coverage;
-    std::size_t lost = 0, beyond = 0, missing = 0, found = 0;
+    std::size_t lost = 0, unmeasured = 0, beyond = 0, missing = 0, found = 0;
     for (const Displacement* d : measured) {
         off_folds = largest(off_folds, d->mean_off_folds);
         if (d->coverage) coverage = std::min(coverage.value_or(1), *d->coverage);
         lost += d->lost;
+        unmeasured += d->unmeasured;
         beyond += d->beyond_radius;
         missing += d->missing;
         found += d->pixels;
@@ -88,7 +89,9 @@ void add_displacement(const Layers& layers, const std::string& prefix, std::vect
     };
     all.push_back({prefix + "displacement_mean_off_folds", off_folds});
     all.push_back({prefix + "lost", counted(lost)});
-    all.push_back({prefix + "lost_percent", percent(lost, found + lost)});
+    all.push_back({prefix + "lost_percent", percent(lost, found + lost + unmeasured)});
+    all.push_back({prefix + "unmeasured", counted(unmeasured)});
+    all.push_back({prefix + "unmeasured_percent", percent(unmeasured, found + lost + unmeasured)});
     all.push_back({prefix + "beyond_radius", counted(beyond)});
     all.push_back({prefix + "missing", counted(missing)});
     all.push_back({prefix + "coverage", coverage, true});

@@ -17,6 +17,7 @@ namespace {
 constexpr LinearRgb kNotFinite = {1.0f, 0.0f, 1.0f};
 constexpr LinearRgb kNothing = {0.216f, 0.216f, 0.216f};  // sRGB 0.5
 constexpr LinearRgb kLost = {1.0f, 0.2f, 0.0f};
+constexpr LinearRgb kUnmeasured = {1.0f, 1.0f, 1.0f};
 
 constexpr std::size_t kRowsAtOnce = 16;
 
@@ -131,7 +132,8 @@ PagePicture picture_of(Film film, const std::string& caption) {
 
 LinearRgb displacement_colour(float pixels, const ColourRange& range) {
     if (std::isnan(pixels)) return kNothing;
-    return std::isinf(pixels) ? kLost : viridis(range.share(static_cast<double>(pixels)));
+    if (std::isinf(pixels)) return pixels > 0 ? kLost : kUnmeasured;
+    return viridis(range.share(static_cast<double>(pixels)));
 }
 
 /// The colour of each value; of those under a pixel that was scaled down the largest's.
@@ -177,6 +179,16 @@ PagePicture displacement_picture(std::span<const float> pixels, int width, const
                                          [&](float value) { return displacement_colour(value, range); });
     picture.legend = ColourLegend{range, "px"};
     return picture;
+}
+
+std::string displacement_colours(std::span<const float> pixels) {
+    const auto has = [&](float value) {
+        return std::ranges::any_of(pixels, [&](float pixel) { return pixel == value; });
+    };
+    std::string text = "; grey: none";
+    if (has(INFINITY)) text += ", orange: lost";
+    if (has(-INFINITY)) text += ", white: unmeasured";
+    return text;
 }
 
 PagePicture share_picture(std::span<const float> shares, int width, const std::string& caption) {

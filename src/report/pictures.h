@@ -41,9 +41,13 @@ PagePicture difference_picture(const Image& test, const Image& truth, double sca
                                const std::string& caption);
 
 /// The colours of `range` over a film of width x height values, rows from the top: NaN (nothing to measure)
-/// is grey, infinite (lost) is orange. Where it is scaled down, a pixel shows the largest value under it.
+/// is grey, infinite (lost) is orange, minus infinite (unmeasured) is white. Where it is scaled down, a pixel shows the largest value under it.
 PagePicture displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
                                  const std::string& caption);
+
+/// What a displacement picture's colours mean beside its scale, for those of the values that occur:
+/// "; grey: none, orange: lost".
+std::string displacement_colours(std::span<const float> pixels);
 
 /// Viridis from 0 (dark) to 1 (yellow) over a film of width x height values, rows from the top: NaN is grey.
 /// Where it is scaled down, a pixel shows the largest value under it.

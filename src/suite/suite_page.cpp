@@ -159,8 +159,10 @@ PagePicture displacement_of(const Displacement& displacement, const std::string&
             pixels[i] = std::hypot(displacement.shift_x[i], displacement.shift_y[i]);
         else if (displacement.state[i] == Shift::kLost)
             pixels[i] = std::numeric_limits<float>::infinity();
+        else if (displacement.state[i] == Shift::kUnmeasured)
+            pixels[i] = -std::numeric_limits<float>::infinity();
     }
-    return displacement_picture(pixels, width, {}, "displacement, " + layer + "; grey: none, orange: lost");
+    return displacement_picture(pixels, width, {}, "displacement, " + layer + displacement_colours(pixels));
 }
 
 std::vector<PagePicture> differences_of(const Judgement& judgement, const RenderTest& test) {

@@ -199,8 +199,9 @@ TEST_CASE("every metric's limit holds at its own value and breaks beyond it", "[
     LayerComparison layer{"reflect", SeenMismatch{100, 13, 14, 15}, Displacement{}};
     layer.displacement->summary = Summary{16, 17, 18, 19, 20};
     layer.displacement->mean_off_folds = 21;
-    layer.displacement->pixels = 75;
+    layer.displacement->pixels = 49;
     layer.displacement->lost = 25;
+    layer.displacement->unmeasured = 26;
     layer.displacement->beyond_radius = 22;
     layer.displacement->missing = 23;
     layer.displacement->coverage = 0.24;
@@ -220,7 +221,7 @@ TEST_CASE("every metric's limit holds at its own value and breaks beyond it", "[
         CHECK(broken_limits({{metric.name, value - beyond}}, metrics).empty());
     }
     // The percentages are the only numbers that occur twice.
-    CHECK(whole - values.size() == 4);
+    CHECK(whole - values.size() == 5);
     CHECK(metric_names().size() == metrics.size());
     CHECK_THROWS_AS(broken_limits({{"rmsee", 1}}, metrics), UsageError);
 

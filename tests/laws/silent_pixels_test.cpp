@@ -85,7 +85,7 @@ Counts count_silent(const Image& image, Truths& truths, const std::string& layer
     for (std::size_t p = 0; p < method.size(); ++p) {
         if (method[p] == 2 || fold[p] || found->state[p] == Shift::kNothing) continue;
         ++counts.measured;
-        const bool lost = found->state[p] == Shift::kLost;
+        const bool lost = found->state[p] != Shift::kFound;
         if (!lost && !(std::hypot(found->shift_x[p], found->shift_y[p]) > kMostOff)) continue;
         if (truths.show_nearby(drawn->seen_point(p), layer)) continue;
         ++(lost ? counts.lost : counts.off);

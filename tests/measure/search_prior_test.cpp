@@ -1,4 +1,5 @@
-// Pieces one pixel wide: measured along the axis they have, else lost; never another image of the point.
+// Pieces one pixel wide: measured along the axis they have, else unmeasured; never another image of the
+// point.
 #include "measure/displacement/search_prior.h"
 
 #include <cmath>
@@ -68,8 +69,7 @@ TEST_CASE("the shift of a sliver is measured along it and falls with the error",
     }
 }
 
-TEST_CASE("a sliver's shift across is not taken for one along, and what moved beyond it is lost",
-          "[measure][sliver]") {
+TEST_CASE("a sliver's shift across is not taken for one along: it is unmeasured", "[measure][sliver]") {
     // Across by 0.1, a step along is at most 0.1: the line through the pixels passes the point by more than
     // half a step.
     const Image reference = image_of(kSliverWidth, kHeight, rim(is_column, Vec2(0)));
@@ -78,18 +78,20 @@ TEST_CASE("a sliver's shift across is not taken for one along, and what moved be
                              "reflect")
             .value();
     for (std::size_t row = 0; row < kHeight; ++row)
-        CHECK(across.state[row * kSliverWidth + 52] == Shift::kLost);
-    CHECK(across.lost == kHeight);
+        CHECK(across.state[row * kSliverWidth + 52] == Shift::kUnmeasured);
+    CHECK(across.unmeasured == kHeight);
+    CHECK(across.lost == 0);
     CHECK(across.summary.value().max < 0.051);
 }
 
-TEST_CASE("single pixels in a diagonal have no axis: lost, not twenty pixels away", "[measure][sliver]") {
+TEST_CASE("single pixels in a diagonal have no axis: unmeasured, not twenty pixels away", "[measure][sliver]") {
     const Image reference = image_of(kSliverWidth, kHeight, rim(is_diagonal, Vec2(0)));
     const Displacement found =
         measure_displacement(reference, image_of(kSliverWidth, kHeight, rim(is_diagonal, Vec2(0, 0.01))),
                              "reflect")
             .value();
-    CHECK(found.lost == 30);
+    CHECK(found.unmeasured == 30);
+    CHECK(found.lost == 0);
     CHECK(found.summary.value().max < 0.011);
 }
 

@@ -190,7 +190,7 @@ TEST_CASE("sweep: identical pictures give no order, an infinite PSNR, and a repo
     // A sentence, and no empty plot or black picture.
     CHECK(
         html.find("reflect: exact. In all 2 runs every displacement that was measured is zero, over 100 % of "
-                  "the pixels, with 0 lost and 0 missing") != std::string::npos);
+                  "the pixels, with 0 lost, 0 missing and 0 unmeasured") != std::string::npos);
     CHECK(html.find("<svg") == std::string::npos);
     CHECK(fs::is_empty(fake.params.folder + "/plots"));
     CHECK(html.find("difference: none") != std::string::npos);

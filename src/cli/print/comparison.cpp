@@ -32,6 +32,7 @@ Json displacement_json(const Displacement& d) {
             {"max", statistic(&Summary::max)},
             {"pixels", d.pixels},
             {"lost", d.lost},
+            {"unmeasured", d.unmeasured},
             {"beyond_radius", d.beyond_radius},
             {"missing", d.missing},
             {"coverage", optional_json(d.coverage)},
@@ -47,9 +48,10 @@ std::string displacement_text(const std::string& layer, const Displacement& d) {
             "pixels\n",
             layer, d.summary->mean, d.summary->p50, d.summary->p95, d.summary->p99, d.summary->max, d.pixels);
     return text + fmt::format(
-                      "{:<8} measured {:.2f} % of what either shows: {} lost ({} of them farther than "
-                      "the radius), {} missing\n",
-                      layer, 100 * d.coverage.value_or(0), d.lost, d.beyond_radius, d.missing);
+                      "{:<8} measured {:.2f} % of what either shows: {} lost, {} missing, {} unmeasured "
+                      "({} beyond the radius)\n",
+                      layer, 100 * d.coverage.value_or(0), d.lost, d.missing, d.unmeasured,
+                      d.beyond_radius);
 }
 
 std::string left_out_text(const std::string& image, const std::vector<std::string>& names) {

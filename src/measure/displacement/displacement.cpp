@@ -39,6 +39,21 @@ void for_each_in_band(const PositionField& field, const FieldWindow& window, int
         for (int row = top; row < bottom; ++row) visit(field.index(column, row));
 }
 
+/// Whether both fields show the same triangle through the same optic at the pixel, or both the environment,
+/// at finite places. Where a field does not tell triangles, the same object counts.
+bool shows_same(const PositionField& one, const PositionField& other, std::size_t pixel) {
+    return one.sees(pixel) && other.sees(pixel) &&
+           (*one.object)[pixel] == (*other.object)[pixel] && one.optic_of(pixel) == other.optic_of(pixel) &&
+           (!one.primitive || !other.primitive || one.primitive_of(pixel) == other.primitive_of(pixel));
+}
+
+/// What shows the same in both pictures is not lost, even where nothing tells how far apart it lies.
+void tell_unmeasured(const ImageFinder& finder, std::vector<Shift>& states) {
+    const PositionField &reference = finder.reference().field, &test = finder.test().field;
+    for (std::size_t i = 0; i < states.size(); ++i)
+        if (states[i] == Shift::kLost && shows_same(reference, test, i)) states[i] = Shift::kUnmeasured;
+}
+
 /// The shifts of all pixels of the finder's test; of the statistics only the losses. Places are looked for up
 /// to `reach` pixels away, at least the radius.
 Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8_t>& mask, double radius,
@@ -73,7 +88,9 @@ Displacement find_shifts(const ImageFinder& finder, const std::vector<std::uint8
         }
     });
     drop_other_images(result, field.width);
+    tell_unmeasured(finder, result.state);
     result.lost = count(result.state, Shift::kLost);
+    result.unmeasured = count(result.state, Shift::kUnmeasured);
     result.beyond_radius = static_cast<std::size_t>(std::count(is_beyond.begin(), is_beyond.end(), 1));
     return result;
 }

@@ -22,20 +22,27 @@ struct DisplacementOptions {
 
 enum class Shift : std::uint8_t {
     kNothing,  // the test sees nothing here, or the pixel is masked
-    kFound,
-    kLost,  // the reference does not show the point within the radius, or only another image of it, or only
-            // where it cannot say where (pieces too small to have a slope)
+    kFound,       // measured
+    kLost,        // the two show different things here, and the reference does not show the point within the
+                  // radius, or only another image of it
+    kUnmeasured,  // the two show the same triangle through the same optic here (or both the environment), and
+                  // it cannot be said how far apart: its piece is too small to have a slope, or the reference
+                  // shows the point only beyond the radius, or only another image of it
 };
 
 /// Statistics over the pixels that are kFound, and the vectors themselves, per pixel of the data window. What
 /// could not be measured is in no mean, so every mean is to be read with its losses, which are counted in
-/// both directions. At folds of the reference (folds.h) displacements fall more slowly than elsewhere: the
+/// both directions, and with the unmeasured. Each pixel of the test that shows the layer is in one of pixels,
+/// lost and unmeasured. At folds of the reference (folds.h) displacements fall more slowly than elsewhere: the
 /// mean off the folds shows the order of the surface alone.
 struct Displacement {
     std::optional<Summary> summary;  // of the shifts' lengths, pixels; none where no pixel was found
     std::size_t pixels = 0;          // found
     std::size_t lost = 0;            // pixels of the test whose point the reference does not show
-    std::size_t beyond_radius = 0;   // those lost that the reference shows farther away than the radius
+    std::size_t unmeasured = 0;      // pixels of the test that show what the reference shows there, at a
+                                     // distance that nothing tells
+    std::size_t beyond_radius = 0;   // those lost or unmeasured whose point the reference shows farther away
+                                     // than the radius
     std::size_t missing = 0;         // pixels of the reference whose point the test does not show: what would
                                      // be lost with the two images exchanged
     std::optional<double> coverage;  // found pixels over the pixels that show the layer in either image,

@@ -20,9 +20,10 @@ const OpticDisplacement* find_optic_displacement(const RunRecord& run, const std
     return nullptr;
 }
 
-/// In either direction: a mean over what is left says little of the whole.
+/// In either direction, and with what is unmeasured: a mean over what is left says little of the whole.
 bool lost_too_many(const MetricValues& metrics) {
-    const double lost = find_value(metrics, "disp_lost").value_or(0),
+    const double lost = find_value(metrics, "disp_lost").value_or(0) +
+                        find_value(metrics, "disp_unmeasured").value_or(0),
                  missing = find_value(metrics, "disp_missing").value_or(0),
                  found = find_value(metrics, "disp_pixels").value_or(0);
     return std::max(lost, missing) > kMostLost * (std::max(lost, missing) + found);

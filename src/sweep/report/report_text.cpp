@@ -132,17 +132,18 @@ std::vector<std::string> exact_sentences(const SweepSummary& summary) {
                    is_exact(one);
         });
         if (!fit || !is_all_exact) continue;
-        double lost = 0, missing = 0;
+        double lost = 0, missing = 0, unmeasured = 0;
         for (const RunRecord& run : summary.runs)
             if (const MetricValues* const all = find_all(run, layer)) {
                 lost += find_value(*all, "disp_lost").value_or(0);
+                unmeasured += find_value(*all, "disp_unmeasured").value_or(0);
                 missing += find_value(*all, "disp_missing").value_or(0);
             }
         sentences.push_back(fmt::format(
             "{}: exact. In all {} runs every displacement that was measured is zero, over {} of the pixels, "
-            "with {} lost and {} missing in all runs together.",
+            "with {} lost, {} missing and {} unmeasured in all runs together.",
             layer, summary.count(RunState::kDone), measured_range(summary, layer), fixed_text(lost, 0),
-            fixed_text(missing, 0)));
+            fixed_text(missing, 0), fixed_text(unmeasured, 0)));
     }
     const SweepFit* const colour = find_fit(summary.fits, "", kAllOptics, "rgb_rmse");
     const bool is_colour_exact = std::ranges::all_of(

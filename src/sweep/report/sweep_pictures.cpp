@@ -30,33 +30,12 @@ PagePicture picture_or_reason(const std::string& caption, const std::function<Pa
     }
 }
 
-/// Whole decades that hold most of the positive values, at most four; none where there is none.
-std::optional<ColourRange> displacement_range(const std::vector<float>& pixels) {
-    std::vector<float> positive;
-    for (const float value : pixels)
-        if (std::isfinite(value) && value > 0) positive.push_back(value);
-    if (positive.empty()) return std::nullopt;
-    const auto at = [&](double share) {
-        const auto last = static_cast<double>(positive.size() - 1);
-        const auto place = positive.begin() + std::lround(share * last);
-        std::nth_element(positive.begin(), place, positive.end());
-        return std::log10(static_cast<double>(*place));
-    };
-    const double top = std::ceil(at(0.99)), bottom = std::floor(at(0.1));
-    return ColourRange{std::pow(10.0, std::max(std::min(bottom, top - 1), top - 4)), std::pow(10.0, top)};
-}
-
+/// On the one scale of all runs of all pages, so that pictures may be compared.
 PagePicture displacement_of(const DisplacementMap& map, int width) {
-    const std::optional<ColourRange> range = displacement_range(map.pixels);
-    const bool has_lost = std::ranges::any_of(map.pixels, [](float value) { return std::isinf(value); });
+    const bool is_zero = std::ranges::all_of(map.pixels, [](float value) { return !(std::abs(value) > 0); });
     const std::string caption = "displacement, " + map.layer;
-    if (range)
-        return displacement_picture(map.pixels, width, *range,
-                                    caption + (has_lost ? "; grey: none, orange: lost" : "; grey: none"));
-    if (!has_lost) return words_alone(caption + ": zero wherever it was measured");
-    PagePicture picture = displacement_picture(map.pixels, width, {}, caption + ": zero, but orange is lost");
-    picture.legend.reset();
-    return picture;
+    if (is_zero) return words_alone(caption + ": zero wherever it was measured");
+    return displacement_picture(map.pixels, width, {}, caption + displacement_colours(map.pixels));
 }
 
 std::vector<PagePicture> displacement_pictures(const Image& diff) {

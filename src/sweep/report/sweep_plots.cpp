@@ -179,7 +179,8 @@ std::string measured_text(const MetricValues& metrics) {
     const std::optional<double> share = find_value(metrics, "disp_coverage");
     if (!share) return "not known";
     return percent_text(*share) + ", " + fixed_text(find_value(metrics, "disp_lost").value_or(0), 0) +
-           " px lost, " + fixed_text(find_value(metrics, "disp_missing").value_or(0), 0) + " px missing";
+           " px lost, " + fixed_text(find_value(metrics, "disp_missing").value_or(0), 0) + " px missing, " +
+           fixed_text(find_value(metrics, "disp_unmeasured").value_or(0), 0) + " px unmeasured";
 }
 
 bool is_exact(const SweepFit& fit) {

@@ -36,7 +36,7 @@ void fill_table(const SweepSummary& summary, Report& report) {
         report.table_columns.push_back(axis.kind.name == "resolution" ? "n" : axis.kind.name);
     report.table_columns.insert(report.table_columns.end(), {"status", "facets"});
     for (const std::string& layer : layers)
-        for (const char* what : {": measured", ": lost", ": missing", ": mean where measured [px]",
+        for (const char* what : {": measured", ": lost", ": missing", ": unmeasured", ": mean where measured [px]",
                                  ": mean off folds [px]", ": 95 % [px]", ": max [px]"})
             report.table_columns.push_back(layer + what);
     for (const char* column : {"RGB RMSE", "PSNR [dB]", "SSIM", "time [s]", "spread [s]", "prepare [s]",
@@ -51,7 +51,7 @@ void fill_table(const SweepSummary& summary, Report& report) {
             const MetricValues* const all = find_all(run, layer);
             const MetricValues metrics = all ? *all : MetricValues();
             row.push_back(coverage_text(metrics));
-            for (const char* name : {"disp_lost", "disp_missing"}) row.push_back(count_text(metrics, name));
+            for (const char* name : {"disp_lost", "disp_missing", "disp_unmeasured"}) row.push_back(count_text(metrics, name));
             for (const char* name : {"disp_mean_px", "disp_mean_off_folds_px", "disp_p95_px", "disp_max_px"})
                 row.push_back(value_text(metrics, name));
         }
@@ -102,18 +102,19 @@ void write_sweep_report(const SweepSummary& summary, KeptPictures* kept) {
     report.plots_note =
         "Displacement says how many pixels a seen point lies from where the truth shows it; it is known for "
         "the measured share of the pixels that show the layer in either picture. Lost pixels show what the "
-        "truth does not, missing ones are the truth's that the projection does not show. Folds are where two "
+        "truth does not, missing ones are the truth's that the projection does not show, unmeasured ones show "
+        "the same as the truth, at a distance that nothing tells. Folds are where two "
         "images of a point meet: there displacements fall more slowly. A straight line is the law error = "
-        "constant × n^−order fitted to the points. Runs that lost or miss "
-        "more than a tenth of an optic's pixels take no part in its fit, nor does a plateau at the fine end.";
+        "constant × n^−order fitted to the points. Runs that lost, miss or leave "
+        "unmeasured more than a tenth of an optic's pixels take no part in its fit, nor does a plateau at the fine end.";
     fill_table(summary, report);
     fill_runs(summary, kMostBytesInPage, report, kept);
     if (const std::string warning = timing_warning(summary); !warning.empty())
         report.warnings.push_back(warning);
     report.pictures_note +=
-        "The slider moves the border between the projected picture (left) and the truth (right). Each run "
-        "has its own colours for displacement and its own factor for differences, both stated at the "
-        "picture. A click, a tap or Enter shows a picture at full size.";
+        "The slider moves the border between the projected picture (left) and the truth (right). The "
+        "colours of displacement are the same at all runs, 0.01 to 10 pixels; each run has its own factor "
+        "for differences, stated at the picture. A click, a tap or Enter shows a picture at full size.";
     write_report(summary.folder + "/report.html", report);
 }
 

@@ -23,7 +23,7 @@ std::vector<std::string> make_columns() {
     for (const ColourMetric& one : kColourMetrics)
         if (one.is_column) columns.push_back(std::string("rgb_") + one.name);
     columns.insert(columns.end(), {
-        "disp_mean_px", "disp_p95_px", "disp_max_px", "disp_coverage", "disp_lost", "disp_missing", "false_hit", "false_miss",
+        "disp_mean_px", "disp_p95_px", "disp_max_px", "disp_coverage", "disp_lost", "disp_missing", "disp_unmeasured", "false_hit", "false_miss",
         "nonfinite", "failed_px",
         "t_surface_s", "t_rays_s", "t_prepare_s", "t_draw_s", "t_shade_s", "t_write_s", "t_first_s", "t_spread_s",
         "t_trace_s", "t_total_s", "repeats", "peak_rss_mb", "threads", "jobs", "machine_used_by_others",
@@ -43,7 +43,7 @@ constexpr std::array<std::string_view, 5> kAxesWithColumns = {"resolution", "sce
 constexpr std::array kDisplacementColumns = {
     "disp_mean_px",    "disp_p50_px",  "disp_p95_px",   "disp_p99_px",
     "disp_max_px",     "disp_pixels",  "disp_lost",     "disp_mean_off_folds_px",
-    "disp_near_folds", "disp_missing", "disp_coverage", "disp_beyond_radius"};
+    "disp_near_folds", "disp_missing", "disp_unmeasured", "disp_coverage", "disp_beyond_radius"};
 
 std::string row(const std::vector<std::string>& cells) {
     std::string line;

@@ -34,6 +34,7 @@ MetricValues colour_values(const Comparison& comparison) {
 MetricValues displacement_values(const Displacement& displacement) {
     MetricValues values = {{"disp_pixels", static_cast<double>(displacement.pixels)},
                            {"disp_lost", static_cast<double>(displacement.lost)},
+                           {"disp_unmeasured", static_cast<double>(displacement.unmeasured)},
                            {"disp_beyond_radius", static_cast<double>(displacement.beyond_radius)},
                            {"disp_missing", static_cast<double>(displacement.missing)},
                            {"disp_near_folds", static_cast<double>(displacement.near_folds)}};
@@ -91,7 +92,7 @@ std::exception_ptr caught(Work&& work) {
 void take_worse(const MetricValues& layer, MetricValues& metrics) {
     if (const std::optional<double> coverage = find_value(layer, "disp_coverage"))
         metrics["disp_coverage"] = std::min(find_value(metrics, "disp_coverage").value_or(1), *coverage);
-    for (const char* name : {"disp_lost", "disp_missing"})
+    for (const char* name : {"disp_lost", "disp_missing", "disp_unmeasured"})
         metrics[name] += find_value(layer, name).value_or(0);
     for (const char* name : {"disp_mean_px", "disp_p95_px", "disp_max_px"}) {
         const auto value = layer.find(name);
@@ -152,7 +153,7 @@ std::vector<DisplacementMap> displacement_maps(const Image& diff) {
         DisplacementMap map{layer, std::vector<float>(diff.pixels(), NAN)};
         for (std::size_t i = 0; i < map.pixels.size(); ++i) {
             if (mask->floats()[i] > 0) map.pixels[i] = std::hypot(x->floats()[i], y->floats()[i]);
-            if (mask->floats()[i] < 0) map.pixels[i] = INFINITY;
+            if (mask->floats()[i] < 0) map.pixels[i] = mask->floats()[i] == -1 ? INFINITY : -INFINITY;
         }
         maps.push_back(std::move(map));
     }

@@ -76,7 +76,7 @@ struct PlannedRun {
 struct OpticDisplacement {
     std::string layer;  // "reflect", "refract"
     std::string optic;  // its name, or "all"
-    // disp_{mean,p50,p95,p99,max,mean_off_folds}_px, disp_{pixels,lost,beyond_radius,missing,near_folds} and
+    // disp_{mean,p50,p95,p99,max,mean_off_folds}_px, disp_{pixels,lost,unmeasured,beyond_radius,missing,near_folds} and
     // disp_coverage (0..1): see Displacement
     MetricValues metrics;
 };
