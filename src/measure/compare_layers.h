@@ -1,14 +1,30 @@
 // What two pictures show through their optics, layer by layer: the same things, and in the same places?
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/image/image.h"
+#include "base/util/ids.h"
 #include "measure/displacement/displacement.h"
-#include "measure/displacement/seen.h"
 
 namespace trilens {
+
+/// Counts of pixels. Each mismatching pixel is in exactly one of the three.
+struct SeenMismatch {
+    std::size_t pixels = 0;              // at least one of the images sees something
+    std::size_t coverage_mismatch = 0;   // one sees something, the other nothing (4294967295)
+    std::size_t object_mismatch = 0;     // both see something, but different objects
+    std::size_t primitive_mismatch = 0;  // both see the same object, but different triangles of it
+};
+
+/// Compares the objects and triangles that `layer` shows ("reflect", "refract"; for "optic", which has no
+/// triangles, only objects). `mask_object` as in CompareOptions. Nothing where the images have no such layer.
+/// Throws InputError where they cannot be compared.
+std::optional<SeenMismatch> compare_seen(const Image& reference, const Image& test, const std::string& layer,
+                                         std::optional<Id> mask_object = std::nullopt);
 
 /// One layer of both images.
 struct LayerComparison {

@@ -6,7 +6,7 @@
 
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "measure/common/fit.h"
+#include "measure/common/statistics.h"
 #include "measure/compare_layers.h"
 #include "suite/layer_rules.h"
 

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "measure/common/comparable.h"
-#include "measure/common/fit.h"
+#include "measure/common/statistics.h"
 #include "measure/compare.h"
 #include "measure/compare_layers.h"
 #include "measure/difference.h"

@@ -1,5 +1,5 @@
 // Power laws are found again.
-#include "measure/common/fit.h"
+#include "measure/common/statistics.h"
 
 #include <cmath>
 #include <limits>

@@ -7,8 +7,6 @@
 #include <random>
 
 #include "measure/displacement/search_prior.h"
-#include "measure/plain_inversion.h"
-#include "measure/plain_patch.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
 
@@ -23,7 +21,7 @@ struct Best {
     bool tried = false;
 };
 
-/// Every piece at every corner of a cell, by plain code.
+/// Every piece at every corner of a cell, each patch made and inverted by itself.
 void try_pieces(const ImageFinder& finder, const FieldSample& wanted, Vec2 cell, bool same, Best& best) {
     const PositionField& field = finder.reference().field;
     const int column = static_cast<int>(cell.x), row = static_cast<int>(cell.y);
@@ -32,11 +30,11 @@ void try_pieces(const ImageFinder& finder, const FieldSample& wanted, Vec2 cell,
     for (int corner = 0; corner < 4; ++corner) {
         const int x = column + corner % 2, y = row + corner / 2;
         if (!field.contains(x, y)) continue;
-        const auto patch = plain::plain_patch(field, finder.test().field, {column, row, corner}, piece);
+        const auto patch = make_patch(field, finder.test().field, {column, row, corner}, piece);
         if (!patch) continue;
         best.tried = true;
         const Vec2 from(wanted.column, wanted.row);
-        const auto hit = plain_inversion(*patch, wanted.point, glm::clamp(from - cell, Vec2(0), Vec2(1)));
+        const auto hit = invert_patch(*patch, wanted.point, glm::clamp(from - cell, Vec2(0), Vec2(1)));
         if (!hit) continue;
         const Vec2 shift = hit->uv + (cell - from);
         const double score =
@@ -147,39 +145,6 @@ TEST_CASE("the image finder finds what trying every cell finds, to the last bit"
     CHECK(none > 500);
 }
 
-TEST_CASE("patches are continued as in plain code, to the last bit", "[measure][displacement][oracle][law]") {
-    std::mt19937_64 random(14);
-    std::size_t patches = 0, continued = 0, none = 0, wrong = 0;
-    for (int trial = 0; trial < 60; ++trial) {
-        const double amount = std::pow(10.0, std::uniform_real_distribution<double>(-3, 1)(random));
-        const Image one = random_image(random, 13, 12, amount), other = random_image(random, 13, 12, amount);
-        const FieldPyramid index(make_seen_field(one, "reflect").value()),
-            beside(make_seen_field(other, "reflect").value());
-        for (int row = -1; row < 12; ++row)
-            for (int column = -1; column < 13; ++column)
-                for (int corner = 0; corner < 4; ++corner) {
-                    const int x = column + corner % 2, y = row + corner / 2;
-                    if (!index.field.contains(x, y)) continue;
-                    const FieldSample seen = index.field.seen_point(index.field.index(x, y));
-                    SurfaceId piece = piece_of(seen);
-                    if (random() % 2) piece.primitive = seen.primitive;
-                    const PatchPlace place{column, row, corner};
-                    const auto patch = make_patch(index.field, beside.field, place, piece);
-                    const auto expected = plain::plain_patch(index.field, beside.field, place, piece);
-                    (expected ? patches : none) += 1;
-                    wrong += patch.has_value() != expected.has_value();
-                    if (!patch || !expected) continue;
-                    continued += patch->measured != 0xffff;
-                    wrong += patch->measured != expected->measured ||
-                             patch->supported != expected->supported || patch->nodes != expected->nodes;
-                }
-    }
-    INFO(patches << " patches, " << continued << " continued, " << none << " none");
-    CHECK(wrong == 0);
-    CHECK(continued > 10000);
-    CHECK(none > 500);
-}
-
 TEST_CASE("no patch of a cell answers for a point that the cell's reach does not hold",
           "[measure][displacement][law]") {
     std::mt19937_64 random(12);
@@ -214,7 +179,7 @@ TEST_CASE("no patch of a cell answers for a point that the cell's reach does not
                                 box = box && p[c] >= static_cast<double>(reach.low[c]) &&
                                       p[c] <= static_cast<double>(reach.high[c]);
                             in_box += box;
-                            if (!plain_inversion(*patch, p, Vec2(0.5))) continue;
+                            if (!invert_patch(*patch, p, Vec2(0.5))) continue;
                             ++hits;
                             outside += !holds;
                         }

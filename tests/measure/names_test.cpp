@@ -1,8 +1,8 @@
 // Layers of what is seen are read by their newer names, then by their older ones.
 #include "base/util/error.h"
 #include "measure/common/comparable.h"
+#include "measure/compare_layers.h"
 #include "measure/displacement/displacement.h"
-#include "measure/displacement/seen.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
 

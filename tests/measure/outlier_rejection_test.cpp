@@ -1,5 +1,5 @@
 // A jump in a displacement field is another image of the point; a steep field is not.
-#include "measure/displacement/outlier_rejection.h"
+#include "measure/displacement/displacement.h"
 
 #include <cmath>
 

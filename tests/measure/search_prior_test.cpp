@@ -84,7 +84,8 @@ TEST_CASE("a sliver's shift across is not taken for one along: it is unmeasured"
     CHECK(across.summary.value().max < 0.051);
 }
 
-TEST_CASE("single pixels in a diagonal have no axis: unmeasured, not twenty pixels away", "[measure][sliver]") {
+TEST_CASE("single pixels in a diagonal have no axis: unmeasured, not twenty pixels away",
+          "[measure][sliver]") {
     const Image reference = image_of(kSliverWidth, kHeight, rim(is_diagonal, Vec2(0)));
     const Displacement found =
         measure_displacement(reference, image_of(kSliverWidth, kHeight, rim(is_diagonal, Vec2(0, 0.01))),
@@ -147,7 +148,7 @@ TEST_CASE("find_along_sliver inverts a curve it was not told", "[measure][sliver
     const auto straight = [](double at) { return Vec3(at, 2 * at, -at); };
     const Image image = line_of(5, straight), single = line_of(1, straight);
     PositionField field = make_seen_field(image, "reflect").value(),
-              alone = make_seen_field(single, "reflect").value();
+                  alone = make_seen_field(single, "reflect").value();
     link_neighbours(field);
     link_neighbours(alone);
     CHECK(find_along_sliver(field, {straight(5.2), 1, 0, 0, 1, 1}).value().x == Approx(3.7));

@@ -1,5 +1,5 @@
 // What is seen, and the difference to look at.
-#include "measure/displacement/seen.h"
+#include "measure/compare_layers.h"
 
 #include <cmath>
 #include <string>

@@ -1,4 +1,5 @@
-// Displacement: the screen-space distance, in pixels, between where two images show the same point.
+// Displacement: the screen-space distance, in pixels, between where two images show the same point; with
+// outlier rejection, as displacement is continuous and a jump is another image of the point.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +22,7 @@ struct DisplacementOptions {
 };
 
 enum class Shift : std::uint8_t {
-    kNothing,  // the test sees nothing here, or the pixel is masked
+    kNothing,     // the test sees nothing here, or the pixel is masked
     kFound,       // measured
     kLost,        // the two show different things here, and the reference does not show the point within the
                   // radius, or only another image of it
@@ -33,8 +34,8 @@ enum class Shift : std::uint8_t {
 /// Statistics over the pixels that are kFound, and the vectors themselves, per pixel of the data window. What
 /// could not be measured is in no mean, so every mean is to be read with its losses, which are counted in
 /// both directions, and with the unmeasured. Each pixel of the test that shows the layer is in one of pixels,
-/// lost and unmeasured. At folds of the reference (folds.h) displacements fall more slowly than elsewhere: the
-/// mean off the folds shows the order of the surface alone.
+/// lost and unmeasured. At folds of the reference (folds.h) displacements fall more slowly than elsewhere:
+/// the mean off the folds shows the order of the surface alone.
 struct Displacement {
     std::optional<Summary> summary;  // of the shifts' lengths, pixels; none where no pixel was found
     std::size_t pixels = 0;          // found
@@ -74,5 +75,16 @@ std::optional<Displacement> measure_displacement(const Image& reference, const I
 std::optional<Displacement> measure_displacement(const ReferenceLayers& reference, const Image& test,
                                                  const std::string& layer,
                                                  const DisplacementOptions& options = {});
+
+/// A curved mirror may show one point several times. Where the image that a pixel shows has no counterpart
+/// (at a rim that the facets draw a little too large, say), the nearest match is another image of the point,
+/// far away, and no measure of the error. Such a pixel's shift exceeds kOtherImage times the median shift of
+/// the found pixels in the 7 x 7 window round it plus half a pixel; near a fold, where shifts grow large
+/// together, none does. These pixels become kLost. Pixels with fewer than kFewestNeighbours found ones round
+/// them stay as they are. `width`: of the data window.
+void drop_other_images(Displacement& displacement, int width);
+
+inline constexpr double kOtherImage = 8;
+inline constexpr std::size_t kFewestNeighbours = 6;
 
 }  // namespace trilens

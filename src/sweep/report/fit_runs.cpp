@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "measure/common/fit.h"
+#include "measure/common/statistics.h"
 
 namespace trilens {
 namespace {

@@ -12,9 +12,9 @@
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "measure/compare.h"
+#include "measure/compare_layers.h"
 #include "measure/difference.h"
 #include "measure/displacement/displacement.h"
-#include "measure/displacement/seen.h"
 
 namespace trilens {
 namespace {
