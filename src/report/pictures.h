@@ -41,7 +41,8 @@ PagePicture difference_picture(const Image& test, const Image& truth, double sca
                                const std::string& caption);
 
 /// The colours of `range` over a film of width x height values, rows from the top: NaN (nothing to measure)
-/// is grey, infinite (lost) is orange, minus infinite (unmeasured) is white. Where it is scaled down, a pixel shows the largest value under it.
+/// is grey, infinite (lost) is orange, minus infinite (unmeasured) is white. Where it is scaled down, a pixel
+/// shows the largest value under it.
 PagePicture displacement_picture(std::span<const float> pixels, int width, const ColourRange& range,
                                  const std::string& caption);
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -208,7 +209,40 @@ void draw_reference_orders(Plot& plot) {
     }
 }
 
+void draw_places(Plot& plot) {
+    for (const PlotPlace& place : plot.params.places) {
+        if (!plot.x.can_show(place.x) || place.x < plot.x.lo || place.x > plot.x.hi) continue;
+        const double at = plot.x.pixel(place.x), top = plot.y.last + 14, bottom = plot.y.first - 6;
+        plot.shapes.push_back(line("tp-level", {at, plot.y.last}, {at, plot.y.first}));
+        take_line(plot, {at, plot.y.last}, {at, plot.y.first});
+        draw_note(plot, place.label,
+                  {{{at + 5, top}, "start"},
+                   {{at - 5, top}, "end"},
+                   {{at + 5, bottom}, "start"},
+                   {{at - 5, bottom}, "end"},
+                   {{at + 5, (top + bottom) / 2}, "start"},
+                   {{at - 5, (top + bottom) / 2}, "end"}});
+    }
+}
+
+/// The first earlier series whose measurements lie on those of series i, to a pixel.
+std::optional<std::size_t> lies_on(const Plot& plot, std::size_t i) {
+    const auto shown = [&](const PlotSeries& series) {
+        std::vector<Vec2> pixels;
+        for (const Vec2& point : series.points)
+            if (plot.can_show(point)) pixels.push_back(plot.pixel(point));
+        return pixels;
+    };
+    const std::vector<Vec2> mine = shown(plot.series[i]);
+    for (std::size_t other = 0; other < i && !mine.empty(); ++other)
+        if (std::ranges::equal(mine, shown(plot.series[other]),
+                               [](const Vec2& a, const Vec2& b) { return length(a - b) < 1; }))
+            return other;
+    return std::nullopt;
+}
+
 void draw_series(Plot& plot, std::size_t i) {
+    const std::string over = lies_on(plot, i) ? " tp-over" : "";
     const PlotSeries& series = plot.series[i];
     std::vector<Vec2> path;
     std::vector<PlotShape> markers;
@@ -218,6 +252,7 @@ void draw_series(Plot& plot, std::size_t i) {
         markers.push_back(
             marker(i, path.back(),
                    series.name + ": " + rounded_text(point.x, 6) + " → " + rounded_text(point.y, 4)));
+        markers.back().style += over;
     }
     // With a fit the fit is the line; without one the measurements are joined.
     const bool has_fit = plot.is_log() && series.fit && series.fit->constant > 0;
@@ -227,13 +262,13 @@ void draw_series(Plot& plot, std::size_t i) {
         };
         const auto inside = clip_to_frame(plot, on_fit(plot.x.lo), on_fit(plot.x.hi));
         if (inside) {
-            plot.shapes.push_back(line("tp-fit " + plot_series_class(i), (*inside)[0], (*inside)[1]));
+            plot.shapes.push_back(line("tp-fit " + plot_series_class(i) + over, (*inside)[0], (*inside)[1]));
             take_line(plot, (*inside)[0], (*inside)[1]);
         }
     }
     if (!path.empty() && plot.params.joins_points)
-        plot.shapes.push_back(
-            {PlotShape::Kind::kPath, (has_fit ? "tp-join " : "tp-line ") + plot_series_class(i), path});
+        plot.shapes.push_back({PlotShape::Kind::kPath,
+                               (has_fit ? "tp-join " : "tp-line ") + plot_series_class(i) + over, path});
     plot.shapes.insert(plot.shapes.end(), markers.begin(), markers.end());
 }
 
@@ -243,13 +278,15 @@ void draw_legend(Plot& plot) {
     Vec2 at(left, plot.y.first + kPlotBottom + kLegendRow - 6);
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         const PlotSeries& series = plot.series[i];
-        const std::string order =
-            plot.is_log() && series.fit ? ": order " + fixed_text(series.fit->order, 2) : "";
+        const std::optional<std::size_t> below = lies_on(plot, i);
+        std::string order = plot.is_log() && series.fit ? ": order " + fixed_text(series.fit->order, 2) : "";
+        if (below) order = ": as " + plot.series[*below].name;
         const double most = right - left - kMarkerRoom - text_width(order, kLabelSize);
         const std::string entry = shortened_text(series.name, kLabelSize, most) + order;
         const double width = kMarkerRoom + text_width(entry, kLabelSize);
         if (at.x > left && at.x + width > right) at = {left, at.y + kLegendRow};
         plot.shapes.push_back(marker(i, {at.x + 7, at.y - 4}, ""));
+        if (below) plot.shapes.back().style += " tp-over";
         plot.shapes.push_back(text("tp-entry", {at.x + 17, at.y}, "start", entry));
         at.x += width;
         plot.height = at.y + 8;
@@ -281,6 +318,8 @@ PlotDrawing draw(const PlotParams& params, std::span<const PlotSeries> series, S
             xs.push_back(point.x);
             ys.push_back(point.y);
         }
+    for (const PlotPlace& place : params.places)
+        if (any.can_show(place.x)) xs.push_back(place.x);
     if (kind == ScaleKind::kLog && params.reference_orders && !ys.empty())
         ys.push_back(kReferenceLift * *std::max_element(ys.begin(), ys.end()));
     Plot plot{params, series, fit_scale(kind, xs), fit_scale(kind, ys), {}, {}, {}, 0};
@@ -293,6 +332,7 @@ PlotDrawing draw(const PlotParams& params, std::span<const PlotSeries> series, S
     for (std::size_t i = 0; i < series.size(); ++i) draw_series(plot, i);
     if (plot.is_log() && params.reference_orders) draw_reference_orders(plot);
     draw_levels(plot);
+    draw_places(plot);
     draw_legend(plot);
     draw_left_out(plot);
 

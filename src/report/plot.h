@@ -28,6 +28,12 @@ struct PlotLevel {
     std::string label;
 };
 
+/// A vertical line: what something beside the series takes.
+struct PlotPlace {
+    double x = 0;
+    std::string label;
+};
+
 struct PlotParams {
     std::string title, x_label, y_label;  // labels with units: "mean displacement [px]"
     std::vector<PlotLevel> levels;
@@ -37,6 +43,7 @@ struct PlotParams {
     std::string subtitle = {};      // small, below the title
     bool is_linear = false;         // of draw_plot: both axes linear, else both logarithmic
     bool joins_points = true;       // a line through the measurements of a series
+    std::vector<PlotPlace> places = {};
 };
 
 /// The plot as shapes: log_log_plot or linear_plot, by `is_linear`.
@@ -44,8 +51,9 @@ PlotDrawing draw_plot(const PlotParams& params, std::span<const PlotSeries> seri
 
 /// An SVG document with both axes logarithmic. Points that are not finite or not positive are left out, and a
 /// note in the picture says how many. No word covers another word or a measurement: those without room are
-/// left out, but for titles and the legend, which are cut short. Eight series differ in colour and marker;
-/// from the ninth on they repeat. The text depends on the arguments alone.
+/// left out, but for titles and the legend, which are cut short. A series that lies on an earlier one is
+/// drawn dashed and with hollow markers, so that both are seen, and the legend says so. Eight series differ
+/// in colour and marker; from the ninth on they repeat. The text depends on the arguments alone.
 std::string log_log_plot(const PlotParams& params, std::span<const PlotSeries> series);
 
 /// The same with both axes linear: only points that are not finite are left out; no fits and reference

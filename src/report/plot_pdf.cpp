@@ -47,9 +47,10 @@ Pen pen_of(const PlotShape& shape) {
     if (has_class(style, "tp-reference")) return {"#b9c0c8", "", 1.5, "7 4"};
     if (has_class(style, "tp-cell")) return {"", shape.fill};
     const std::string colour = series_colour(style);
-    if (has_class(style, "tp-marker")) return {colour, colour, 1.6};
+    const bool is_over = has_class(style, "tp-over");
+    if (has_class(style, "tp-marker")) return {colour, is_over ? "" : colour, 1.6};
     // Joins are faint: the colour's third on white.
-    return {colour, "", has_class(style, "tp-join") ? 0.5 : 1.8};
+    return {colour, "", has_class(style, "tp-join") ? 0.5 : 1.8, is_over ? "6 6" : ""};
 }
 
 std::string colour_numbers(const std::string& hex) {
@@ -141,7 +142,7 @@ struct Page {
         if (shape.kind == PlotShape::Kind::kMarker) {
             for (const std::vector<Vec2>& stroke : marker_strokes(shape.series)) {
                 add_stroke(stroke, shape.points[0]);
-                content += stroke.front() == stroke.back() ? "b\n" : "S\n";
+                content += stroke.front() != stroke.back() ? "S\n" : pen.fill.empty() ? "s\n" : "b\n";
             }
             return;
         }

@@ -44,6 +44,7 @@ std::string plot_style() {
     for (std::size_t i = 0; i < kLight.size(); ++i)
         rules += "." + plot_series_class(i) + "{stroke:" + kLight[i] + "}.tp-marker." + plot_series_class(i) +
                  "{fill:" + kLight[i] + "}";
+    rules += ".tp-over{stroke-dasharray:6 6}.tp-marker.tp-over{fill:none;stroke-dasharray:none}";
     return rules;
 }
 
@@ -64,6 +65,7 @@ std::string dark_plot_style(const std::string& scope) {
     for (std::size_t i = 0; i < kDark.size(); ++i)
         style += scope + " ." + plot_series_class(i) + "{stroke:" + kDark[i] + "}" + scope + " .tp-marker." +
                  plot_series_class(i) + "{fill:" + kDark[i] + "}";
+    style += scope + " .tp-marker.tp-over{fill:none}";
     return style;
 }
 

@@ -123,6 +123,7 @@ void Console::note_stage(const std::string& what, const Stopwatch& watch) {
 Progress Console::progress(const std::string& job) {
     stop_at_once(false);
     last_done_ = -1;
+    time_left_ = {};
     started_ = last_time_ = std::chrono::steady_clock::now();
     Progress progress;
     progress.cancel = &stop_requested();
@@ -131,12 +132,23 @@ Progress Console::progress(const std::string& job) {
     return progress;
 }
 
+std::optional<double> TimeLeft::at(double done, double now) {
+    if (done >= 1) return 0;
+    if (!(done > 0)) return std::nullopt;
+    if (!first_done_) {
+        first_done_ = done;
+        first_time_ = now;
+    }
+    if (!(done > *first_done_)) return std::nullopt;
+    return (now - first_time_) * (1 - done) / (done - *first_done_);
+}
+
 void Console::draw(const std::string& job, double done) {
     const std::lock_guard lock(mutex_);
     const auto now = std::chrono::steady_clock::now();
     const double elapsed = std::chrono::duration<double>(now - started_).count();
     const double silent = std::chrono::duration<double>(now - last_time_).count();
-    const double eta = done > 0 ? elapsed * (1 - done) / done : 0;
+    const std::optional<double> left = time_left_.at(done, elapsed);
     const double step = options_.progress == ProgressStyle::kBar ? 0.01 : 0.1;
 
     // Short jobs finish without a word: a plain or JSON line is worth it after two seconds.
@@ -145,18 +157,20 @@ void Console::draw(const std::string& job, double done) {
     last_done_ = done;
     last_time_ = now;
     const int percent = static_cast<int>(100 * done);
+    const std::string seconds = left ? fmt::format(", {:.0f} s left", *left) : "";
     if (options_.progress == ProgressStyle::kJson) {
-        std::fprintf(stderr, "{\"t\":%.1f,\"job\":\"%s\",\"done\":%.3f,\"eta_s\":%.0f}\n", elapsed,
-                     job.c_str(), done, eta);
+        std::fprintf(stderr, "{\"t\":%.1f,\"job\":\"%s\",\"done\":%.3f,\"eta_s\":%s}\n", elapsed, job.c_str(),
+                     done, left ? fmt::format("{:.1f}", *left).c_str() : "null");
     } else if (options_.progress == ProgressStyle::kPlain) {
-        std::fprintf(stderr, "trilens: %s %d %%, %.0f s left\n", job.c_str(), percent, eta);
+        std::fprintf(stderr, "trilens: %s %d %%%s\n", job.c_str(), percent, seconds.c_str());
     } else if (done >= 1) {
         clear_bar();
     } else {
         const int filled = static_cast<int>(30 * done);
-        std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %% %.0f s left", job.c_str(),
+        std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %%%s", job.c_str(),
                      std::string(static_cast<std::size_t>(filled), '#').c_str(),
-                     std::string(static_cast<std::size_t>(30 - filled), ' ').c_str(), percent, eta);
+                     std::string(static_cast<std::size_t>(30 - filled), ' ').c_str(), percent,
+                     seconds.c_str());
         std::fflush(stderr);
         bar_shown_ = true;
     }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,19 @@ struct ConsoleOptions {
     ColourStyle colour = ColourStyle::kAuto;
     bool wants_json = false;          // the answer's fields will be read
     bool is_stdout_answered = false;  // by the JSON object: nothing else may go there
+};
+
+/// How long work will still take, from the speed of what repeats: what was done before the first report
+/// (facets made, rays fitted) is done once, and no measure of the rest.
+class TimeLeft {
+  public:
+    /// Seconds left when the share `done` (0..1, growing) is done at `now` seconds; nothing before the second
+    /// report of a share above 0, when no speed is known.
+    std::optional<double> at(double done, double now);
+
+  private:
+    std::optional<double> first_done_;
+    double first_time_ = 0;
 };
 
 /// One writer for everything on stderr, so that a bar and a message never mix. Keeps the warnings for the
@@ -60,6 +74,7 @@ class Console {
     bool colour_ = false;
     bool bar_shown_ = false;
     double last_done_ = -1;
+    TimeLeft time_left_;
     std::chrono::steady_clock::time_point last_time_, started_;
     std::vector<std::string> warnings_;
     FileRoles files_;

@@ -1,6 +1,8 @@
 """Regression suites: one seeded fault of each kind is caught and named, and what is written can be read by others."""
 import json
 import os
+import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -332,6 +334,8 @@ def test_pytest_runs_them_as_its_own(ball, tmp_path):
     result = run()
     assert result.returncode == 1 and "2 passed" in result.stdout and "1 failed" in result.stdout, result.stdout
     assert "displacement_p95 is" in result.stdout
+    page = re.search(r"pictures: (\S+\.html)", result.stdout)[1]
+    assert pathlib.Path(page).read_text(encoding="utf-8").count("<img") >= 2
     assert run("-k", "not coarse").returncode == 0
     shutil.rmtree(ball / "ref")
     assert run("-k", "ball").returncode == 1

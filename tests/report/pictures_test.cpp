@@ -94,11 +94,14 @@ TEST_CASE("sweep: the difference's scale is the largest power of two that keeps 
     CHECK(difference_scale(9) == 1);
 }
 
-TEST_CASE("sweep: a displacement picture tells small, large, none and lost apart", "[report]") {
+TEST_CASE("sweep: a displacement picture tells small, large, none, lost and unmeasured apart", "[report]") {
     const ColourRange range{0.01, 10};
-    const std::vector<float> pixels = {0.01f, 10.0f, NAN, INFINITY, 0.0f, 1e6f};
+    const std::vector<float> pixels = {0.01f, 10.0f, NAN, INFINITY, 0.0f, 1e6f, -INFINITY, 1.0f, 1.0f};
     const PagePicture picture = displacement_picture(pixels, 3, range, "");
-    CHECK((picture.width == 3 && picture.height == 2));
+    CHECK((picture.width == 3 && picture.height == 3));
+    check_colour(pixel(picture, 0, 2), {1, 1, 1});
+    CHECK(displacement_colours(pixels) == "; grey: none, orange: lost, white: unmeasured");
+    CHECK(displacement_colours(std::vector<float>{0.5f, NAN}) == "; grey: none");
     check_colour(pixel(picture, 0, 0), viridis(0));
     check_colour(pixel(picture, 1, 0), viridis(1));
     check_colour(pixel(picture, 1, 1), viridis(0));

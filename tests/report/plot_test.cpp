@@ -279,3 +279,41 @@ TEST_CASE("sweep: scales hold their values and have between two and twenty label
                 CHECK((labels >= 2 && labels <= 20));
             }
 }
+
+TEST_CASE("sweep: of two series that lie on one another both are seen, and the legend says so", "[report]") {
+    std::vector<PlotSeries> series = quadratic_series(10);
+    series[0].name = "exact";
+    series.push_back(series[0]);
+    series[1].name = "classic";
+    PlotSeries apart = series[0];
+    apart.name = "planar";
+    for (Vec2& point : apart.points) point.y *= 3;
+    series.push_back(apart);
+    const auto svg = trilens_test::read_xml(log_log_plot({"t", "n", "px", {}, true, 640, 420}, series));
+    // The fit, the join and three measurements, and the one in the legend.
+    CHECK(count_class(svg, "tp-over") == 6);
+    for (const XmlElement& element : svg)
+        if (element.has_class("tp-over")) CHECK(element.has_class(plot_series_class(1)));
+    const auto has_entry = [&](const std::string& words) {
+        return std::ranges::any_of(svg, [&](const XmlElement& element) { return element.text == words; });
+    };
+    CHECK(has_entry("classic: as exact"));
+    CHECK(has_entry("planar: order 2.00"));
+}
+
+TEST_CASE("sweep: a place is a vertical line within the frame, with its label beside", "[report]") {
+    PlotParams params{"t", "s", "px", {}, false, 640, 420};
+    params.places = {{1000, "ray tracing"}};  // beyond all measurements
+    const auto svg = trilens_test::read_xml(log_log_plot(params, quadratic_series(10)));
+    std::size_t lines = 0, labels = 0;
+    for (const XmlElement& element : svg) {
+        if (element.has_class("tp-level")) {
+            ++lines;
+            CHECK(element.number("x1") == element.number("x2"));
+            CHECK(element.number("x1") == Approx(tick_place(svg, "tp-x", "1000")).margin(0.02));
+        }
+        labels += element.text == "ray tracing";
+    }
+    CHECK(lines == 1);
+    CHECK(labels == 1);
+}

@@ -314,7 +314,7 @@ TEST_CASE("sweep: no mean of displacement stands without what was measured and l
               .at("coverage") == least);
 
     const std::string html = read_whole_file(fake.params.folder + "/report.html").value();
-    for (const char* column : {"reflect: measured", "reflect: lost", "reflect: missing"})
+    for (const char* column : {"reflect: measured", "reflect: lost", "reflect: missing", "reflect: unmeasured"})
         CHECK(html.find("<th>" + std::string(column) + "</th>") != std::string::npos);
     CHECK(html.find("<dt>reflect, left, measured</dt>") != std::string::npos);
     CHECK(html.find("of the pixels that were measured: 9") != std::string::npos);  // in the plot

@@ -58,13 +58,33 @@ std::string fit_line(const SweepFit& fit) {
     return line + "\n";
 }
 
+/// What another line says: of all optics, where there is one; off the folds, where there are none.
+bool is_said_twice(const SweepFit& fit, const std::vector<SweepFit>& fits) {
+    const auto is_like = [&](const SweepFit& other) {
+        return other.layer == fit.layer && point_text(other.group) == point_text(fit.group);
+    };
+    const auto has_same = [&](const char* optic, const char* metric) {
+        return std::ranges::any_of(fits, [&](const SweepFit& other) {
+            return is_like(other) && other.optic == optic && other.metric == metric &&
+                   other.order == fit.order && other.constant == fit.constant;
+        });
+    };
+    const auto optics = std::ranges::count_if(fits, [&](const SweepFit& other) {
+        return is_like(other) && other.metric == fit.metric && other.optic != "all";
+    });
+    if (fit.optic != "all" && optics == 1) return true;
+    return fit.metric == "disp_mean_off_folds_px" && has_same(fit.optic.c_str(), "disp_mean_px");
+}
+
 std::string summary_text(const SweepSummary& summary) {
     std::string text = summary.manifest.subject.title + ": " +
                        std::to_string(summary.count(RunState::kDone)) + " of " +
                        std::to_string(summary.runs.size()) + " runs done\n";
     for (const SweepFit& fit : summary.fits)
-        if (fit.order && (fit.metric == "disp_mean_px" || fit.metric == "disp_mean_off_folds_px" ||
-                          fit.metric == "disp_p50_px"))
+        if (fit.order &&
+            (fit.metric == "disp_mean_px" || fit.metric == "disp_mean_off_folds_px" ||
+             fit.metric == "disp_p50_px") &&
+            !is_said_twice(fit, summary.fits))
             text += fit_line(fit);
     return text;
 }

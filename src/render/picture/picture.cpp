@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 
 #include "base/util/error.h"
 #include "base/util/format.h"
@@ -55,6 +57,26 @@ void tell_crowded_out(const LayerStatistics& statistics, const Warn& warn) {
             "{} facets are traced, not projected: the paths over all would take more than {} MiB; "
             "fewer facets or a smaller maxDepth need less",
             statistics.crowded_out, DivideParams().most_bytes >> 20));
+}
+
+/// Facets that a picture can hold without a word, and samples that one should have for projecting to pay.
+constexpr std::size_t kManyFacets = 65536, kSamplesPerFacet = 16;
+
+/// What costs more than it gives, before it is done: with fewer samples than facets each facet's rays are
+/// followed for less than one sample, where tracing follows one ray for each.
+void advise_on_facets(const World& world, const PictureRequest& request, const LayerRequest& window,
+                      const Warn& warn) {
+    const std::size_t facets = facet_count(world, request.frame.resolution);
+    const auto side = static_cast<std::size_t>(world.scene.film.spp);
+    const std::size_t samples = static_cast<std::size_t>(window.x1 - window.x0) *
+                                static_cast<std::size_t>(window.y1 - window.y0) * side * side;
+    if (facets < kManyFacets || facets <= samples) return;
+    const double of_one = static_cast<double>(std::max<std::size_t>(1, facet_count(world, 1))),
+                 wanted = static_cast<double>(samples / kSamplesPerFacet);
+    warn(fmt::format(
+        "{} facets for {} samples: trace is exact and takes less time; with -n {} a facet is "
+        "shared by {} samples",
+        facets, samples, std::max(1.0, std::floor(std::sqrt(wanted / of_one))), kSamplesPerFacet));
 }
 
 /// Of the light on all optics: less is not told of.
@@ -159,6 +181,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
                      const Warn& warn, const StripSink* sink) {
     const LayerRequest layers = checked_layers(world, request.layers);
     check_film_fits(world, layers, sink != nullptr);
+    if (warn && projects(request.engine.engine)) advise_on_facets(world, request, layers, warn);
     Picture picture;
     const Stopwatch preparing;
     FacetViews views = make_views(world, request.frame, request.engine, warn);

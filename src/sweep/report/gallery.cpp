@@ -47,7 +47,7 @@ Facts facts_of(const SweepSummary& summary, const RunRecord& run) {
     }
     for (const SweepFit& fit : summary.fits)
         if (fit.optic == "all" && fit.metric == "disp_mean_px" && fit.order)
-            facts.emplace_back(fit.layer + ", order of convergence", rounded_text(*fit.order, 3));
+            facts.emplace_back(fit.layer + ", order of the mean displacement", rounded_text(*fit.order, 3));
     for (const std::string& layer : layers_of(summary))
         if (const SweepFit* off = find_fit_off_folds(summary.fits, layer, "all"); off && off->order)
             facts.emplace_back(layer + ", order off the folds", rounded_text(*off->order, 3));

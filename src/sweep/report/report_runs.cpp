@@ -26,15 +26,17 @@ Facts run_facts(const RunRecord& run) {
     for (const OpticDisplacement& one : run.displacement) {
         if (run.displacement.size() > 1 && one.optic == kAllOptics) continue;
         const std::string mean = value_text(one.metrics, "disp_mean_px");
-        facts.emplace_back(
-            one.layer + ", " + one.optic,
-            mean.empty() ? "no displacement could be measured"
-                         : "mean " + mean + " px, 95 %: " + value_text(one.metrics, "disp_p95_px") + " px");
+        facts.emplace_back(one.layer + ", " + one.optic,
+                           mean.empty() ? "no displacement could be measured"
+                                        : "mean " + mean + " px, 95 % of the pixels within " +
+                                              value_text(one.metrics, "disp_p95_px") + " px");
         facts.emplace_back(one.layer + ", " + one.optic + ", measured", measured_text(one.metrics));
     }
     facts.emplace_back("RGB RMSE", value_text(run.metrics, "rgb_rmse"));
     facts.emplace_back("largest colour difference", value_text(run.metrics, "rgb_max"));
-    facts.emplace_back("time", value_text(run.metrics, "t_total_s") + " s");
+    const std::string traced = value_text(run.metrics, "t_trace_s");
+    facts.emplace_back("time", value_text(run.metrics, "t_total_s") + " s" +
+                                   (traced.empty() ? "" : ", the truth by ray tracing " + traced + " s"));
     return facts;
 }
 

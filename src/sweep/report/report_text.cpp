@@ -57,9 +57,12 @@ std::vector<Headline> layer_headlines(const SweepSummary& summary, const std::st
         return {{"exact", layer + ": every displacement that was measured is zero"}, measured};
 
     std::vector<Headline> headlines;
-    headlines.push_back({fit->order ? fixed_text(*fit->order, 2) : "—", layer + ": order of convergence"});
+    headlines.push_back(
+        {fit->order ? fixed_text(*fit->order, 2) : "—", layer + ": order of the mean displacement"});
     const SweepFit* const off = find_fit_off_folds(summary.fits, layer, kAllOptics);
-    if (off && off->order) headlines.push_back({fixed_text(*off->order, 2), layer + ": order off the folds"});
+    if (off && off->order)
+        headlines.push_back(
+            {fixed_text(*off->order, 2), layer + ": order of the mean displacement off the folds"});
     if (fit->n_for_1px)
         headlines.push_back(
             {resolution_text(*fit, fit->n_for_1px), layer + ": for a mean of 1 px where measured"});
@@ -83,7 +86,7 @@ std::vector<Headline> orders_headlines(const SweepSummary& summary, const std::s
         headlines.push_back({fixed_text(*least, 2) == fixed_text(*most, 2)
                                  ? fixed_text(*least, 2)
                                  : fixed_text(*least, 2) + " to " + fixed_text(*most, 2),
-                             layer + ": orders of convergence of the groups"});
+                             layer + ": orders of the mean displacement, by group"});
     headlines.push_back({measured_range(summary, layer), layer + ": of its pixels measured"});
     return headlines;
 }

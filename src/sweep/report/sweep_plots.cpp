@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
@@ -105,6 +106,19 @@ void add_colour(Plots& plots) {
     }
 }
 
+/// What tracing the truths of these runs took, the median; none where nothing says so.
+std::optional<double> tracer_seconds(const PlotGroups& page) {
+    std::vector<double> seconds;
+    for (const PlotGroup& group : page.groups)
+        for (const RunRecord* run : group.runs)
+            if (const auto one = find_value(run->metrics, "t_trace_s"); one && *one > 0)
+                seconds.push_back(*one);
+    if (seconds.empty()) return std::nullopt;
+    const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+    std::ranges::nth_element(seconds, middle);
+    return *middle;
+}
+
 /// Error over time of the runs whose time may be believed; of all where none may, which the plot says.
 void add_time(Plots& plots, const std::string& layer, bool is_only_layer) {
     const auto is_measured = [](const RunRecord& run) {
@@ -128,6 +142,9 @@ void add_time(Plots& plots, const std::string& layer, bool is_only_layer) {
         }
         PlotParams params;
         params.title = page.title.empty() ? "What accuracy costs" : "Cost: " + page.title;
+        if (!is_only_layer) params.title += ", " + what_layer_shows(layer);
+        if (const std::optional<double> traced = tracer_seconds(page))
+            params.places = {{*traced, "ray tracing"}};
         params.subtitle = !has_measured  ? "no measurement: the machine was shared"
                           : left_out > 0 ? std::to_string(left_out) + " runs left out: the machine was shared"
                                          : "displacement of the pixels that were measured";

@@ -36,8 +36,9 @@ void fill_table(const SweepSummary& summary, Report& report) {
         report.table_columns.push_back(axis.kind.name == "resolution" ? "n" : axis.kind.name);
     report.table_columns.insert(report.table_columns.end(), {"status", "facets"});
     for (const std::string& layer : layers)
-        for (const char* what : {": measured", ": lost", ": missing", ": unmeasured", ": mean where measured [px]",
-                                 ": mean off folds [px]", ": 95 % [px]", ": max [px]"})
+        for (const char* what :
+             {": measured", ": lost", ": missing", ": unmeasured", ": mean where measured [px]",
+              ": mean off folds [px]", ": 95 % within [px]", ": max [px]"})
             report.table_columns.push_back(layer + what);
     for (const char* column : {"RGB RMSE", "PSNR [dB]", "SSIM", "time [s]", "spread [s]", "prepare [s]",
                                "draw [s]", "write [s]", "trace [s]", "peak memory [MB]"})
@@ -51,7 +52,8 @@ void fill_table(const SweepSummary& summary, Report& report) {
             const MetricValues* const all = find_all(run, layer);
             const MetricValues metrics = all ? *all : MetricValues();
             row.push_back(coverage_text(metrics));
-            for (const char* name : {"disp_lost", "disp_missing", "disp_unmeasured"}) row.push_back(count_text(metrics, name));
+            for (const char* name : {"disp_lost", "disp_missing", "disp_unmeasured"})
+                row.push_back(count_text(metrics, name));
             for (const char* name : {"disp_mean_px", "disp_mean_off_folds_px", "disp_p95_px", "disp_max_px"})
                 row.push_back(value_text(metrics, name));
         }
@@ -102,11 +104,13 @@ void write_sweep_report(const SweepSummary& summary, KeptPictures* kept) {
     report.plots_note =
         "Displacement says how many pixels a seen point lies from where the truth shows it; it is known for "
         "the measured share of the pixels that show the layer in either picture. Lost pixels show what the "
-        "truth does not, missing ones are the truth's that the projection does not show, unmeasured ones show "
+        "truth does not, missing ones are the truth's that the projection does not show, unmeasured ones "
+        "show "
         "the same as the truth, at a distance that nothing tells. Folds are where two "
         "images of a point meet: there displacements fall more slowly. A straight line is the law error = "
         "constant × n^−order fitted to the points. Runs that lost, miss or leave "
-        "unmeasured more than a tenth of an optic's pixels take no part in its fit, nor does a plateau at the fine end.";
+        "unmeasured more than a tenth of an optic's pixels take no part in its fit, nor does a plateau at "
+        "the fine end.";
     fill_table(summary, report);
     fill_runs(summary, kMostBytesInPage, report, kept);
     if (const std::string warning = timing_warning(summary); !warning.empty())

@@ -41,9 +41,10 @@ const std::vector<std::string>& run_columns() {
 constexpr std::array<std::string_view, 5> kAxesWithColumns = {"resolution", "scene", "camera", "engine",
                                                               "spp"};
 constexpr std::array kDisplacementColumns = {
-    "disp_mean_px",    "disp_p50_px",  "disp_p95_px",   "disp_p99_px",
-    "disp_max_px",     "disp_pixels",  "disp_lost",     "disp_mean_off_folds_px",
-    "disp_near_folds", "disp_missing", "disp_unmeasured", "disp_coverage", "disp_beyond_radius"};
+    "disp_mean_px",      "disp_p50_px",  "disp_p95_px",     "disp_p99_px",
+    "disp_max_px",       "disp_pixels",  "disp_lost",       "disp_mean_off_folds_px",
+    "disp_near_folds",   "disp_missing", "disp_unmeasured", "disp_coverage",
+    "disp_beyond_radius"};
 
 std::string row(const std::vector<std::string>& cells) {
     std::string line;
@@ -134,6 +135,7 @@ std::string displacement_csv(const SweepSummary& summary) {
     std::vector<std::vector<std::string>> rows = {header};
     for (const RunRecord& run : summary.runs)
         for (const OpticDisplacement& one : run.displacement) {
+            if (is_only_optic(run.displacement, one)) continue;
             std::vector<std::string> cells = {run.plan.id,
                                               run.plan.n() > 0 ? std::to_string(run.plan.n()) : ""};
             for (const Axis& axis : summary.manifest.axes.axes) {

@@ -1,4 +1,5 @@
-// runs.csv and displacement.csv: one row per run, and one row per run, optic and layer.
+// runs.csv and displacement.csv: one row per run, and one row per run, optic and layer;
+// "all" alone where a layer has one optic.
 #pragma once
 
 #include <string>

@@ -76,10 +76,18 @@ struct PlannedRun {
 struct OpticDisplacement {
     std::string layer;  // "reflect", "refract"
     std::string optic;  // its name, or "all"
-    // disp_{mean,p50,p95,p99,max,mean_off_folds}_px, disp_{pixels,lost,unmeasured,beyond_radius,missing,near_folds} and
-    // disp_coverage (0..1): see Displacement
+    // disp_{mean,p50,p95,p99,max,mean_off_folds}_px,
+    // disp_{pixels,lost,unmeasured,beyond_radius,missing,near_folds} and disp_coverage (0..1): see
+    // Displacement
     MetricValues metrics;
 };
+
+/// Whether `one` is the only optic of its layer: then what is said of all optics is said of it.
+inline bool is_only_optic(const std::vector<OpticDisplacement>& all, const OpticDisplacement& one) {
+    std::size_t in_layer = 0;
+    for (const OpticDisplacement& other : all) in_layer += other.layer == one.layer;
+    return in_layer == 2 && one.optic != "all";
+}
 
 enum class RunState { kMissing, kDone, kFailed };
 
