@@ -3,6 +3,9 @@
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
+#include <trilens/display.h>
+
+#include <optional>
 
 #include "image.h"
 #include "line_arrays.h"
@@ -80,12 +83,19 @@ using File = std::optional<std::filesystem::path>;
 struct Job {
     std::string name;
     const File& file;
+    const std::optional<std::string>& display_server = {};
 };
 
 /// Draws the picture, into the job's file where it has one.
-Picture draw_or_write(const Renderer& renderer, const PictureRequest& request, const Job& job,
-                      PythonCall& call) {
+Picture draw_or_write(const Renderer& renderer, PictureRequest request, const Job& job, PythonCall& call) {
     const Progress progress = call.progress(job.name);
+    std::optional<DisplayServer> display;
+    StripSink shown;
+    if (job.display_server) {
+        display.emplace(*job.display_server, call.warner());
+        shown = display->sink(job.file ? job.file->string() : job.name);
+        request.watch = &shown;
+    }
     if (!job.file) return renderer.draw(request, progress, call.warner());
     const std::string file = job.file->string();
     if (image_format(file) == ImageFormat::kExr)
@@ -135,22 +145,23 @@ void bind_pictures(RendererClass& renderer) {
            std::optional<int> pieces, std::optional<double> tolerance, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
            const std::optional<std::string>& seen_optics, const std::optional<std::string>& facets,
-           const std::string& shading, const File& file, const py::object& progress, const py::object& warn) {
+           const std::string& shading, const File& file, const std::optional<std::string>& display_server,
+           const py::object& progress, const py::object& warn) {
             PythonCall call(progress, warn);
             return draw(self,
                         {FacetArguments{rays, max_error, grid, seen_optics, facets}.of(
                              frame_params(self, resolution, camera)),
                          projecting_engine(engine, {curves, clip, pieces, tolerance}),
                          layer_request(layers, window), require_named<Shading>("shading", shading)},
-                        {"render", file}, call);
+                        {"render", file, display_server}, call);
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::arg("engine") = "exact",
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("curves") = py::none(), py::arg("clip") = py::none(), py::arg("pieces") = py::none(),
         py::arg("tolerance") = py::none(), py::arg("rays") = py::none(), py::arg("max_error") = py::none(),
         py::arg("grid") = py::none(), py::arg("seen_optics") = py::none(), py::arg("facets") = py::none(),
-        py::arg("shading") = "fragment", py::arg("file") = py::none(), py::arg("progress") = py::none(),
-        py::arg("warn") = py::none(),
+        py::arg("shading") = "fragment", py::arg("file") = py::none(), py::arg("display_server") = py::none(),
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the scene by projection. The same pixels for any number of threads.\n\n"
         "resolution: 1..1024, of every optic's grid; 0: as the scene says.\n"
         "camera: by name; None: the scene's own.\n"
@@ -182,6 +193,9 @@ void bind_pictures(RendererClass& renderer) {
         "whole: the\nimage that is returned has header and statistics, but no channels; or the beauty as "
         "8-bit sRGB (.png), and\nthe image is whole. Raises UsageError for other endings, OutputError; an "
         "old file stays until the new one is\nwhole.\n"
+        "display_server: \"HOST:PORT\" of the viewer tev (127.0.0.1:14158), which shows the picture while it "
+        "is drawn.\n"
+        "OutputError where nobody answers there; a viewer that goes away later is a warning.\n"
         "progress: called as progress(done, job), done in 0..1; returning False raises Interrupted.\n"
         "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
         "Raises UsageError for a camera, layer, window or other value that there is not, InputError where "
@@ -196,7 +210,8 @@ void bind_pictures(RendererClass& renderer) {
            const std::optional<Window>& window, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
            const std::optional<std::string>& seen_optics, const std::optional<std::string>& facets,
-           const File& file, const py::object& progress, const py::object& warn) {
+           const File& file, const std::optional<std::string>& display_server, const py::object& progress,
+           const py::object& warn) {
             require_known("surface", surface, Names{"limit", "facets"});
             if (surface == "limit" && (rays || max_error || grid || seen_optics || facets))
                 throw UsageError(
@@ -207,13 +222,14 @@ void bind_pictures(RendererClass& renderer) {
                         {FacetArguments{rays, max_error, grid, seen_optics, facets}.of(
                              frame_params(self, resolution, camera)),
                          engine_choice(surface), layer_request(layers, window)},
-                        {"trace", file}, call);
+                        {"trace", file, display_server}, call);
         },
         py::arg("surface") = "limit", py::arg("resolution") = 0, py::arg("camera") = py::none(),
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("rays") = py::none(), py::arg("max_error") = py::none(), py::arg("grid") = py::none(),
         py::arg("seen_optics") = py::none(), py::arg("facets") = py::none(), py::arg("file") = py::none(),
-        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        py::arg("display_server") = py::none(), py::arg("progress") = py::none(),
+        py::arg("warn") = py::none(),
         "Draws the same scene by ray tracing: the truth.\n\n"
         "surface: \"limit\" (the exact surfaces) or \"facets\" (the rays that render's facets interpolate).\n"
         "rays, max_error, grid, seen_optics and facets are about facets: UsageError without "
@@ -335,7 +351,9 @@ void bind_renderer(py::module_& module) {
     bind_unwrap(renderer, module);
     bind_explain(renderer);
     bind_facts(renderer);
-    module.def("layer_names", layer_names, "The layers that may be asked for beside R G B A. \"position\" is what the camera sees itself (directID, "
+    module.def("layer_names", layer_names,
+               "The layers that may be asked for beside R G B A. \"position\" is what the camera sees itself "
+               "(directID, "
                "directP); a\npath's own layer (\"reflect\") has the positions that it shows.");
 }
 

@@ -222,6 +222,7 @@ class Renderer:
         facets: Optional[str] = None,
         shading: str = "fragment",
         file: Optional[_File] = None,
+        display_server: Optional[str] = None,
         progress: _Progress = None,
         warn: _Warn = None,
     ) -> Image: ...
@@ -239,6 +240,7 @@ class Renderer:
         seen_optics: Optional[str] = None,
         facets: Optional[str] = None,
         file: Optional[_File] = None,
+        display_server: Optional[str] = None,
         progress: _Progress = None,
         warn: _Warn = None,
     ) -> Image: ...

@@ -1,5 +1,6 @@
 // trilens compare: error metrics and a verdict.
 #include <trilens/compare.h>
+#include <trilens/display.h>
 #include <trilens/files.h>
 #include <trilens/image.h>
 #include <trilens/stopwatch.h>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "cli/print/comparison.h"
@@ -85,12 +87,24 @@ Image read_input(const CompareRequest& request, bool is_reference, Console& cons
     return image;
 }
 
-/// The difference as a file: all of it as .exr, its magnitude times the scale as .png.
-void write_difference(const CompareRequest& request, const ComparedInputs& inputs, Console& console) {
-    const Stopwatch watch;
+Image difference_of(const CompareRequest& request, const ComparedInputs& inputs) {
     Image difference = make_difference(inputs.images.reference, inputs.images.test,
                                        {request.options.layer, request.options.mask_object}, inputs.flip);
     add_shifts(inputs.layers, difference);
+    return difference;
+}
+
+/// Reference, test and difference in a viewer that compares pictures side by side.
+void show(const CompareRequest& request, const ComparedInputs& inputs, DisplayServer& display) {
+    if (display.show(request.reference, inputs.images.reference) &&
+        display.show(request.test, inputs.images.test))
+        display.show("difference", difference_of(request, inputs));
+}
+
+/// The difference as a file: all of it as .exr, its magnitude times the scale as .png.
+void write_difference(const CompareRequest& request, const ComparedInputs& inputs, Console& console) {
+    const Stopwatch watch;
+    Image difference = difference_of(request, inputs);
     if (is_png(request.difference)) {
         for (const char* colour : {"R", "G", "B"}) {
             std::vector<float>& values = difference.find(colour)->floats();
@@ -130,6 +144,8 @@ void judge_limits(const CompareRequest& request, ComparedInputs& inputs) {
 
 Answer run(const CompareRequest& request, Console& console) {
     check_options(request, console);
+    std::optional<DisplayServer> display;
+    if (!request.display_server.empty()) display.emplace(request.display_server, console.warner());
     ComparedInputs inputs = read_inputs(request, console);
     const Stopwatch watch;
     const CommonChannels& images = inputs.images;
@@ -143,6 +159,7 @@ Answer run(const CompareRequest& request, Console& console) {
     }
     judge_limits(request, inputs);
     console.note_stage(fmt::format("compared {} channels", images.reference.channels.size()), watch);
+    if (display) show(request, inputs, *display);
     if (!request.difference.empty()) write_difference(request, inputs, console);
     if (inputs.comparison.verdict == Verdict::kWarning)
         for (const std::string& reason : inputs.comparison.reasons) console.warn(reason);
@@ -195,6 +212,10 @@ std::vector<Option> image_options(CompareCommand& command) {
          .help = ".png: so many times the difference",
          .value = "S",
          .range = {0}},
+        {.names = "--display-server",
+         .target = &command.request.display_server,
+         .help = "show reference, test and difference in the viewer tev (it listens at 127.0.0.1:14158)",
+         .value = "HOST:PORT"},
         {.names = "--layer",
          .target = &command.request.options.layer,
          .help = "compare this layer (direct, reflect, refract, or another that both images have) instead "

@@ -1,4 +1,5 @@
 // trilens render and trilens trace: one picture, or the frames of an animation.
+#include <trilens/display.h>
 #include <trilens/regions.h>
 
 #include "cli/commands.h"
@@ -77,6 +78,13 @@ Answer run(const RenderOptions& options, const std::string& command, const Engin
     // A .png shows the beauty alone; the count of regions in a JSON answer needs the ids.
     const bool is_beauty = format == "png" || format == "apng";
     if (is_beauty && request.layers.layers.empty() && !console.wants_json()) request.layers.layers = {"Z"};
+    std::optional<DisplayServer> display;
+    StripSink shown;
+    if (!options.display_server.empty()) {
+        display.emplace(options.display_server, console.warner());
+        shown = display->sink(is_standard_stream(options.output) ? command : options.output);
+        request.watch = &shown;
+    }
     if (options.frames.asks()) return draw_frames(options, format, request, console);
     const Renderer renderer = load_renderer(options.scene, console);
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);

@@ -47,6 +47,10 @@ std::vector<Option> picture_options(RenderOptions& options, const std::string& f
            .target = &options.grid,
            .help = "where the optics' facets lie: on the surface, or on the film over the optic",
            .choices = names_of<GridKind>()},
+          {.names = "--display-server",
+           .target = &options.display_server,
+           .help = "show the picture in the viewer tev while it is drawn (tev listens at 127.0.0.1:14158)",
+           .value = "HOST:PORT"},
           {.names = "--pixel",
            .target = &options.pixel,
            .help = "explain one pixel as JSON",
@@ -170,6 +174,8 @@ void check_options(const RenderOptions& options, const std::string& format, cons
     if (options.max_error >= 0 && (options.engine == "envmap" || options.engine == "planar"))
         throw UsageError("--max-error divides the facets of the exact engine, not of --engine " +
                          options.engine);
+    if (!options.display_server.empty() && (is_vector(format) || format.empty()))
+        throw UsageError("--display-server shows pictures of pixels: it needs -o OUT.exr or OUT.png");
     if (!options.scene.aov.empty() && !format.empty() && format != "exr")
         throw UsageError("--aov is for .exr outputs: an ." + format + " has no layers");
     if (options.frames.asks() && (is_vector(format) || !options.pixel.empty()))

@@ -28,7 +28,8 @@ struct RenderOptions {
     std::string clip = "scene";
     int slices = 0, tessellate = 0;  // 0: not asked for
     std::string surface = "limit";
-    std::string format;  // empty: by the output's ending
+    std::string display_server;  // "HOST:PORT"; empty: none
+    std::string format;          // empty: by the output's ending
     bool wire = false, folds = false;
     std::string rays;       // empty: each optic's own
     std::string facets;     // empty: those that are worthwhile

@@ -167,7 +167,7 @@ void add(const EngineChoice& choice, Digest& digest) {
 }
 
 std::string picture_key(const PictureRequest& picture) {
-    const auto& [frame, engine, window, shading] = picture;
+    const auto& [frame, engine, window, shading, watch] = picture;
     Digest digest;
     add(frame, digest);
     add(engine, digest);

@@ -9,6 +9,7 @@
 #include <trilens/camera.h>
 #include <trilens/compare.h>
 #include <trilens/design.h>
+#include <trilens/display.h>
 #include <trilens/error.h>
 #include <trilens/files.h>
 #include <trilens/fit.h>

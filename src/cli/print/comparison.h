@@ -17,6 +17,7 @@ struct CompareRequest {
     double scale = 1;  // of a difference in .png
     double radius = DisplacementOptions{}.radius;
     CompareOptions options;
+    std::string display_server;  // "HOST:PORT"; empty: none
 };
 
 /// The two images with the channels that they share, and what was found.

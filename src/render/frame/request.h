@@ -9,6 +9,7 @@
 
 #include "base/description/optic_settings.h"
 #include "base/image/image.h"
+#include "base/image/strip_sink.h"
 #include "projector/classic/classic.h"
 
 namespace trilens {
@@ -110,6 +111,9 @@ struct PictureRequest {
     EngineChoice engine;
     LayerRequest layers;
     Shading shading = Shading::kFragment;
+    // Told of every strip as it is drawn, beside whoever takes the picture; null: nobody. Changes no pixel.
+    // Must live while it is drawn.
+    const StripSink* watch = nullptr;
 };
 
 /// How it was decided which of an optic's facets are worthwhile.

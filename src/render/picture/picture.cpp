@@ -175,6 +175,26 @@ void describe(const World& world, const PictureRequest& request, Image& image) {
     header["trilens:files"] = named_files_text(world.scene);
 }
 
+Image with_room_for_values(Image layout) {
+    for (Channel& channel : layout.channels)
+        std::visit([&](auto& values) { values.resize(layout.pixels()); }, channel.values);
+    return layout;
+}
+
+/// Copies `rows` rows of every channel to row `first` of the image on.
+void collect_strip(const std::vector<Channel>& channels, int first, int rows, Image& image) {
+    const std::size_t width = static_cast<std::size_t>(image.data_width),
+                      from = static_cast<std::size_t>(first) * width,
+                      count = static_cast<std::size_t>(rows) * width;
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        std::visit(
+            [&](auto& values) {
+                const auto& strip = std::get<std::decay_t<decltype(values)>>(channels[i].values);
+                std::copy_n(strip.begin(), count, values.begin() + static_cast<std::ptrdiff_t>(from));
+            },
+            image.channels[i].values);
+}
+
 }  // namespace
 
 Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
@@ -188,17 +208,30 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     if (request.shading == Shading::kSample) views.keys = {};
     picture.prepare_seconds = preparing.seconds();
 
+    // Strips pass by the one who watches to the one who takes the picture; without one they are collected.
+    Image collected;
     StripSink described;
-    if (sink) {
-        described.begin = [&](Image layout) {
-            describe(world, request, layout);
+    described.begin = [&](Image layout) {
+        describe(world, request, layout);
+        if (request.watch) request.watch->begin(layout);
+        if (sink)
             sink->begin(layout);
-        };
-        described.add = sink->add;
-    }
+        else
+            collected = with_room_for_values(std::move(layout));
+    };
+    described.add = [&, row = 0](const std::vector<Channel>& channels, int rows) mutable {
+        if (request.watch) request.watch->add(channels, rows);
+        if (sink)
+            sink->add(channels, rows);
+        else
+            collect_strip(channels, row, rows, collected);
+        row += rows;
+    };
+    const bool in_strips = sink || request.watch;
     const Stopwatch drawing;
     picture.image =
-        draw_layers(world, views, layers, progress, &picture.statistics, sink ? &described : nullptr);
+        draw_layers(world, views, layers, progress, &picture.statistics, in_strips ? &described : nullptr);
+    if (in_strips && !sink) picture.image = std::move(collected);
     picture.draw_seconds = drawing.seconds();
     picture.statistics.looks = looks_of(world, views);
     describe(world, request, picture.image);

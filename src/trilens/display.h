@@ -1,0 +1,10 @@
+// Pictures in the viewer tev, while they are drawn.
+//
+//     trilens::DisplayServer viewer("127.0.0.1:14158");
+//     const trilens::StripSink shown = viewer.sink("mine");
+//     trilens::PictureRequest request;
+//     request.watch = &shown;
+//     const trilens::Picture picture = renderer.draw(request);
+#pragma once
+
+#include "image/display_server.h"
