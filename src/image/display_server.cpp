@@ -133,6 +133,9 @@ DisplayMessage update_image_message(const std::string& name, const std::vector<C
                                     const DisplayRows& where) {
     const std::vector<const Channel*> channels = float_channels(all);
     const std::size_t pixels = static_cast<std::size_t>(where.width) * static_cast<std::size_t>(where.rows);
+    for (const Channel* channel : channels)
+        if (where.width < 0 || where.rows < 0 || channel->floats().size() < pixels)
+            throw InputError("", channel->name, "has fewer values than the strip has pixels");
     Writer message(kUpdateImage);
     message.reserve(channels.size() * (64 + pixels * sizeof(float)));
     message.put_flag(false);

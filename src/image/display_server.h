@@ -26,7 +26,7 @@ struct DisplayRows {
 };
 
 /// Rows `y` .. `y + rows - 1` of the picture: the channels of floats, of which each holds at least
-/// `rows * width` values, rows from the top.
+/// `rows * width` values, rows from the top. Throws InputError where one has fewer.
 DisplayMessage update_image_message(const std::string& name, const std::vector<Channel>& channels,
                                     const DisplayRows& where);
 

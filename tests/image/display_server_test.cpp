@@ -150,6 +150,7 @@ TEST_CASE("messages have the bytes that tev reads", "[image][display][golden]") 
         {"R", std::vector<float>{1, -2}}, {"ID", std::vector<Id>{7, 8}}, {"Z", std::vector<float>{0, 3}}};
     CHECK(create_image_message("ab", image) ==
           DisplayMessage{25, 0, 0, 0, 4, 1, 'a', 'b', 0, 2, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 'R', 0, 'Z', 0});
+    CHECK_THROWS_AS(update_image_message("ab", image.channels, {0, 2, 2}), InputError);
     CHECK(update_image_message("ab", image.channels, {5, 1, 2}) ==
           DisplayMessage{81, 0, 0,    0,    6, 0, 'a', 'b',  0, 2, 0, 0, 0, 'R', 0,    'Z',
                          0,                                                                // name, channels
