@@ -26,7 +26,7 @@ pre{background:var(--panel);border:1px solid var(--line);border-radius:8px;paddi
 .card{background:var(--panel);border:1px solid var(--line);border-radius:10px;padding:12px 18px;min-width:170px}
 .card b{display:block;font-size:26px;line-height:1.25;font-variant-numeric:tabular-nums}.card span{color:var(--soft);font-size:13px}
 .plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,380px),1fr));gap:16px}
-figure{margin:0}.plot{border:1px solid var(--line);border-radius:10px;overflow:hidden}.plot svg{display:block;width:100%;height:auto}
+.plots+p{margin-top:14px}figure{margin:0}.plot{border:1px solid var(--line);border-radius:10px;overflow:hidden}.plot svg{display:block;width:100%;height:auto}
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:14px}
 th,td{padding:5px 12px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
 th{white-space:normal;color:var(--soft);font-weight:600;border-bottom-width:2px;vertical-align:bottom}th:first-child,td:first-child{text-align:left;position:sticky;left:0;background:var(--paper)}
