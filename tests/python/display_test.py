@@ -22,6 +22,7 @@ class Viewer:
 
     def take(self):
         connection, _ = self.listener.accept()
+        self.listener.close()
         with connection:
             while (some := connection.recv(65536 if self.most is None else self.most)):
                 self.bytes += some
