@@ -79,11 +79,11 @@ LayerRequest layer_request(const std::optional<Names>& layers, const std::option
 
 using File = std::optional<std::filesystem::path>;
 
-/// What is asked for: "render" or "trace", and the file that takes it, if any.
+/// What is asked for: "render" or "trace", the file that takes it, and the viewer that shows it, if any.
 struct Job {
     std::string name;
     const File& file;
-    const std::optional<std::string>& display_server = {};
+    const std::optional<std::string>& display_server;
 };
 
 /// Draws the picture, into the job's file where it has one.
