@@ -48,7 +48,7 @@ std::vector<Vec3> wanted_points(const ProjectOptions& options) {
 }
 
 /// Pointers, also several in one word.
-std::vector<std::string> pointers_of(const std::vector<std::string>& words) {
+std::vector<std::string> parameter_pointers(const std::vector<std::string>& words) {
     std::vector<std::string> pointers;
     for (const std::string& word : words)
         for (std::size_t from = 0; from <= word.size();) {
@@ -71,7 +71,7 @@ Answer run(const ProjectOptions& options, Console& console) {
     request.search =
         !request.refine || options.search == "facets" ? ImageSearch::kFacets : ImageSearch::kComplete;
     request.visibility = !options.no_visibility;
-    request.parameters = pointers_of(options.parameters);
+    request.parameters = parameter_pointers(options.parameters);
     request.derivatives = options.derivatives || !request.parameters.empty();
     if (!options.path.empty()) request.path = EventWord(options.path);
     request.max_images = options.max_images;
