@@ -113,7 +113,7 @@ SpecularSearch together(SpecularSearch search, const SpecularSearch& other) {
 
 SpecularSearch SpecularSearcher::find(const SpecularQuery& query, const SearchLimits& limits) const {
     check(query, limits);
-    if (const SphereSearch sphere(impl_->surface, query, limits); sphere.applies())
+    if (const SphereSearch sphere(impl_->surface, query, limits); impl_->cells.bounder() && sphere.applies())
         if (auto found = std::move(sphere.find({&query.point, 1}).front())) return std::move(*found);
     if (impl_->cells.bounder() && query.own_normals) {
         ViewTree tree(impl_->surface, impl_->cells, query);
@@ -133,7 +133,7 @@ std::vector<SpecularSearch> SpecularSearcher::find_each(const SpecularQuery& que
                                                         std::span<const Vec3> points,
                                                         const SearchLimits& limits) const {
     check(query, limits);
-    if (const SphereSearch sphere(impl_->surface, query, limits); sphere.applies())
+    if (const SphereSearch sphere(impl_->surface, query, limits); impl_->cells.bounder() && sphere.applies())
         return impl_->find_on_sphere(sphere, query, points, limits);
     if (impl_->cells.bounder() && query.own_normals) return impl_->find_in_cells(query, points, limits);
     std::vector<SpecularSearch> found;
