@@ -133,6 +133,7 @@ class FacePatches {
         const std::vector<Patch>* known = faces_[face].load(std::memory_order_acquire);
         if (known) return *known;
         const SurfaceGrid grid = grid_(face);
+        TRILENS_CHECK(grid.facets.size() <= kMostOfFace, "a face has few facets where it is prepared alone");
         auto made = std::make_unique<std::vector<Patch>>(grid.facets.size());
         for (std::size_t f = 0; f < made->size(); ++f) (*made)[f] = make_patch(surface_, grid, f);
         // Another thread may have made the same meanwhile.

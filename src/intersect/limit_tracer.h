@@ -33,8 +33,8 @@ class LimitTracer {
     /// For surfaces of so many faces that most of them no ray comes near: the facets of a face are made when
     /// a ray first meets its hull, by whatever thread.
     struct FaceByFace {
-        std::vector<Box> hulls;  // per face a box that holds it, finite and not empty
-        std::function<SurfaceGrid(Id face)> grid;
+        std::vector<Box> hulls;                    // per face a box that holds it, finite and not empty
+        std::function<SurfaceGrid(Id face)> grid;  // of at most 64 facets
     };
     LimitTracer(const Surface& surface, const FaceByFace& fine, const std::string& isa = "");
     ~LimitTracer();

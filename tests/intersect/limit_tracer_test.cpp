@@ -371,7 +371,7 @@ TEST_CASE("a surface prepared face by face, as rays come, is met where one prepa
         std::set<Id> made;
         const LimitTracer by_face(*surface, {hulls, [&](Id face) {
                                                  made.insert(face);
-                                                 return make_face_grid(*surface, face, 8);
+                                                 return make_face_grid(*surface, face, 5);
                                              }});
         CHECK(made.empty());
         int met = 0, unlike = 0;
