@@ -73,7 +73,7 @@ TEST_CASE("many points in one search have each the list that it has alone", "[sp
     for (int p = 0; p < 1000; ++p) close.push_back(Vec3(1.5, 1.2, 2) + draw.in_cube(0.1));
     const BatchTally side_by_side = compare(searcher, query, close);
     CHECK(side_by_side.different == 0);
-    CHECK(side_by_side.cells < side_by_side.cells_alone / 2);
+    CHECK(side_by_side.cells <= side_by_side.cells_alone / 2);  // of spheres none
 
     query.event = SpecularEvent::kRefract;
     query.point_index = 1.5;
