@@ -55,7 +55,7 @@ def field_of_triangles(file):
 
 def write_million(folder, sphere):
     """The scene of the sphere with that floor in place of its room."""
-    scene = json.loads(sphere.read_text())
+    scene = json.loads(re.sub(r"^\s*//.*$", "", sphere.read_text(), flags=re.M))
     field_of_triangles(folder / "field.obj")
     scene["meshes"] = [m for m in scene["meshes"] if m["role"] == "optic"]
     scene["meshes"].append({"name": "field", "role": "object", "material": "white", "file": "field.obj"})
@@ -73,13 +73,13 @@ def write_points(file):
 
 
 def jobs(folder, sphere):
-    """name, aim in seconds, aim in MB, arguments, whether threads matter; `{}` is the number of threads."""
-    hd, uhd = ["--size", "1920x1080"], ["--size", "3840x2160"]
+    """One sample a pixel. name, aim in seconds, aim in MB, arguments, whether threads matter; `{}` is the number of threads."""
+    hd, uhd = ["--size", "1920x1080", "--spp", "1"], ["--size", "3840x2160", "--spp", "1"]
     picture = ["render", str(sphere), "-n", "16", "-q", "-t", "{}"]
     exr = ["-o", str(folder / "o.exr")]
     million = ["render", str(write_million(folder, sphere)), "-n", "16", "-q", "-t", "{}"]
     points = write_points(folder / "points.csv")
-    sweep = ["sweep", "run", str(sphere), "--size", "640x480", "--over", "resolution=1..16:+1", "-q", "-t", "{}"]
+    sweep = ["sweep", "run", str(sphere), "--size", "640x480", "--spp", "1", "--over", "resolution=1..16:+1", "-q", "-t", "{}"]
     return [
         ("render, beauty to EXR, 1080p", 0.25, None, picture + hd + ["--aov", "Z"] + exr, True),
         ("render, beauty to PNG, 1080p", None, None, picture + hd + ["-o", str(folder / "o.png")], True),

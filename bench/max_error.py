@@ -39,13 +39,13 @@ class Study:
         self.options, self.folder = options, folder
         self.scene, _, camera = scene.partition("@")
         self.name = pathlib.Path(self.scene).stem + (f"@{camera}" if camera else "")
-        self.camera = ["--camera", camera] if camera else []
+        self.view = ["--spp", "1", *(["--camera", camera] if camera else [])]
         self.truth = str(folder / "truth.exr")
-        run([options.trilens, "trace", self.scene, "-o", self.truth, *self.camera])
+        run([options.trilens, "trace", self.scene, "-o", self.truth, *self.view])
 
     def draw(self, *settings):
         image = str(self.folder / "image.exr")
-        picture, seconds = run([self.options.trilens, "render", self.scene, "-o", image, "-t", "1", *self.camera, *settings])
+        picture, seconds = run([self.options.trilens, "render", self.scene, "-o", image, "-t", "1", *self.view, *settings])
         # Exit 1: the pictures differ, which is what is measured.
         found, _ = run([self.options.trilens, "compare", self.truth, image], allowed=(0, 1))
         return picture, seconds, found["displacement_px"]

@@ -18,6 +18,7 @@ void bind_errors(py::module_& module);
 void bind_program(py::module_& module);
 void bind_image(py::module_& module);
 void bind_scene(py::module_& module);
+void bind_scene_camera(py::module_& module);
 void bind_renderer(py::module_& module);
 void bind_compare(py::module_& module);
 void bind_sweep(py::module_& module);

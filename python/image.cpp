@@ -177,6 +177,17 @@ void bind_image(py::module_& module) {
              "The colours R, G, B of a layer (\"\": the beauty) as a new float32 array (height, width, 3),\n"
              "linear Rec.709. Raises KeyError where the image has none.")
         .def(
+            "_repr_png_",
+            [](const HeldImage& held) -> py::object {
+                for (const char* name : {"R", "G", "B"})
+                    if (const Channel* channel = held.image.find(name); !channel || channel->is_id())
+                        return py::none();
+                const std::vector<unsigned char> bytes =
+                    PythonCall().run([&] { return encode_image_as(held.image, ImageFormat::kPng); });
+                return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+            },
+            "The beauty as 8-bit sRGB, which notebooks show: the bytes of a PNG; None where R, G or B lacks.")
+        .def(
             "save",
             [](const HeldImage& held, const std::filesystem::path& file, double exposure,
                const std::string& tone, double white) {

@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.h"
+#include "signatures.h"
 
 namespace trilens::python {
 
@@ -48,6 +49,7 @@ PYBIND11_MODULE(_trilens, module) {
     bindings::bind_errors(module);
     bindings::bind_program(module);
     bindings::bind_image(module);
+    bindings::bind_scene_camera(module);
     bindings::bind_scene(module);
     bindings::bind_surface(module);
     bindings::bind_ray_mesh(module);
@@ -58,5 +60,6 @@ PYBIND11_MODULE(_trilens, module) {
     bindings::bind_suite(module);
     bindings::bind_inverse(module);
     bindings::refuse_new_without_init(module);
+    bindings::give_signatures(module);
     pybind11::delattr(module, "__module__");
 }

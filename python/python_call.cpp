@@ -8,11 +8,17 @@ py::object callable_or_none(py::object object, const char* name) {
     throw UsageError(std::string(name) + " is neither None nor something to call");
 }
 
+/// True stands for the package's own bar.
+py::object progress_or_none(py::object object) {
+    if (object.ptr() == Py_True) return py::module_::import("trilens.progress_bar").attr("ProgressBar")();
+    if (object.ptr() == Py_False) return py::none();
+    return callable_or_none(std::move(object), "progress");
+}
+
 }  // namespace
 
 PythonCall::PythonCall(py::object progress, py::object warn)
-    : progress_(callable_or_none(std::move(progress), "progress")),
-      warn_(callable_or_none(std::move(warn), "warn")) {}
+    : progress_(progress_or_none(std::move(progress))), warn_(callable_or_none(std::move(warn), "warn")) {}
 
 Progress PythonCall::progress(const std::string& job) {
     return {[this, job](double done) { report(done, job); }, &cancel_};

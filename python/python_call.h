@@ -13,8 +13,9 @@ namespace trilens::python {
 /// The Python side of one call, alive while it runs; made and destroyed with the GIL held.
 class PythonCall {
   public:
-    /// `progress`: None, or called as progress(done, job), done in 0..1; False stops the work. `warn`: None
-    /// (the warnings module tells), or called as warn(message). Throws UsageError for what cannot be called.
+    /// `progress`: None or False, True (a bar, see trilens/progress_bar.py), or called as progress(done,
+    /// job), done in 0..1; an answer of False stops the work. `warn`: None (the warnings module tells), or
+    /// called as warn(message). Throws UsageError for what cannot be called.
     explicit PythonCall(py::object progress = py::none(), py::object warn = py::none());
     PythonCall(const PythonCall&) = delete;
     PythonCall& operator=(const PythonCall&) = delete;

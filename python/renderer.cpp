@@ -196,7 +196,9 @@ void bind_pictures(RendererClass& renderer) {
         "display_server: \"HOST:PORT\" of the viewer tev (127.0.0.1:14158), which shows the picture while it "
         "is drawn.\n"
         "OutputError where nobody answers there; a viewer that goes away later is a warning.\n"
-        "progress: called as progress(done, job), done in 0..1; returning False raises Interrupted.\n"
+        "progress: called as progress(done, job), done in 0..1; returning False raises Interrupted. True: a "
+        "bar, in\n"
+        "notebooks and on terminals.\n"
         "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
         "Raises UsageError for a camera, layer, window or other value that there is not, InputError where "
         "the\n"
@@ -351,10 +353,27 @@ void bind_renderer(py::module_& module) {
     bind_unwrap(renderer, module);
     bind_explain(renderer);
     bind_facts(renderer);
-    module.def("layer_names", layer_names,
-               "The layers that may be asked for beside R G B A. \"position\" is what the camera sees itself "
-               "(directID, "
-               "directP); a\npath's own layer (\"reflect\") has the positions that it shows.");
+    module.def(
+        "layer_names", layer_names,
+        "The layers that may be asked for beside R G B A, and the channels of each, where the scene has what "
+        "they show:\n\n"
+        "Z: Z (depth of the first surface, 1e30 in the environment).\n"
+        "optic: optic.object, optic.facet, optic.U, optic.V (the first optic, its facet, the place in it).\n"
+        "direct: direct.R, direct.G, direct.B (what no optic shows).\n"
+        "reflect: reflect.R, reflect.G, reflect.B (light), reflectID.object, reflectID.primitive (what is "
+        "seen),\n"
+        "reflectP.X, reflectP.Y, reflectP.Z (where, world frame), reflectP.length (of the way from the "
+        "optic).\n"
+        "refract: the same, refract.R and so on.\n"
+        "path: path.count (optics on the way).\n"
+        "stat: stat.method (projected 0, subdivided 1, traced 2), stat.level (of subdivision).\n"
+        "magnification: reflectM.area, refractM.area, beside those layers.\n"
+        "ray: reflectD.X, reflectD.Y, reflectD.Z, reflectO.X, reflectO.Y, reflectO.Z and refractD, refractO "
+        "beside\n"
+        "those layers (unit direction and origin of the last ray, world frame).\n"
+        "position: directID.object, directID.primitive, directP.X, directP.Y, directP.Z, directP.length "
+        "(what the\n"
+        "camera sees itself).");
 }
 
 }  // namespace trilens::python

@@ -7,13 +7,23 @@
 #include <cmath>
 
 #include "python_call.h"
+#include "scene_camera.h"
 
 namespace trilens::python {
 namespace {
 
+/// numpy's arrays and numbers, and paths, as Python's own values; what else JSON lacks stays a TypeError.
+py::object plain_value(const py::object& value) {
+    if (py::hasattr(value, "tolist")) return value.attr("tolist")();
+    if (py::hasattr(value, "__fspath__")) return value.attr("__fspath__")();
+    throw py::type_error("Object of type " + text_of(py::type::of(value).attr("__name__")) +
+                         " is not JSON serializable");
+}
+
 std::string json_text(const py::object& value, const py::object& indent = py::none()) {
     return py::module_::import("json")
-        .attr("dumps")(value, py::arg("indent") = indent, py::arg("allow_nan") = false)
+        .attr("dumps")(value, py::arg("indent") = indent, py::arg("allow_nan") = false,
+                       py::arg("default") = py::cpp_function(plain_value))
         .cast<std::string>();
 }
 
@@ -67,22 +77,6 @@ void bind_parts(py::module_& module) {
         "filter", [](const Film& one) { return name_of(one.filter); },
         "How samples make a pixel's colour: \"box\", \"mitchell\" or \"gaussian\".");
 
-    py::class_<CameraDescription>(module, "Camera", "A camera as the scene gives it.")
-        .def_readonly("name", &CameraDescription::name)
-        .def_property_readonly(
-            "type", [](const CameraDescription& camera) { return name_of(camera.type); },
-            "As in scene files: \"perspective\", \"fisheye\", \"rayMesh\", ...")
-        .def_readonly("yfov", &CameraDescription::yfov,
-                      "The whole vertical angle, degrees (of types that have it).")
-        .def_property_readonly(
-            "eye", [](const CameraDescription& camera) { return tuple_of(camera.eye); }, "World frame.")
-        .def_property_readonly(
-            "at", [](const CameraDescription& camera) { return tuple_of(camera.at); }, "World frame.")
-        .def_property_readonly(
-            "up", [](const CameraDescription& camera) { return tuple_of(camera.up); }, "World frame.")
-        .def("__repr__",
-             [](const CameraDescription& camera) { return "<trilens.Camera '" + camera.name + "'>"; });
-
     py::class_<MeshInfo> mesh(module, "Mesh",
                               "A mesh of the scene; its index in Scene.meshes is its object id.");
     bind_fields(
@@ -109,7 +103,9 @@ void bind_readers(py::module_& module) {
         "load_scene", load, py::arg("file"), py::arg("overrides") = py::dict(), py::arg("resolution") = 0,
         py::kw_only(), py::arg("warn") = py::none(),
         "Reads a scene file (.json), or the scene that an image (.exr) carries.\n\n"
-        "overrides: values by JSON pointer, {\"/film/width\": 320}, in order, before the scene is checked.\n"
+        "overrides: values by JSON pointer, {\"/film/width\": 320}, in order, before the scene is checked; "
+        "numpy's\n"
+        "arrays and numbers, and paths, stand for lists, numbers and texts, as in the dict of parse_scene.\n"
         "resolution: 1..1024, of every optic; 0: as the scene says.\n"
         "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
         "Raises InputError with the file and the place of the first problem.");
@@ -156,7 +152,7 @@ void bind_scene(py::module_& module) {
         .def_readonly("label", &Scene::label, "What messages call it where it has no file; may be empty.")
         .def_readonly("folder", &Scene::folder, "Where its relative paths start.")
         .def_readonly("film", &Scene::film)
-        .def_readonly("cameras", &Scene::cameras, "At least one.")
+        .def_property_readonly("cameras", cameras_of, "At least one, in scene order.")
         .def_property_readonly(
             "camera", [](const Scene& scene) { return scene.cameras[scene.own_camera].name; },
             "The name of the camera that is used where none is asked for.")

@@ -8,14 +8,14 @@
 namespace trilens::python {
 namespace {
 
-using Path = std::filesystem::path;
+using SuitePath = std::filesystem::path;
 
 /// A folder, or several.
 std::vector<std::string> folders_of(const py::object& folders) {
     std::vector<std::string> all;
     if (py::isinstance<py::str>(folders) || py::hasattr(folders, "__fspath__"))
-        return {folders.cast<Path>().string()};
-    for (const py::handle& folder : folders) all.push_back(folder.cast<Path>().string());
+        return {folders.cast<SuitePath>().string()};
+    for (const py::handle& folder : folders) all.push_back(folder.cast<SuitePath>().string());
     return all;
 }
 
@@ -75,7 +75,7 @@ void bind_suite(py::module_& module) {
     module.def(
         "run_suite",
         [](const py::object& folders, const std::string& pattern, int jobs, bool update,
-           const std::optional<Path>& junit, const std::optional<Path>& html, const std::string& title,
+           const std::optional<SuitePath>& junit, const std::optional<SuitePath>& html, const std::string& title,
            const py::object& progress) {
             SuiteRequest request;
             request.folders = folders_of(folders);

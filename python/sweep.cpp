@@ -16,6 +16,7 @@ using SweepPath = std::filesystem::path;
 
 /// A value as --over takes it: texts bare, numbers as they read back.
 std::string value_text(const py::handle& value) {
+    if (py::hasattr(value, "tolist")) return value_text(value.attr("tolist")());  // numpy's
     if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
     return py::str(value).cast<std::string>();
 }

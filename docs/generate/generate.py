@@ -36,13 +36,13 @@ def write_examples(program, out):
     for line in program.text("scene", "example", "list").strip().split("\n"):
         name, _, about = line.partition(": ")
         scene = program.text("scene", "example", name)
-        text += (f"\n### {name}\n\n{about[:1].upper() + about[1:].rstrip('.')}.\n\n"
+        text += (f"\n### {name}\n\n{about[:1].upper() + about[1:].rstrip('.')}.\n\n{first_comment(scene)}\n\n"
                  f"![{about}]({program.draw('example-' + name, scene, '--size', '480x360', '--spp', '2')})\n")
     text += "\n## Of the folder scenes\n"
     for file in [*sorted((SOURCE / "scenes").glob("*.json")), *sorted((SOURCE / "scenes/cameras").glob("*.json")),
                  *sorted((SOURCE / "scenes/paths").glob("*.json"))]:
         name = file.relative_to(SOURCE)
-        small = ("--size", "320x240", "--spp", "1", "-n", "8")
+        small = ("--size", "320x240", "--spp", "2")
         picture = program.draw(f"scene-{file.parent.name}-{file.stem}", file, *small)
         text += f"\n### {name}\n\n{first_comment(file.read_text())}\n\n![{name}]({picture})\n"
     (out / "examples.md").write_text(text)

@@ -15,7 +15,7 @@ namespace {
 Scene small_sphere() {
     SceneRequest request;
     request.file = source_dir() + "/scenes/sphere.json";
-    request.overrides = {{"/film/width", "160"}, {"/film/height", "120"}};
+    request.overrides = {{"/film/width", "160"}, {"/film/height", "120"}, {"/film/spp", "1"}};
     return load_scene(request);
 }
 

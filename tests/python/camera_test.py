@@ -16,7 +16,7 @@ def scene():
     cameras = trilens.load_scene(SCENE).to_dict()["cameras"]
     index = [camera["name"] for camera in cameras].index("lens")
     pixels = {f"/cameras/{index}/{key}": cameras[index][key] * 96 / 640 for key in ("fx", "fy", "cx", "cy")}
-    return trilens.load_scene(SCENE, {"/film/width": 96, "/film/height": 72, **pixels})
+    return trilens.load_scene(SCENE, {"/film/width": 96, "/film/height": 72, "/film/spp": 1, **pixels})
 
 
 def test_every_camera_shows_points_of_its_rays_where_they_leave(scene):

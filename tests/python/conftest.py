@@ -9,7 +9,7 @@ import pytest
 import trilens
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-SMALL = {"/film/width": 128, "/film/height": 96}
+SMALL = {"/film/width": 128, "/film/height": 96, "/film/spp": 1}
 
 
 @pytest.fixture(scope="session")
@@ -50,7 +50,7 @@ def command():
 
 
 def size_options(overrides):
-    return ["--size", f"{overrides['/film/width']}x{overrides['/film/height']}"]
+    return ["--size", f"{overrides['/film/width']}x{overrides['/film/height']}", "--set", f"/film/spp={overrides['/film/spp']}"]
 
 
 def pytest_unconfigure(config):

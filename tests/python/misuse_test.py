@@ -15,7 +15,7 @@ BOUND = sorted(name for name in dir(trilens)
 
 
 def sphere(**film):
-    sets = {"/film/width": 48, "/film/height": 36}
+    sets = {"/film/width": 48, "/film/height": 36, "/film/spp": 1}
     sets.update({f"/film/{key}": value for key, value in film.items()})
     return trilens.load_scene(SOURCE / "scenes/sphere.json", overrides=sets)
 

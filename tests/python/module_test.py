@@ -12,7 +12,7 @@ import trilens
 from conftest import SOURCE
 
 STUB = ast.parse((SOURCE / "python/trilens/__init__.pyi").read_text())
-PRIVATE_BUT_MEANT = {"_repr_svg_", "__version__", "__all__"}
+PRIVATE_BUT_MEANT = {"_repr_png_", "_repr_svg_", "__version__", "__all__"}
 STANDARD = {"__init__", "__getitem__", "__iter__", "__len__", "__contains__", "__copy__", "__deepcopy__"}
 
 

@@ -39,7 +39,7 @@ def test_overrides_and_resolution_stand_in_the_resolved_scene(sphere):
     assert changed.meshes[0].resolution == resolved["meshes"][0]["resolution"] == 3
     again = sphere.with_overrides({"/film/spp": 2}, resolution=5)
     assert (again.film.spp, again.film.width, again.meshes[0].resolution) == (2, 128, 5)
-    assert (sphere.film.spp, sphere.meshes[0].resolution) == (1, 8) and again.file == sphere.file
+    assert (sphere.film.spp, sphere.meshes[0].resolution) == (1, 16) and again.file == sphere.file
 
 
 def test_an_image_carries_its_scene(image, sphere, tmp_path):
@@ -69,7 +69,7 @@ def test_values_that_json_cannot_say_are_refused(sphere):
 
 def test_a_renderer_tells_what_it_draws(renderer, sphere):
     (optic,) = renderer.optics
-    assert optic.to_dict() == {"object": 0, "name": "ball", "mirror": True, "resolution": 8, "faces": 6}
+    assert optic.to_dict() == {"object": 0, "name": "ball", "mirror": True, "resolution": 16, "faces": 6}
     assert renderer.facet_count(3) == 6 * 2 * 9 and renderer.facet_count() == 6 * 2 * 64
     assert renderer.triangle_count == sum(mesh.triangles for mesh in sphere.meshes)
     assert renderer.scene.to_dict() == sphere.to_dict()
@@ -100,7 +100,7 @@ def test_a_direct_image_is_where_the_camera_projects_the_point(renderer, sphere)
     images = renderer.project(points)
     direct = images[images["path"] == "direct"]
     camera = sphere.cameras[0]
-    pinhole = trilens.make_perspective(camera.eye, camera.at, camera.up, camera.yfov, *(SMALL.values()))
+    pinhole = trilens.make_perspective(camera.eye, camera.at, camera.up, camera.yfov, sphere.film.width, sphere.film.height)
     x, y, w = pinhole.project(points[direct["point"]]).T
     assert len(direct) == 40
     assert np.allclose(direct["x"], x / w, atol=1e-9) and np.allclose(direct["y"], y / w, atol=1e-9)

@@ -21,7 +21,7 @@ LIMITS = {"rmse": 1e-4, "rgb_flip": 1e-4, "displacement_p99": 0.01, "lost_percen
 def write_test(folder, **changes):
     folder.mkdir(parents=True, exist_ok=True)
     test = {"scene": str(SOURCE / "scenes/sphere.json"), "against": "golden", "resolution": 6,
-            "set": {"/film/width": 64, "/film/height": 48}, "max": LIMITS, **changes}
+            "set": {"/film/width": 64, "/film/height": 48, "/film/spp": 1}, "max": LIMITS, **changes}
     (folder / "test.json").write_text(json.dumps(test))
     return folder
 
@@ -89,7 +89,7 @@ def with_a_facet_turned(folder):
     image = stored(folder)
     turned = trilens.Renderer(trilens.load_scene(
         SOURCE / "scenes/sphere.json",
-        {"/film/width": 64, "/film/height": 48,
+        {"/film/width": 64, "/film/height": 48, "/film/spp": 1,
          "/meshes/0/normals": {"type": "sphere", "center": [0.05, 1.0, 0.05]}})).render(resolution=6)
     channels = channels_of(image)
     facet = channels["optic.facet"]

@@ -1,6 +1,8 @@
 // The settings of meshes: what they are, how optics are cut into facets, and the keys of their shapes.
 #include "scene/read/scene_fields.h"
 
+#include "scene/data/vertex_normals.h"
+
 namespace trilens {
 namespace {
 
@@ -8,6 +10,17 @@ using MeshFields = std::vector<Field<Mesh>>;
 
 Json text_value() {
     return {{"type", "string"}, {"minLength", 1}};
+}
+
+/// Read where the object's polygons are.
+Field<Mesh> shading_field() {
+    Json names = word_of(names_of<ObjectShading>());
+    names["default"] = name_of(ObjectShading::kGivenNormals);
+    return part<Mesh>(
+        "shading", std::move(names),
+        "object: given: lit by the normals that its file or primitive has, else flat; flat: by "
+        "its triangles' own; smooth: where none are given, by the mean of the faces around each "
+        "point.");
 }
 
 MeshFields all_mesh_fields() {
@@ -34,6 +47,7 @@ MeshFields all_mesh_fields() {
             "priority", &Mesh::priority, whole_in(-1000, 1000),
             "optic of glass: where bodies overlap the one of higher priority is inside, as a glass around "
             "its liquid."),
+        shading_field(),
         part<Mesh>("transform", ref("transform")),
         part<Mesh>("fit", ref("fit")),
         part<Mesh>("file", text_value(), "OBJ; for objects glTF and GLB too."),

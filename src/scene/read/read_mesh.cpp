@@ -7,6 +7,7 @@
 #include "base/math/box.h"
 #include "base/util/suggestion.h"
 #include "scene/data/cage_diagnostics.h"
+#include "scene/data/vertex_normals.h"
 #include "scene/read/reading.h"
 #include "scene/read/scene_fields.h"
 
@@ -81,6 +82,8 @@ void check_far_points(const Node& node, const Cage& cage) {
 }
 
 void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
+    if (node.has("shading"))
+        node["shading"].fail("is an object's: an optic shows what it reflects and refracts");
     check_optic_material(node, mesh.material, reading);
     if (node.has("primitive")) {
         if (node.has("fit")) node["fit"].fail("an optic's primitive has its own center and size");
@@ -140,6 +143,9 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
                                                    : read_inline_polygons(node);
     read_subdivision(node, polygons.cage);
     place_or_fail(polygons, node);
+    const std::string shading =
+        string_or(node, "shading", std::string(name_of(ObjectShading::kGivenNormals)));
+    set_shading(polygons, *find_named<ObjectShading>(shading));
     mesh.face_count = polygons.cage.face_vertex_counts.size();
     TriangulatedMesh triangulated = triangulate(polygons);
     mesh.object = std::move(triangulated.object);

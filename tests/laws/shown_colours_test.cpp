@@ -1,0 +1,180 @@
+// No picture shows a colour that the truth does not show near it: shipped scenes at their own settings.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "image/image_io.h"
+#include "image/tone.h"
+#include "laws/worlds.h"
+#include "render/picture/picture.h"
+#include "scene/examples/examples.h"
+#include "support/test.h"
+
+using namespace trilens;
+using namespace trilens_test;
+
+namespace {
+
+constexpr int kReach = 3;        // pixels around, in which the truth may show a colour
+constexpr double kUnlike = 0.1;  // of sRGB, in any of the three
+
+/// The part of the film that is looked at; all zero: the whole.
+using Window = std::array<int, 4>;
+
+/// A layer's colours as a screen shows them.
+struct Shown {
+    int width = 0, height = 0;
+    std::vector<Vec3> colours;
+
+    const Vec3& at(int x, int y) const {
+        return colours[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                       static_cast<std::size_t>(x)];
+    }
+};
+
+/// Of the layer "" (the beauty), "direct", "reflect" or "refract"; without colours where the image has none.
+Shown shown(const Image& image, const std::string& layer) {
+    Shown result{image.data_width, image.data_height, {}};
+    std::array<const std::vector<float>*, 3> light{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Channel* channel = image.find((layer.empty() ? "" : layer + ".") + "RGB"[c]);
+        if (!channel) return result;
+        light[c] = &channel->floats();
+    }
+    for (std::size_t p = 0; p < image.pixels(); ++p) {
+        Vec3 colour(0);
+        for (std::size_t c = 0; c < 3; ++c)
+            colour[static_cast<int>(c)] = srgb_from_linear(std::clamp(double{(*light[c])[p]}, 0.0, 1.0));
+        result.colours.push_back(colour);
+    }
+    return result;
+}
+
+double largest(const Vec3& v) {
+    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+}
+
+/// How far the colour is from a mix of the two.
+double off_mix(const Vec3& colour, const Vec3& a, const Vec3& b) {
+    const Vec3 along = b - a;
+    const double square = dot(along, along), t = square > 0 ? dot(colour - a, along) / square : 0;
+    return largest(colour - (a + std::clamp(t, 0.0, 1.0) * along));
+}
+
+/// Whether the truth shows the colour within kReach pixels, or two pixels that touch there whose mix it is.
+bool is_near(const Vec3& colour, const Shown& truth, int x, int y) {
+    const int x0 = std::max(0, x - kReach), x1 = std::min(truth.width - 1, x + kReach);
+    const int y0 = std::max(0, y - kReach), y1 = std::min(truth.height - 1, y + kReach);
+    for (int v = y0; v <= y1; ++v)
+        for (int u = x0; u <= x1; ++u)
+            if (largest(colour - truth.at(u, v)) <= kUnlike) return true;
+    for (int v = y0; v <= y1; ++v)
+        for (int u = x0; u <= x1; ++u)
+            for (const auto [du, dv] : {std::pair(1, 0), {0, 1}, {1, 1}, {-1, 1}}) {
+                if (u + du < x0 || u + du > x1 || v + dv > y1) continue;
+                if (off_mix(colour, truth.at(u, v), truth.at(u + du, v + dv)) <= kUnlike) return true;
+            }
+    return false;
+}
+
+std::size_t count_unlike(const Shown& picture, const Shown& truth) {
+    std::size_t unlike = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) unlike += !is_near(picture.at(x, y), truth, x, y);
+    return unlike;
+}
+
+/// A scene of the folder scenes, or an example's text, at its own settings.
+std::unique_ptr<World> own_world(const std::string& name) {
+    return make_world(
+        load_scene(source_dir() + "/scenes/" + name + ".json", {}, {read_texture, decode_texture}), ignore);
+}
+std::unique_ptr<World> world_of_text(const std::string& json) {
+    return make_world(load_scene_text(json, SceneSource("scene", ""), {}, {read_texture, decode_texture}),
+                      ignore);
+}
+
+struct Case {
+    std::string name;
+    Window window{};
+    std::size_t most_beauty = 0, most_layer = 0;  // of the whole film; 0 unless said why
+};
+
+Image drawn(const World& world, std::size_t camera, Engine engine, const Window& window) {
+    PictureRequest request;
+    request.frame.camera = camera;
+    request.engine = engine;
+    request.layers = {window[0], window[1], window[2], window[3], {"direct", "reflect", "refract"}};
+    return draw_picture(world, request, {}, ignore).image;
+}
+
+/// Every camera and every layer of the world at its own settings.
+void check_colours(const World& world, const Case& one) {
+    for (std::size_t camera = 0; camera < world.scene.cameras.size(); ++camera) {
+        const Image picture = drawn(world, camera, Engine::kExact, one.window),
+                    truth = drawn(world, camera, Engine::kLimitTruth, one.window);
+        for (const std::string layer : {"", "direct", "reflect", "refract"}) {
+            const Shown ours = shown(picture, layer), theirs = shown(truth, layer);
+            REQUIRE(ours.colours.size() == theirs.colours.size());
+            REQUIRE((!layer.empty() || !ours.colours.empty()));
+            const std::size_t unlike = ours.colours.empty() ? 0 : count_unlike(ours, theirs);
+            INFO(one.name << ", " << world.scene.cameras[camera].name << ", " << layer << ": " << unlike
+                          << " pixels show what the truth does not show near them");
+            CHECK(unlike <= (layer.empty() ? one.most_beauty : one.most_layer));
+        }
+    }
+}
+
+/// What is known to be off, and why.
+Case case_of(const std::string& name) {
+    // The water's edge lies in the plane of the wall that it touches: which of them is met there is decided
+    // by rounding, and shows in the layer of the reflection alone.
+    if (name == "water") return {name, {}, 0, 21};
+    // Slivers beside total reflection, not looked into yet.
+    if (name == "paths/under-water") return {name, {}, 5, 7};
+    if (name == "paths/wine-glass") return {name, {}, 3, 155};
+    if (name == "paths/prism") return {name, {}, 1, 1};
+    // Threads thinner than a pixel, through the camera inside the ring.
+    if (name == "cameras/cup" || name == "caustic") return {name, {}, 4, 4};
+    return {name};
+}
+
+void check_scene(const Case& one) {
+    if (one.name == "engine" && !std::filesystem::exists("/usr/share/assimp/models"))
+        return note_skip("colours of scene " + one.name, "needs the models of the package assimp-testmodels");
+    check_colours(*own_world(one.name), one);
+}
+
+}  // namespace
+
+TEST_CASE("no pixel shows a colour that the truth does not show near it", "[laws][law]") {
+    check_scene({"sphere", {240, 170, 400, 310}});
+    check_scene({"closed", {160, 100, 320, 200}});
+    check_scene({"paths/prism", {300, 40, 370, 160}});
+    check_scene({"paths/mirror-balls", {180, 150, 300, 250}});
+}
+
+TEST_CASE("the count finds facets that are too coarse", "[laws][law]") {
+    // A mirror ball in a box: at n = 3 it shows its walls where others are.
+    const auto world = own_world("closed");
+    const Window window{160, 100, 480, 380};
+    PictureRequest request;
+    request.frame.resolution = 3;
+    request.layers = {window[0], window[1], window[2], window[3], {"reflect"}};
+    const Shown coarse = shown(draw_picture(*world, request, {}, ignore).image, ""),
+                truth = shown(drawn(*world, 0, Engine::kLimitTruth, window), "");
+    CHECK(count_unlike(coarse, truth) > 20);
+    CHECK(count_unlike(truth, truth) == 0);
+}
+
+TEST_CASE("nor does any shipped scene, through any camera, at its own settings", "[.long][laws][law]") {
+    for (const std::string folder : {"", "paths/", "cameras/", "thesis/"})
+        for (const auto& entry : std::filesystem::directory_iterator(source_dir() + "/scenes/" + folder))
+            if (entry.path().extension() == ".json")
+                check_scene(case_of(folder + entry.path().stem().string()));
+    for (const SceneExample& example : scene_examples())
+        check_colours(*world_of_text(example.json), case_of(example.name));
+}
