@@ -172,7 +172,8 @@ void bind_image(py::module_& module) {
             "predicted_error: pixels, the most that was left; outline_pixels: predicted, "
             "those between the outlines of optics and of their facets; deep_pixels: that lack light for "
             "maxDepth;\nfragment_pixels (shaded once or a few times for all their samples), fragments (of "
-            "these pixels),\nrays_by_sample (shaded each for itself); prepare_seconds, draw_seconds.")
+            "these pixels),\nfragments_per_pixel, rays_by_sample (shaded at each sample), "
+            "pixels_shaded_by_sample (that have such rays);\nprepare_seconds, draw_seconds.")
         .def("rgb", rgb_of, py::arg("layer") = "",
              "The colours R, G, B of a layer (\"\": the beauty) as a new float32 array (height, width, 3),\n"
              "linear Rec.709. Raises KeyError where the image has none.")

@@ -130,7 +130,9 @@ HeldImage draw(const Renderer& renderer, const PictureRequest& request, const Jo
     statistics["deep_pixels"] = picture.statistics.deep_pixels;
     statistics["fragment_pixels"] = picture.statistics.fragment_pixels;
     statistics["fragments"] = picture.statistics.fragments;
+    statistics["fragments_per_pixel"] = picture.statistics.fragments_per_pixel();
     statistics["rays_by_sample"] = picture.statistics.rays_by_sample;
+    statistics["pixels_shaded_by_sample"] = picture.statistics.pixels_shaded_by_sample;
     statistics["prepare_seconds"] = picture.prepare_seconds;
     statistics["draw_seconds"] = picture.draw_seconds;
     return {std::move(picture.image), statistics};

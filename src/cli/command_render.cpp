@@ -52,7 +52,7 @@ Answer draw(const RenderOptions& options, const std::string& format, const Pictu
         take(renderer.draw(request, progress, console.warner()));
         answer = write_output(
             options.output, picture.image,
-            {format == "png" ? ImageFormat::kPng : ImageFormat::kExr, options.tone_mapping()}, console);
+            {format == "png" ? ImageFormat::kPng : ImageFormat::kExr, options.written_tones()}, console);
     }
     answer.fields["engine"] = engine_name(request.engine.engine);
     if (request.engine.engine == Engine::kClassic)

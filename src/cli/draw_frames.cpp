@@ -68,9 +68,9 @@ class FrameSequence {
                                     : renderer_->draw(request_, console_.progress(job), once());
         if (is_exr) name_output(output, console_);
         if (is_apng())
-            pngs_.push_back(encode_image_as(picture.image, ImageFormat::kPng, options_.tone_mapping()));
+            pngs_.push_back(encode_image_as(picture.image, ImageFormat::kPng, options_.written_tones()));
         else if (!is_exr)
-            write_output(output, picture.image, {ImageFormat::kPng, options_.tone_mapping()}, console_);
+            write_output(output, picture.image, {ImageFormat::kPng, options_.written_tones()}, console_);
         console_.note(
             fmt::format("{}: scene {:.3f} s ({} and {} optics kept), prepared in {:.3f} s, drawn in {:.3f} s",
                         job, scene_seconds, kept.objects ? "objects" : "no objects", kept.optics,

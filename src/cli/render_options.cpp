@@ -43,6 +43,10 @@ std::vector<Option> picture_options(RenderOptions& options, const std::string& f
            .help = "png: the least luminance that --tone reinhard shows as white",
            .value = "L",
            .range = {1e-6, 1e6}},
+          {.names = "--filter-shown",
+           .target = &options.filter_shown,
+           .help = "png: average a pixel's samples as the screen shows them, after exposure and tone, not "
+                   "their light: bright highlights neither stay jagged nor leave dark rings"},
           {.names = "--grid",
            .target = &options.grid,
            .help = "where the optics' facets lie: on the surface, or on the film over the optic",
@@ -158,6 +162,13 @@ PictureRequest picture_request(const RenderOptions& options, const EngineChoice&
     request.engine = engine;
     request.shading = find_named<Shading>(options.shading).value();
     request.layers = layer_request(options.scene);
+    if (options.filter_shown) {
+        const ToneMapping mapping = options.tone_mapping();
+        check_tone_mapping(mapping);
+        request.layers.shown = [mapping](const Vec3& light) {
+            return glm::clamp(tone_mapped(light, mapping), 0.0, 1.0);
+        };
+    }
     request.frame.rays = find_named<CornerRays>(options.rays);
     request.frame.grid = find_named<GridKind>(options.grid);
     request.frame.facets = find_named<FacetUse>(options.facets).value_or(FacetUse::kWorthwhile);
@@ -183,6 +194,8 @@ void check_options(const RenderOptions& options, const std::string& format, cons
     if (options.maps_tones() && format != "png" && format != "apng")
         throw UsageError(
             "--exposure, --tone and --white are for .png outputs; an .exr holds the light of the scene");
+    if (options.filter_shown && format != "png" && format != "apng")
+        throw UsageError("--filter-shown is for .png outputs; an .exr holds the light of the scene");
     if (options.white != ToneMapping().white && options.tone != "reinhard")
         throw UsageError("--white is for --tone reinhard");
     if (options.wire && format != "svg") throw UsageError("--wire is for .svg outputs");

@@ -40,7 +40,11 @@ struct RenderOptions {
     FrameOptions frames;
     double white = ToneMapping().white;
 
+    bool filter_shown = false;
+
     ToneMapping tone_mapping() const { return {exposure, tone_curve(tone), white}; }
+    /// Of what is drawn, when it is written: none where the filter has averaged what is shown.
+    ToneMapping written_tones() const { return filter_shown ? ToneMapping() : tone_mapping(); }
     bool maps_tones() const { return exposure != 0 || tone != "none" || white != ToneMapping().white; }
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/raymesh/ray.h"
-#include "shade/texture.h"
 
 namespace trilens {
 namespace {
@@ -87,36 +86,7 @@ Vec3 light_arriving(const ShadeScene& scene, const Light& light, const Frame& fr
     return kInversePi * irradiance * cosine * light.color;
 }
 
-Vec2 texture_place(const ShadeScene& scene, const Hit& hit) {
-    if (hit.triangle >= scene.uvs.size()) return Vec2(0);
-    const std::array<Vec2, 3>& uv = scene.uvs[hit.triangle];
-    return (1 - hit.barycentric.x - hit.barycentric.y) * uv[0] + hit.barycentric.x * uv[1] +
-           hit.barycentric.y * uv[2];
-}
-
-const Material& material_of(const ShadeScene& scene, const Hit& hit) {
-    return scene.materials[scene.material[hit.triangle]];
-}
-
 }  // namespace
-
-bool is_lit(const ShadeScene& scene, const Hit& hit) {
-    return !material_of(scene, hit).unlit;
-}
-
-Vec3 base_colour(const ShadeScene& scene, const Hit& hit) {
-    const Material& material = material_of(scene, hit);
-    if (!material.base_color_texture) return material.base_color_factor;
-    return material.base_color_factor *
-           lookup_repeat(*material.base_color_texture, texture_place(scene, hit));
-}
-
-std::optional<Vec2> base_colour_texel(const ShadeScene& scene, const Hit& hit) {
-    const Material& material = material_of(scene, hit);
-    if (!material.base_color_texture) return std::nullopt;
-    return texture_place(scene, hit) *
-           Vec2(material.base_color_texture->width, material.base_color_texture->height);
-}
 
 Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
     const Material& material = scene.materials[scene.material[hit.triangle]];
@@ -128,14 +98,6 @@ Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
     Vec3 arriving(0);
     for (const Light& light : scene.lights) arriving += light_arriving(scene, light, frame);
     return base * arriving;
-}
-
-Vec3 shade_background(const Background& background, const Vec3& direction) {
-    if (!background.environment) return background.color;
-    const double c = background.rotate_cos, s = background.rotate_sin;
-    return lookup_latitude_longitude(
-        *background.environment,
-        Vec3(c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z));
 }
 
 Vec3 metal_reflectance(const Vec3& f0, double cos_incident) {

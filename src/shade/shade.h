@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,6 +13,7 @@
 #include "base/raymesh/ray.h"
 #include "base/raymesh/segments.h"
 #include "base/raymesh/triangle_scene.h"
+#include "shade/texture_filter.h"
 
 namespace trilens {
 
@@ -26,6 +27,10 @@ struct ShadeScene {
     std::vector<Material> materials;
     std::vector<Light> lights;
     Background background;
+    // Mip maps of the materials' base colour textures, by material, and of the background's picture; null
+    // where it has none. Set by prepare_textures(); without them nothing is filtered.
+    std::vector<std::shared_ptr<const MipMap>> base_color_maps;
+    std::shared_ptr<const MipMap> environment_map;
     double size = 1;  // diagonal of the scene's bounding box, the unit of shadow offsets
 
     /// Which of the segments meet anything that casts a shadow; only asked for lights with shadows.
@@ -45,6 +50,15 @@ inline constexpr double kShadowOffset = 1e-5;
 /// Radiance of the background along `direction` (any length, world).
 Vec3 shade_background(const Background& background, const Vec3& direction);
 
+/// Sets the mip maps of materials and background; keeps those of pictures that stay.
+void prepare_textures(ShadeScene& scene);
+
+/// What of a ray's origin and direction (both as the ray has them, not unit) changes along the two sides of
+/// the part of the film that it stands for.
+struct RayDifferential {
+    std::array<Vec3, 2> origin{}, direction{};
+};
+
 /// A ray and what it sees.
 struct SeenAlong {
     const Hit* hit = nullptr;  // unset: nothing but the background
@@ -52,6 +66,7 @@ struct SeenAlong {
     // Base colour of the hit, or radiance of the background, where it stands for more than one point of them;
     // null: that of the point itself.
     const Vec3* base = nullptr;
+    const RayDifferential* differential = nullptr;  // where textures are averaged; null: it stands for itself
 };
 
 /// The light at a point of a surface.
@@ -60,7 +75,8 @@ struct ReachingLight {
     Vec3 arriving{0};          // irradiance over pi, and the ambient radiance
 };
 
-/// What the rays show: each hit's shade (the same bits as shade_hit's where no base is given), or the
+/// What the rays show: each hit's shade (the same bits as shade_hit's where neither base nor differential is
+/// given), or the
 /// background. light.size() == seen.size(). `reaching`: gets the light at each hit that is lit, if it is not
 /// empty; then it has that size, too.
 void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::span<Vec3> light,
@@ -73,12 +89,15 @@ void find_reaching_light(const ShadeScene& scene, std::span<const SeenAlong> see
 /// Whether the material there is lit: else it shows its base colour.
 bool is_lit(const ShadeScene& scene, const Hit& hit);
 
+/// Whether the colour there comes from a picture: of the material, or of the background where nothing is hit.
+bool has_texture(const ShadeScene& scene, const Hit& hit);
+
 /// Base colour at a hit.
 Vec3 base_colour(const ShadeScene& scene, const Hit& hit);
 
-/// Where a hit lies on its material's base colour texture, in texels from its lower left; none: it has no
-/// texture.
-std::optional<Vec2> base_colour_texel(const ShadeScene& scene, const Hit& hit);
+/// Base colour of what is seen, or the background's radiance: the mean over the ray's footprint where it has
+/// a differential.
+Vec3 base_colour(const ShadeScene& scene, const SeenAlong& seen);
 
 /// Reflectance of a polished metal by Schlick's approximation, as glTF has it:
 /// f0 + (1 - f0) (1 - cos)^5, cos the cosine of incidence in 0..1.

@@ -5,7 +5,6 @@
 #include "base/util/check.h"
 #include "shade/shade.h"
 #include "shade/shade_batch.h"
-#include "shade/texture.h"
 
 namespace trilens {
 namespace {
@@ -120,7 +119,7 @@ void Shaded::shade(std::span<Vec3> light) {
     arrive();
     for (std::size_t i = 0; i < batch.count; ++i) {
         const Hit& hit = *seen[i]->hit;
-        const Vec3 base = seen[i]->base ? *seen[i]->base : base_colour(scene, hit);
+        const Vec3 base = seen[i]->base ? *seen[i]->base : base_colour(scene, *seen[i]);
         light[answer[i]] = is_lit(scene, hit) ? base * batch.arriving.get(i) : base;
     }
 }
@@ -144,8 +143,7 @@ void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::s
     };
     for (std::size_t i = 0; i < seen.size(); ++i) {
         if (!seen[i].hit->seen()) {
-            light[i] =
-                seen[i].base ? *seen[i].base : shade_background(scene.background, seen[i].ray->direction);
+            light[i] = seen[i].base ? *seen[i].base : base_colour(scene, seen[i]);
             continue;
         }
         shaded.add(seen[i], i);

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/description/digest.h"
+#include "base/util/check.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "sweep/plan/sweep_file.h"
@@ -139,7 +140,8 @@ SweepSubject subject_of(const SweepRequest& request, const SweepAxes& axes, cons
 // named here. The camera stands beside them by its name.
 
 void add(const LayerRequest& window, Digest& digest) {
-    const auto& [x0, y0, x1, y1, layers] = window;
+    const auto& [x0, y0, x1, y1, layers, shown] = window;
+    TRILENS_CHECK(!shown, "pictures of sweeps hold light");
     digest.add_all(x0, y0, x1, y1, layers.size());
     for (const std::string& layer : layers) digest.add(layer);
 }

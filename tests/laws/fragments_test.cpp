@@ -141,8 +141,54 @@ TEST_CASE("shading by fragments: coverage and flat colours to rounding, others n
         const auto lit = world_of(scene, 4);
         const Difference off =
             beauty_difference(drawn(*lit, Shading::kFragment).image, drawn(*lit, Shading::kSample).image);
-        CHECK(off.mean < 1e-3);
-        CHECK(off.rms < 5e-3);
+        // With textures the fragments are the better answer: 16 samples of a texture are not its mean.
+        const bool textured = scene == "sphere" || scene == "saddle";
+        CHECK(off.mean < (textured ? 1e-2 : 1e-3));
+        CHECK(off.rms < (textured ? 2.5e-2 : 5e-3));
+    }
+}
+
+TEST_CASE("the channel of fragments adds up to their number", "[laws][law][fragments]") {
+    const auto world = world_of("sphere", 3);
+    PictureRequest request;
+    request.layers.layers = {"stat"};
+    const auto sum_of = [&](const Picture& picture) {
+        std::size_t sum = 0;
+        for (const Id count : picture.image.find("stat.fragments")->ids()) sum += count;
+        return sum;
+    };
+    const Picture by_fragment = draw_picture(*world, request, {}, ignore, nullptr);
+    CHECK(sum_of(by_fragment) == by_fragment.statistics.fragments);
+    CHECK(by_fragment.statistics.fragments_per_pixel() ==
+          Approx(static_cast<double>(by_fragment.statistics.fragments) / (64 * 48)));
+    CHECK(by_fragment.statistics.pixels_shaded_by_sample > 0);
+    CHECK(by_fragment.statistics.pixels_shaded_by_sample <= by_fragment.statistics.rays_by_sample);
+    request.shading = Shading::kSample;
+    CHECK(sum_of(draw_picture(*world, request, {}, ignore, nullptr)) == 64 * 48 * 9);
+}
+
+TEST_CASE("a filter of what is shown: no pixel beyond the screen's range by bright light, others as before",
+          "[laws][law][fragments]") {
+    for (const FilterKind filter : {FilterKind::kBox, FilterKind::kMitchell}) {
+        CAPTURE(static_cast<int>(filter));
+        const auto world = world_of("sphere", 3, filter);
+        PictureRequest request;
+        const Image light = draw_picture(*world, request, {}, ignore, nullptr).image;
+        request.layers.shown = [](const Vec3& v) { return v; };
+        const Image same = draw_picture(*world, request, {}, ignore, nullptr).image;
+        CHECK(beauty_difference(light, same).largest < 1e-6);
+        world->shading.background.color = Vec3(1000);  // far brighter than the screen's white
+        request.layers.shown = [](const Vec3& v) { return glm::min(v, Vec3(1)); };
+        const Image cut = draw_picture(*world, request, {}, ignore, nullptr).image;
+        double most = -INFINITY, least = INFINITY;
+        for (const char* name : {"R", "G", "B"})
+            for (const float value : cut.find(name)->floats()) {
+                most = std::max(most, double{value});
+                least = std::min(least, double{value});
+            }
+        // Mitchell's lobes take at most a seventh of white.
+        CHECK(most <= (filter == FilterKind::kBox ? 1 + 1e-6 : 1.15));
+        CHECK(least >= (filter == FilterKind::kBox ? 0 : -0.15));
     }
 }
 

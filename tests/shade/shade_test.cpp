@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "shade/texture.h"
+#include "shade/texture_filter.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -93,11 +93,11 @@ TEST_CASE("texture look-up returns texels at their centres, repeats, and has v u
     texture.width = 2;
     texture.height = 2;
     texture.rgb = {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};  // top row red, green; bottom row blue, white
-    CHECK(lookup_repeat(texture, {0.25, 0.75}) == Vec3(1, 0, 0));
-    CHECK(lookup_repeat(texture, {0.75, 0.75}) == Vec3(0, 1, 0));
-    CHECK(lookup_repeat(texture, {0.25, 0.25}) == Vec3(0, 0, 1));
-    CHECK(lookup_repeat(texture, {1.75, -0.75}) == Vec3(1, 1, 1));
-    CHECK(lookup_repeat(texture, {0.5, 0.75}) == Vec3(0.5, 0.5, 0));
+    CHECK(lookup(texture, {}, {0.25, 0.75}) == Vec3(1, 0, 0));
+    CHECK(lookup(texture, {}, {0.75, 0.75}) == Vec3(0, 1, 0));
+    CHECK(lookup(texture, {}, {0.25, 0.25}) == Vec3(0, 0, 1));
+    CHECK(lookup(texture, {}, {1.75, -0.75}) == Vec3(1, 1, 1));
+    CHECK(lookup(texture, {}, {0.5, 0.75}) == Vec3(0.5, 0.5, 0));
 }
 
 TEST_CASE("a latitude-longitude picture has -Z in its middle and +X to the right", "[shade]") {

@@ -14,6 +14,7 @@ struct Material {
     std::string name;
     Vec3 base_color_factor{1};
     std::shared_ptr<const Texture> base_color_texture;  // may be null
+    TextureSampler base_color_sampler;
     bool unlit = false;
     double metallic_factor = 0;
     double roughness_factor = 0;

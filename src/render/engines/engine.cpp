@@ -16,9 +16,7 @@ FacetViews make_views(const World& world, const FrameParams& frame, const Engine
     if (engine.engine == Engine::kLimitTruth) {
         CameraRays camera = make_camera_rays(world.scene, frame.camera);
         warn_of_unsure_media(world, camera_media_of(world, camera), warn);
-        FacetViews views;
-        views.viewer = make_limit_viewer(world, std::move(camera));
-        return views;
+        return make_limit_views(world, std::move(camera));
     }
     FrameParams params = frame;
     if (engine.engine == Engine::kEnvironment || engine.engine == Engine::kPlanar)

@@ -14,12 +14,14 @@ namespace trilens {
 /// Replaces `views` by what each sample of the grid shows.
 using Viewer = std::function<void(const SampleGrid& grid, SampleViews& views)>;
 
-/// A viewer, and what it has of facets. The limit truth has none: all but the viewer is unset.
+/// A viewer, and what it has of facets. The limit truth has none: no `paths` and no `keys`.
 struct FacetViews {
     Viewer viewer;
     /// The paths over each optic worked out so far: SampleView::leaf and PathEnd::node count in them.
     std::function<const OpticPaths&(std::size_t optic)> paths;
     const RayMesh* camera = nullptr;  // that SampleView::camera_facet counts in
+    // The exact rays of a camera that is not linear; null: those of `camera` are.
+    const CameraModel* exact_camera = nullptr;
 
     /// Which samples make fragments: set for engines that project without outlines. `find`: see
     /// find_fragment_keys(); `of`: the key of a sample of the viewer's.

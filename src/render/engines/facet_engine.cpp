@@ -289,6 +289,7 @@ FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice&
     FacetViews views{[viewer](const SampleGrid& grid, SampleViews& seen) { (*viewer)(grid, seen); },
                      [viewer](std::size_t optic) -> const OpticPaths& { return *viewer->paths[optic]; },
                      &viewer->frame.camera.mesh,
+                     viewer->frame.camera.model.get(),
                      {}};
     if (projects(engine.engine) && engine.engine != Engine::kClassic)
         views.keys = {[viewer](const SampleGrid& grid, std::span<FragmentKey> keys) {

@@ -57,8 +57,10 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
         owned = set_exact_rays(*camera.model, grid, views.samples);
     } else {
         owned = rasterize_facets(camera.mesh, grid);
-        for_each_camera_ray(camera.mesh, owned, grid,
-                            [&](Id s, Id, const Ray& ray) { views.samples[s].ray = ray; });
+        for_each_camera_ray(camera.mesh, owned, grid, [&](Id s, Id facet, const Ray& ray) {
+            views.samples[s].ray = ray;
+            views.samples[s].camera_facet = facet;
+        });
     }
 
     set_initial_media(camera_media, views);
@@ -87,14 +89,18 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
 
 }  // namespace
 
-Viewer make_limit_viewer(const World& world, CameraRays camera) {
+FacetViews make_limit_views(const World& world, CameraRays camera) {
     auto viewer = std::make_shared<LimitViewer>();
     viewer->world = &world;
     viewer->camera_media = camera_media_of(world, camera);
     viewer->camera = std::move(camera);
     viewer->objects = &object_tracer(world);
     viewer->paths = &path_world(world);
-    return [viewer](const SampleGrid& grid, SampleViews& views) { (*viewer)(grid, views); };
+    FacetViews views;
+    views.viewer = [viewer](const SampleGrid& grid, SampleViews& seen) { (*viewer)(grid, seen); };
+    views.camera = viewer->camera.model ? nullptr : &viewer->camera.mesh;
+    views.exact_camera = viewer->camera.model.get();
+    return views;
 }
 
 }  // namespace trilens

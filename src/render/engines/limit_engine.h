@@ -5,7 +5,7 @@
 
 namespace trilens {
 
-/// A viewer that follows every sample's camera ray to the exact surface and on into the scene.
-Viewer make_limit_viewer(const World& world, CameraRays camera);
+/// Views that follow every sample's camera ray to the exact surface and on into the scene.
+FacetViews make_limit_views(const World& world, CameraRays camera);
 
 }  // namespace trilens

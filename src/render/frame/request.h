@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -93,6 +94,10 @@ struct LayerRequest {
     // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat", "magnification", "position"
     // and "ray".
     std::vector<std::string> layers;
+    // Of a sample's light what is shown of it, 0..1: the film's filter averages that, R G B are then no
+    // light. None: light. A highlight a thousand times as bright as the screen's white else outweighs all
+    // samples beside it: edges stay jagged, and filters with negative lobes leave dark rings.
+    std::function<Vec3(const Vec3& light)> shown = {};
 };
 
 /// How often a pixel of several samples is shaded. kFragment: once for all its samples that see one triangle
@@ -144,9 +149,16 @@ struct LayerStatistics {
     std::size_t deep_pixels = 0;
     double deep_sum = 0;
     // Where pixels are shaded by fragments: those pixels, with the ones around them that a filter reaches;
-    // their fragments; and of the rays that these shade, those that had to be shaded at each sample.
-    std::size_t fragment_pixels = 0, fragments = 0, rays_by_sample = 0;
+    // their fragments; of the rays that these shade, those that had to be shaded at each sample, and the
+    // pixels that have such rays.
+    std::size_t fragment_pixels = 0, fragments = 0, rays_by_sample = 0, pixels_shaded_by_sample = 0;
     std::vector<OpticLooks> looks;  // per optic, where facets are used that are worthwhile
+
+    /// 0 where no pixel is shaded by fragments.
+    double fragments_per_pixel() const {
+        return fragment_pixels > 0 ? static_cast<double>(fragments) / static_cast<double>(fragment_pixels)
+                                   : 0;
+    }
 };
 
 struct Picture {

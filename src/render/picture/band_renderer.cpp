@@ -11,6 +11,7 @@
 #include "render/picture/channels.h"
 #include "render/picture/fragments.h"
 #include "render/picture/pixel_filter.h"
+#include "render/picture/ray_differentials.h"
 
 namespace trilens {
 namespace {
@@ -34,9 +35,9 @@ bool lacks_ray(const World& world, const SampleViews& views, const SampleView& v
                              incidence.cosine);
 }
 
-SampleColour mean_colour(std::span<const SampleColour> samples) {
+SampleColour mean_colour(const PixelFilter& filter, std::span<const SampleColour> samples) {
     SampleColour sum, mean;
-    for (const SampleColour& sample : samples) add(sum, 1, sample);
+    for (const SampleColour& sample : samples) add(sum, 1, filter.averaged(sample));
     add(mean, 1.0 / static_cast<double>(samples.size()), sum);
     return mean;
 }
@@ -44,7 +45,7 @@ SampleColour mean_colour(std::span<const SampleColour> samples) {
 /// The samples of a window and of the pixels around it that a filter reaches, with their colours.
 class FilteredSamples {
   public:
-    FilteredSamples(const World& world, const Viewer& viewer, const SampleGrid& window,
+    FilteredSamples(const World& world, const FacetViews& facets, const SampleGrid& window,
                     const PixelFilter& filter)
         : filter_(filter), grid_(window) {
         const Film& film = world.scene.film;
@@ -53,10 +54,13 @@ class FilteredSamples {
         grid_.x1 = std::min(film.width, window.x1 + filter.reach);
         grid_.y1 = std::min(film.height, window.y1 + filter.reach);
         SampleViews views;
-        viewer(grid_, views);
+        facets.viewer(grid_, views);
         colours_.resize(grid_.size());
+        const RayDifferentials differentials(world, facets, grid_);
         parallel_for(colours_.size(), 1024, [&](std::size_t from, std::size_t to) {
-            sample_colours(world, views, from, std::span(colours_).subspan(from, to - from));
+            sample_colours(world, views, from, std::span(colours_).subspan(from, to - from),
+                           grid_.side == 1 ? &differentials : nullptr);
+            for (std::size_t s = from; s < to; ++s) colours_[s] = filter_.averaged(colours_[s]);
         });
     }
 
@@ -125,22 +129,39 @@ struct Band {
 
     /// What the pixels' centres see: with one sample a pixel that sample, otherwise looked at once more.
     const SampleViews& middle() const { return grid.side > 1 ? centres : views; }
+    /// How often the samples of a pixel of the grid are shaded.
+    std::size_t fragment_count(std::size_t pixel) const {
+        if (!fragments) return static_cast<std::size_t>(grid.side * grid.side);
+        const std::size_t width = static_cast<std::size_t>(grid.width());
+        return fragments->count_at(grid.x0 + static_cast<int>(pixel % width),
+                                   grid.y0 + static_cast<int>(pixel / width));
+    }
 };
 
-void view_band(const World& world, const FacetViews& facets, const PixelFilter& filter, Band& band) {
+/// What all bands are drawn of.
+struct BandSource {
+    const World& world;
+    const FacetViews& facets;
+    const PixelFilter& filter;
+};
+
+void view_band(const BandSource& source, Band& band) {
+    const auto& [world, facets, filter] = source;
     const SampleGrid& grid = band.grid;
     band.filtered.reset();
     band.fragments.reset();
     if (makes_fragments(facets, grid.side))
         band.fragments = std::make_unique<FragmentColours>(world, facets, grid, filter);
     else if (filter.reach > 0)
-        band.filtered = std::make_unique<FilteredSamples>(world, facets.viewer, grid, filter);
+        band.filtered = std::make_unique<FilteredSamples>(world, facets, grid, filter);
     if (grid.side == 1 || (!band.filtered && !band.fragments)) facets.viewer(grid, band.views);
     if (grid.side > 1) facets.viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
 }
 
 /// Colours of the pixels of a band from `first` on, as many as there is room for.
-void find_colours(const World& world, const Band& band, std::size_t first, std::span<SampleColour> colours) {
+void find_colours(const BandSource& source, const Band& band, std::size_t first,
+                  std::span<SampleColour> colours) {
+    const auto& [world, facets, filter] = source;
     const SampleGrid& grid = band.grid;
     if (band.filtered || band.fragments) {
         const std::size_t width = static_cast<std::size_t>(grid.width());
@@ -152,11 +173,16 @@ void find_colours(const World& world, const Band& band, std::size_t first, std::
         return;
     }
     const std::size_t per_pixel = static_cast<std::size_t>(grid.side * grid.side);
-    if (per_pixel == 1) return sample_colours(world, band.views, first, colours);
+    if (per_pixel == 1) {
+        const RayDifferentials differentials(world, facets, grid);
+        sample_colours(world, band.views, first, colours, &differentials);
+        for (SampleColour& colour : colours) colour = filter.averaged(colour);
+        return;
+    }
     std::vector<SampleColour> samples(colours.size() * per_pixel);
     sample_colours(world, band.views, first * per_pixel, samples);
     for (std::size_t i = 0; i < colours.size(); ++i)
-        colours[i] = mean_colour(std::span(samples).subspan(i * per_pixel, per_pixel));
+        colours[i] = mean_colour(filter, std::span(samples).subspan(i * per_pixel, per_pixel));
 }
 
 void count(const World& world, const SampleViews& middle, const SampleView& view, LayerStatistics& counts) {
@@ -190,12 +216,14 @@ void merge(const LayerStatistics& from, LayerStatistics& to) {
     to.fragment_pixels += from.fragment_pixels;
     to.fragments += from.fragments;
     to.rays_by_sample += from.rays_by_sample;
+    to.pixels_shaded_by_sample += from.pixels_shaded_by_sample;
     to.projected_facets = std::max(to.projected_facets, from.projected_facets);
     to.crowded_out = std::max(to.crowded_out, from.crowded_out);
 }
 
 /// Its pixels, from that `first` of the canvas on.
-LayerStatistics put_band(const World& world, const Band& band, std::size_t first, Canvas& canvas) {
+LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t first, Canvas& canvas) {
+    const World& world = source.world;
     const SampleViews& middle = band.middle();
     LayerStatistics counts;
     counts.projected_facets = middle.projected_facets;
@@ -206,6 +234,7 @@ LayerStatistics put_band(const World& world, const Band& band, std::size_t first
         counts.fragment_pixels = band.fragments->counts().pixels;
         counts.fragments = band.fragments->counts().fragments;
         counts.rays_by_sample = band.fragments->counts().by_sample;
+        counts.pixels_shaded_by_sample = band.fragments->counts().pixels_by_sample;
     }
     std::mutex mutex;
     parallel_for(band.grid.pixels(), kPixelsPerTask, [&](std::size_t from, std::size_t to) {
@@ -214,10 +243,11 @@ LayerStatistics put_band(const World& world, const Band& band, std::size_t first
         for (std::size_t start = from; start < to; start += kPixelsPerTask) {
             const std::size_t end = std::min(to, start + kPixelsPerTask);
             const std::span<SampleColour> here = std::span(colours).first(end - start);
-            find_colours(world, band, start, here);
+            find_colours(source, band, start, here);
             canvas.put_colours(here, first + start);
             for (std::size_t p = start; p < end; ++p) {
                 canvas.put_centre(world, middle, middle.samples[p], first + p);
+                canvas.put_fragment_count(band.fragment_count(p), first + p);
                 count(world, middle, middle.samples[p], own);
             }
         }
@@ -250,19 +280,21 @@ Image draw_layers(const World& world, const FacetViews& facets, const LayerReque
     }
 
     LayerStatistics counts;
-    const PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
+    PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
+    filter.shown = request.shown;
+    const BandSource source{world, facets, filter};
     std::vector<Band> band(slots);
     PipelineStages stages;
     stages.begin = [&](std::size_t item, std::size_t slot) {
         if (progress.cancelled()) throw Interrupted();
         const int y = request.y0 + static_cast<int>(item) * rows;
         band[slot].grid = {request.x0, y, request.x1, std::min(y + rows, request.y1), side};
-        view_band(world, facets, filter, band[slot]);
+        view_band(source, band[slot]);
     };
     stages.work = [&](std::size_t item, std::size_t slot) {
         const std::size_t above = sink ? 0 : item * static_cast<std::size_t>(rows);
         band[slot].counts =
-            put_band(world, band[slot], above * static_cast<std::size_t>(width), canvases[sink ? slot : 0]);
+            put_band(source, band[slot], above * static_cast<std::size_t>(width), canvases[sink ? slot : 0]);
     };
     stages.end = [&](std::size_t, std::size_t slot) {
         merge(band[slot].counts, counts);

@@ -107,6 +107,7 @@ Canvas::Canvas(Image image, const std::vector<std::string>& layers) : image_(std
     if (wanted("stat")) {
         method_ = add_ids("stat.method");
         level_ = add_ids("stat.level");
+        fragments_ = add_ids("stat.fragments");
     }
     parallel_for(image_.channels.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t c = first; c < last; ++c)
@@ -148,6 +149,10 @@ void Canvas::put_colours(std::span<const SampleColour> means, std::size_t first)
     }
     float* coverage = floats(rgba_[3]).data() + first;
     for (const SampleColour& mean : means) *coverage++ = static_cast<float>(mean.coverage);
+}
+
+void Canvas::put_fragment_count(std::size_t count, std::size_t pixel) {
+    if (fragments_ != kNone) ids(fragments_)[pixel] = static_cast<Id>(count);
 }
 
 void Canvas::put_end(const World& world, const PathEnd* end, const EndChannels& channels, std::size_t pixel) {

@@ -22,6 +22,9 @@ class Canvas {
     /// What the pixel's centre shows.
     void put_centre(const World& world, const SampleViews& views, const SampleView& view, std::size_t pixel);
 
+    /// How often its samples were shaded: the pixel's fragments, or its samples.
+    void put_fragment_count(std::size_t count, std::size_t pixel);
+
     const Image& image() const { return image_; }
     /// The image without its values.
     Image layout() const;
@@ -47,7 +50,7 @@ class Canvas {
     std::array<std::array<std::size_t, 3>, 3> parts_{};  // direct, reflect, refract
     std::size_t depth_ = kNone;
     std::size_t optic_object_ = kNone, optic_facet_ = kNone, optic_u_ = kNone, optic_v_ = kNone;
-    std::size_t path_count_ = kNone, method_ = kNone, level_ = kNone;
+    std::size_t path_count_ = kNone, method_ = kNone, level_ = kNone, fragments_ = kNone;
     std::vector<EndChannels> ends_;
 };
 

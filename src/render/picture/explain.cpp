@@ -5,7 +5,7 @@
 #include "base/util/format.h"
 #include "camera/facet_kinds.h"
 #include "render/engines/engine.h"
-#include "render/picture/sample_colour.h"
+#include "render/picture/ray_differentials.h"
 
 namespace trilens {
 namespace {
@@ -46,7 +46,8 @@ PixelExplanation explain_pixel(const World& world, const PictureRequest& request
     views.viewer(grid, explained.views);
     name_end_facets(views, explained);
     if (views.paths) name_camera_facet(world, request.frame.camera, grid, explained);
-    explained.colour = sample_colour(world, explained.views, explained.view());
+    const RayDifferentials differentials(world, views, grid);
+    explained.colour = sample_colour(world, explained.views, explained.view(), &differentials);
     return explained;
 }
 

@@ -6,40 +6,16 @@
 #include <optional>
 #include <vector>
 
+#include "render/picture/ray_differentials.h"
+
 namespace trilens {
 namespace {
 
 constexpr std::size_t kMostShaded = Segments::kMost;
 constexpr std::size_t kCorners = 4;
-constexpr double kLookupsPerTexel = 4;
 // Of the light at the shaded point: how far that at the outermost samples may be off in the mean.
 constexpr double kWholeRoom = 0.25, kPartRoom = 0.05;
 constexpr double kWayToEdge = 0.9;  // of the way to a triangle's edge, at most: walls may stand there
-constexpr double kPi = 3.14159265358979323846;
-
-/// The rays of a facet as a function of the film.
-struct FacetMap {
-    const RayMesh* mesh = nullptr;  // null: there is none
-    Id facet = kNone;
-    FacetWeights weights;
-
-    Ray at(const Vec2& place) const { return sample_ray(*mesh, facet, weights, place); }
-};
-
-FacetMap map_of(const FragmentShading& shading, const SampleView& view, const PathEnd* end) {
-    FacetMap map;
-    if (!end) {
-        map.mesh = shading.facets.camera;
-        map.facet = view.camera_facet;
-    } else if (end->node != kNone) {
-        const PathNode& node = shading.facets.paths(view.optic).nodes()[end->node];
-        map.mesh = &node.mesh;
-        map.facet = node.facet_of(view.leaf);
-    }
-    if (!map.mesh || map.facet == kNone) return {};
-    map.weights = facet_weights(*map.mesh, map.facet);
-    return map.weights.edge_on ? FacetMap() : map;
-}
 
 /// Where a ray meets the plane of a triangle, outside of it, too; none: nowhere in front.
 std::optional<Hit> meet_plane(const TriangleScene& scene, Id triangle, const Ray& ray) {
@@ -83,9 +59,10 @@ class SpreadContribution {
     SpreadContribution(const FragmentShading& shading, const ShownFragment& fragment,
                        const Contribution& contribution)
         : shading_(shading), fragment_(fragment), contribution_(contribution) {
-        if (sample_count() > 1) map_ = map_of(shading, *fragment.view, contribution.end);
+        if (sample_count() > 1) map_ = facet_map(shading.facets, *fragment.view, contribution.end);
         if (!map_.mesh) return;
         find_corners();
+        find_spread();
         if (contribution.end && contribution.end->medium != kNone) find_mean_length();
     }
 
@@ -109,16 +86,16 @@ class SpreadContribution {
 
   private:
     void find_corners();
+    void find_spread();
     /// Of the way through the last medium, to first order: that at the centroid of the samples.
     void find_mean_length();
-    /// How many look-ups along a pixel's edge its texture asks for.
-    int lookups() const;
-    Vec3 base_at(const SeenThere& there) const;
-
     const FragmentShading& shading_;
     const ShownFragment& fragment_;
     Contribution contribution_;
     FacetMap map_;
+    // The parallelogram that has the samples' mean and second moments: over a pixel, the pixel.
+    Vec2 centroid_{0};
+    std::array<Vec2, 2> spread_{Vec2(1, 0), Vec2(0, 1)};  // its sides
     std::array<SeenThere, kCorners> corners_;
     std::size_t corner_count_ = 0;
 };
@@ -159,62 +136,49 @@ void SpreadContribution::find_corners() {
             corners_[corner_count_++] = *there;
 }
 
-void SpreadContribution::find_mean_length() {
-    if (is_whole_pixel() || !contribution_.seen.hit->seen()) return;
+/// Each sample stands for its own cell of the lattice, a square with a twelfth of its area as variance.
+void SpreadContribution::find_spread() {
+    centroid_ = fragment_.pixel + Vec2(0.5);
+    if (is_whole_pixel()) return;
+    const double count = static_cast<double>(sample_count());
     Vec2 sum(0);
     for (std::size_t s = 0; s < sample_count(); ++s) sum += place(s);
-    if (const std::optional<SeenThere> there = at(sum / double(sample_count())))
+    centroid_ = sum / count;
+    double xx = 0, xy = 0, yy = 0;
+    for (std::size_t s = 0; s < sample_count(); ++s) {
+        const Vec2 off = place(s) - centroid_;
+        xx += off.x * off.x;
+        xy += off.x * off.y;
+        yy += off.y * off.y;
+    }
+    const double cell = 1.0 / (shading_.side * shading_.side);
+    xx = 12 * xx / count + cell;
+    xy = 12 * xy / count;
+    yy = 12 * yy / count + cell;
+    // The square root of that matrix: its sides' outer products add up to it.
+    const double area = std::sqrt(std::max(xx * yy - xy * xy, 0.0)), scale = std::sqrt(xx + yy + 2 * area);
+    spread_ = {Vec2(xx + area, xy) / scale, Vec2(xy, yy + area) / scale};
+}
+
+void SpreadContribution::find_mean_length() {
+    if (is_whole_pixel() || !contribution_.seen.hit->seen()) return;
+    if (const std::optional<SeenThere> there = at(centroid_))
         contribution_.mean_length = there->hit.t * length(there->ray.direction);
 }
 
-int SpreadContribution::lookups() const {
-    double texels = 0;
-    const Hit& hit = *contribution_.seen.hit;
-    const Background& background = shading_.world.shading.background;
-    if (hit.seen()) {
-        if (!base_colour_texel(shading_.world.shading, hit)) return 1;
-        Vec2 low(INFINITY), high(-INFINITY);
-        for (const SeenThere& corner : corners()) {
-            const Vec2 texel = *base_colour_texel(shading_.world.shading, corner.hit);
-            low = glm::min(low, texel);
-            high = glm::max(high, texel);
-        }
-        texels = std::max(high.x - low.x, high.y - low.y);
-    } else {
-        if (!background.environment) return 1;
-        const Vec3 middle = normalize_or_zero(contribution_.seen.ray->direction);
-        double farthest = 0;
-        for (const SeenThere& corner : corners())
-            farthest = std::max(farthest, length(normalize_or_zero(corner.ray.direction) - middle));
-        texels = 2 * farthest * background.environment->width / (2 * kPi);
-    }
-    return static_cast<int>(std::clamp(std::ceil(kLookupsPerTexel * texels), 1.0, double(shading_.side)));
-}
-
-Vec3 SpreadContribution::base_at(const SeenThere& there) const {
-    return there.hit.seen() ? base_colour(shading_.world.shading, there.hit)
-                            : shade_background(shading_.world.shading.background, there.ray.direction);
-}
-
 std::optional<Vec3> SpreadContribution::mean_base() const {
-    if (corner_count_ == 0) return std::nullopt;
-    const int n = lookups();
-    if (n == 1) return std::nullopt;
-    Vec3 sum(0);
-    int count = 0;
-    const auto add = [&](const Vec2& place) {
-        const std::optional<SeenThere> there = at(place);
-        if (!there) return;
-        sum += base_at(*there);
-        ++count;
-    };
-    if (fragment_.members.empty())
-        for (int j = 0; j < n; ++j)
-            for (int i = 0; i < n; ++i) add(fragment_.pixel + Vec2(i + 0.5, j + 0.5) / double(n));
-    else
-        for (std::size_t s = 0; s < fragment_.members.size(); ++s) add(place(s));
-    if (count == 0) return std::nullopt;
-    return sum / double(count);
+    if (!map_.mesh || !has_texture(shading_.world.shading, *contribution_.seen.hit)) return std::nullopt;
+    const std::optional<SeenThere> there = at(centroid_);
+    if (!there) return std::nullopt;
+    const RayDifferential by_pixel = map_.differential(centroid_);
+    RayDifferential differential;
+    for (std::size_t k = 0; k < 2; ++k)
+        for (int c = 0; c < 2; ++c) {
+            const std::size_t of = static_cast<std::size_t>(c);
+            differential.origin[k] += spread_[k][c] * by_pixel.origin[of];
+            differential.direction[k] += spread_[k][c] * by_pixel.direction[of];
+        }
+    return base_colour(shading_.world.shading, {&there->hit, &there->ray, nullptr, &differential});
 }
 
 /// Contributions of several fragments, shaded together.
@@ -224,22 +188,20 @@ class FragmentContributions {
         waiting_.reserve(kMostShaded);
     }
 
-    void add(const SpreadContribution& contribution, SampleColour& colour) {
+    void add(const SpreadContribution& contribution, ShadedFragment& shaded) {
         waiting_.push_back(contribution);
-        colours_[waiting_.size() - 1] = &colour;
+        shaded_[waiting_.size() - 1] = &shaded;
         if (waiting_.size() == kMostShaded) shade();
     }
     void shade();
-    std::size_t by_sample() const { return by_sample_; }
 
   private:
-    void even_out(std::span<const ReachingLight> centre, std::span<Vec3> light);
-    Vec3 mean_light(const SpreadContribution& contribution) const;
+    void even_out(std::span<const ReachingLight> centre, std::span<const Vec3> base, std::span<Vec3> light);
+    Vec3 mean_arriving(const SpreadContribution& contribution) const;
 
     const FragmentShading& shading_;
     std::vector<SpreadContribution> waiting_;
-    std::array<SampleColour*, kMostShaded> colours_{};
-    std::size_t by_sample_ = 0;
+    std::array<ShadedFragment*, kMostShaded> shaded_{};
 };
 
 /// The mean over a pixel's samples of a function that is quadratic, less its value at the centre, as a share
@@ -248,9 +210,10 @@ double corner_share(int side) {
     return (side + 1.0) / (3.0 * (side - 1));
 }
 
-/// From the light at the shaded points to means over the samples. Samples are shaded one by one where other
+/// From the light at the shaded points to means over the samples. Samples are lit one by one where other
 /// lights reach the outermost than the shaded point, or light changes by more than a mean can tell.
-void FragmentContributions::even_out(std::span<const ReachingLight> centre, std::span<Vec3> light) {
+void FragmentContributions::even_out(std::span<const ReachingLight> centre, std::span<const Vec3> base,
+                                     std::span<Vec3> light) {
     std::array<SeenAlong, kMostShaded * kCorners> corners;
     std::size_t count = 0;
     const auto is_spread = [&](const SpreadContribution& one) {
@@ -279,8 +242,8 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
         const Vec3 off = mean - centre[i].arriving;
         if (uneven ||
             of_worst_colour(glm::abs(off) - (whole ? kWholeRoom : kPartRoom) * centre[i].arriving) > 0) {
-            light[i] = mean_light(waiting_[i]);
-            ++by_sample_;
+            light[i] = base[i] * mean_arriving(waiting_[i]);
+            ++shaded_[i]->rays_by_sample;
         } else if (whole && n == kCorners) {
             for (int k = 0; k < 3; ++k)
                 if (centre[i].arriving[k] > 0)
@@ -289,18 +252,18 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
     }
 }
 
-/// Each sample shaded by itself.
-Vec3 FragmentContributions::mean_light(const SpreadContribution& contribution) const {
+/// The light at each sample by itself.
+Vec3 FragmentContributions::mean_arriving(const SpreadContribution& contribution) const {
     std::vector<SeenThere> there;
     for (std::size_t s = 0; s < contribution.sample_count(); ++s)
         if (const std::optional<SeenThere> seen = contribution.at(contribution.place(s)))
             there.push_back(*seen);
     std::vector<SeenAlong> seen;
     for (const SeenThere& one : there) seen.push_back({&one.hit, &one.ray});
-    std::vector<Vec3> light(seen.size());
-    shade_rays(shading_.world.shading, seen, light);
+    std::vector<ReachingLight> light(seen.size());
+    find_reaching_light(shading_.world.shading, seen, light);
     Vec3 sum(0);
-    for (const Vec3& one : light) sum += one;
+    for (const ReachingLight& one : light) sum += one.arriving;
     return sum / double(light.size());
 }
 
@@ -308,36 +271,36 @@ Vec3 FragmentContributions::mean_light(const SpreadContribution& contribution) c
 void FragmentContributions::shade() {
     const std::size_t count = waiting_.size();
     std::array<SeenAlong, kMostShaded> seen;
-    std::array<std::optional<Vec3>, kMostShaded> base;
+    std::array<Vec3, kMostShaded> base;
     std::array<Vec3, kMostShaded> light;
     std::array<ReachingLight, kMostShaded> reaching{};
     for (std::size_t i = 0; i < count; ++i) {
         seen[i] = waiting_[i].contribution().seen;
-        base[i] = waiting_[i].mean_base();
-        if (base[i]) seen[i].base = &*base[i];
+        const std::optional<Vec3> mean = waiting_[i].mean_base();
+        base[i] = mean ? *mean : base_colour(shading_.world.shading, seen[i]);
+        seen[i].base = &base[i];
     }
     shade_rays(shading_.world.shading, std::span(seen).first(count), std::span(light).first(count),
                std::span(reaching).first(count));
-    even_out(std::span(reaching).first(count), std::span(light).first(count));
+    even_out(std::span(reaching).first(count), std::span(base).first(count), std::span(light).first(count));
     for (std::size_t i = 0; i < count; ++i)
-        add_light(shading_.world, waiting_[i].contribution(), light[i], *colours_[i]);
+        add_light(shading_.world, waiting_[i].contribution(), light[i], shaded_[i]->colour);
     waiting_.clear();
 }
 
 }  // namespace
 
-std::size_t shade_fragments(const FragmentShading& shading, std::span<const ShownFragment> fragments,
-                            std::span<SampleColour> colours) {
+void shade_fragments(const FragmentShading& shading, std::span<const ShownFragment> fragments,
+                     std::span<ShadedFragment> shaded) {
     FragmentContributions contributions(shading);
     for (std::size_t f = 0; f < fragments.size(); ++f) {
         const SampleView& view = *fragments[f].view;
-        colours[f] = unlit_colour(view);
+        shaded[f].colour = unlit_colour(view);
         for_each_contribution(shading.world, shading.views, view, [&](const Contribution& contribution) {
-            contributions.add({shading, fragments[f], contribution}, colours[f]);
+            contributions.add({shading, fragments[f], contribution}, shaded[f]);
         });
     }
     contributions.shade();
-    return contributions.by_sample();
 }
 
 }  // namespace trilens

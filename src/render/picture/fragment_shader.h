@@ -19,6 +19,12 @@ struct ShownFragment {
     std::span<const std::uint16_t> members = {};
 };
 
+/// What comes of a fragment.
+struct ShadedFragment {
+    SampleColour colour;
+    std::uint32_t rays_by_sample = 0;  // of its rays, those that were shaded at each sample
+};
+
 /// What is needed to shade fragments.
 struct FragmentShading {
     const World& world;
@@ -30,14 +36,14 @@ struct FragmentShading {
 /// Colours of fragments, the means over their samples. Where a sample stands is told by its facet's map,
 /// drawn inside the triangle that all of them see.
 /// - Light is asked for at the shaded point and at the outermost samples, at most four. Where other lights
-///   reach those, or light differs by much, each sample is shaded by itself; over a whole pixel it is else
+///   reach those, or light differs by much, each sample is lit by itself; over a whole pixel it is else
 ///   the mean of the quadratic that goes through them all.
-/// - Base colours, and the background's, are means over places as dense as its samples, or so dense that four
-///   lie in a texel's width, whichever is fewer.
+/// - Base colours, and the background's, are means over the parallelogram that has the mean and the second
+///   moments of its samples, as the facet's map carries it to the texture.
 /// - Weights (Fresnel, glass on the way) are those of the shaded point; the way through the last glass is
 ///   that of the centroid.
-/// Returns how many fragments were shaded sample by sample. colours.size() == fragments.size().
-std::size_t shade_fragments(const FragmentShading& shading, std::span<const ShownFragment> fragments,
-                            std::span<SampleColour> colours);
+/// shaded.size() == fragments.size().
+void shade_fragments(const FragmentShading& shading, std::span<const ShownFragment> fragments,
+                     std::span<ShadedFragment> shaded);
 
 }  // namespace trilens

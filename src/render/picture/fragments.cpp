@@ -1,11 +1,9 @@
 #include "render/picture/fragments.h"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 
 #include "base/util/parallel.h"
-#include "render/picture/fragment_shader.h"
 
 namespace trilens {
 namespace {
@@ -42,9 +40,11 @@ FragmentColours::FragmentColours(const World& world, const FacetViews& facets, c
       grid_(with_margin(window, world.scene.film, filter.reach)) {
     facets_.viewer({grid_.x0, grid_.y0, grid_.x1, grid_.y1, 1}, centres_);
     find_fragments();
-    colours_.resize(fragments_.size());
+    shaded_.resize(fragments_.size());
     shade_centres();
     shade_samples();
+    count_rays_by_sample();
+    for (ShadedFragment& one : shaded_) one.colour = filter_.averaged(one.colour);
 }
 
 Vec2 FragmentColours::pixel_corner(std::size_t pixel) const {
@@ -147,7 +147,6 @@ void FragmentColours::find_fragments() {
 
 /// Fragments that are a whole pixel: where its centre is known to see the same.
 void FragmentColours::shade_centres() {
-    std::atomic<std::size_t> by_sample = 0;
     parallel_for(grid_.pixels(), kFragmentsPerTask, [&](std::size_t from, std::size_t to) {
         std::vector<ShownFragment> shown;
         std::vector<std::size_t> of;
@@ -156,11 +155,10 @@ void FragmentColours::shade_centres() {
             shown.push_back({&centres_.samples[p], pixel_corner(p), {}});
             of.push_back(first_[p]);
         }
-        std::vector<SampleColour> colours(shown.size());
-        by_sample += shade_fragments({world_, facets_, centres_, grid_.side}, shown, colours);
-        for (std::size_t k = 0; k < of.size(); ++k) colours_[of[k]] = colours[k];
+        std::vector<ShadedFragment> shaded(shown.size());
+        shade_fragments({world_, facets_, centres_, grid_.side}, shown, shaded);
+        for (std::size_t k = 0; k < of.size(); ++k) shaded_[of[k]] = shaded[k];
     });
-    counts_.by_sample += by_sample;
 }
 
 /// All others: at the samples that stand for them.
@@ -180,7 +178,6 @@ void FragmentColours::shade_samples() {
 
     std::vector<Id> chosen;
     SampleViews views;
-    std::atomic<std::size_t> by_sample = 0;
     for (std::size_t start = 0; start < wanted.size(); start += kViewsAtOnce) {
         const std::span<const Wanted> now =
             std::span(wanted).subspan(start, std::min(kViewsAtOnce, wanted.size() - start));
@@ -194,12 +191,20 @@ void FragmentColours::shade_samples() {
             for (std::size_t k = from; k < to; ++k)
                 shown.push_back(
                     {&views.samples[k], pixel_corner(now[k].pixel), members_of(fragments_[now[k].fragment])});
-            std::vector<SampleColour> colours(shown.size());
-            by_sample += shade_fragments({world_, facets_, views, grid_.side}, shown, colours);
-            for (std::size_t k = from; k < to; ++k) colours_[now[k].fragment] = colours[k - from];
+            std::vector<ShadedFragment> shaded(shown.size());
+            shade_fragments({world_, facets_, views, grid_.side}, shown, shaded);
+            for (std::size_t k = from; k < to; ++k) shaded_[now[k].fragment] = shaded[k - from];
         });
     }
-    counts_.by_sample += by_sample;
+}
+
+void FragmentColours::count_rays_by_sample() {
+    for (std::size_t p = 0; p < grid_.pixels(); ++p) {
+        std::size_t rays = 0;
+        for (std::size_t f = first_[p]; f < first_[p + 1]; ++f) rays += shaded_[f].rays_by_sample;
+        counts_.by_sample += rays;
+        counts_.pixels_by_sample += rays > 0;
+    }
 }
 
 SampleColour FragmentColours::colour(int x, int y) const {
@@ -217,9 +222,7 @@ SampleColour FragmentColours::colour(int x, int y) const {
          ++py)
         for (int px = std::max(grid_.x0, x - filter_.reach); px <= std::min(grid_.x1 - 1, x + filter_.reach);
              ++px) {
-            const std::size_t pixel =
-                static_cast<std::size_t>(py - grid_.y0) * static_cast<std::size_t>(grid_.width()) +
-                static_cast<std::size_t>(px - grid_.x0);
+            const std::size_t pixel = pixel_at(px, py);
             for (std::size_t f = first_[pixel]; f < first_[pixel + 1]; ++f) {
                 double weight = 0;
                 if (fragments_[f].members == 0)
@@ -228,7 +231,7 @@ SampleColour FragmentColours::colour(int x, int y) const {
                     for (const int inside : members_of(fragments_[f]))
                         weight +=
                             weight_at(px - x, inside % grid_.side) * weight_at(py - y, inside / grid_.side);
-                add(sum, weight, colours_[f]);
+                add(sum, weight, shaded_[f].colour);
                 total += weight;
             }
         }

@@ -7,15 +7,16 @@
 #include <vector>
 
 #include "render/engines/engine.h"
+#include "render/picture/fragment_shader.h"
 #include "render/picture/pixel_filter.h"
-#include "render/picture/sample_colour.h"
 
 namespace trilens {
 
 /// How the samples of pixels were shaded.
 struct FragmentCounts {
     std::size_t pixels = 0, fragments = 0;
-    std::size_t by_sample = 0;  // rays of fragments that had to be shaded at each sample
+    std::size_t by_sample = 0;         // rays of fragments that had to be shaded at each sample
+    std::size_t pixels_by_sample = 0;  // that have such rays
 };
 
 /// The colours of all fragments in a window and the pixels around it that a filter reaches.
@@ -28,6 +29,12 @@ class FragmentColours {
     /// The pixel of the window as the filter makes it. Pixels beyond the film have no samples: the weights of
     /// those that there are count as one.
     SampleColour colour(int x, int y) const;
+
+    /// Fragments of that pixel.
+    std::size_t count_at(int x, int y) const {
+        const std::size_t pixel = pixel_at(x, y);
+        return first_[pixel + 1] - first_[pixel];
+    }
 
     const FragmentCounts& counts() const { return counts_; }
 
@@ -47,6 +54,11 @@ class FragmentColours {
         return {members_.data() + fragment.first_member, fragment.members};
     }
     Vec2 pixel_corner(std::size_t pixel) const;
+    std::size_t pixel_at(int x, int y) const {
+        return static_cast<std::size_t>(y - grid_.y0) * static_cast<std::size_t>(grid_.width()) +
+               static_cast<std::size_t>(x - grid_.x0);
+    }
+    void count_rays_by_sample();
     std::size_t lattice_sample(std::size_t pixel, int inside) const;
 
     const World& world_;
@@ -57,7 +69,7 @@ class FragmentColours {
     std::vector<std::size_t> first_;  // per pixel of the grid, and one more: in fragments_
     std::vector<Fragment> fragments_;
     std::vector<std::uint16_t> members_;
-    std::vector<SampleColour> colours_;  // per fragment
+    std::vector<ShadedFragment> shaded_;  // per fragment
     FragmentCounts counts_;
 };
 

@@ -19,6 +19,19 @@ double gaussian(double x) {
 
 }  // namespace
 
+SampleColour PixelFilter::averaged(const SampleColour& sample) const {
+    if (!shown) return sample;
+    const Vec3 light = sample.direct + sample.reflect + sample.refract, wanted = shown(light);
+    SampleColour result = sample;
+    for (int c = 0; c < 3; ++c) {
+        const double share = light[c] > 0 ? wanted[c] / light[c] : 0;
+        result.direct[c] *= share;
+        result.reflect[c] *= share;
+        result.refract[c] *= share;
+    }
+    return result;
+}
+
 PixelFilter make_pixel_filter(FilterKind kind, int side) {
     PixelFilter filter;
     filter.reach = kind == FilterKind::kBox ? 0 : kind == FilterKind::kGaussian ? 1 : 2;

@@ -1,8 +1,10 @@
 // How the samples around a pixel make its colour.
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "render/frame/views.h"
 #include "scene/data/scene.h"
 
 namespace trilens {
@@ -12,6 +14,10 @@ namespace trilens {
 struct PixelFilter {
     int reach = 0;                // pixels to either side whose samples count
     std::vector<double> weights;  // of the 2 reach + 1 pixels' samples along the axis, in order
+    std::function<Vec3(const Vec3& light)> shown = {};  // as LayerRequest::shown
+
+    /// What of a sample's colour is averaged.
+    SampleColour averaged(const SampleColour& sample) const;
 };
 
 /// For side x side samples a pixel. Box: those of the pixel alone. Mitchell: Mitchell and Netravali,

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "render/picture/ray_differentials.h"
+
 namespace trilens {
 namespace {
 
@@ -9,8 +11,8 @@ namespace {
 class Contributions {
   public:
     Contributions(const World& world, const SampleViews& views, std::size_t first,
-                  std::span<SampleColour> colours)
-        : world_(world), views_(views), first_(first), colours_(colours) {}
+                  std::span<SampleColour> colours, const RayDifferentials* differentials)
+        : world_(world), views_(views), first_(first), colours_(colours), differentials_(differentials) {}
 
     void add_sample(std::size_t index);
     void shade();
@@ -22,10 +24,12 @@ class Contributions {
     const SampleViews& views_;
     std::size_t first_;
     std::span<SampleColour> colours_;
+    const RayDifferentials* differentials_;
     std::size_t count_ = 0;
     std::array<SeenAlong, kMost> seen_;
     std::array<Contribution, kMost> contributions_;
-    std::array<std::size_t, kMost> sample_;  // of colours_
+    std::array<RayDifferential, kMost> differential_;  // where textures are averaged
+    std::array<std::size_t, kMost> sample_;            // of colours_
 };
 
 void Contributions::add_sample(std::size_t index) {
@@ -34,6 +38,11 @@ void Contributions::add_sample(std::size_t index) {
     for_each_contribution(world_, views_, view, [&](const Contribution& contribution) {
         if (count_ == kMost) shade();
         seen_[count_] = contribution.seen;
+        if (differentials_ && has_texture(world_.shading, *contribution.seen.hit))
+            if (const auto differential = differentials_->of(views_, first_ + index, contribution)) {
+                differential_[count_] = *differential;
+                seen_[count_].differential = &differential_[count_];
+            }
         sample_[count_] = index;
         contributions_[count_++] = contribution;
     });
@@ -73,15 +82,17 @@ double path_length(const PathEnd& end) {
 }
 
 void sample_colours(const World& world, const SampleViews& views, std::size_t first,
-                    std::span<SampleColour> colours) {
-    Contributions contributions(world, views, first, colours);
+                    std::span<SampleColour> colours, const RayDifferentials* differentials) {
+    Contributions contributions(world, views, first, colours, differentials);
     for (std::size_t i = 0; i < colours.size(); ++i) contributions.add_sample(i);
     contributions.shade();
 }
 
-SampleColour sample_colour(const World& world, const SampleViews& views, const SampleView& view) {
+SampleColour sample_colour(const World& world, const SampleViews& views, const SampleView& view,
+                           const RayDifferentials* differentials) {
     SampleColour colour;
-    sample_colours(world, views, static_cast<std::size_t>(&view - views.samples.data()), {&colour, 1});
+    sample_colours(world, views, static_cast<std::size_t>(&view - views.samples.data()), {&colour, 1},
+                   differentials);
     return colour;
 }
 

@@ -9,13 +9,17 @@
 
 namespace trilens {
 
+class RayDifferentials;
+
 /// Shades what samples show: colours[i] is that of views.samples[first + i]. Samples do not see each other:
-/// a colour has the same bits whatever it is asked with.
+/// a colour has the same bits whatever it is asked with. `differentials`: of the views' samples, over which
+/// textures are averaged; null: each sample is a point.
 void sample_colours(const World& world, const SampleViews& views, std::size_t first,
-                    std::span<SampleColour> colours);
+                    std::span<SampleColour> colours, const RayDifferentials* differentials = nullptr);
 
 /// Shades what one sample, an element of views.samples, shows.
-SampleColour sample_colour(const World& world, const SampleViews& views, const SampleView& view);
+SampleColour sample_colour(const World& world, const SampleViews& views, const SampleView& view,
+                           const RayDifferentials* differentials = nullptr);
 
 /// What one ray of a sample adds to it.
 struct Contribution {

@@ -143,6 +143,7 @@ void set_up_shading(World& world) {
     world.shading.materials = world.scene.materials;
     world.shading.lights = world.scene.lights;
     world.shading.background = world.scene.background;
+    prepare_textures(world.shading);
     world.shading.occluded = {};
     if (has_shadows(world))
         world.shading.occluded = [self = &world](const Segments& segments) {

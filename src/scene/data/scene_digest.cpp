@@ -46,11 +46,13 @@ void add(const Background& background, Digest& digest) {
 }
 
 void add(const Material& material, Digest& digest) {
-    const auto& [name, color, texture, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
+    const auto& [name, color, texture, sampler, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
                  distance] = material;
     digest.add_all(name, color, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
                    distance);
     add(texture, digest);
+    const auto& [wrap_s, wrap_t, at_zero, along_u, along_v] = sampler;
+    digest.add_all(wrap_s, wrap_t, at_zero, along_u, along_v);
 }
 
 void add(const Light& light, Digest& digest) {

@@ -53,7 +53,8 @@ class Reader {
     }
 
     void check_extensions() {
-        static const std::set<std::string> known = {"KHR_materials_unlit", "KHR_mesh_quantization"};
+        static const std::set<std::string> known = {"KHR_materials_unlit", "KHR_mesh_quantization",
+                                                    "KHR_texture_transform"};
         for (const std::string& name : in_.extensionsRequired)
             if (known.count(name) == 0)
                 fail("/extensionsRequired", "the extension '" + name + "' is required but not supported");
@@ -109,10 +110,46 @@ class Reader {
                                    "/textures/" + std::to_string(texture), "image");
             if (result.image < 0) warn("a base colour texture without a picture is ignored");
             result.uv_set = pbr.baseColorTexture.texCoord;
-            if (pbr.baseColorTexture.extensions.count("KHR_texture_transform") > 0)
-                warn("texture transforms are ignored");
+            read_sampler(in_.textures[static_cast<std::size_t>(texture)].sampler,
+                         result.material.base_color_sampler);
+            const auto transform = pbr.baseColorTexture.extensions.find("KHR_texture_transform");
+            if (transform != pbr.baseColorTexture.extensions.end())
+                read_transform(transform->second, place, result);
         }
         out_.materials.push_back(std::move(result));
+    }
+
+    void read_sampler(int index, TextureSampler& sampler) {
+        if (checked(index, in_.samplers.size(), "/textures", "sampler") < 0) return;
+        const tinygltf::Sampler& given = in_.samplers[static_cast<std::size_t>(index)];
+        const auto wrap = [](int code) {
+            return code == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::kClampToEdge
+                   : code == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::kMirroredRepeat
+                                                                   : Wrap::kRepeat;
+        };
+        sampler.wrap_s = wrap(given.wrapS);
+        sampler.wrap_t = wrap(given.wrapT);
+    }
+
+    /// KHR_texture_transform.
+    void read_transform(const tinygltf::Value& given, const std::string& place, GltfMaterial& into) {
+        const auto number = [&](const tinygltf::Value& value) {
+            const double got = value.IsNumber() ? value.GetNumberAsDouble() : NAN;
+            if (!(std::fabs(got) <= kLargestCoordinate)) fail(place, "KHR_texture_transform is malformed");
+            return got;
+        };
+        const auto pair = [&](const char* key, Vec2& values) {
+            if (!given.Has(key)) return;
+            const tinygltf::Value& list = given.Get(key);
+            if (!list.IsArray() || list.ArrayLen() != 2) fail(place, "KHR_texture_transform is malformed");
+            values = {number(list.Get(0)), number(list.Get(1))};
+        };
+        TextureTransform transform;
+        pair("offset", transform.offset);
+        pair("scale", transform.scale);
+        if (given.Has("rotation")) transform.rotation = number(given.Get("rotation"));
+        if (given.Has("texCoord")) into.uv_set = static_cast<int>(number(given.Get("texCoord")));
+        set_transform(transform, into.material.base_color_sampler);
     }
 
     /// What a material has beside its base colour.

@@ -195,7 +195,7 @@ const std::vector<Field<Material>>& material_fields() {
             setting("name", &Material::name, {{"type", "string"}, {"minLength", 1}},
                     "Unique; 'inherit' is taken."),
             setting("baseColorFactor", &Material::base_color_factor, ref("color")),
-            part<Material>("baseColorTexture", ref("name")),
+            part<Material>("baseColorTexture", ref("texture")),
             setting("unlit", &Material::unlit, yes_or_no()),
             setting("metallicFactor", &Material::metallic_factor, ref("share")),
             setting("roughnessFactor", &Material::roughness_factor, ref("share")),
@@ -223,7 +223,7 @@ Material read_material(const Node& node, Reading& reading) {
     if (material.name == "inherit")
         node["name"].fail("'inherit' is taken: it stands for a file's own materials");
     if (node.has("baseColorTexture"))
-        material.base_color_texture = read_picture(reading, node["baseColorTexture"]);
+        read_texture(node["baseColorTexture"], reading, material);
     if (node.has("volume")) read_fields(node["volume"], volume_fields(), material);
     return material;
 }

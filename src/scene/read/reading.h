@@ -61,6 +61,8 @@ Background read_background(const Node& scene, Reading& reading);
 Light read_light(const Node& light);
 RenderSettings read_render(const Node& scene);
 Material read_material(const Node& material, Reading& reading);
+/// Sets the material's base colour texture and how it lies.
+void read_texture(const Node& texture, Reading& reading, Material& material);
 Mesh read_mesh(const Node& mesh, std::size_t index, Reading& reading);
 Primitive read_primitive(const Node& primitive, const Transform& transform, const Node& mesh);
 /// The polygons of an object's primitive, in its own frame.

@@ -29,6 +29,7 @@ Json view_schema();  // of a multiPerspective camera
 Json film_schema();
 Json background_schema();
 Json material_schema();
+Json texture_schema();
 Json light_schema();
 Json render_schema();
 Json mesh_schema();

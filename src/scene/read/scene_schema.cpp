@@ -140,6 +140,7 @@ Json make_schema() {
     definitions["view"] = view_schema();
     definitions["background"] = background_schema();
     definitions["material"] = material_schema();
+    definitions["texture"] = texture_schema();
     definitions["mesh"] = mesh_schema();
     definitions["primitive"] = primitive_schema();
     definitions["normals"] = normals_schema();

@@ -1,0 +1,143 @@
+// Textures out of checked JSON: a file's name, an object with the file and how it lies, or a pattern.
+#include <algorithm>
+#include <cmath>
+
+#include "scene/read/reading.h"
+#include "scene/read/scene_fields.h"
+
+namespace trilens {
+namespace {
+
+constexpr int kPatternTexels = 1024;  // along a pattern's side, or somewhat more
+
+/// Pictures that need no file. kChecker: squares of two colours in turn. kGrid: lines of the second colour
+/// along the borders of squares of the first. kRamp: from the first on the left to the second on the right.
+enum class Pattern { kChecker, kGrid, kRamp };
+
+/// A texture as the scene writes it.
+struct WrittenTexture {
+    TextureSampler sampler;
+    TextureTransform transform;
+    Pattern pattern = Pattern::kChecker;
+    std::array<int, 2> count{8, 8};
+    double line = 0.1;
+};
+
+}  // namespace
+
+template <>
+struct EnumNames<Pattern> {
+    static constexpr std::array kTable{NamedValue<Pattern>{Pattern::kChecker, "checker"},
+                                       NamedValue<Pattern>{Pattern::kGrid, "grid"},
+                                       NamedValue<Pattern>{Pattern::kRamp, "ramp"}};
+};
+
+namespace {
+
+const std::vector<Field<TextureTransform>>& transform_fields() {
+    static const std::vector<Field<TextureTransform>> fields = [] {
+        Field<TextureTransform> rotation = setting("rotation", &TextureTransform::rotation, ref("number"),
+                                                   "Degrees, counter-clockwise (glTF's are radians).");
+        rotation.read = [](const Json& json, TextureTransform& into) {
+            into.rotation = json.get<double>() * 3.14159265358979323846 / 180;
+        };
+        return std::vector<Field<TextureTransform>>{setting("offset", &TextureTransform::offset, ref("vec2")),
+                                                    std::move(rotation),
+                                                    setting("scale", &TextureTransform::scale, ref("vec2"))};
+    }();
+    return fields;
+}
+
+const std::vector<Field<WrittenTexture>>& texture_fields() {
+    static const std::vector<Field<WrittenTexture>> fields = [] {
+        const Json counts = several(2, whole_in(1, kPatternTexels));
+        Field<WrittenTexture> count =
+            part<WrittenTexture>("count", counts, "Squares across and down, of a checker or a grid.");
+        count.schema["default"] = {8, 8};
+        count.read = [](const Json& json, WrittenTexture& into) {
+            into.count = json.get<std::array<int, 2>>();
+        };
+        Field<WrittenTexture> colors =
+            part<WrittenTexture>("colors", several(2, ref("color")), "The two colours of a pattern.");
+        colors.schema["default"] = Json::parse("[[0, 0, 0], [1, 1, 1]]");
+        return std::vector<Field<WrittenTexture>>{
+            part<WrittenTexture>("file", ref("name"), "Of a picture: 8 and 16 bits are sRGB."),
+            choice("pattern", &WrittenTexture::pattern, "A picture that needs no file.").without_default(),
+            std::move(colors),
+            std::move(count),
+            setting("line", &WrittenTexture::line, ref("share"), "Width of a grid's lines, of its squares."),
+            within(&WrittenTexture::sampler,
+                   choice("wrapS", &TextureSampler::wrap_s, "What lies left and right of the picture.")),
+            within(&WrittenTexture::sampler,
+                   choice("wrapT", &TextureSampler::wrap_t, "What lies above and below it.")),
+            part<WrittenTexture>(
+                "transform",
+                object_schema({.title = "a texture's transform",
+                               .description = "KHR_texture_transform: uv scaled, turned, moved."},
+                              transform_fields()))};
+    }();
+    return fields;
+}
+
+std::shared_ptr<const Texture> draw_pattern(const WrittenTexture& written,
+                                            const std::array<Vec3, 2>& colors) {
+    const auto [columns, rows] = written.count;
+    const bool ramp = written.pattern == Pattern::kRamp;
+    const auto cell = [](int squares) { return (kPatternTexels + squares - 1) / squares; };
+    auto texture = std::make_shared<Texture>();
+    texture->width = ramp ? kPatternTexels : cell(columns) * columns;
+    texture->height = ramp ? 1 : cell(rows) * rows;
+    for (int y = 0; y < texture->height; ++y)
+        for (int x = 0; x < texture->width; ++x) {
+            double second = 0;  // the share of the second colour
+            const double u = (x + 0.5) / texture->width, v = (y + 0.5) / texture->height;
+            const double across = u * columns, down = v * rows;
+            const auto on_line = [&](double at) { return std::fabs(at - std::round(at)) < written.line / 2; };
+            if (ramp)
+                second = u;
+            else if (written.pattern == Pattern::kGrid)
+                second = on_line(across) || on_line(down);
+            else
+                second = (static_cast<int>(across) + static_cast<int>(down)) % 2;
+            const Vec3 color = (1 - second) * colors[0] + second * colors[1];
+            for (int c = 0; c < 3; ++c) texture->rgb.push_back(static_cast<float>(color[c]));
+        }
+    return texture;
+}
+
+}  // namespace
+
+Json texture_schema() {
+    Json schema = object_schema(
+        {.title = "a texture", .description = "A picture's file, or how a picture lies."}, texture_fields());
+    schema["type"] = {"string", "object"};
+    schema["minLength"] = 1;
+    schema["oneOf"] = Json::parse(R"([{"required": ["file"]}, {"required": ["pattern"]}])");
+    return schema;
+}
+
+void read_texture(const Node& node, Reading& reading, Material& material) {
+    if (node.json.is_string()) {
+        material.base_color_texture = read_picture(reading, node);
+        return;
+    }
+    WrittenTexture written;
+    read_fields(node, texture_fields(), written);
+    if (node.has("transform")) {
+        read_fields(node["transform"], transform_fields(), written.transform);
+        set_transform(written.transform, written.sampler);
+    }
+    material.base_color_sampler = written.sampler;
+    if (node.has("file")) {
+        for (const char* key : {"colors", "count", "line"})
+            if (node.has(key)) node[key].fail(std::string("'") + key + "' is of a pattern, not of a file");
+        material.base_color_texture = read_picture(reading, node["file"]);
+        return;
+    }
+    std::array<Vec3, 2> colors{Vec3(0), Vec3(1)};
+    if (node.has("colors"))
+        for (std::size_t k = 0; k < 2; ++k) colors[k] = to_vec3(node.json.at("colors").at(k));
+    material.base_color_texture = draw_pattern(written, colors);
+}
+
+}  // namespace trilens

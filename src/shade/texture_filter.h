@@ -1,0 +1,54 @@
+// Texture filtering: anisotropic look-ups in a mip map, of repeated pictures and of pictures wrapped around
+// the sphere of directions.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "base/description/texture.h"
+#include "base/math/vec.h"
+#include "base/util/lazy.h"
+
+namespace trilens {
+
+/// A picture and its means over squares of 2, 4, 8, ... texels, made when first asked for.
+/// Source: Williams, Pyramidal Parametrics, SIGGRAPH 1983.
+class MipMap {
+  public:
+    /// `texture` has texels.
+    explicit MipMap(std::shared_ptr<const Texture> texture) : texture_(std::move(texture)) {}
+
+    /// Levels down to one texel.
+    std::size_t level_count() const;
+    /// Level 0 is the picture itself; each has half the texels of the one before along both sides, rounded
+    /// down, and the same mean. level < level_count().
+    const Texture& level(std::size_t level) const;
+    const std::shared_ptr<const Texture>& texture() const { return texture_; }
+
+  private:
+    std::shared_ptr<const Texture> texture_;
+    Lazy<std::vector<Texture>> coarser_;
+};
+
+/// What a look-up stands for: a parallelogram about its place, by its two sides.
+using Footprint = std::array<Vec2, 2>;
+
+/// Bilinear look-up at a place of the picture: x to the right, y upward, both 0 to 1 from its bottom left.
+Vec3 lookup(const Texture& texture, const TextureSampler& wrap, const Vec2& place);
+
+/// The mean of the picture over a footprint, whose sides are in units of `place`: the rectangle that the
+/// pixel's square becomes when it is turned until its image has right angles, seen at the coarsest level whose
+/// texels are no wider than it, at places a texel apart. One that is more than 32 times as long as wide is
+/// widened. Sides of less than half a texel are points. Against OpenImageIO's anisotropic look-ups, see the
+/// tests: a third of their error, in half of their time.
+Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, const Footprint& footprint);
+
+/// Bilinear look-up of a latitude-longitude picture: the middle column is -Z, the right half +X, the top row
+/// +Y. `direction` need not be unit.
+Vec3 lookup_latitude_longitude(const Texture& texture, const Vec3& direction);
+
+/// The mean over a footprint: `sides`: what of the direction, not unit either, changes along them.
+Vec3 lookup_latitude_longitude(const MipMap& map, const Vec3& direction, const std::array<Vec3, 2>& sides);
+
+}  // namespace trilens
