@@ -34,7 +34,9 @@ class Proxy {
     Vec3 direction_met(const Ray& ray) const;
 
     /// Whether what lies between the optic and the point hides it: only of the scene itself.
-    bool asks_visibility() const { return description_.kind == ProxyKind::kScene; }
+    bool asks_visibility() const {
+        return description_.kind == ProxyKind::kScene && world_.objects.size() > 0;
+    }
 
   private:
     WorldPlace far_along(const TargetPlace& place) const;
