@@ -98,8 +98,8 @@ std::optional<std::array<Vec3, 2>> place_gradient(const Camera& camera, const Ve
     for (int k = 0; k < 3; ++k) {
         Vec3 by(0);
         by[k] = step;
-        const std::optional<Vec2> low = film_place(camera, point - by, near),
-                                  high = film_place(camera, point + by, near);
+        const std::optional<Vec2> low = pixel_of_point(camera, point - by, near),
+                                  high = pixel_of_point(camera, point + by, near);
         if (!low || !high) return std::nullopt;
         rows[0][k] = (high->x - low->x) / (2 * step);
         rows[1][k] = (high->y - low->y) / (2 * step);
@@ -188,8 +188,8 @@ std::array<double, 2> by_parameter(const StationaryPath& path, const ParameterDi
     Vec2 moved(0);
     if (k > 0) moved = {dot(path.gradient[0], moves[0].place), dot(path.gradient[1], moves[0].place)};
     if (parameter.moves_camera) {
-        const std::optional<Vec2> low = film_place(minus, first, path.film.pixel),
-                                  high = film_place(plus, first, path.film.pixel);
+        const std::optional<Vec2> low = pixel_of_point(minus, first, path.film.pixel),
+                                  high = pixel_of_point(plus, first, path.film.pixel);
         if (low && high) moved += factor * (*high - *low);
     }
 
@@ -224,7 +224,7 @@ std::array<double, 2> by_parameter(const StationaryPath& path, const ParameterDi
 
 }  // namespace
 
-std::optional<Vec2> film_place(const Camera& camera, const Vec3& point, const Vec2& near) {
+std::optional<Vec2> pixel_of_point(const Camera& camera, const Vec3& point, const Vec2& near) {
     if (camera.linear) {
         const Vec3 screen = screen_from_world(*camera.linear, point);
         if (!(screen.z > 0)) return std::nullopt;

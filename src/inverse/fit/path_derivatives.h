@@ -42,6 +42,6 @@ std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const Sho
                                                 std::span<const ParameterDifference> parameters);
 
 /// Where the camera shows a world point, nearest to `near`; none where it does not.
-std::optional<Vec2> film_place(const Camera& camera, const Vec3& point, const Vec2& near);
+std::optional<Vec2> pixel_of_point(const Camera& camera, const Vec3& point, const Vec2& near);
 
 }  // namespace trilens
