@@ -6,14 +6,14 @@
 #include <optional>
 #include <span>
 
-#include "base/raymesh/facet_scene.h"
+#include "base/raymesh/surface.h"
 #include "base/util/parallel.h"
-#include "camera/linear/perspective.h"
+#include "camera/linear/linear_cameras.h"
 #include "intersect/tracer.h"
 #include "reflect/reflection.h"
 #include "surfaces/surfaces.h"
-#include "timing.h"
-#include "trilinear/points/mesh_point_images.h"
+#include "trilinear/points/point_images.h"
+#include "workloads.h"
 
 namespace {
 

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <exception>
 
-#include "bench/race/print_race.h"
 #include "bench/race/scene_race.h"
 #include "trilens/scene.h"
 #include "trilens/version.h"

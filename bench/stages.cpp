@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/raymesh/rasterize.h"
-#include "camera/linear/perspective.h"
+#include "camera/linear/linear_cameras.h"
 #include "image/exr_chunk.h"
 #include "intersect/tracer.h"
 #include "projector/projector.h"

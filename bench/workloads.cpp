@@ -5,10 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "camera/linear/perspective.h"
+#include "camera/linear/linear_cameras.h"
 #include "reflect/reflection.h"
 #include "surfaces/surfaces.h"
-#include "timing.h"
 
 namespace trilens_bench {
 

@@ -1,13 +1,17 @@
 // Scenes of any size that speed is measured on, and the mirror that shows them.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"
+#include "bench/race/race.h"
 
 namespace trilens_bench {
 
@@ -30,5 +34,20 @@ struct MirrorSphere {
     trilens::RayMesh mesh;
 };
 MirrorSphere mirror_sphere(int n, int width, int height);
+
+// Medians of repeated runs.
+
+/// The median of `repeats` runs of `work`, milliseconds of wall time.
+inline double median_ms(int repeats, const std::function<void()>& work) {
+    std::vector<double> times;
+    for (int i = 0; i < repeats; ++i) times.push_back(milliseconds(work));
+    return median(std::move(times));
+}
+
+/// Reproducible uniform numbers, the same with every compiler.
+inline double uniform(std::uint64_t& state, double low, double high) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return low + (high - low) * (static_cast<double>(state >> 11) * 0x1p-53);
+}
 
 }  // namespace trilens_bench

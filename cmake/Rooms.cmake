@@ -54,8 +54,8 @@ function(trilens_room name folder)
     target_link_libraries(trilens_${name} PUBLIC trilens_${room})
   endforeach()
   foreach(door IN LISTS ROOM_DOORS)
-    # GLM and libfmt are vocabulary: base passes them on. Every other library stays behind its door.
-    if(door STREQUAL "glm::glm" OR door STREQUAL "fmt::fmt")
+    # GLM and libfmt are vocabulary, passed on by base, and JSON is, by its room. Every other library stays behind its door.
+    if(door STREQUAL "glm::glm" OR door STREQUAL "fmt::fmt" OR door STREQUAL "nlohmann_json::nlohmann_json")
       target_link_libraries(trilens_${name} PUBLIC ${door})
     else()
       target_link_libraries(trilens_${name} PRIVATE ${door})

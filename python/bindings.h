@@ -2,13 +2,14 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <trilens/trilens.h>
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
-
-#include <trilens/trilens.h>
+#include <vector>
 
 namespace trilens::python {
 
@@ -88,5 +89,42 @@ void bind_fields(py::class_<Record, Bound...>& bound, const Field<Records, Value
         return text + ")";
     });
 }
+
+// Images as Python holds them.
+
+/// An image and what is known of its making. Held by Python objects alone: views of channels keep those
+/// alive.
+struct HeldImage {
+    Image image;
+    py::dict statistics;  // empty where the image was not drawn here
+};
+
+// What render, explain and project have in common.
+
+using RendererClass = py::class_<Renderer, std::shared_ptr<Renderer>>;
+
+/// The camera by name (none: the scene's own) and the resolution.
+FrameParams frame_params(const Renderer& renderer, int resolution, const std::optional<std::string>& camera);
+
+/// "exact", "classic", "limit" or "facets".
+EngineChoice engine_choice(const std::string& name);
+
+void bind_project(RendererClass& renderer);
+void bind_shoot(RendererClass& renderer);
+void bind_explain(RendererClass& renderer);
+void bind_unwrap(RendererClass& renderer, py::module_& module);  // unwrap, map, warp_mesh, anamorph
+
+// What several subjects need of scenes.
+
+/// {"/json/pointer": value} as the library takes it; texts stay texts.
+std::vector<SceneOverride> overrides_of(const py::dict& overrides);
+
+// Caustics and fold curves of line drawings as numpy arrays.
+
+/// A dict for each sheet: path, optic, sheet, virtual, points, triangles, segments.
+py::list caustic_list(const LineDrawing& drawing);
+
+/// A dict for each curve: object, points, places.
+py::list fold_list(const LineDrawing& drawing);
 
 }  // namespace trilens::python

@@ -1,7 +1,8 @@
 // Two images compared: metrics, verdict, displacement, difference.
 #include <pybind11/stl.h>
 
-#include "image.h"
+#include "arrays.h"
+#include "bindings.h"
 #include "python_call.h"
 
 namespace trilens::python {

@@ -1,8 +1,8 @@
 // One pixel explained, as a dict of the command's form.
 #include <pybind11/stl.h>
 
+#include "bindings.h"
 #include "python_call.h"
-#include "renderer.h"
 
 namespace trilens::python {
 namespace {
@@ -31,12 +31,11 @@ py::object kind_name(const std::optional<GeneralLinearKind>& kind) {
     return kind ? py::object(py::str(general_linear_kind_name(*kind))) : py::none();
 }
 
-py::object end_dict(const Renderer& renderer, const PixelExplanation& pixel, const PathEnd* end) {
+py::object end_dict(const Renderer& renderer, const PixelEnd* end) {
     if (!end) return py::none();
-    const SampleViews& views = pixel.views;
     py::dict dict;
     py::list steps;
-    for (const Step& step : views.steps_of(*end)) {
+    for (const Step& step : end->steps) {
         py::dict one;
         one["optic"] = renderer.optics()[step.optic].name;
         one["event"] = event_name(step.event);
@@ -45,13 +44,12 @@ py::object end_dict(const Renderer& renderer, const PixelExplanation& pixel, con
     dict["path"] = steps;
     dict["weight"] = tuple_of(end->weight);
     dict["ray"] = ray_dict(end->ray);
-    dict["facet_kind"] = kind_name(pixel.end_kinds[static_cast<std::size_t>(end - views.ends.data())]);
+    dict["facet_kind"] = kind_name(end->facet_kind);
     dict["sees"] = hit_dict(renderer, end->hit);
     return dict;
 }
 
 py::dict explanation_dict(const Renderer& renderer, Engine engine, const PixelExplanation& pixel) {
-    const SampleView& view = pixel.view();
     py::dict dict;
     dict["pixel"] = py::make_tuple(pixel.x, pixel.y);
     dict["engine"] = engine_name(engine);
@@ -61,32 +59,31 @@ py::dict explanation_dict(const Renderer& renderer, Engine engine, const PixelEx
         camera["facet_kind"] = kind_name(pixel.camera_kind);
         dict["camera"] = camera;
     }
-    dict["ray"] = ray_dict(view.ray);
-    dict["depth"] = view.depth;
-    dict["sees"] = hit_dict(renderer, view.hit);
-    if (view.optic != kNone) {
-        const OpticInfo optic = renderer.optics()[view.optic];
-        const OpticView& on_optic = pixel.views.on_optic(view);
+    dict["ray"] = ray_dict(pixel.ray);
+    dict["depth"] = pixel.depth;
+    dict["sees"] = hit_dict(renderer, pixel.hit);
+    if (pixel.optic != kNone) {
+        const OpticInfo optic = renderer.optics()[pixel.optic];
         py::dict shown;
         shown["object"] = optic.object;
         shown["name"] = optic.name;
-        shown["facet"] = view.facet;
-        shown["uv"] = py::make_tuple(on_optic.uv.x, on_optic.uv.y);
-        shown["cos_incident"] = on_optic.incidence.cosine;
-        shown["front"] = on_optic.incidence.front;
+        shown["facet"] = pixel.facet;
+        shown["uv"] = py::make_tuple(pixel.uv.x, pixel.uv.y);
+        shown["cos_incident"] = pixel.cos_incident;
+        shown["front"] = pixel.front;
         dict["optic"] = shown;
         for (const Path path : {Path::kReflect, Path::kRefract})
-            dict[path_name(path)] = end_dict(renderer, pixel, pixel.views.find(view, path));
+            dict[path_name(path)] = end_dict(renderer, pixel.find(path));
         py::list ends;
-        for (const PathEnd& end : pixel.views.ends_of(view)) ends.append(end_dict(renderer, pixel, &end));
+        for (const PixelEnd& end : pixel.ends) ends.append(end_dict(renderer, &end));
         dict["ends"] = ends;
-        dict["method"] = view.traced ? "traced" : view.level > 0 ? "subdivided" : "projected";
-        dict["level"] = view.level;
+        dict["method"] = pixel.traced ? "traced" : pixel.level > 0 ? "subdivided" : "projected";
+        dict["level"] = pixel.level;
     }
     py::dict colour;
-    colour["direct"] = tuple_of(pixel.colour.direct);
-    colour["reflect"] = tuple_of(pixel.colour.reflect);
-    colour["refract"] = tuple_of(pixel.colour.refract);
+    colour["direct"] = tuple_of(pixel.direct);
+    colour["reflect"] = tuple_of(pixel.reflect);
+    colour["refract"] = tuple_of(pixel.refract);
     dict["colour"] = colour;
     return dict;
 }

@@ -1,5 +1,6 @@
 // Images: channels as numpy arrays that look into the image, without a copy.
-#include "image.h"
+#include "arrays.h"
+#include "bindings.h"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

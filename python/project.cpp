@@ -6,8 +6,8 @@
 #include <cstddef>
 
 #include "arrays.h"
+#include "bindings.h"
 #include "python_call.h"
-#include "renderer.h"
 #include "rows.h"
 
 namespace trilens::python {

@@ -1,5 +1,6 @@
 // Renderers: pictures and line drawings of a scene.
-#include "renderer.h"
+#include "arrays.h"
+#include "bindings.h"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -7,8 +8,6 @@
 
 #include <optional>
 
-#include "image.h"
-#include "line_arrays.h"
 #include "python_call.h"
 
 namespace trilens::python {

@@ -1,5 +1,5 @@
 // Scenes: read from files and text, and what is in them.
-#include "scene.h"
+#include "bindings.h"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

@@ -2,8 +2,8 @@
 #include <pybind11/stl.h>
 
 #include "arrays.h"
+#include "bindings.h"
 #include "python_call.h"
-#include "renderer.h"
 #include "rows.h"
 
 namespace trilens::python {

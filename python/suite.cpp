@@ -75,8 +75,8 @@ void bind_suite(py::module_& module) {
     module.def(
         "run_suite",
         [](const py::object& folders, const std::string& pattern, int jobs, bool update,
-           const std::optional<SuitePath>& junit, const std::optional<SuitePath>& html, const std::string& title,
-           const py::object& progress) {
+           const std::optional<SuitePath>& junit, const std::optional<SuitePath>& html,
+           const std::string& title, const py::object& progress) {
             SuiteRequest request;
             request.folders = folders_of(folders);
             request.pattern = pattern;

@@ -6,8 +6,8 @@
 #include <variant>
 
 #include "arrays.h"
+#include "bindings.h"
 #include "python_call.h"
-#include "scene.h"
 
 namespace trilens::python {
 namespace {

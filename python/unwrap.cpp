@@ -5,21 +5,21 @@
 #include <algorithm>
 #include <variant>
 
-#include "image.h"
+#include "arrays.h"
+#include "bindings.h"
 #include "python_call.h"
-#include "renderer.h"
 
 namespace trilens::python {
 namespace {
 
 using Name = std::optional<std::string>;
-using File = std::filesystem::path;
-using Photo = std::variant<std::shared_ptr<HeldImage>, File>;
+using PhotoFile = std::filesystem::path;
+using Photo = std::variant<std::shared_ptr<HeldImage>, PhotoFile>;
 
 UnwrapPhoto photo_from(const Photo& given) {
     if (const auto* held = std::get_if<std::shared_ptr<HeldImage>>(&given))
         return photo_of((*held)->image, "photo");
-    return read_photo(std::get<File>(given).string());
+    return read_photo(std::get<PhotoFile>(given).string());
 }
 
 std::optional<std::size_t> optic_index(const Renderer& renderer, const Name& name) {
@@ -177,7 +177,8 @@ void bind_map(RendererClass& renderer) {
         "map",
         [](const Renderer& self, const std::string& to, const std::string& way, const Name& camera,
            const std::optional<Triple>& center, const std::string& proxy, const Name& optic, const Name& path,
-           const Name& word, double tolerance, const std::optional<File>& file, const py::object& progress) {
+           const Name& word, double tolerance, const std::optional<PhotoFile>& file,
+           const py::object& progress) {
             const FilmMapRequest request =
                 map_request(self, {to, way, proxy, center, optic, path, word, camera, tolerance});
             PythonCall call(progress);
@@ -212,7 +213,7 @@ void bind_map(RendererClass& renderer) {
         "warp_mesh",
         [](const Renderer& self, const std::string& to, int columns, int rows, const Name& camera,
            double max_error, const std::optional<Triple>& center, const std::string& proxy, const Name& optic,
-           const Name& word, const std::optional<File>& file) {
+           const Name& word, const std::optional<PhotoFile>& file) {
             const FilmMapRequest request =
                 map_request(self, {to, "view", proxy, center, optic, std::nullopt, word, camera, 0.01});
             const WarpMesh mesh = PythonCall().run([&] {
@@ -263,7 +264,7 @@ void bind_anamorph(py::module_& module) {
         [](const Renderer& renderer, const Photo& picture, const std::string& page, const Name& paper,
            double dpi, const std::string& unit, double bleed,
            const std::optional<std::array<double, 4>>& window, const Name& optic, const Name& camera,
-           bool verify, const std::optional<File>& file, const py::object& progress) {
+           bool verify, const std::optional<PhotoFile>& file, const py::object& progress) {
             AnamorphRequest request;
             request.picture = picture_of(picture);
             request.page = find_mesh(renderer.scene(), page);

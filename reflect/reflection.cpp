@@ -3,7 +3,6 @@
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
-#include "reflect/mirror.h"
 
 namespace trilens {
 namespace {

@@ -1,14 +1,18 @@
-// What a camera sees through one interface: the surface grid's corners with refracted rays, as a RayMesh
-// (thesis, chapter 7).
+// Snell's law and Fresnel's equations, and a surface grid's corner rays refracted.
 #pragma once
 
+#include <optional>
 #include <span>
 
+#include "base/math/vec.h"
 #include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/surface.h"
 
 namespace trilens {
+
+// What a camera sees through one interface: the surface grid's corners with refracted rays, as a RayMesh
+// (thesis, chapter 7).
 
 /// The RayMesh of `grid` seen by `camera` through the surface alone: one refraction, after which the rays go
 /// on in the other medium. `ior`: index of the medium behind the surface's front over that before it
@@ -26,5 +30,23 @@ RayMesh make_refraction(const SurfaceGrid& grid, const LinearCamera& camera, dou
 
 /// The same for any camera, which sees each corner of the grid as `views` say.
 RayMesh make_refraction(const SurfaceGrid& grid, std::span<const CornerView> views, double ior);
+
+// Snell's law and Fresnel's equations for one ray at the interface between two dielectrics.
+
+/// The direction of the refracted ray, or none on total internal reflection. `incoming` points TO the
+/// surface, any length, which the result keeps. `unit_normal` points to the side that the ray comes from
+/// (incoming . normal <= 0); where rounding or interpolation turned it beyond grazing, the incidence counts
+/// as grazing. eta: refractive index where the ray comes from over the index where it goes.
+std::optional<Vec3> refracted(const Vec3& incoming, const Vec3& unit_normal, double eta);
+
+/// The share of unpolarised light that the interface reflects, 0..1 (1 on total internal reflection).
+/// cos_incident: cosine of the angle of incidence, 0..1; eta: refractive
+/// index where the ray comes from over the index where it goes.
+/// Source: the Fresnel equations, Born and Wolf, Principles of Optics, section 1.5.2.
+double fresnel_reflectance(double cos_incident, double eta);
+
+/// Whether no light goes through: total internal reflection, which there is only towards the thinner medium.
+/// At grazing incidence on a denser one the interface reflects all as well, but light has a way through.
+bool is_beyond_critical(double cos_incident, double eta);
 
 }  // namespace trilens

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "base/util/check.h"
-#include "surfaces/bounded_cache.h"
+#include "surfaces/memory_budget.h"
 #include "surfaces/patch_mesh.h"
 #include "surfaces/surfaces.h"
 

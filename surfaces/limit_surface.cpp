@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "surfaces/checked_cage.h"
-#include "surfaces/edge_numbers.h"
 #include "surfaces/face_hulls.h"
 #include "surfaces/limit_patches.h"
 #include "surfaces/polynomial/polynomial_bounds.h"

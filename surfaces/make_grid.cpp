@@ -1,19 +1,134 @@
 // From a surface to facets without cracks: points of shared corners and edges exist once, by topology.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <map>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "surfaces/face_hulls.h"
-#include "surfaces/lattice.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
 namespace {
+
+/// Samples of a face: the lattice of n steps per side, and on each split side the middles between them.
+///
+/// A side is split where its edge meets two sub-faces of an n-gon on the other side: they bring 2n segments
+/// to it.
+class Lattice {
+  public:
+    Lattice(FaceDomain domain, int n, const std::array<bool, 4>& split);
+
+    const std::vector<Vec2>& uv() const { return uv_; }
+    int side_count() const { return domain_ == FaceDomain::kSquare ? 4 : 3; }
+    /// The samples along side k from its first to its second corner: n + 1, or 2n + 1 where split.
+    std::vector<int> side(int k) const;
+    /// Two triangles per square, cut along its shorter diagonal in the world (a tie: from (0,0) to (1,1)); a
+    /// square on a split side is a fan around the first middle on its border. `positions`: one per sample.
+    std::vector<std::array<int, 3>> facets(const std::vector<Vec3>& positions) const;
+
+  private:
+    int at(int i, int j) const;
+    int side_at(int k, int step) const;
+    void add_square(int i, int j, const std::vector<Vec3>& positions,
+                    std::vector<std::array<int, 3>>& facets) const;
+
+    FaceDomain domain_;
+    int n_;
+    std::array<int, 4> first_middle_{-1, -1, -1, -1};  // per side: its middles' first sample; -1: not split
+    std::vector<Vec2> uv_;
+};
+
+/// A diagonal counts as shorter by at least this share of squared length, so that rounding does not decide
+/// ties.
+constexpr double kShorter = 1e-9;
+
+double squared_distance(const Vec3& a, const Vec3& b) {
+    return dot(a - b, a - b);
+}
+
+Lattice::Lattice(FaceDomain domain, int n, const std::array<bool, 4>& split) : domain_(domain), n_(n) {
+    const double steps = n;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= (domain == FaceDomain::kSquare ? n : n - j); ++i)
+            uv_.emplace_back(i / steps, j / steps);
+    for (int k = 0; k < side_count(); ++k) {
+        if (!split[static_cast<std::size_t>(k)]) continue;
+        first_middle_[static_cast<std::size_t>(k)] = static_cast<int>(uv_.size());
+        for (int step = 0; step < n; ++step)
+            uv_.push_back(0.5 * (uv_[side_at(k, step)] + uv_[side_at(k, step + 1)]));
+    }
+}
+
+int Lattice::at(int i, int j) const {
+    return domain_ == FaceDomain::kSquare ? j * (n_ + 1) + i : j * (n_ + 1) - j * (j - 1) / 2 + i;
+}
+
+int Lattice::side_at(int k, int step) const {
+    if (domain_ == FaceDomain::kTriangle)
+        return k == 0 ? at(step, 0) : k == 1 ? at(n_ - step, step) : at(0, n_ - step);
+    return k == 0 ? at(step, 0) : k == 1 ? at(n_, step) : k == 2 ? at(n_ - step, n_) : at(0, n_ - step);
+}
+
+std::vector<int> Lattice::side(int k) const {
+    std::vector<int> samples;
+    for (int step = 0; step <= n_; ++step) {
+        samples.push_back(side_at(k, step));
+        const int middles = first_middle_[static_cast<std::size_t>(k)];
+        if (middles >= 0 && step < n_) samples.push_back(middles + step);
+    }
+    return samples;
+}
+
+void Lattice::add_square(int i, int j, const std::vector<Vec3>& positions,
+                         std::vector<std::array<int, 3>>& facets) const {
+    const std::array<int, 4> corner = {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+    // Per side of the square: the middle on it, if it lies on a split side of the face.
+    const auto middle = [this](int k, bool on_border, int step) {
+        const int first = first_middle_[static_cast<std::size_t>(k)];
+        return on_border && first >= 0 ? first + step : -1;
+    };
+    const std::array<int, 4> middles = {middle(0, j == 0, i), middle(1, i == n_ - 1, j),
+                                        middle(2, j == n_ - 1, n_ - 1 - i), middle(3, i == 0, n_ - 1 - j)};
+
+    // The border of the square, begun at the point that all facets share.
+    std::vector<int> border;
+    std::size_t begin = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        border.push_back(corner[k]);
+        if (middles[k] < 0) continue;
+        if (begin == 0) begin = border.size();
+        border.push_back(middles[k]);
+    }
+    if (begin == 0) {
+        const double from_first = squared_distance(positions[corner[0]], positions[corner[2]]);
+        const double from_second = squared_distance(positions[corner[1]], positions[corner[3]]);
+        begin = from_second < from_first * (1 - kShorter) ? 1 : 0;
+    }
+    std::rotate(border.begin(), border.begin() + static_cast<std::ptrdiff_t>(begin), border.end());
+    for (std::size_t k = 1; k + 1 < border.size(); ++k)
+        facets.push_back({border[0], border[k], border[k + 1]});
+}
+
+std::vector<std::array<int, 3>> Lattice::facets(const std::vector<Vec3>& positions) const {
+    std::vector<std::array<int, 3>> facets;
+    for (int j = 0; j < n_; ++j) {
+        if (domain_ == FaceDomain::kSquare) {
+            for (int i = 0; i < n_; ++i) add_square(i, j, positions, facets);
+            continue;
+        }
+        for (int i = 0; i < n_ - j; ++i) {
+            facets.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+            if (i + 1 < n_ - j) facets.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    }
+    return facets;
+}
 
 constexpr int kMostSteps = 1024;
 
@@ -245,6 +360,35 @@ SurfaceGrid make_grid(const Surface& surface, int n) {
     for (Id f = 0; f < faces.size(); ++f) add_facets(faces[f], f, corners, grid);
     corners.finish(grid);
     return grid;
+}
+
+// How many facets a grid has, without making it.
+
+std::size_t count_facets(const Surface& surface, int n) {
+    const std::size_t side_squares = static_cast<std::size_t>(n);
+    const Id faces = static_cast<Id>(surface.face_count());
+    std::unordered_set<Id> split;  // edges that one of their faces sees as halves
+    for (Id face = 0; face < faces; ++face)
+        for (const FaceSide& side : surface.border(face).sides)
+            if (side.edge != kNone && side.part != FaceSide::Part::kWhole) split.insert(side.edge);
+
+    std::size_t count = 0;
+    for (Id face = 0; face < faces; ++face) {
+        if (surface.domain(face) == FaceDomain::kTriangle) {
+            count += side_squares * side_squares;
+            continue;
+        }
+        count += 2 * side_squares * side_squares;
+        // Each square along a whole side of a split edge has one corner more, hence one facet more.
+        for (const FaceSide& side : surface.border(face).sides)
+            if (side.part == FaceSide::Part::kWhole && split.contains(side.edge)) count += side_squares;
+    }
+    return count;
+}
+
+int resolution_within(const Surface& surface, int n, std::size_t most_facets) {
+    while (n > 1 && count_facets(surface, n) > most_facets) --n;
+    return n;
 }
 
 }  // namespace trilens

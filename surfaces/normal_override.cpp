@@ -19,10 +19,10 @@ std::uint64_t mixed(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-using Lattice = std::array<std::int64_t, 3>;
+using LatticePoint = std::array<std::int64_t, 3>;
 
 /// dot(gradient of this lattice point, offset), with Perlin's twelve gradients: the edge middles of a cube.
-double lattice_slope(const Lattice& at, std::uint64_t seed, const Vec3& offset) {
+double lattice_slope(const LatticePoint& at, std::uint64_t seed, const Vec3& offset) {
     std::uint64_t hash = mixed(seed);
     for (const std::int64_t coordinate : at) hash = mixed(hash ^ static_cast<std::uint64_t>(coordinate));
     const std::uint64_t edge = (hash >> 32) % 12;
@@ -42,14 +42,14 @@ double fade(double x) {
 /// table.
 double gradient_noise(const Vec3& position, std::uint64_t seed) {
     const Vec3 cell = glm::floor(position), inside = position - cell;
-    const Lattice base{static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
-                       static_cast<std::int64_t>(cell.z)};
+    const LatticePoint base{static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
+                            static_cast<std::int64_t>(cell.z)};
     double sum = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const std::array<int, 3> step{corner & 1, (corner >> 1) & 1, corner >> 2};
         double weight = 1;
         Vec3 offset(0);
-        Lattice at{};
+        LatticePoint at{};
         for (int k = 0; k < 3; ++k) {
             const auto axis = static_cast<std::size_t>(k);
             weight *= step[axis] ? fade(inside[k]) : 1 - fade(inside[k]);

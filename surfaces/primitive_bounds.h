@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "base/description/cage.h"
+#include "base/description/optic_description.h"
 #include "base/raymesh/surface.h"
 
 namespace trilens {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "surfaces/edge_numbers.h"
+#include "surfaces/checked_cage.h"
 
 namespace trilens {
 namespace {

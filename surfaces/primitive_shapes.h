@@ -5,7 +5,7 @@
 #include <array>
 #include <memory>
 
-#include "base/description/cage.h"
+#include "base/description/optic_description.h"
 #include "base/raymesh/surface.h"
 
 namespace trilens {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "base/description/cage.h"
+#include "base/description/optic_description.h"
 #include "base/math/box.h"
 #include "base/raymesh/surface.h"
 #include "base/util/progress.h"
-#include "surfaces/machine_memory.h"
+#include "surfaces/memory_budget.h"
 
 namespace trilens {
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "intersect/embree_device.h"
 

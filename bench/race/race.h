@@ -1,12 +1,15 @@
 // One race: the projector against Embree's packets, on the same interpolated rays in the same run.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"
+#include "base/util/progress.h"
 
 namespace trilens_bench {
 
@@ -68,5 +71,24 @@ struct RaceCourse {
 /// sides does not have and for less than one repeat, InputError where scene, grid and views do not fit
 /// together.
 RaceResult race(const RaceCourse& course, const RaceParams& params);
+
+// What is timed, and how several times make one.
+
+using namespace trilens;
+
+/// How long work() takes, in milliseconds.
+template <typename Work>
+double milliseconds(const Work& work) {
+    const Stopwatch watch;
+    work();
+    return 1000 * watch.seconds();
+}
+
+/// The middle one by size, the upper of two; `values` is not empty.
+inline double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 }  // namespace trilens_bench

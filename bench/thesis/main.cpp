@@ -7,7 +7,6 @@
 
 #include "thesis/scene_file.h"
 #include "thesis/search.h"
-#include "thesis/two_facets.h"
 
 namespace {
 

@@ -1,14 +1,29 @@
-// Writes a thesis scene: an explicit RayMesh camera and the triangles that it looks at.
+// Writes a thesis scene: an explicit RayMesh camera and the triangles that it looks at; two facets that share
+// an edge, and a triangle across it whose straight edges do not meet there (Vallance 2005, figure 5.1).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "thesis/configuration.h"
-#include "thesis/two_facets.h"
+#include "thesis/search.h"
 
 namespace trilens {
+
+// Two facets that share an edge, and a scene triangle across it whose straight edges do not meet there
+// (Vallance 2005, figure 5.1).
+
+/// Corners 0, 1, 2, 3 of a square on the screen, clockwise from its top left; facets (0, 1, 2) and (0, 2, 3).
+struct TwoFacets {
+    std::array<Ray, 4> corner;
+    SceneTriangle triangle;
+    double gap =
+        0;  // how far the straight edges miss one another on the shared edge, as a share of its length
+};
+
+/// Seeks a clear discontinuity; the same for the same seed.
+TwoFacets search_discontinuity(std::uint64_t seed);
 
 /// What a file says of its origin.
 struct Origin {

@@ -1,5 +1,5 @@
-// Everything that the command does, from a program of one's own: builds a scene in memory, draws it by projection and
-// by ray tracing, compares, projects a point, sweeps. Usage: consumer FOLDER
+// Everything that the command does, from a program of one's own: builds a scene in memory, draws it by
+// projection and by ray tracing, compares, projects a point, sweeps. Usage: consumer FOLDER
 #include <trilens/trilens.h>
 
 #include <cstdio>
@@ -60,19 +60,22 @@ int main(int argc, char** argv) try {
     trilens::write_image(folder + "/projected.exr", projected.image);
     trilens::write_image(folder + "/projected.png", projected.image);
     const trilens::Image back = trilens::read_image(folder + "/projected.exr");
-    good &= check(back.find("R")->floats() == projected.image.find("R")->floats(), "an image reads back as written");
+    good &= check(back.find("R")->floats() == projected.image.find("R")->floats(),
+                  "an image reads back as written");
 
-    const std::vector<trilens::LayerComparison> layers = trilens::compare_layers(truth.image, projected.image);
+    const std::vector<trilens::LayerComparison> layers =
+        trilens::compare_layers(truth.image, projected.image);
     const trilens::Displacement moved = trilens::total_displacement(layers, "reflect");
     good &= check(moved.summary && moved.summary->mean < 0.1,
                   "the projection is within a tenth of a pixel of the truth");
 
     const std::vector<trilens::Vec3> points{{0.5, -1, 2}};
     const trilens::PointProjection where = renderer.project(points)[0];
-    good &= check(where.complete && where.images.size() == 2, "a point of the floor has a direct and a mirrored image");
+    good &= check(where.complete && where.images.size() == 2,
+                  "a point of the floor has a direct and a mirrored image");
 
     const trilens::PixelExplanation pixel = renderer.explain(request, 80, 60);
-    good &= check(pixel.view().optic == 0, "the middle of the picture shows the ball");
+    good &= check(pixel.optic == 0, "the middle of the picture shows the ball");
     good &= check(renderer.draw_lines({}).svg.find("<svg") != std::string::npos, "lines are drawn");
 
     trilens::Scene broken = make_scene();

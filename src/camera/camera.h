@@ -1,6 +1,9 @@
-// A camera: its exact rays, its linear map where it has one, and its RayMesh.
+// A camera: its exact rays, its linear map where it has one, and its RayMesh; what its facets, or those of a
+// mirror, are among the general linear cameras.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -9,7 +12,7 @@
 #include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
 #include "camera/model/camera_model.h"
-#include "camera/model/film_axes.h"
+#include "camera/model/general_linear.h"
 
 namespace trilens {
 
@@ -39,5 +42,25 @@ std::optional<Ray> exact_ray(const Camera& camera, const Vec2& at);
 /// one that lies beyond the film is listed only where it is the only one. t counts from the eye or from where
 /// parallel rays start. Empty for a rayMesh camera, whose images are found facet by facet.
 std::vector<FilmImage> film_positions(const Camera& camera, const Vec3& point);
+
+// What the facets of a camera, or of a mirror, are among the general linear cameras.
+
+/// The kind that a facet's three corner rays make between planes across `axis` (world frame, any length), or,
+/// where that is zero or one of the rays does not go its way, across the mean of their unit directions. None
+/// where the facet has no rays, two of them are one, or they go opposite ways. Throws
+/// InputError (place "facet") for a facet that the mesh does not have, or whose corners it does not have.
+std::optional<GeneralLinearKind> facet_kind(const RayMesh& mesh, std::size_t facet, const Vec3& axis = {});
+
+/// How many facets of a mesh are of which kind. What counts them throws InputError as check_ray_mesh does.
+struct FacetKinds {
+    std::array<std::size_t, kGeneralLinearKindCount> of_kind{};  // by GeneralLinearKind
+    std::size_t without = 0;                                     // of no kind
+
+    std::size_t count(GeneralLinearKind kind) const { return of_kind[static_cast<std::size_t>(kind)]; }
+};
+FacetKinds facet_kinds(const RayMesh& mesh, const Vec3& axis = {});
+
+/// Of a camera's own facets, across its view axis.
+FacetKinds facet_kinds(const Camera& camera);
 
 }  // namespace trilens

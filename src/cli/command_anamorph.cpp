@@ -7,10 +7,10 @@
 #include <sstream>
 
 #include "cli/commands.h"
-#include "cli/print/output.h"
+#include "cli/print/pictures.h"
 #include "cli/scene_options.h"
 #include "cli/target_options.h"
-#include "terminal/format.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 namespace {

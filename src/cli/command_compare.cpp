@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "cli/print/comparison.h"
-#include "terminal/format.h"
+#include "terminal/libraries.h"
 #include "terminal/option.h"
 
 namespace trilens {

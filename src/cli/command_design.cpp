@@ -7,8 +7,8 @@
 #include <span>
 
 #include "cli/commands.h"
-#include "cli/print/output.h"
-#include "terminal/format.h"
+#include "cli/print/pictures.h"
+#include "terminal/libraries.h"
 #include "terminal/option.h"
 
 namespace trilens {

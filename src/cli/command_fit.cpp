@@ -9,9 +9,9 @@
 
 #include "cli/commands.h"
 #include "cli/print/fits.h"
-#include "cli/print/output.h"
+#include "cli/print/pictures.h"
 #include "cli/scene_options.h"
-#include "terminal/format.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 namespace {

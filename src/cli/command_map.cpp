@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/print/output.h"
+#include "cli/print/pictures.h"
 #include "cli/scene_options.h"
 #include "cli/target_options.h"
-#include "terminal/format.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 namespace {

@@ -7,7 +7,7 @@
 #include "cli/commands.h"
 #include "cli/print/shots.h"
 #include "cli/scene_options.h"
-#include "terminal/format.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 namespace {

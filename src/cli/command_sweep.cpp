@@ -1,7 +1,10 @@
 // trilens sweep: error against resolution or any other setting, for one scene or for a gallery of scenes.
+#include <trilens/files.h>
 #include <trilens/stopwatch.h>
 #include <trilens/sweep.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <optional>
 
 #include "cli/commands.h"
@@ -83,6 +86,186 @@ Command sweep_command() {
     for (Command& command : sweep_folder_commands()) sweep.commands.push_back(std::move(command));
     sweep.commands.push_back(sweep_submit_command());
     return sweep;
+}
+
+// What is done with the folders of sweeps: status, report, merge; and the schema of what they hold.
+
+namespace {
+
+struct MergeOptions {
+    std::vector<std::string> parts;
+    std::string output;
+};
+
+/// The folder itself, or those below it where a sweep of several scenes made it; in the order of their names.
+std::vector<std::string> sweeps_in(const std::string& folder) {
+    namespace fs = std::filesystem;
+    std::error_code none;
+    std::vector<std::string> found;
+    if (!fs::exists(folder + "/manifest.json", none))
+        for (fs::directory_iterator entry(folder, none), end; !none && entry != end; entry.increment(none))
+            if (fs::exists(entry->path() / "manifest.json", none)) found.push_back(entry->path().string());
+    std::sort(found.begin(), found.end());
+    // Nothing there: the sweep's own message says so.
+    return found.empty() ? std::vector<std::string>{folder} : found;
+}
+
+Answer status(const std::string& folder) {
+    std::vector<SweepSummary> summaries;
+    for (const std::string& one : sweeps_in(folder)) summaries.push_back(load_sweep(one));
+    return status_answer(summaries, folder, left_out_of_gallery(folder));
+}
+
+Answer merge(const MergeOptions& options, Console& console) {
+    const std::size_t copied = merge_folders(options.parts, options.output, console.progress("merge"));
+    Answer answer = answer_of({report_sweep(options.output)}, options.output + "/report.html");
+    answer.fields["copied"] = copied;
+    answer.is_report = true;
+    return answer;
+}
+
+Answer report(const std::string& folder) {
+    std::vector<SweepSummary> summaries;
+    for (const std::string& one : sweeps_in(folder)) summaries.push_back(report_sweep(one));
+    const std::vector<LeftOutScene> left_out = left_out_of_gallery(folder);
+    if (summaries.front().folder != folder) write_sweep_gallery(folder, summaries);
+    return answer_of(summaries, folder + "/report.html", left_out);
+}
+
+Command folder_command(const std::string& name, const std::string& summary,
+                       Answer (*body)(const std::string& folder)) {
+    auto folder = std::make_shared<std::string>();
+    return {.name = name,
+            .summary = summary,
+            .options = {{.names = "DIR",
+                         .target = folder.get(),
+                         .help = "the sweep's folder",
+                         .offer = Offer::kFolder,
+                         .is_required = true}},
+            .schema = "sweep",
+            .body = [folder, body](Console&) { return body(*folder); }};
+}
+
+}  // namespace
+
+std::vector<Command> sweep_folder_commands() {
+    auto merged = std::make_shared<MergeOptions>();
+    Command join{.name = "merge",
+                 .summary = "join folders of one sweep from several machines, then report",
+                 .options = {{.names = "DIRS",
+                              .target = &merged->parts,
+                              .help = "the parts' folders",
+                              .offer = Offer::kFolder,
+                              .is_required = true},
+                             {.names = "-o,--output",
+                              .target = &merged->output,
+                              .help = "folder for all of it; what it holds of the sweep stays",
+                              .value = "DIR",
+                              .offer = Offer::kFolder,
+                              .is_required = true}},
+                 .schema = "sweep"};
+    join.body = [merged](Console& console) { return merge(*merged, console); };
+    Command schema{.name = "schema", .summary = "the JSON Schema of summary.json", .schema = "sweep"};
+    schema.body = [](Console&) {
+        Answer answer;
+        answer.text = summary_schema();
+        answer.fields["summary"] = summary_schema();
+        return answer;
+    };
+    return {folder_command("status", "what is done of a sweep", status),
+            folder_command("report", "sum up again: tables, fits, plots, page", report), std::move(join),
+            std::move(schema)};
+}
+
+Command report_command() {
+    return folder_command("report", "make the tables, plots and page of a results folder again", report);
+}
+
+// trilens sweep submit: the runs of a sweep as the job array of a batch system.
+
+namespace {
+
+struct SubmitOptions {
+    SweepOptions sweep;
+    std::string system = "slurm";
+    int parts = 0;  // 0: as many as runs
+    bool prints = false;
+};
+
+std::string absolute(const std::string& file) {
+    return std::filesystem::absolute(file).lexically_normal().string();
+}
+
+/// The options with files that are found from anywhere.
+SweepOptions from_anywhere(SweepOptions options) {
+    for (std::string& scene : options.scenes) scene = absolute(scene);
+    for (std::string& over : options.over) {
+        if (over.rfind("scene=", 0) != 0) continue;
+        std::string longer;
+        for (const std::string& file : parse_over(over).values)
+            longer += (longer.empty() ? "scene=" : ",") + absolute(file);
+        over = longer;
+    }
+    options.output = absolute(options.output);
+    return options;
+}
+
+/// Writes the plan, and a script that hands it to a batch system: on standard output, or into the folder.
+Answer submit(const SubmitOptions& given, Console& console) {
+    const SweepOptions options = from_anywhere(given.sweep);
+    const std::vector<SweepRequest> requests = sweep_requests(options);
+    if (requests.size() > 1)
+        throw UsageError("a gallery of scenes is several sweeps: submit each, or sweep over scene=A,B");
+    plan_sweep(requests[0], sweep_talk(console));
+    const SweepSummary planned = load_sweep(options.output);
+    FarmRequest farm;
+    farm.system = given.system;
+    farm.parts = given.parts > 0 ? given.parts : static_cast<int>(planned.runs.size());
+    farm.title = planned.manifest.subject.title;
+    farm.folder = options.output;
+    farm.command = command_words(options, options.scenes.empty() ? "" : options.scenes[0]);
+    // The program itself: a farm's machines have another search path.
+    std::error_code none;
+    const std::string program = std::filesystem::read_symlink("/proc/self/exe", none).string();
+    if (!none) farm.command[0] = program;
+    farm.report = {farm.command[0], "sweep", "report", options.output};
+    const std::string script = farm_script(farm);
+    Answer answer;
+    answer.fields["system"] = farm.system;
+    answer.fields["parts"] = farm.parts;
+    answer.fields["script"] = script;
+    if (given.prints) {
+        answer.text = script;
+        return answer;
+    }
+    const std::string file = options.output + (farm.system == "htcondor" ? "/submit.sub" : "/submit.sh");
+    replace_text_file(file, script);
+    answer.text = file + "\n";
+    answer.fields["file"] = file;
+    return answer;
+}
+
+}  // namespace
+
+Command sweep_submit_command() {
+    auto submitted = std::make_shared<SubmitOptions>();
+    Command farm{.name = "submit",
+                 .summary = "write the plan and a script for a batch system: Slurm, HTCondor, GNU parallel",
+                 .options = joined({sweep_options(submitted->sweep),
+                                    {{.names = "--system",
+                                      .target = &submitted->system,
+                                      .help = "the batch system",
+                                      .choices = farm_systems()},
+                                     {.names = "--parts",
+                                      .target = &submitted->parts,
+                                      .help = "jobs of the array; default: one per run",
+                                      .range = {1, 1000000}},
+                                     {.names = "--print",
+                                      .target = &submitted->prints,
+                                      .help = "print the script; else it is written into the folder"}}}),
+                 .schema = "sweep"};
+    farm.body = [submitted](Console& console) { return submit(*submitted, console); };
+    return farm;
 }
 
 }  // namespace trilens

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/print/tests.h"
-#include "terminal/format.h"
+#include "cli/print/comparison.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 namespace {

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/print/output.h"
+#include "cli/print/pictures.h"
 #include "cli/scene_options.h"
 #include "cli/target_options.h"
-#include "terminal/format.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 namespace {

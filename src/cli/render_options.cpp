@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "terminal/format.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 

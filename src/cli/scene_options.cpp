@@ -7,7 +7,7 @@
 #include <iostream>
 #include <iterator>
 
-#include "terminal/format.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 namespace {

@@ -9,8 +9,8 @@
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/surface.h"
 #include "base/raymesh/triangle_scene.h"
-#include "camera/linear/perspective.h"
-#include "trilinear/points/mesh_point_images.h"
+#include "camera/linear/linear_cameras.h"
+#include "trilinear/points/point_images.h"
 
 namespace trilens {
 

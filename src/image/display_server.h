@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/image/image.h"
-#include "base/image/strip_sink.h"
 #include "base/util/progress.h"
 
 namespace trilens {

@@ -1,8 +1,12 @@
-// One block of scan lines as OpenEXR's zip keeps it: bytes sorted, differences taken, deflated.
+// One block of scan lines as OpenEXR's zip keeps it: bytes sorted, differences taken, deflated; and whole
+// files of such blocks read by many threads at once.
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
+
+#include "base/image/image.h"
 
 namespace trilens {
 
@@ -21,5 +25,12 @@ std::vector<unsigned char> zip_block(std::span<const BlockValues> channels, int 
 /// block's values. False where `packed` is damaged; what the channels hold is then undefined.
 bool unzip_block(std::span<unsigned char> packed, std::span<unsigned char* const> channels, int rows,
                  int columns);
+
+// The usual kind of file read by many threads at once: scan lines under zip, four bytes a value.
+
+/// Fills the channels of `image`, whose data window and channels by name and type are those of the file's
+/// only part. False where the file is of another kind, or anything in it is not as it should be: the caller
+/// reads it then in the library's way, which says why.
+bool read_zipped(const std::string& file, Image& image);
 
 }  // namespace trilens

@@ -11,18 +11,24 @@
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
+#include <strings.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <set>
+#include <span>
+#include <string_view>
+#include <tuple>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "image/exr_channels.h"
-#include "image/exr_unzip.h"
+#include "image/exr_chunk.h"
+#include "image/image_io.h"
 #include "image/picture_library.h"
 
 namespace trilens {
@@ -219,6 +225,94 @@ Image ExrFile::read(int part) {
     } catch (const std::exception& error) {
         state_->damaged(error.what());
     }
+}
+
+namespace {
+
+constexpr const char* kColourFirst[] = {"R",    "Red",  "G",  "Green", "B",     "Blue", "Y",
+                                        "real", "imag", "A",  "Alpha", "AR",    "RA",   "AG",
+                                        "GA",   "AB",   "BA", "Z",     "Depth", "Zback"};
+constexpr const char* kWithPlace[] = {"R",  "Red", "G",    "Green", "B",  "Blue",  "X",
+                                      "Y",  "Z",   "real", "imag",  "A",  "Alpha", "AR",
+                                      "RA", "AG",  "GA",   "AB",    "BA", "Depth", "Zback"};
+
+struct Name {
+    std::string layer, last;
+};
+
+Name split(const std::string& name) {
+    const std::size_t dot = name.rfind('.');
+    return dot == std::string::npos ? Name{"", name} : Name{name.substr(0, dot + 1), name.substr(dot + 1)};
+}
+
+bool same(const std::string& a, const char* b) {
+    return strcasecmp(a.c_str(), b) == 0;
+}
+
+std::size_t rank(const std::string& last, std::span<const char* const> usual) {
+    for (std::size_t i = 0; i < usual.size(); ++i)
+        if (same(last, usual[i])) return i;
+    return usual.size();
+}
+
+}  // namespace
+
+std::vector<std::string> in_layers(std::vector<std::string> names) {
+    const std::vector<std::string> all = names;
+    const auto has = [&](const std::string& layer, const char* last) {
+        return std::any_of(all.begin(), all.end(), [&](const std::string& name) {
+            const Name one = split(name);
+            return one.layer == layer && same(one.last, last);
+        });
+    };
+    const auto key = [&](const std::string& name) {
+        const Name one = split(name);
+        const bool place = has(one.layer, "X") && (has(one.layer, "Y") || has(one.layer, "Z"));
+        return std::tuple(one.layer, place ? rank(one.last, kWithPlace) : rank(one.last, kColourFirst),
+                          one.last);
+    };
+    std::sort(names.begin(), names.end(),
+              [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
+    return names;
+}
+
+// OpenEXR files as Images, strictly.
+
+namespace {
+
+Image read_part(ExrFile& in, int part, const std::string& file) {
+    const ExrWindows shape = in.windows(part);
+    if (shape.display_x != 0 || shape.display_y != 0)
+        throw InputError(file, "", "its display window does not start at (0, 0)");
+    return in.read(part);
+}
+
+}  // namespace
+
+Image read_exr(const std::string& file) {
+    ExrFile in(file);
+    if (in.parts() > 1) throw InputError(file, "", "has more than one part");
+    return read_part(in, 0, file);
+}
+
+std::vector<std::pair<std::string, Image>> read_exr_parts(const std::string& file) {
+    ExrFile in(file);
+    std::vector<std::pair<std::string, Image>> parts;
+    std::set<std::string> names;
+    for (int part = 0; part < in.parts(); ++part) {
+        const std::string name = in.part_name(part);
+        if (!names.insert(name).second) throw InputError(file, "", "has two parts called \"" + name + "\"");
+        parts.emplace_back(name, read_part(in, part, file));
+    }
+    return parts;
+}
+
+bool is_exr_file(const std::string& file) {
+    if (readable_size(file) < 4) return false;
+    std::ifstream in(file, std::ios::binary);
+    char start[4] = "";
+    in.read(start, sizeof start);
+    return in && std::string_view(start, sizeof start) == "\x76\x2f\x31\x01";
 }
 
 }  // namespace trilens

@@ -1,4 +1,5 @@
-// An OpenEXR file that is open for reading, part by part.
+// An OpenEXR file that is open for reading, part by part, its channels in the order in which they are
+// presented.
 #pragma once
 
 #include <memory>
@@ -42,5 +43,12 @@ class ExrFile {
     struct State;
     std::unique_ptr<State> state_;
 };
+
+// In which order the channels of an OpenEXR file are presented.
+
+/// The same names, layer by layer (what stands before the last dot); in a layer R G B, then where it has an
+/// X beside a Y or a Z these three, then A Z, then all others by name. Where it has no such X, A and Z come
+/// after B and Y. Long and other usual names (Red, Alpha, Depth ...) stand with the short ones.
+std::vector<std::string> in_layers(std::vector<std::string> names);
 
 }  // namespace trilens

@@ -11,10 +11,12 @@
 #include <set>
 #include <span>
 
+#include "base/files/files.h"
 #include "base/util/check.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "image/exr_chunk.h"
+#include "image/image_io.h"
 #include "image/picture_library.h"
 
 namespace trilens {
@@ -290,6 +292,33 @@ std::vector<unsigned char> ExrStrips::finish() {
     state_->require(exr_finish(&state_->exr));
     state_->sink.flush();
     return std::move(state_->sink.file);
+}
+
+// Images as whole OpenEXR files.
+
+namespace {
+
+std::vector<unsigned char> encode(const std::string& name, const Image& image, ExrStrips::Writer writer) {
+    for (const Channel& channel : image.channels) {
+        const std::size_t size = channel.is_id() ? channel.ids().size() : channel.floats().size();
+        TRILENS_CHECK(size == image.pixels(), "a channel has one value per pixel of the data window");
+    }
+    ExrStrips strips(name, image, std::move(writer));
+    strips.add(image.channels, 0, image.data_height);
+    return strips.finish();
+}
+
+}  // namespace
+
+std::vector<unsigned char> encode_exr(const std::string& name, const Image& image) {
+    return encode(name, image, nullptr);
+}
+
+void write_exr(const std::string& file, const Image& image) {
+    NewFile made(file);
+    encode(file, image,
+           [&](std::uint64_t at, std::span<const unsigned char> bytes) { made.write(at, bytes); });
+    made.commit();
 }
 
 }  // namespace trilens

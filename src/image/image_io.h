@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/description/texture.h"
+#include "base/description/material.h"
 #include "base/image/image.h"
 
 namespace trilens {

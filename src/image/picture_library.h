@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/description/texture.h"
+#include "base/description/material.h"
 
 namespace trilens {
 

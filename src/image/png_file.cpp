@@ -9,7 +9,7 @@
 #include <new>
 #include <string_view>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "image/tone.h"
 #include "image/zlib_stream.h"

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/description/texture.h"
+#include "base/description/material.h"
 
 namespace trilens {
 

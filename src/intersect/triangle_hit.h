@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "base/math/vec.h"
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 
 namespace trilens {
 

@@ -12,7 +12,7 @@
 #include <optional>
 #include <string_view>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/version.h"
 #include "image/picture_library.h"

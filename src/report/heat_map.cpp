@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "report/plot_scale.h"
+#include "report/plot_style.h"
 #include "report/text.h"
 
 namespace trilens {

@@ -4,9 +4,13 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace trilens {
+
+/// Names with their values, in the order in which a page has them.
+using Facts = std::vector<std::pair<std::string, std::string>>;
 
 /// The shortest decimal text that reads back as the same double; "nan", "inf", "-inf".
 std::string shortest_text(double value);

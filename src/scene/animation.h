@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "scene/data/scene.h"
-#include "scene/data/scene_override.h"
-#include "scene/data/texture_reader.h"
+#include "scene/data/scene_inputs.h"
 
 namespace trilens {
 
@@ -37,5 +37,15 @@ Scene load_frame(const Scene& scene, double frame, std::span<const SceneOverride
 /// seen against the axis. Throws UsageError for a camera that there is not or whose rays do not all go with
 /// its lookAt, and for less than one frame.
 std::vector<SceneOverride> turntable(const Scene& scene, std::size_t camera, int frame, int frames);
+
+inline constexpr int kMostFrames = 100'000;
+
+/// The frames of "A..B" or "A", ascending or descending as they are named. Throws UsageError for a text that
+/// names none, or more than kMostFrames.
+std::vector<int> parse_frames(const std::string& text);
+
+/// The output's name for a frame: its run of # becomes the number, with zeros before it. Throws UsageError
+/// where the name has no #, or several runs of them.
+std::string frame_file(const std::string& output, int frame);
 
 }  // namespace trilens

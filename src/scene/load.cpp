@@ -4,12 +4,13 @@
 #include <filesystem>
 #include <set>
 
+#include "base/util/error.h"
+#include "base/util/names.h"
+#include "json/json.h"
+#include "json/schema.h"
 #include "scene/animation/animation_keys.h"
-#include "scene/json/files.h"
-#include "scene/json/json_check.h"
 #include "scene/read/override.h"
 #include "scene/read/reading.h"
-#include "scene/read/scene_fields.h"
 
 namespace trilens {
 namespace {
@@ -119,6 +120,28 @@ Scene load_scene(const std::string& file, std::span<const SceneOverride> overrid
     Scene scene = load_scene_text(text, SceneSource(file), overrides, textures);
     scene.files.insert(scene.files.begin(), make_file_read(file, text));
     return scene;
+}
+
+void set_resolution(Scene& scene, int resolution, const std::string& optic) {
+    if (resolution < 1 || resolution > kMaxResolution)
+        throw InputError(scene_title(scene), "/meshes",
+                         "a resolution of " + std::to_string(resolution) + " is not in 1.." +
+                             std::to_string(kMaxResolution));
+    std::vector<std::size_t> meant;
+    std::vector<std::string> names;
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        if (scene.meshes[m].role != Role::kOptic) continue;
+        names.push_back(scene.meshes[m].name);
+        if (optic.empty() || names.back() == optic) meant.push_back(m);
+    }
+    if (meant.empty() && !optic.empty())
+        throw UsageError("there is no optic \"" + optic + "\"" + suggestion(optic, names));
+    Json resolved;
+    if (!scene.resolved.empty()) resolved = resolved_json(scene);
+    for (const std::size_t m : meant) scene.meshes[m].resolution = resolution;
+    if (scene.resolved.empty() || scene.meshes.empty()) return;
+    for (const std::size_t m : meant) resolved["meshes"][m]["resolution"] = resolution;
+    scene.resolved = resolved.dump();
 }
 
 }  // namespace trilens

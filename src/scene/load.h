@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "scene/data/scene.h"
-#include "scene/data/scene_override.h"
-#include "scene/data/texture_reader.h"
+#include "scene/data/scene_inputs.h"
 #include "scene/read/scene_schema.h"
 
 namespace trilens {
@@ -32,5 +31,10 @@ struct SceneSource {
 /// The same from text in memory, as an image's header holds it: Scene::files lacks the scene file itself.
 Scene load_scene_text(const std::string& text, const SceneSource& source,
                       std::span<const SceneOverride> overrides, const TextureReader& textures);
+
+/// Gives every optic this resolution, or with a name those of that name, in the scene and in its resolved
+/// JSON. Throws InputError unless it is in 1..1024, or where Scene::resolved is no scene's JSON, UsageError
+/// where no optic has the name; then nothing has changed.
+void set_resolution(Scene& scene, int resolution, const std::string& optic = "");
 
 }  // namespace trilens

@@ -4,9 +4,9 @@
 #include <charconv>
 #include <memory>
 
-#include "base/description/texture.h"
+#include "base/description/material.h"
 #include "base/util/format.h"
-#include "scene/json/json_check.h"
+#include "json/schema.h"
 #include "scene/load.h"
 #include "scene/read/override.h"
 #include "scene/read/reading.h"

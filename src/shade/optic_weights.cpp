@@ -1,6 +1,6 @@
 #include "shade/optic_weights.h"
 
-#include "refract/dielectric.h"
+#include "refract/refraction.h"
 #include "shade/shade.h"
 
 namespace trilens {

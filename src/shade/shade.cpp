@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 
 namespace trilens {
 namespace {
@@ -17,10 +17,10 @@ struct Frame {
     bool smooth = false;  // whether `normal` comes from the mesh's corner normals
 };
 
-/// Where the smooth surface that the corner normals promise runs over a point of the triangle: the point's
-/// projections onto the corners' tangent planes, averaged by its weights. Corners whose tangent plane it is
-/// already in front of leave it where it is, so a hollow surface stays as it is.
-/// Source: Hanika, Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4, 2021.
+/// Where the smooth surface that the corner normals promise runs over a point of the triangle: the
+/// point's projections onto the corners' tangent planes, averaged by its weights. Corners whose tangent
+/// plane it is already in front of leave it where it is, so a hollow surface stays as it is. Source:
+/// Hanika, Hacking the Shadow Terminator, Ray Tracing Gems II, chapter 4, 2021.
 Vec3 lifted_to_tangent_planes(const Vec3& point, const std::array<Vec3, 3>& corner,
                               const std::array<Vec3, 3>& normal, const Vec3& weights) {
     Vec3 lifted = point;
@@ -76,8 +76,8 @@ Vec3 light_arriving(const ShadeScene& scene, const Light& light, const Frame& fr
     const double cosine = dot(frame.normal, toward_light);
     if (cosine <= 0) return Vec3(0);
     if (light.shadows && scene.occluded) {
-        // Light that arrives from behind a flat triangle is in the triangle's own shadow. On a smooth one it
-        // may still pass over the surface that the triangle stands for.
+        // Light that arrives from behind a flat triangle is in the triangle's own shadow. On a smooth one
+        // it may still pass over the surface that the triangle stands for.
         if (!frame.smooth && dot(frame.geometric_normal, toward_light) <= 0) return Vec3(0);
         Segments segment;
         segment.add(frame.shadow_start, target - frame.shadow_start);

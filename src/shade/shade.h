@@ -10,7 +10,7 @@
 
 #include "base/description/light.h"
 #include "base/description/material.h"
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/segments.h"
 #include "base/raymesh/triangle_scene.h"
 #include "shade/texture_filter.h"

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "base/description/texture.h"
+#include "base/description/material.h"
 #include "base/math/vec.h"
-#include "base/util/lazy.h"
+#include "base/util/parallel.h"
 
 namespace trilens {
 
@@ -38,10 +38,10 @@ using Footprint = std::array<Vec2, 2>;
 Vec3 lookup(const Texture& texture, const TextureSampler& wrap, const Vec2& place);
 
 /// The mean of the picture over a footprint, whose sides are in units of `place`: the rectangle that the
-/// pixel's square becomes when it is turned until its image has right angles, seen at the coarsest level whose
-/// texels are no wider than it, at places a texel apart. One that is more than 32 times as long as wide is
-/// widened. Sides of less than half a texel are points. Against OpenImageIO's anisotropic look-ups, see the
-/// tests: a third of their error, in half of their time.
+/// pixel's square becomes when it is turned until its image has right angles, seen at the coarsest level
+/// whose texels are no wider than it, at places a texel apart. One that is more than 32 times as long as wide
+/// is widened. Sides of less than half a texel are points. Against OpenImageIO's anisotropic look-ups, see
+/// the tests: a third of their error, in half of their time.
 Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, const Footprint& footprint);
 
 /// Bilinear look-up of a latitude-longitude picture: the middle column is -Z, the right half +X, the top row

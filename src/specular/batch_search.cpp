@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "base/math/spatial_split.h"
+#include "base/math/box.h"
 #include "specular/point_packet.h"
 
 namespace trilens {

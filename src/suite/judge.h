@@ -1,4 +1,5 @@
-// A picture held against a reference by the rules of a test.
+// A picture held against a reference by the rules of a test, and what every layer keeps to where it names no
+// limits.
 #pragma once
 
 #include <optional>
@@ -32,5 +33,28 @@ Judgement judge(const RenderTest& test, const Image& reference, std::vector<Test
 
 /// "rmse 0.01, rgb_flip 0.02, displacement_p95 0.3, lost_percent 0.1": the numbers that say most.
 std::string metrics_text(const std::vector<NamedMetric>& metrics);
+
+// What every layer of a picture keeps to where a test names no limits.
+
+/// Pixels of a layer that may be off: rounding on another machine may move an edge.
+inline constexpr double kLayerPixelsOff = 0.001;  // share of all
+/// By how much a value may differ before its pixel is off.
+inline constexpr double kColourOff = 0.004;    // R, G, B, A
+inline constexpr double kPositionOff = 1e-4;   // X, Y, Z of a point: of the layer's largest coordinate
+inline constexpr double kParameterOff = 1e-4;  // U, V
+inline constexpr double kOtherOff = 1e-3;  // of the value itself: depths, lengths, all others. Ids are equal
+
+/// The rules broken by layers that both images have, one sentence for each layer: more pixels off than
+/// kLayerPixelsOff. Two values that are no number count as equal.
+std::vector<std::string> broken_layers(const CommonChannels& images);
+
+/// One sentence for each layer of which only one image has channels, with their names.
+std::vector<std::string> missing_layers(const CommonChannels& images);
+
+/// "reflectP" of "reflectP.X"; a channel without a layer is its own.
+std::string layer_of(const std::string& channel);
+
+/// "reflectP (reflectP.X, reflectP.Y)" for each layer of the channels.
+std::vector<std::string> layers_of(const std::vector<std::string>& channels);
 
 }  // namespace trilens

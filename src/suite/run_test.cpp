@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "base/util/progress.h"

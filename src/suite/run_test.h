@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "report/pictures.h"
-#include "suite/find_tests.h"
 #include "suite/suite.h"
 
 namespace trilens {

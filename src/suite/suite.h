@@ -1,16 +1,62 @@
-// Regression suites: tests found in folders, run, and reported as JUnit and HTML.
+// Regression suites: tests found in folders, run, and reported as JUnit XML, the way CI services read them,
+// and HTML.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "base/image/image.h"
 #include "base/util/progress.h"
+#include "measure/limits.h"
 #include "suite/render_test.h"
-#include "suite/results.h"
 
 namespace trilens {
+
+// Results of a suite of regression tests, and as JUnit XML, the way CI services read them.
+
+enum class TestState {
+    kPassed,
+    kFailed,  // a tolerance was exceeded, or the stored picture is missing
+    kError,   // the test could not be run
+    kSkipped  // not for this platform, or not reached before an interruption
+};
+
+/// "passed", "failed", "error", "skipped".
+std::string test_state_name(TestState state);
+
+/// The numbers of one comparison of the picture.
+struct TestComparison {
+    std::string against;  // "golden", "truth", "facets"
+    std::vector<NamedMetric> metrics;
+};
+
+struct TestResult {
+    std::string name, folder, about;
+    std::vector<std::string> tags;
+    TestState state = TestState::kPassed;
+    std::vector<std::string>
+        reasons;  // one for each threshold that was exceeded; else what went wrong, or why skipped
+    std::vector<std::string> notes;  // what the scene, or a comparison of fewer channels, leaves out
+    std::string update;  // what became of the stored picture: "unchanged", "new", "changed: ..."; empty: it
+                         // was not asked for, or the test has none of its own
+    std::vector<TestComparison> comparisons;
+    double seconds = 0;
+};
+
+struct SuiteResult {
+    std::vector<TestResult> tests;
+    double seconds = 0;
+
+    std::size_t count(TestState state) const;
+};
+
+/// One `testsuite` with one `testcase` per test: `failure`, `error` or `skipped` with the reasons,
+/// `system-out` with notes and with what became of the reference. A class is the folder part of the name.
+std::string junit_xml(const SuiteResult& result, const std::string& title);
+
+// Regression suites: tests found in folders, run, and reported as JUnit and HTML.
 
 /// A test's scene, ready to be drawn.
 struct SuiteScene {
@@ -42,5 +88,36 @@ struct SuiteParams {
 /// OutputError where the JUnit file or the page cannot be written, and Interrupted once params.progress says
 /// so, after writing both with the tests that were not run as skipped.
 SuiteResult run_suite(const SuiteParams& params, const SuiteCallbacks& callbacks);
+
+// Which tests there are below some folders, and which of them are meant.
+
+/// A folder that holds a test.json.
+struct FoundTest {
+    std::string name;    // its path below the folder that was searched, with that folder where there are
+                         // several; the folder's own name where it is itself a test
+    std::string folder;  // as it is opened
+    std::vector<std::string> tags;  // of its test.json; empty where that cannot be read
+};
+
+/// The tests of `folders` that `pattern` means. Throws as find_tests does, and UsageError where it means none
+/// of them.
+std::vector<FoundTest> meant_tests(const std::vector<std::string>& folders, const std::string& pattern);
+
+/// Every folder at or below `folders`, at any depth, in the order of their names; a test found twice counts
+/// once. Links to folders are not followed. Throws InputError where a folder cannot be read or none of them
+/// holds a test.
+std::vector<FoundTest> find_tests(const std::vector<std::string>& folders);
+
+/// Whether the pattern is part of the name or of a tag; with * (anything) or ? (one character) in it, whether
+/// it is all of one of them. The empty pattern means all.
+bool matches_pattern(const std::string& pattern, const std::string& name,
+                     const std::vector<std::string>& tags);
+
+/// Whether a list of platforms ("linux", "x86_64", "linux-x86_64") has this machine's; an empty one has
+/// every.
+bool has_this_platform(const std::vector<std::string>& platforms);
+
+/// "linux-x86_64".
+std::string this_platform();
 
 }  // namespace trilens

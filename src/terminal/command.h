@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "terminal/console.h"
-#include "terminal/json.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 

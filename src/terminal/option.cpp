@@ -6,7 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "terminal/format.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 namespace {

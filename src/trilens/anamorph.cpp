@@ -1,8 +1,8 @@
 #include "trilens/anamorph.h"
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
-#include "base/util/suggestion.h"
+#include "base/util/names.h"
 
 namespace trilens {
 

@@ -11,16 +11,6 @@
 //     }
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "image/apng.h"
 #include "scene/animation.h"
-#include "scene/animation/animation_keys.h"
-
-namespace trilens {
-
-/// The scene as it is at a frame: see load_frame.
-Scene scene_at_frame(const Scene& scene, double frame, std::span<const SceneOverride> changes = {});
-
-}  // namespace trilens
+#include "study/scenes.h"

@@ -12,5 +12,4 @@
 #pragma once
 
 #include "camera/camera.h"
-#include "camera/facet_kinds.h"
-#include "camera/linear/view_volume.h"
+#include "camera/linear/linear_cameras.h"

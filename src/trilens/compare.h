@@ -7,6 +7,8 @@
 //     for (const trilens::LayerComparison& layer : trilens::compare_layers(truth, image))
 //         if (layer.displacement && layer.displacement->summary)
 //             std::printf("%s moved by %g px\n", layer.layer.c_str(), layer.displacement->summary->mean);
+//     // Of a file of other programs, the layer that stands for it:
+//     const trilens::Image other = trilens::read_compared_image("truth.exr");
 #pragma once
 
 #include "measure/common/comparable.h"
@@ -15,4 +17,4 @@
 #include "measure/compare_layers.h"
 #include "measure/difference.h"
 #include "measure/limits.h"
-#include "trilens/compare_inputs.h"
+#include "study/compare_inputs.h"

@@ -4,4 +4,4 @@
 //     trilens::replace_text_file("out.json", "{}\n");
 #pragma once
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"

@@ -41,18 +41,6 @@ std::vector<float> shown_beauty(const Image& image, const ToneMapping& tone) {
     return rgb;
 }
 
-Image image_of(const Texture& texture) {
-    Image image;
-    image.width = image.data_width = texture.width;
-    image.height = image.data_height = texture.height;
-    for (std::size_t c = 0; c < 3; ++c) {
-        std::vector<float> values(image.pixels());
-        for (std::size_t p = 0; p < values.size(); ++p) values[p] = texture.rgb[3 * p + c];
-        image.channels.push_back({std::string(1, "RGB"[c]), std::move(values)});
-    }
-    return image;
-}
-
 }  // namespace
 
 void check_image(const Image& image) {
@@ -77,16 +65,6 @@ void check_image(const Image& image) {
 
 Image read_image(const std::string& file) {
     return read_exr(file);
-}
-
-std::vector<ImagePart> read_image_parts(const std::string& file) {
-    std::vector<ImagePart> parts;
-    if (!is_exr_file(file)) {
-        parts.push_back({"", image_of(*read_texture(file))});
-        return parts;
-    }
-    for (auto& [name, image] : read_exr_parts(file)) parts.push_back({name, std::move(image)});
-    return parts;
 }
 
 ToneCurve tone_curve(const std::string& name) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/image/image.h"
+#include "image/image_parts.h"
 #include "image/tone.h"
 
 namespace trilens {
@@ -17,16 +18,6 @@ namespace trilens {
 /// Reads every channel of an OpenEXR file in its own type (half becomes float). Throws InputError where the
 /// file cannot be used.
 Image read_image(const std::string& file);
-
-/// A part of a picture's file.
-struct ImagePart {
-    std::string name;  // empty where the file gives none
-    Image image;
-};
-
-/// Reads every part of any picture: of OpenEXR all channels as read_image does, of other formats (PNG, JPEG
-/// and their like) one part with R, G and B in linear Rec.709, their alpha left out. Throws InputError.
-std::vector<ImagePart> read_image_parts(const std::string& file);
 
 /// Writes OpenEXR, all channels to the last bit (a name that ends in ".exr"), or the beauty R G B as 8-bit
 /// sRGB after exposure and tone curve (".png"); beside the name, then renamed. Metadata is kept where its

@@ -1,6 +1,6 @@
 #include "trilens/map.h"
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "trilens/image.h"
 

@@ -5,29 +5,21 @@
 #include <mutex>
 #include <optional>
 
-#include "base/files/atomic_file.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "image/exr_strips.h"
 #include "render/frame/frame.h"
 #include "render/picture/picture.h"
 #include "render/project/point_projector.h"
+#include "render/world/world.h"
 #include "scene/data/check_scene.h"
 #include "scene/data/scene_digest.h"
+#include "study/checked_world.h"
 #include "vector/drawing.h"
 
 namespace trilens {
 namespace {
-
-std::unique_ptr<World> make_checked_world(Scene scene, const Warn& warn) {
-    check_scene(scene);
-    return make_world(std::move(scene), warn);
-}
-
-void check_engine(const EngineChoice& engine) {
-    if (engine.classic.pieces < 1 || engine.classic.pieces > 1024 || !(engine.classic.tolerance > 0))
-        throw UsageError("the classic engine needs 1..1024 pieces and a positive tolerance");
-}
 
 bool is_finite(const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -148,16 +140,14 @@ void Renderer::check(const FrameParams& frame) const {
 
 Picture Renderer::draw(const PictureRequest& request, const Progress& progress, const Warn& warn) const {
     const auto use = users_->draw();
-    check_frame(*world_, request.frame);
-    check_engine(request.engine);
+    check_request(*world_, request);
     return draw_picture(*world_, request, progress, warn);
 }
 
 EncodedPicture Renderer::draw_exr(const PictureRequest& request, const Progress& progress,
                                   const Warn& warn) const {
     const auto use = users_->draw();
-    check_frame(*world_, request.frame);
-    check_engine(request.engine);
+    check_request(*world_, request);
     std::optional<ExrStrips> strips;
     const StripSink sink{
         [&](const Image& layout) { strips.emplace("image", layout); },
@@ -171,8 +161,7 @@ EncodedPicture Renderer::draw_exr(const PictureRequest& request, const Progress&
 Picture Renderer::write_exr(const std::string& file, const PictureRequest& request, const Progress& progress,
                             const Warn& warn) const {
     const auto use = users_->draw();
-    check_frame(*world_, request.frame);
-    check_engine(request.engine);
+    check_request(*world_, request);
     std::optional<NewFile> made;
     std::optional<ExrStrips> strips;
     const StripSink sink{
@@ -191,8 +180,7 @@ Picture Renderer::write_exr(const std::string& file, const PictureRequest& reque
 
 PixelExplanation Renderer::explain(const PictureRequest& request, int x, int y) const {
     const auto use = users_->draw();
-    check_frame(*world_, request.frame);
-    check_engine(request.engine);
+    check_request(*world_, request);
     return explain_pixel(*world_, request, x, y);
 }
 

@@ -21,11 +21,9 @@
 #include "render/picture/explain.h"
 #include "render/project/project.h"
 #include "render/shoot/shoot.h"
-#include "render/world/world.h"
+#include "render/world/scene_reuse.h"
 #include "scene/data/scene.h"
-#include "vector/caustic.h"
-#include "vector/drawing.h"
-#include "vector/fold_curves.h"
+#include "vector/lines.h"
 
 namespace trilens {
 

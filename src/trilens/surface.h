@@ -12,7 +12,7 @@
 #include <memory>
 #include <string>
 
-#include "base/description/cage.h"
+#include "base/description/optic_description.h"
 #include "base/raymesh/surface.h"
 #include "base/util/progress.h"
 

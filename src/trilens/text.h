@@ -5,5 +5,5 @@
 //     std::puts(trilens::suggestion("mian", names).c_str());          // ; did you mean 'main'?
 #pragma once
 
-#include "base/util/suggestion.h"
+#include "base/util/names.h"
 #include "report/text.h"

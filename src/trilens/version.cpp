@@ -5,7 +5,7 @@
 #include "base/util/parallel.h"
 #include "image/image_io.h"
 #include "intersect/tracer.h"
-#include "surfaces/surfaces.h"
+#include "study/libraries.h"
 
 namespace trilens {
 
@@ -14,7 +14,7 @@ std::string version() {
 }
 
 std::vector<std::string> library_versions() {
-    return {tracer_library_version(), surface_library_version(), image_library_version()};
+    return versions_underneath();
 }
 
 void set_threads(int threads) {

@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "trilinear/clip.h"
-#include "trilinear/conic_arc.h"
 #include "trilinear/curves.h"
-#include "trilinear/view_plane.h"
+#include "trilinear/shapes.h"
 
 namespace trilens {
 namespace {

@@ -1,24 +1,16 @@
-// Caustics: the surfaces in the world on which neighbouring rays of a RayMesh meet.
+// Caustics: the surfaces in the world on which neighbouring rays of a RayMesh meet, and how its rays change
+// over the film.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/sample_grid.h"
+#include "vector/lines.h"
 
 namespace trilens {
-
-/// One sheet of the caustic of a RayMesh's rays, world frame. Each ray touches the caustic at up to two
-/// places, the roots of the characteristic equation of the rays around it (camera/model/ray_spread.h); the
-/// first sheet is the one that follows the ray's start when its roots are counted on through infinity: it has
-/// the larger 1 / t.
-struct CausticSheet {
-    int sheet = 0;            // 0 or 1
-    bool is_virtual = false;  // behind the rays' starts (t < 0): where their lines meet, not they themselves
-    std::vector<Vec3> points;
-    std::vector<IdTriple> triangles;          // of facets whose image on the sheet has an area
-    std::vector<std::array<Id, 2>> segments;  // of those that it makes thin, as on a camera's slits
-};
 
 struct CausticParams {
     const RayMesh& mesh;
@@ -33,5 +25,44 @@ inline constexpr double kFarCaustic = 10;
 /// of the equation's own terms) count as that. Rays are followed through whatever stands before the caustic.
 /// Throws InputError where `mesh` or `seen` do not fit together.
 std::vector<CausticSheet> caustic_sheets(const CausticParams& params);
+
+// How the rays of a RayMesh change over the film, continuously from facet to facet; the film's samples as
+// rows and columns.
+
+/// How a mesh's rays change with the film's x and y.
+struct RaySlope {
+    Vec3 origin_x{0}, origin_y{0}, direction_x{0}, direction_y{0};
+
+    void add(const RaySlope& other, double share) {
+        origin_x += share * other.origin_x, origin_y += share * other.origin_y;
+        direction_x += share * other.direction_x, direction_y += share * other.direction_y;
+    }
+};
+
+/// Inside a facet, where its unnormalised weights are `e`.
+RaySlope slope_in_facet(const RayMesh& mesh, std::size_t facet, const FacetWeights& weights, const Vec3& e);
+
+/// Per corner the mean over the facets around it, of second order in their size; zero where all of them are
+/// edge-on or behind the camera.
+std::vector<RaySlope> corner_slopes(const RayMesh& mesh);
+
+struct SampleLattice {
+    const SampleGrid& grid;
+
+    int columns() const { return grid.width() * grid.side; }
+    int rows() const { return grid.height() * grid.side; }
+    bool holds(int column, int row) const {
+        return column >= 0 && row >= 0 && column < columns() && row < rows();
+    }
+    std::size_t sample(int column, int row) const {
+        return grid.sample_at(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
+    }
+    int column(std::size_t sample) const {
+        return static_cast<int>(std::lround((grid.position(sample).x - grid.x0) * grid.side - 0.5));
+    }
+    int row(std::size_t sample) const {
+        return static_cast<int>(std::lround((grid.position(sample).y - grid.y0) * grid.side - 0.5));
+    }
+};
 
 }  // namespace trilens

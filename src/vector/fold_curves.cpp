@@ -11,7 +11,7 @@
 #include "base/raymesh/check_data.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "vector/ray_slopes.h"
+#include "vector/caustic.h"
 
 namespace trilens {
 namespace {

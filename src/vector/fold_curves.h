@@ -8,15 +8,9 @@
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"
+#include "vector/lines.h"
 
 namespace trilens {
-
-/// A polygonal line in pixels from the film's top left; closed where it ends where it began.
-struct FoldCurve {
-    Id object = kNone;  // on which it lies; kNone: the environment
-    std::vector<Vec2> points;
-    std::vector<Vec3> places;  // what is seen there: the world point, in the environment the unit direction
-};
 
 /// One RayMesh, and the samples that end in it.
 struct FoldView {

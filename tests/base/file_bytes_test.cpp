@@ -1,5 +1,5 @@
 // Files that are written beside their name: what another process left there is in nobody's way.
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 
 #include <unistd.h>
 
@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/files/atomic_file.h"
 #include "base/util/error.h"
 #include "support/test.h"
 

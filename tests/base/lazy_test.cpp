@@ -1,5 +1,5 @@
 // A value that is made once, also when many ask for it at once from inside a parallel loop.
-#include "base/util/lazy.h"
+#include "base/util/parallel.h"
 
 #include <atomic>
 #include <stdexcept>

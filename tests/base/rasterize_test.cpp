@@ -4,7 +4,6 @@
 
 #include "base/math/side_of_edge.h"
 #include "base/raymesh/rasterize.h"
-#include "base/raymesh/row_span.h"
 #include "projector/random_cases.h"
 #include "support/test.h"
 

@@ -1,5 +1,5 @@
 // Work on threads of its own, also where the system gives fewer than are asked for.
-#include "base/util/run_on_threads.h"
+#include "base/util/parallel.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/util/parallel.h"
-#include "intersect/tracer.h"
 #include "intersect/random_scene.h"
+#include "intersect/tracer.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "base/util/error.h"
-#include "bench/race/print_race.h"
+#include "bench/race/scene_race.h"
 #include "support/test.h"
 #include "trilens/render.h"
 #include "trilens/scene.h"

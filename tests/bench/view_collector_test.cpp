@@ -1,10 +1,9 @@
 // Rays that are collected band by band are those of the whole picture; a race of a scene counts them.
-#include "bench/race/view_collector.h"
+#include "bench/race/scene_race.h"
 
 #include <algorithm>
 
 #include "base/raymesh/rasterize.h"
-#include "bench/race/scene_race.h"
 #include "core/ray_mesh.h"
 #include "support/test.h"
 #include "trilens/render.h"

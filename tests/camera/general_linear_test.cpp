@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/facet_kinds.h"
+#include "camera/camera.h"
 #include "every_camera.h"
 #include "support/draw.h"
 #include "support/test.h"

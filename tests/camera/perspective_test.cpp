@@ -1,5 +1,5 @@
 // Laws of linear cameras: projecting a point and following the film's ray back are inverse to one another.
-#include "camera/linear/perspective.h"
+#include "camera/linear/linear_cameras.h"
 
 #include "base/util/error.h"
 #include "support/draw.h"

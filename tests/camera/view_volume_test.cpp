@@ -1,12 +1,11 @@
 // Linear views in the standard terms against the textbook's canonical volumes, and clipping against division.
-#include "camera/linear/view_volume.h"
+#include "camera/linear/linear_cameras.h"
 
 #include <array>
 #include <string>
 
 #include "base/util/error.h"
 #include "camera/camera.h"
-#include "camera/linear/perspective.h"
 #include "support/canonical_volume.h"
 #include "support/draw.h"
 #include "support/test.h"

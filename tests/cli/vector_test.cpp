@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/linear/perspective.h"
+#include "camera/linear/linear_cameras.h"
 #include "cli/command_line.h"
 #include "image/image_io.h"
 #include "support/test.h"

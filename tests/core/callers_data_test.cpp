@@ -4,11 +4,9 @@
 #include <vector>
 
 #include "camera/camera.h"
-#include "camera/facet_kinds.h"
-#include "camera/linear/view_volume.h"
+#include "camera/linear/linear_cameras.h"
 #include "core/ray_mesh.h"
 #include "support/test.h"
-#include "trilinear/points/beam.h"
 #include "trilinear/points/point_images.h"
 
 using namespace trilens;

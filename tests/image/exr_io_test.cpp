@@ -13,7 +13,7 @@
 #include <limits>
 #include <random>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "image/exr_strips.h"

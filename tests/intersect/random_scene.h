@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <random>
 
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/triangle_scene.h"
 
 namespace trilens_test {

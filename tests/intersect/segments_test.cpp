@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/util/check.h"
 #include "intersect/limit_tracer.h"
 #include "intersect/local_segments.h"
 #include "intersect/tracer.h"

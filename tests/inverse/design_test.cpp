@@ -4,6 +4,8 @@
 #include <functional>
 #include <random>
 
+#include "base/util/error.h"
+#include "camera/camera.h"
 #include "inverse/design/best_sphere.h"
 #include "inverse/design/design.h"
 #include "inverse/design/reflection_rows.h"

@@ -11,7 +11,7 @@
 #include "cli/command_line.h"
 #include "fit_scenes.h"
 #include "support/test.h"
-#include "terminal/json.h"
+#include "terminal/libraries.h"
 
 using namespace trilens_test;
 namespace fs = std::filesystem;

@@ -39,10 +39,10 @@ Shown images_of_pixels(const World& world, int step) {
     for (int y = step / 2; y < world.scene.film.height; y += step)
         for (int x = step / 2; x < world.scene.film.width; x += step) {
             const PixelExplanation pixel = explain_pixel(world, truth, x, y);
-            for (const PathEnd& end : pixel.views.ends_of(pixel.view())) {
+            for (const PixelEnd& end : pixel.ends) {
                 if (!end.hit.seen() || !end.principal) continue;
                 const Vec3 point = end.ray.origin + end.hit.t * end.ray.direction;
-                const auto steps = pixel.views.steps_of(end);
+                const std::vector<Step>& steps = end.steps;
                 ++shown.paths;
                 const PointProjection all = project_points(world, {}, {&point, 1})[0];
                 for (const WorldImage& image : all.images) {

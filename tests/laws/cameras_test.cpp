@@ -14,7 +14,7 @@
 #include "render/project/project.h"
 #include "render/world/geometry.h"
 #include "scene/examples/examples.h"
-#include "support/optic_ray.h"
+#include "support/closed_forms.h"
 #include "support/test.h"
 
 using namespace trilens;

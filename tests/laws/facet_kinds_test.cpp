@@ -44,9 +44,8 @@ std::map<std::string, int> kinds_over_film(const Scene& scene) {
             const PixelExplanation pixel = renderer.explain({}, x, y);
             REQUIRE(pixel.camera_kind == GeneralLinearKind::kPinhole);
             REQUIRE(pixel.camera_facet < 2);
-            REQUIRE(pixel.end_kinds.size() == pixel.views.ends.size());
-            for (const auto& kind : pixel.end_kinds)
-                ++counts[kind ? general_linear_kind_name(*kind) : "none"];
+            for (const PixelEnd& end : pixel.ends)
+                ++counts[end.facet_kind ? general_linear_kind_name(*end.facet_kind) : "none"];
         }
     return counts;
 }
@@ -76,8 +75,8 @@ TEST_CASE("the exact rays of the limit truth belong to no facet", "[laws][law]")
     const PixelExplanation pixel = Renderer(before_wall(Primitive{})).explain(truth, 32, 24);
     CHECK(pixel.camera_facet == kNone);
     CHECK_FALSE(pixel.camera_kind);
-    REQUIRE(pixel.end_kinds.size() == 1);
-    CHECK_FALSE(pixel.end_kinds[0]);
+    REQUIRE(pixel.ends.size() == 1);
+    CHECK_FALSE(pixel.ends[0].facet_kind);
 }
 
 TEST_CASE("scene info and --pixel name the kinds of facets", "[laws][law]") {

@@ -1,9 +1,10 @@
 // The weight of an image is what pictures give that path: the traced pixel's, and none that carries no light.
 #include <algorithm>
+#include <span>
 
 #include "laws/worlds.h"
+#include "render/engines/engine.h"
 #include "render/frame/camera_media.h"
-#include "render/picture/explain.h"
 #include "render/picture/sample_colour.h"
 #include "render/project/project.h"
 #include "scene/load.h"
@@ -22,8 +23,8 @@ PictureRequest traced() {
 }
 
 /// What a traced path weighs, from what its last ray meets to the eye.
-Vec3 traced_weight(const World& world, const PixelExplanation& pixel, const PathEnd& end) {
-    const OpticWeights first = first_weights(world, pixel.views, pixel.view());
+Vec3 traced_weight(const World& world, const SampleViews& pixel, const PathEnd& end) {
+    const OpticWeights first = first_weights(world, pixel, pixel.samples.front());
     Vec3 weight = (end.path == Path::kReflect ? first.reflect : first.refract) * end.weight;
     if (end.medium != kNone)
         weight *=
@@ -40,16 +41,19 @@ struct Tally {
 Tally compare(const World& world, int step) {
     Tally tally;
     const Film& film = world.scene.film;
+    const PictureRequest truth = traced();
+    const Viewer viewer = make_viewer(world, truth.frame, truth.engine, {});
     for (int y = step / 2; y < film.height; y += step)
         for (int x = step / 2; x < film.width; x += step) {
-            const PixelExplanation pixel = explain_pixel(world, traced(), x, y);
-            for (const PathEnd& end : pixel.views.ends_of(pixel.view())) {
+            SampleViews pixel;
+            viewer({x, y, x + 1, y + 1, 1}, pixel);
+            for (const PathEnd& end : pixel.ends_of(pixel.samples.front())) {
                 // Of a dispersed path green alone is searched for.
                 if (!end.hit.seen() || (end.colours != kAllColours && end.colours != 1)) continue;
                 const Vec3 weight = traced_weight(world, pixel, end);
                 if (weight == Vec3(0)) continue;
-                const auto first = pixel.views.steps.begin() + static_cast<std::ptrdiff_t>(end.first_step);
-                const std::vector<Step> steps(first, first + end.step_count);
+                const std::span<const Step> of_end = pixel.steps_of(end);
+                const std::vector<Step> steps(of_end.begin(), of_end.end());
                 const Vec3 point = end.ray.origin + end.hit.t * end.ray.direction;
                 ++tally.paths;
                 const PointProjection all = project_points(world, {}, {&point, 1})[0];

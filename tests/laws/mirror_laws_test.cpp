@@ -5,7 +5,7 @@
 #include <random>
 #include <sstream>
 
-#include "camera/linear/perspective.h"
+#include "camera/linear/linear_cameras.h"
 #include "cli/command_line.h"
 #include "intersect/tracer.h"
 #include "laws/worlds.h"

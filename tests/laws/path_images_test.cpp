@@ -77,12 +77,10 @@ TEST_CASE("a point that the truth shows over whole paths is projected to the pix
     for (int y = 3; y < 48; y += 4)
         for (int x = 2; x < 64; x += 4) {
             const PixelExplanation pixel = renderer.explain(truth, x, y);
-            for (const PathEnd& end : pixel.views.ends_of(pixel.view())) {
+            for (const PixelEnd& end : pixel.ends) {
                 if (!end.principal || !end.hit.seen()) continue;
-                const auto steps = pixel.views.steps_of(end);
-                asked.push_back({{steps.begin(), steps.end()},
-                                 {x + 0.5, y + 0.5},
-                                 renderer.seen_triangle(end.hit).position});
+                const std::vector<Step>& steps = end.steps;
+                asked.push_back({steps, {x + 0.5, y + 0.5}, renderer.seen_triangle(end.hit).position});
             }
         }
 
@@ -153,7 +151,7 @@ TEST_CASE("the magnification that facets have in closed form is that of the exac
     PictureRequest picture;
     picture.frame.resolution = 48;
     const PixelExplanation none = renderer.explain(picture, 0, 0);
-    CHECK(none.views.ends.empty());
+    CHECK(none.ends.empty());
     ProjectRequest request;
     request.derivatives = true;
     struct Seen {
@@ -167,13 +165,10 @@ TEST_CASE("the magnification that facets have in closed form is that of the exac
     for (int y = 9; y < 48; y += 6)
         for (int x = 8; x < 64; x += 5) {
             const PixelExplanation pixel = renderer.explain(picture, x, y);
-            for (const PathEnd& end : pixel.views.ends_of(pixel.view())) {
+            for (const PixelEnd& end : pixel.ends) {
                 if (!end.principal || !end.hit.seen() || end.magnification == 0) continue;
-                const auto steps = pixel.views.steps_of(end);
-                seen.push_back({{steps.begin(), steps.end()},
-                                {x + 0.5, y + 0.5},
-                                normalize(end.ray.direction),
-                                end.magnification});
+                const std::vector<Step>& steps = end.steps;
+                seen.push_back({steps, {x + 0.5, y + 0.5}, normalize(end.ray.direction), end.magnification});
                 points.push_back(renderer.seen_triangle(end.hit).position);
             }
         }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/util/parallel.h"
-#include "camera/linear/perspective.h"
+#include "camera/linear/linear_cameras.h"
 #include "laws/worlds.h"
 #include "support/test.h"
 #include "surfaces/surfaces.h"

@@ -1,5 +1,5 @@
 // Secondary rays: the laws hold at exact hits, and a ball lens does what optics books say.
-#include "support/optic_ray.h"
+#include "support/closed_forms.h"
 
 #include <cmath>
 

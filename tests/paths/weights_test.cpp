@@ -2,7 +2,7 @@
 #include "intersect/random_scene.h"
 #include "paths/bodies.h"
 #include "paths/stage.h"
-#include "refract/dielectric.h"
+#include "refract/refraction.h"
 #include "shade/shade.h"
 #include "support/test.h"
 

@@ -213,14 +213,14 @@ def test_a_missing_reference_says_how_to_make_it(tmp_path, command):
 
 def test_broken_tests_are_errors_of_their_own(ball, command):
     suite = ball.parent
-    broken = {"unknown": ('{ "against": "golden", "maks": {} }', "unknown key \"maks\"; did you mean 'max'?"),
+    broken = {"unknown": ('{ "against": "golden", "maks": {} }', "unknown key 'maks' of a test; did you mean 'max'?"),
               "metric": ('{ "against": "truth", "max": { "rsme": 1 } }', "did you mean 'rmse'?"),
-              "against": ('{ "against": "gold" }', "there is no \"gold\""),
-              "nothing": ('{ "scene": "scene.json" }', "\"against\" is missing"),
+              "against": ('{ "against": "gold" }', "is none of \"golden\", \"truth\" and \"facets\", but the string \"gold\""),
+              "nothing": ('{ "scene": "scene.json" }', "a test needs 'against'"),
               "empty": ('{ "against": "truth", "max": {} }', "limits nothing"),
-              "twice": ('{ "against": "truth", "fail": 1, "fail": 2 }', "stands there twice"),
+              "twice": ('{ "against": "truth", "fail": 1, "fail": 2 }', "stands twice"),
               "half": ('{ "against": "truth", ', "parse error"),
-              "list": ('[]', "a test is a JSON object"),
+              "list": ('[]', "expected an object"),
               "order": ('{ "against": "truth", "max": { "displacement_order": 2 } }', "needs several resolutions"),
               "scene": ('{ "against": "truth" }', "scene.json"),
               "engine": (json.dumps({"scene": str(SOURCE / "scenes/flat.json"), "against": "truth", "engine": "exakt"}),

@@ -1,5 +1,5 @@
 // The mirror law for one ray.
-#include "reflect/mirror.h"
+#include "reflect/reflection.h"
 
 #include <cmath>
 #include <random>

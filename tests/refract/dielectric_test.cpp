@@ -1,5 +1,5 @@
 // Snell's law for one ray: textbook values, reversibility, limits.
-#include "refract/dielectric.h"
+#include "refract/refraction.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // The Fresnel equations: textbook values, both sides alike, energy.
-#include "refract/dielectric.h"
+#include "refract/refraction.h"
 
 #include <cmath>
 

@@ -1,12 +1,12 @@
 // Pages carry everything themselves and let no text become markup.
-#include "report/html.h"
+#include "report/page.h"
 
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "report/plot.h"
 #include "report/text.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "report/plot_scale.h"
+#include "report/plot_style.h"
 #include "report/xml.h"
 #include "support/test.h"
 

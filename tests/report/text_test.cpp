@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/util/hash.h"
+#include "base/description/digest.h"
 #include "report/xml.h"
 #include "support/test.h"
 

@@ -5,7 +5,6 @@
 #include <random>
 #include <set>
 
-#include "scene/data/ear_clipping.h"
 #include "scene/data/polygons.h"
 #include "scene_text.h"
 

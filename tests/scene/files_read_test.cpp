@@ -6,7 +6,7 @@
 #include <fstream>
 #include <map>
 
-#include "base/util/hash.h"
+#include "base/description/digest.h"
 #include "scene_text.h"
 
 using namespace trilens;

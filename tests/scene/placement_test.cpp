@@ -2,7 +2,6 @@
 #include <random>
 
 #include "scene/data/polygons.h"
-#include "scene/data/transform.h"
 #include "scene/info.h"
 #include "scene_text.h"
 

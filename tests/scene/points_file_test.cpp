@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "support/test.h"
 

@@ -1,9 +1,9 @@
 // Byte order marks before scene files, OBJ and glTF files: that of UTF-8 is no text, others are refused.
 #include <fstream>
 
+#include "json/json.h"
 #include "scene/formats/gltf.h"
 #include "scene/formats/obj.h"
-#include "scene/json/files.h"
 #include "scene_text.h"
 
 using namespace trilens;

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "base/math/spatial_split.h"
+#include "base/math/box.h"
 #include "specular/specular_search.h"
 #include "support/closed_forms.h"
 #include "support/draw.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "camera/linear/perspective.h"
+#include "camera/linear/linear_cameras.h"
 #include "support/closed_forms.h"
 #include "support/draw.h"
 #include "support/test.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/util/parallel.h"
-#include "camera/linear/perspective.h"
+#include "camera/linear/linear_cameras.h"
 #include "support/closed_forms.h"
 #include "support/draw.h"
 #include "support/test.h"

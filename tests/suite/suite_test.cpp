@@ -5,11 +5,9 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "image/image_io.h"
-#include "suite/find_tests.h"
-#include "suite/results.h"
 #include "support/test.h"
 
 using namespace trilens;

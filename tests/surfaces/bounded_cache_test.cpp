@@ -1,5 +1,5 @@
 // A bounded cache answers like a function, whatever it keeps, and keeps no more than it may.
-#include "surfaces/bounded_cache.h"
+#include "surfaces/memory_budget.h"
 
 #include <atomic>
 #include <random>

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/description/cage.h"
+#include "base/description/optic_description.h"
 
 namespace trilens_test {
 

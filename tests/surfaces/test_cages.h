@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/description/cage.h"
+#include "base/description/optic_description.h"
 #include "support/test.h"
 
 namespace trilens_test {

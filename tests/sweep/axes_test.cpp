@@ -9,18 +9,16 @@
 #include <string>
 #include <thread>
 
-#include "base/files/file_bytes.h"
+#include "base/description/digest.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
-#include "base/util/hash.h"
+#include "json/json.h"
 #include "report/xml.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
 #include "sweep/report/fit_runs.h"
-#include "sweep/report/plot_groups.h"
 #include "sweep/report/sweep_plots.h"
-#include "sweep/run/run_plan.h"
 #include "sweep/run/sweep.h"
-#include "sweep/store/json.h"
 #include "sweep/store/machine.h"
 
 using namespace trilens;

@@ -1,13 +1,13 @@
 // Another engine gives another digest; the same engine, wherever it lies, the same.
-#include "sweep/store/code_digest.h"
+#include "sweep/store/machine.h"
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
-#include "base/files/file_bytes.h"
+#include "base/description/digest.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
-#include "base/util/hash.h"
 #include "support/test.h"
 
 using namespace trilens;

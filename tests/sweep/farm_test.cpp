@@ -5,15 +5,15 @@
 #include <utility>
 #include <vector>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
+#include "json/json.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/plan/sweep_file.h"
+#include "sweep/plan/plan.h"
 #include "sweep/run/farm_scripts.h"
 #include "sweep/run/merge.h"
 #include "sweep/run/sweep.h"
-#include "sweep/store/json.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;
@@ -176,15 +176,16 @@ TEST_CASE("sweep: a sweep file says scenes, axes and truth; what it may not say 
     CHECK(sweep.set.at(0) == std::pair<std::string, std::string>("/film/width", "96"));
 
     const std::vector<std::pair<std::string, std::string>> bad = {
-        {"", "no JSON"},
+        {"", "is empty"},
+        {"{\"over\"", "line 1"},
         {"{\"over\": []}", "/over"},
         {"{\"scenes\": [\"a\"]}", "over"},
         {"{\"over\": [{\"axis\": \"resolution\"}]}", "/over/0"},
-        {"{\"over\": [{\"axis\": \"resolution\", \"values\": []}]}", "no point"},
+        {"{\"over\": [{\"axis\": \"resolution\", \"values\": []}]}", "/over/0/values"},
         {"{\"over\": [{\"axis\": 3, \"values\": [1]}]}", "/over/0/axis"},
         {"{\"over\": [{\"axis\": \"a\", \"values\": [1]}], \"zipp\": true}", "zip"},
         {"{\"over\": [{\"axis\": \"a\", \"values\": [1]}], \"repeats\": 0}", "/repeats"},
-        {"[1]", "no object"}};
+        {"[1]", "expected an object"}};
     for (const auto& [text, named] : bad) {
         INFO(text);
         replace_text_file(file, text);

@@ -17,13 +17,12 @@
 #include <thread>
 #include <vector>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
 #include "sweep/report/gallery.h"
 #include "sweep/run/sweep.h"
-#include "sweep/store/file_lock.h"
 #include "sweep/store/sweep_folder.h"
 
 using namespace trilens;

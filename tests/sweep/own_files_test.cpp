@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
-#include "report/html.h"
+#include "report/page.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/report/report_runs.h"
+#include "sweep/report/sweep_pictures.h"
 #include "sweep/run/sweep.h"
 #include "sweep/store/sweep_folder.h"
 

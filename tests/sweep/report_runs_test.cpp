@@ -1,12 +1,12 @@
 // Pictures of a report that would make its page too large.
-#include "sweep/report/report_runs.h"
+#include "sweep/report/sweep_pictures.h"
 
 #include <filesystem>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "fake_scene.h"
-#include "report/html.h"
+#include "report/page.h"
 #include "support/test.h"
 
 using namespace trilens;

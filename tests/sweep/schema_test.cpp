@@ -1,7 +1,7 @@
 // summary.json is what its schema says, as an independent validator (valijson, draft 7) sees it.
 #include <string>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"

@@ -11,17 +11,17 @@
 #include <string>
 #include <vector>
 
-#include "base/files/file_bytes.h"
+#include "base/description/digest.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
-#include "base/util/hash.h"
 #include "image/image_io.h"
+#include "json/json.h"
 #include "report/pictures.h"
 #include "report/text.h"
 #include "report/xml.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
 #include "sweep/report/fit_runs.h"
-#include "sweep/store/json.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;

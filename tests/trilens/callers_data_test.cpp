@@ -3,10 +3,12 @@
 
 #include <fstream>
 
+#include "study/sweep_subjects.h"
 #include "support/test.h"
 #include "trilens/odd_images.h"
-#include "trilens/sweep_subjects.h"
 #include "trilens/trilens.h"
+#include "vector/caustic.h"
+#include "vector/fold_curves.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -265,8 +265,8 @@ TEST_CASE("mirrors cast their exact shadow, whatever their resolution", "[trilen
             const Vec3 screen = screen_from_world(camera, on_floor);
             const int x = static_cast<int>(screen.x / screen.z), y = static_cast<int>(screen.y / screen.z);
             const PixelExplanation pixel = renderer.explain(request, x, y);
-            if (!pixel.view().hit.seen()) continue;
-            const Vec3 seen = renderer.seen_triangle(pixel.view().hit).position;
+            if (!pixel.hit.seen()) continue;
+            const Vec3 seen = renderer.seen_triangle(pixel.hit).position;
             const double from_axis = std::hypot(seen.x, seen.z);
             if (std::fabs(from_axis - 1) < 1e-6) continue;
             const float red = image.find("R")->floats()[static_cast<std::size_t>(y * 200 + x)];

@@ -1,11 +1,10 @@
 // The beam test never turns away a point that the cubic images, and turns away most of the others.
-#include "trilinear/points/beam.h"
+#include "trilinear/points/point_images.h"
 
 #include <cmath>
 
 #include "random_facets.h"
 #include "support/test.h"
-#include "trilinear/points/point_images.h"
 
 using namespace trilens;
 using namespace trilens_test;

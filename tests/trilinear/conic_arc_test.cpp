@@ -1,6 +1,6 @@
 // Laws of conic arcs: on the conic, along the edge's true image, joined, bounded; the same for both users of
 // an edge.
-#include "trilinear/conic_arc.h"
+#include "trilinear/curves.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include "random_facets.h"
 #include "support/test.h"
 #include "trilinear/shapes.h"
-#include "trilinear/view_plane.h"
 
 using namespace trilens;
 using namespace trilens_test;

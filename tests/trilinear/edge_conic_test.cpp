@@ -1,5 +1,5 @@
 // Edge conics against the geometry they stand for.
-#include "trilinear/facet/edge_conic.h"
+#include "trilinear/facet/scene_edge.h"
 
 #include <random>
 

@@ -1,14 +1,13 @@
 // Laws of the swept surface: its degree, its crossings against the conic and the curve, the same bits for
 // both users.
-#include "trilinear/edge_sweep.h"
+#include "trilinear/facet/scene_edge.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "random_facets.h"
 #include "support/test.h"
-#include "trilinear/conic_arc.h"
-#include "trilinear/facet/scene_edge.h"
+#include "trilinear/curves.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -1,5 +1,5 @@
 // Laws of images through a whole mesh: the tree loses none, shared borders count once, threads do not matter.
-#include "trilinear/points/mesh_point_images.h"
+#include "trilinear/points/point_images.h"
 
 #include <vector>
 

@@ -11,7 +11,6 @@
 #include "random_facets.h"
 #include "support/test.h"
 #include "trilinear/shapes.h"
-#include "trilinear/view_plane.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -9,7 +9,6 @@
 
 #include "random_facets.h"
 #include "support/test.h"
-#include "trilinear/view_plane.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/math/vec.h"
-#include "base/util/enum_names.h"
 #include "base/util/ids.h"
+#include "base/util/names.h"
 
 namespace trilens {
 

@@ -1,15 +1,35 @@
-// A digest of values of many kinds: tells whether inputs changed (see hash.h).
+// A digest of values of many kinds by FNV-1a with 64 bits (Fowler, Noll, Vo): tells whether inputs changed;
+// no defence against someone who wants a collision.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "base/math/vec.h"
-#include "base/util/hash.h"
 
 namespace trilens {
+
+// FNV-1a with 64 bits: tells whether inputs changed; no defence against someone who wants a collision.
+// Based on: Fowler, Noll, Vo, The FNV Non-Cryptographic Hash Algorithm (offset basis and prime for 64 bits).
+
+/// The hash of the bytes of `text`, as 16 lower-case hexadecimal digits.
+inline std::string hash_text(std::string_view text) {
+    std::uint64_t hash = 14695981039346656037ull;
+    for (const char c : text) {
+        hash ^= static_cast<unsigned char>(c);
+        hash *= 1099511628211ull;
+    }
+    std::string digits(16, '0');
+    for (int i = 15; i >= 0; --i, hash >>= 4)
+        digits[static_cast<std::size_t>(i)] = "0123456789abcdef"[hash & 15];
+    return digits;
+}
+
+// A digest of values of many kinds: tells whether inputs changed.
 
 /// Values are hashed one by one, lists and texts each as one, and the hashes again at the end: no copy of
 /// what is large. -0 and 0 are two values.

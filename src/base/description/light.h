@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "base/description/texture.h"
+#include "base/description/material.h"
 #include "base/math/vec.h"
-#include "base/util/enum_names.h"
+#include "base/util/names.h"
 
 namespace trilens {
 

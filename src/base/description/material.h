@@ -1,13 +1,66 @@
-// Materials, by glTF's names; plain data that scene writes and shade reads.
+// Materials, by glTF's names, and the pictures that they look up; plain data that scene writes and shade
+// reads.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "base/description/texture.h"
 #include "base/math/vec.h"
+#include "base/util/names.h"
 
 namespace trilens {
+
+// A picture to look up, as materials and the background have it.
+
+/// A picture to look up: linear Rec.709, rows from the top, three floats per texel.
+struct Texture {
+    int width = 0, height = 0;
+    std::vector<float> rgb;
+};
+
+/// What lies beyond a picture's edges: as glTF's samplers have it.
+enum class Wrap { kRepeat, kMirroredRepeat, kClampToEdge };
+
+template <>
+struct EnumNames<Wrap> {
+    static constexpr std::array kTable{NamedValue<Wrap>{Wrap::kRepeat, "repeat"},
+                                       NamedValue<Wrap>{Wrap::kMirroredRepeat, "mirroredRepeat"},
+                                       NamedValue<Wrap>{Wrap::kClampToEdge, "clampToEdge"}};
+};
+
+/// How a surface's uv lie on its picture.
+struct TextureSampler {
+    Wrap wrap_s = Wrap::kRepeat, wrap_t = Wrap::kRepeat;
+    // The place of uv on the picture is at_zero + u along_u + v along_v; both v upward from the bottom.
+    Vec2 at_zero{0}, along_u{1, 0}, along_v{0, 1};
+
+    Vec2 place(const Vec2& uv) const { return at_zero + step(uv); }
+    /// How the place moves with uv.
+    Vec2 step(const Vec2& uv) const { return uv.x * along_u + uv.y * along_v; }
+};
+
+/// KHR_texture_transform: of uv whose v runs downward from the picture's top; scaled, turned by `rotation`
+/// (radians, counter-clockwise on the picture), moved by `offset`.
+struct TextureTransform {
+    Vec2 offset{0};
+    double rotation = 0;
+    Vec2 scale{1};
+};
+
+/// Sets the map from uv to places.
+inline void set_transform(const TextureTransform& transform, TextureSampler& sampler) {
+    const double c = std::cos(transform.rotation), s = std::sin(transform.rotation);
+    // Downward: (x, y) = offset + (c, -s) sx u + (s, c) sy (1 - v); upward the place is (x, 1 - y).
+    const Vec2 along_u = Vec2(c, -s) * transform.scale.x, along_down = Vec2(s, c) * transform.scale.y;
+    const Vec2 top = transform.offset + along_down;  // of v = 0
+    sampler.along_u = {along_u.x, -along_u.y};
+    sampler.along_v = {-along_down.x, along_down.y};
+    sampler.at_zero = {top.x, 1 - top.y};
+}
+
+// Materials, by glTF's names; plain data that scene writes and shade reads.
 
 /// glTF's names. On an optic either metallic_factor or transmission_factor is 1.
 struct Material {

@@ -1,6 +1,7 @@
-// Pictures with named channels, as values.
+// Pictures with named channels, as values, and strip by strip while they are drawn.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <variant>
@@ -41,6 +42,16 @@ struct Image {
     Channel* find(const std::string& name) {
         return const_cast<Channel*>(static_cast<const Image*>(this)->find(name));
     }
+};
+
+// Who takes a picture strip by strip, while it is drawn.
+
+/// Both are called in order, from one thread.
+struct StripSink {
+    /// First: the picture's windows, its header, and its channels by name and type, without values.
+    std::function<void(const Image& layout)> begin;
+    /// Then the next `rows` rows of every channel, from the top; the vectors may be longer.
+    std::function<void(const std::vector<Channel>& channels, int rows)> add;
 };
 
 }  // namespace trilens

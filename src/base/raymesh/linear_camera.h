@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/math/vec.h"
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 
 namespace trilens {
 

@@ -1,12 +1,24 @@
-// RayMesh: a triangle mesh on the screen whose corners carry rays. Everything that looks at the scene is one.
+// Rays, and RayMesh: a triangle mesh on the screen whose corners carry rays. Everything that looks at the
+// scene is one.
 #pragma once
 
+#include <functional>
+#include <span>
 #include <vector>
 
-#include "base/raymesh/ray.h"
+#include "base/math/vec.h"
 #include "base/util/ids.h"
 
 namespace trilens {
+
+// A ray: the points origin + t * direction with t >= 0.
+
+/// World frame. The direction is NOT unit: its length is the unit of t, and a choice that matters
+/// (a corner ray keeps the eye-to-corner length, so that a flat mirror stays exact).
+struct Ray {
+    Vec3 origin{0};
+    Vec3 direction{0};
+};
 
 /// Facets with shared corners (Vallance 2005, chapter 2). `rays` and `screen` have one entry per corner.
 struct RayMesh {
@@ -52,5 +64,26 @@ inline Ray sample_ray(const RayMesh& mesh, std::size_t facet, const FacetWeights
     const Vec3 e = weights.unnormalised(at.x, at.y);
     return interpolated_ray(mesh, facet, e / (e.x + e.y + e.z));
 }
+
+// Which facets meet at each vertex of a mesh.
+
+/// Lists of facets by vertex: those at vertex v are facet[first[v]] .. facet[first[v + 1] - 1], ascending.
+struct FacetsAround {
+    std::vector<std::size_t> first;  // number of vertices + 1 entries
+    std::vector<Id> facet;
+
+    std::span<const Id> of(Id vertex) const {
+        return {facet.data() + first[vertex], first[vertex + 1] - first[vertex]};
+    }
+    /// The facets that share a vertex with one that has these three, itself among them; ascending, each once.
+    std::vector<Id> ring(const IdTriple& vertices) const;
+};
+
+/// `vertex_of`: from a facet's corner to its vertex, below vertex_count. Facets of kNone are left out.
+FacetsAround facets_around(std::span<const IdTriple> facets, std::size_t vertex_count,
+                           const std::function<Id(Id corner)>& vertex_of);
+
+/// The same where corners are the vertices.
+FacetsAround facets_around(std::span<const IdTriple> facets, std::size_t vertex_count);
 
 }  // namespace trilens

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 
 namespace trilens {
 

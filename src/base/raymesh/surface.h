@@ -1,4 +1,5 @@
-// A curved surface as its users see it: faces with parameters, evaluated exactly.
+// A curved surface as its users see it: faces with parameters, evaluated exactly; its grid of facets as
+// triangles of a scene.
 #pragma once
 
 #include <array>
@@ -9,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/triangle_scene.h"
 #include "base/util/ids.h"
 
 namespace trilens {
@@ -132,5 +134,11 @@ inline bool faces_front(const SurfaceGrid& grid, const IdTriple& facet, const Ve
     const Vec3& c = grid.points[grid.corner_point[facet[2]]];
     return dot(cross(b - a, c - a), direction) <= 0;
 }
+
+// A surface's grid as triangles of a scene.
+
+/// Appends the facets of `grid` to `scene` as triangles of `object`; primitive f is facet f. Points that
+/// facets share stay shared.
+void append_facets(const SurfaceGrid& grid, Id object, TriangleScene& scene);
 
 }  // namespace trilens

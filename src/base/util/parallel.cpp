@@ -7,7 +7,10 @@
 #include <tbb/task_arena.h>
 
 #include <memory>
+#include <new>
+#include <system_error>
 #include <thread>
+#include <vector>
 
 namespace trilens {
 namespace {
@@ -69,6 +72,18 @@ void run_pipeline(std::size_t count, std::size_t slots, const PipelineStages& st
 
 void run_isolated(const std::function<void()>& work) {
     tbb::this_task_arena::isolate(work);
+}
+
+void run_on_threads(std::size_t count, const std::function<void()>& work) {
+    std::vector<std::jthread> others;
+    try {
+        if (count > 1) others.reserve(count - 1);
+        while (others.size() + 1 < count) others.emplace_back([&work] { work(); });
+    } catch (const std::system_error&) {
+        // The threads that there are do all of it.
+    } catch (const std::bad_alloc&) {
+    }
+    work();
 }
 
 }  // namespace trilens

@@ -1,9 +1,12 @@
-// Parallel loops over independent items: the door to TBB.
+// Parallel loops over independent items: the door to TBB; a task on threads of its own; lazy initialisation.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <initializer_list>
+#include <memory>
+#include <mutex>
+#include <utility>
 
 namespace trilens {
 
@@ -39,5 +42,31 @@ void run_pipeline(std::size_t count, std::size_t slots, const PipelineStages& st
 /// Calls work() so that its own loops, while they wait, take up no part of the loops around them: for work
 /// that others wait for, such as a value made once.
 void run_isolated(const std::function<void()>& work);
+
+// A task run on threads of its own, for work that blocks or loops inside (no work stealing).
+
+/// Calls work() on `count` threads at once, the caller's among them, and returns when all have ended. Where
+/// the system gives fewer threads they are fewer, at least the caller's: so work takes what is left to do
+/// until nothing is. It must not throw.
+void run_on_threads(std::size_t count, const std::function<void()>& work);
+
+// Lazy initialisation: a value made at its first use, by one thread, then kept.
+
+/// Thread-safe: of several threads that ask at once one makes the value and the others wait. A maker that
+/// throws leaves nothing; the next one to ask tries again. May be asked from inside a parallel loop.
+template <typename T>
+class Lazy {
+  public:
+    /// `make` returns a std::unique_ptr<T>.
+    template <typename Make>
+    const T& get(Make&& make) const {
+        std::call_once(made_, [&] { run_isolated([&] { value_ = std::forward<Make>(make)(); }); });
+        return *value_;
+    }
+
+  private:
+    mutable std::once_flag made_;
+    mutable std::unique_ptr<T> value_;
+};
 
 }  // namespace trilens

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 #include "camera/model/camera_model.h"
 
 namespace trilens {

@@ -5,7 +5,6 @@
 
 #include "base/description/camera_description.h"
 #include "camera/model/camera_model.h"
-#include "camera/model/film_axes.h"
 
 namespace trilens {
 

@@ -1,13 +1,18 @@
-// Formats a comparison of two images as text and JSON.
+// What `trilens compare` and `trilens test` answer, as text and JSON: how two images differ; what passed,
+// what failed and why, and the exit code.
 #pragma once
 
 #include <trilens/compare.h>
+#include <trilens/suite.h>
+
 #include <string>
 #include <vector>
 
 #include "terminal/command.h"
 
 namespace trilens {
+
+// Formats a comparison of two images as text and JSON.
 
 struct CompareRequest {
     std::string reference, test, difference;  // files
@@ -30,5 +35,11 @@ struct ComparedInputs {
 
 /// The table and the verdict, and the fields of `trilens.compare/1`.
 Answer compare_answer(const CompareRequest& request, const ComparedInputs& inputs);
+
+// What `trilens test` answers: what passed, what failed and why, and the exit code.
+
+/// A line for each test that did not pass or whose reference changed, the counts, and the fields of
+/// `trilens.test/1`.
+Answer answer_of(const SuiteRequest& request, const SuiteResult& result);
 
 }  // namespace trilens

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "cli/print/values.h"
-#include "terminal/format.h"
+#include "cli/print/projections.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 namespace {

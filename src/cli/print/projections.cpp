@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "cli/print/shots.h"
-#include "cli/print/values.h"
 
 namespace trilens {
 namespace {
@@ -143,6 +142,87 @@ std::string points_text(const Renderer& renderer, std::vector<PointProjection> i
     std::string text = "point,x,y,t,path,optic,facet,inside,visible,refined,off,weight_r,weight_g,weight_b\n";
     for (std::future<std::string>& piece : pieces) text += piece.get();
     return text;
+}
+
+namespace {
+
+Json ray_json(const Ray& ray) {
+    return {{"origin", vector_json(ray.origin)}, {"direction", vector_json(ray.direction)}};
+}
+
+Json hit_json(const Renderer& renderer, const Hit& hit) {
+    if (!hit.seen()) return nullptr;
+    const SeenTriangle seen = renderer.seen_triangle(hit);
+    return {{"object", seen.object},
+            {"name", renderer.scene().meshes[seen.object].name},
+            {"primitive", seen.primitive},
+            {"t", json_number(hit.t)},
+            {"barycentric", {json_number(hit.barycentric.x), json_number(hit.barycentric.y)}},
+            {"position", vector_json(seen.position)}};
+}
+
+Json kind_json(const std::optional<GeneralLinearKind>& kind) {
+    return kind ? Json(general_linear_kind_name(*kind)) : Json(nullptr);
+}
+
+Json end_json(const Renderer& renderer, const PixelEnd* end) {
+    if (!end) return nullptr;
+    return {{"path", steps_json(renderer, end->steps)},
+            {"weight", vector_json(end->weight)},
+            {"ray", ray_json(end->ray)},
+            {"facet_kind", kind_json(end->facet_kind)},
+            {"sees", hit_json(renderer, end->hit)}};
+}
+
+}  // namespace
+
+Json explanation_json(const Renderer& renderer, const EngineChoice& engine, const PixelExplanation& pixel) {
+    Json fields;
+    fields["pixel"] = {pixel.x, pixel.y};
+    fields["engine"] = engine_name(engine.engine);
+    if (pixel.camera_facet != kNone)
+        fields["camera"] = {{"facet", pixel.camera_facet}, {"facet_kind", kind_json(pixel.camera_kind)}};
+    fields["ray"] = ray_json(pixel.ray);
+    fields["depth"] = json_number(pixel.depth);
+    fields["sees"] = hit_json(renderer, pixel.hit);
+    if (pixel.optic != kNone) {
+        const OpticInfo optic = renderer.optics()[pixel.optic];
+        fields["optic"] = {{"object", optic.object},
+                           {"name", optic.name},
+                           {"facet", pixel.facet},
+                           {"uv", {json_number(pixel.uv.x), json_number(pixel.uv.y)}},
+                           {"cos_incident", json_number(pixel.cos_incident)},
+                           {"front", pixel.front}};
+        for (const Path path : {Path::kReflect, Path::kRefract})
+            fields[path_name(path)] = end_json(renderer, pixel.find(path));
+        fields["ends"] = Json::array();
+        for (const PixelEnd& end : pixel.ends) fields["ends"].push_back(end_json(renderer, &end));
+        fields["method"] = pixel.traced ? "traced" : pixel.level > 0 ? "subdivided" : "projected";
+        fields["level"] = pixel.level;
+    }
+    fields["colour"] = {{"direct", vector_json(pixel.direct)},
+                        {"reflect", vector_json(pixel.reflect)},
+                        {"refract", vector_json(pixel.refract)}};
+    return fields;
+}
+
+Json vector_json(const Vec3& v) {
+    return {json_number(v.x), json_number(v.y), json_number(v.z)};
+}
+
+Json optional_json(const std::optional<double>& value) {
+    return value ? json_number(*value) : Json(nullptr);
+}
+
+Json id_json(Id id) {
+    return id == kNone ? Json(nullptr) : Json(id);
+}
+
+Json steps_json(const Renderer& renderer, std::span<const Step> steps) {
+    Json list = Json::array();
+    for (const Step& step : steps)
+        list.push_back({{"optic", renderer.optics()[step.optic].name}, {"event", event_name(step.event)}});
+    return list;
 }
 
 }  // namespace trilens

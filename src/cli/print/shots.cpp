@@ -6,7 +6,7 @@
 
 #include <iterator>
 
-#include "cli/print/values.h"
+#include "cli/print/projections.h"
 
 namespace trilens {
 namespace {

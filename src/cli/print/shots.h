@@ -4,7 +4,7 @@
 #include <trilens/project.h>
 #include <string>
 
-#include "terminal/json.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 

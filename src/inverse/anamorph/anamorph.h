@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/description/texture.h"
+#include "base/description/material.h"
 #include "base/image/image.h"
 #include "base/math/vec.h"
 #include "base/util/progress.h"

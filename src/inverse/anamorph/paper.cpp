@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/util/error.h"
-#include "base/util/suggestion.h"
+#include "base/util/names.h"
 #include "inverse/maps/number_list.h"
 
 namespace trilens {

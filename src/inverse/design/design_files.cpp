@@ -8,7 +8,7 @@
 
 #include "base/util/format.h"
 #include "inverse/design/design.h"
-#include "scene/json/json.h"
+#include "json/json.h"
 
 namespace trilens {
 namespace {

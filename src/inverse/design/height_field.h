@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/description/cage.h"
+#include "base/description/optic_description.h"
 #include "base/math/vec.h"
 
 namespace trilens {

@@ -4,9 +4,9 @@
 #include "base/util/error.h"
 #include "image/image_io.h"
 #include "inverse/design/wish.h"
-#include "scene/json/fields.h"
-#include "scene/json/files.h"
-#include "scene/json/json_check.h"
+#include "json/fields.h"
+#include "json/json.h"
+#include "json/schema.h"
 
 namespace trilens {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reflect/mirror.h"
+#include "reflect/reflection.h"
 
 namespace trilens {
 

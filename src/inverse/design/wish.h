@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/math/vec.h"
-#include "base/util/enum_names.h"
+#include "base/util/names.h"
 
 namespace trilens {
 

@@ -6,7 +6,7 @@
 #include "base/math/box.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "base/util/suggestion.h"
+#include "base/util/names.h"
 #include "inverse/fit/fit_problem.h"
 #include "inverse/solve/uncertainty.h"
 #include "render/project/project.h"

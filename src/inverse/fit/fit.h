@@ -11,7 +11,7 @@
 #include "base/math/vec.h"
 #include "base/util/progress.h"
 #include "scene/data/scene.h"
-#include "scene/data/scene_override.h"
+#include "scene/data/scene_inputs.h"
 
 namespace trilens {
 

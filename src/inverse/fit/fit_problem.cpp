@@ -6,8 +6,8 @@
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "scene/json/json_check.h"
-#include "scene/read/scene_fields.h"
+#include "json/schema.h"
+#include "scene/read/reading.h"
 
 namespace trilens {
 namespace {

@@ -10,8 +10,8 @@
 #include "camera/camera.h"
 #include "intersect/limit_tracer.h"
 #include "inverse/fit/parameters.h"
+#include "scene/data/polygons.h"
 #include "scene/data/scene.h"
-#include "scene/data/transform.h"
 
 namespace trilens {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "base/util/error.h"
-#include "base/util/suggestion.h"
+#include "base/util/names.h"
 #include "inverse/fit/fit.h"
-#include "scene/json/files.h"
+#include "json/json.h"
 
 namespace trilens {
 namespace {

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "base/util/format.h"
-#include "base/util/suggestion.h"
-#include "scene/json/json_check.h"
-#include "scene/read/scene_fields.h"
+#include "base/util/names.h"
+#include "json/schema.h"
+#include "scene/read/reading.h"
 
 namespace trilens {
 namespace {

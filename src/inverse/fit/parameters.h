@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/math/vec.h"
+#include "json/json.h"
 #include "scene/data/scene.h"
-#include "scene/json/json.h"
 
 namespace trilens {
 

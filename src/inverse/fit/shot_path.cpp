@@ -6,8 +6,8 @@
 
 #include "base/util/error.h"
 #include "paths/trace/path_world.h"
-#include "reflect/mirror.h"
-#include "refract/dielectric.h"
+#include "reflect/reflection.h"
+#include "refract/refraction.h"
 
 namespace trilens {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 #include "inverse/fit/fit_scene.h"
 #include "inverse/fit/path_word.h"
 

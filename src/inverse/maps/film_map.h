@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/image/image.h"
-#include "base/util/enum_names.h"
+#include "base/util/names.h"
 #include "base/util/progress.h"
 #include "inverse/maps/proxy_description.h"
 #include "inverse/maps/target.h"

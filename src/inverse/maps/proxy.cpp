@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "intersect/tracer.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/math/vec.h"
-#include "base/raymesh/ray.h"
-#include "base/util/enum_names.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/util/names.h"
 #include "scene/data/scene.h"
 
 namespace trilens {

@@ -4,7 +4,7 @@
 
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "base/util/suggestion.h"
+#include "base/util/names.h"
 #include "inverse/maps/number_list.h"
 #include "inverse/maps/target.h"
 

@@ -2,7 +2,7 @@
 // of another picture covers on it.
 #pragma once
 
-#include "base/description/texture.h"
+#include "base/description/material.h"
 #include "base/math/vec.h"
 
 namespace trilens {

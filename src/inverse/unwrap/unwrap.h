@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "base/description/texture.h"
+#include "base/description/material.h"
 #include "base/image/image.h"
-#include "base/util/enum_names.h"
+#include "base/util/names.h"
 #include "base/util/progress.h"
 #include "inverse/maps/proxy_description.h"
 #include "inverse/maps/target.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/math/box.h"
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 
 namespace trilens {
 

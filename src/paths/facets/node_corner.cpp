@@ -1,6 +1,6 @@
 #include "paths/facets/node_corner.h"
 
-#include "reflect/mirror.h"
+#include "reflect/reflection.h"
 
 namespace trilens {
 

@@ -7,7 +7,7 @@
 #include "intersect/patch_tree.h"
 #include "paths/facets/beam.h"
 #include "paths/probe/same_histories.h"
-#include "reflect/mirror.h"
+#include "reflect/reflection.h"
 
 namespace trilens {
 namespace {

@@ -3,9 +3,7 @@
 #include <optional>
 
 #include "base/util/check.h"
-#include "reflect/mirror.h"
 #include "reflect/reflection.h"
-#include "refract/dielectric.h"
 #include "refract/refraction.h"
 
 namespace trilens {

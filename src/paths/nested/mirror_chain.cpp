@@ -6,7 +6,7 @@
 
 #include "base/util/check.h"
 #include "paths/probe/ray_scale.h"
-#include "reflect/mirror.h"
+#include "reflect/reflection.h"
 
 namespace trilens {
 namespace {

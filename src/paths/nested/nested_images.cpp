@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/raymesh/facets_around.h"
+#include "base/raymesh/ray_mesh.h"
 #include "base/util/parallel.h"
 
 namespace trilens {

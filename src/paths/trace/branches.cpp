@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "paths/trace/path_world.h"
-#include "reflect/mirror.h"
-#include "refract/dielectric.h"
+#include "reflect/reflection.h"
+#include "refract/refraction.h"
 #include "shade/optic_weights.h"
 #include "shade/shade.h"
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "base/raymesh/ray.h"
+#include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/triangle_scene.h"
 
 namespace trilens {

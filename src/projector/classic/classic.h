@@ -6,18 +6,10 @@
 
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
+#include "projector/classic/classic_params.h"
 #include "projector/scene/prepared_scene.h"
-#include "trilinear/curves.h"
 
 namespace trilens {
-
-/// How the classic engine draws. The defaults are exact but for `tolerance`.
-struct ClassicParams {
-    Curves curves = Curves::kArcs;
-    Clip clip = Clip::kScene;
-    int pieces = 8;            // kSlices, kTessellate: at least 1
-    double tolerance = 0.001;  // kArcs: how far an outline may leave its conic, in pixels
-};
 
 /// The contract of draw(), but for coverage: a sample sees a triangle where the triangle's outlines in the
 /// sample's facet hold it, so a sample beyond its facet's border may see nothing. A sample exactly on an

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/raymesh/ray_mesh.h"
-#include "trilinear/facet/edge_conic.h"
+#include "trilinear/facet/scene_edge.h"
 
 namespace trilens {
 

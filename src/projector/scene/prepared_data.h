@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/util/lazy.h"
+#include "base/util/parallel.h"
 #include "projector/exact/exact_hit.h"
 #include "projector/scene/bvh.h"
 #include "projector/scene/leaf_tree.h"

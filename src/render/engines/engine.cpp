@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/util/error.h"
-#include "base/util/suggestion.h"
+#include "base/util/names.h"
 #include "render/engines/facet_engine.h"
 #include "render/engines/limit_engine.h"
 #include "render/frame/camera_media.h"

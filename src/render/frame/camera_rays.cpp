@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/util/parallel.h"
-#include "trilinear/points/mesh_point_images.h"
+#include "trilinear/points/point_images.h"
 
 namespace trilens {
 namespace {

@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "base/description/optic_settings.h"
+#include "base/description/optic_description.h"
 #include "base/image/image.h"
-#include "base/image/strip_sink.h"
-#include "projector/classic/classic.h"
+#include "projector/classic/classic_params.h"
 
 namespace trilens {
 

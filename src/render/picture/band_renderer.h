@@ -2,7 +2,6 @@
 #pragma once
 
 #include "base/image/image.h"
-#include "base/image/strip_sink.h"
 #include "base/util/progress.h"
 #include "render/engines/engine.h"
 #include "render/frame/request.h"

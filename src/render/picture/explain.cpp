@@ -1,9 +1,11 @@
 #include "render/picture/explain.h"
 
+#include <span>
+
 #include "base/raymesh/rasterize.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "camera/facet_kinds.h"
+#include "camera/camera.h"
 #include "render/engines/engine.h"
 #include "render/picture/ray_differentials.h"
 
@@ -21,17 +23,33 @@ void name_camera_facet(const World& world, std::size_t index, const SampleGrid& 
     }
 }
 
-void name_end_facets(const FacetViews& views, PixelExplanation& explained) {
-    const SampleView& view = explained.view();
-    for (const PathEnd& end : explained.views.ends) {
-        explained.end_kinds.emplace_back();
+/// Of the optic that the sample shows first, and of the ends of the paths over it.
+void describe_optic(const FacetViews& views, const SampleViews& shown, PixelExplanation& explained) {
+    const SampleView& view = shown.samples.front();
+    explained.optic = view.optic;
+    explained.facet = view.facet;
+    explained.traced = view.traced;
+    explained.level = view.level;
+    const OpticView& on_optic = shown.on_optic(view);
+    explained.uv = on_optic.uv;
+    explained.cos_incident = on_optic.incidence.cosine;
+    explained.front = on_optic.incidence.front;
+    for (const PathEnd& end : shown.ends_of(view)) {
+        const std::span<const Step> steps = shown.steps_of(end);
+        explained.ends.push_back({end, {steps.begin(), steps.end()}, std::nullopt});
         if (end.node == kNone || view.leaf == kNone || !views.paths) continue;
         const PathNode& node = views.paths(view.optic).nodes()[end.node];
-        explained.end_kinds.back() = facet_kind(node.mesh, node.facet_of(view.leaf));
+        explained.ends.back().facet_kind = facet_kind(node.mesh, node.facet_of(view.leaf));
     }
 }
 
 }  // namespace
+
+const PixelEnd* PixelExplanation::find(Path path) const {
+    for (const PixelEnd& end : ends)
+        if (end.path == path && end.principal) return &end;
+    return nullptr;
+}
 
 PixelExplanation explain_pixel(const World& world, const PictureRequest& request, int x, int y) {
     const Film& film = world.scene.film;
@@ -43,11 +61,19 @@ PixelExplanation explain_pixel(const World& world, const PictureRequest& request
     explained.y = y;
     const SampleGrid grid{x, y, x + 1, y + 1, 1};
     const FacetViews views = make_views(world, request.frame, request.engine, {});
-    views.viewer(grid, explained.views);
-    name_end_facets(views, explained);
+    SampleViews shown;
+    views.viewer(grid, shown);
+    const SampleView& view = shown.samples.front();
+    explained.ray = view.ray;
+    explained.hit = view.hit;
+    explained.depth = view.depth;
+    if (view.optic != kNone) describe_optic(views, shown, explained);
     if (views.paths) name_camera_facet(world, request.frame.camera, grid, explained);
     const RayDifferentials differentials(world, views, grid);
-    explained.colour = sample_colour(world, explained.views, explained.view(), &differentials);
+    const SampleColour colour = sample_colour(world, shown, view, &differentials);
+    explained.direct = colour.direct;
+    explained.reflect = colour.reflect;
+    explained.refract = colour.refract;
     return explained;
 }
 

@@ -1,7 +1,7 @@
 // One picture of a scene, from the choice of engine to the finished image.
 #pragma once
 
-#include "base/image/strip_sink.h"
+#include "base/image/image.h"
 #include "base/util/progress.h"
 #include "render/frame/request.h"
 

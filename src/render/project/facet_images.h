@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "base/raymesh/facets_around.h"
-#include "base/util/lazy.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/util/parallel.h"
 #include "render/frame/frame.h"
 #include "specular/specular_point.h"
-#include "trilinear/points/mesh_point_images.h"
+#include "trilinear/points/point_images.h"
 
 namespace trilens {
 

@@ -12,7 +12,7 @@
 #include "paths/trace/history_image.h"
 #include "render/frame/frame.h"
 #include "render/shoot/event_word.h"
-#include "trilinear/points/mesh_point_images.h"
+#include "trilinear/points/point_images.h"
 
 namespace trilens {
 

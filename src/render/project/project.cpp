@@ -5,7 +5,7 @@
 #include <mutex>
 #include <numeric>
 
-#include "base/math/spatial_split.h"
+#include "base/math/box.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "render/project/point_projector.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <mutex>
 
-#include "base/raymesh/facet_scene.h"
+#include "base/raymesh/surface.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "base/raymesh/surface.h"
-#include "base/util/lazy.h"
+#include "base/util/parallel.h"
 #include "intersect/limit_tracer.h"
 #include "intersect/tracer.h"
 #include "paths/trace/path_world.h"

@@ -7,7 +7,7 @@
 #include "render/world/geometry.h"
 #include "scene/data/scene_digest.h"
 #include "shade/optic_weights.h"
-#include "surfaces/machine_memory.h"
+#include "surfaces/memory_budget.h"
 #include "surfaces/normal_override.h"
 #include "surfaces/surfaces.h"
 

@@ -8,16 +8,11 @@
 
 #include "base/raymesh/surface.h"
 #include "base/util/progress.h"
+#include "render/world/scene_reuse.h"
 #include "scene/data/scene.h"
 #include "shade/shade.h"
 
 namespace trilens {
-
-/// What of a world stayed as it was when its scene changed: with it stay the trees and grids built of it.
-struct SceneReuse {
-    bool objects = false;    // all of them
-    std::size_t optics = 0;  // how many, their surfaces, tracers and facets
-};
 
 /// One optic: its exact surface and what it does to light.
 struct Optic {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "base/description/cage.h"
+#include "base/description/optic_description.h"
 
 namespace trilens {
 

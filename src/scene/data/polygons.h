@@ -1,17 +1,67 @@
-// A polygon mesh as files give it, in its own frame, and what becomes of it: a placed cage or an object's
-// triangles.
+// A polygon mesh as files give it, in its own frame, its affine maps, and what becomes of it: a placed cage
+// or an object's triangles, by ear clipping.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "base/description/cage.h"
 #include "base/description/material.h"
+#include "base/description/optic_description.h"
+#include "base/math/vec.h"
 #include "base/util/ids.h"
 #include "scene/data/scene.h"
-#include "scene/data/transform.h"
 
 namespace trilens {
+
+// Affine maps of meshes: what a scene file's `transform` and a glTF node say.
+
+/// point -> linear * point + translation.
+struct Transform {
+    Mat3 linear{1};
+    Vec3 translation{0};
+};
+
+inline Vec3 map_point(const Transform& t, const Vec3& point) {
+    return t.linear * point + t.translation;
+}
+
+/// First `inner`, then `outer`.
+Transform compose(const Transform& outer, const Transform& inner);
+
+/// Scale, then rotate, then translate. The quaternion x, y, z, w may have any length but 0.
+Transform make_transform(const Vec3& translate, const Vec4& rotate, const Vec3& scale);
+
+/// The quaternion x, y, z, w of a rotation by `degrees` about an axis of any length but 0.
+Vec4 quaternion_about(const Vec3& axis, double degrees);
+
+/// Of rotations about the fixed axes by `degrees` about x, y and z, in the order of the letters: "XYZ" is
+/// about x first.
+Vec4 quaternion_of_euler(const Vec3& degrees, const std::string& order);
+
+/// From 16 numbers, column by column; none where the last row is not 0 0 0 1.
+std::optional<Transform> make_transform(std::span<const double, 16> columns);
+
+/// Whether the map turns volumes to nothing: |det| <= kFlat times the product of its columns' lengths.
+bool flattens(const Transform& t);
+inline constexpr double kFlat = 1e-12;
+
+/// Whether the map turns right hands into left hands.
+bool mirrors(const Transform& t);
+
+/// Normals go by the inverse transpose; unit, or zero where the normal is zero. `t` must not flatten.
+Mat3 normal_map(const Transform& t);
+
+/// The factor of a similarity (rotation or mirroring times a factor), none for other maps. Tolerance:
+/// kSimilar.
+std::optional<double> similarity_factor(const Transform& t);
+inline constexpr double kSimilar = 1e-9;  // relative; a matrix written with ten digits passes
+
+// A polygon mesh as files give it, in its own frame, and what becomes of it: a placed cage or an object's
+// triangles, by ear clipping.
 
 /// Cage fields with what only objects need. Indices are in range.
 struct PolygonMesh {
@@ -51,5 +101,20 @@ struct CageDiagnostics {
     std::size_t flat_faces = 0;          // faces without area
 };
 CageDiagnostics diagnose_cage(const Cage& cage);
+
+// A polygon in space cut into triangles between its corners.
+
+/// The n - 2 triangles of a polygon of n corners, as indices of its corners, wound as it is.
+struct PolygonTriangles {
+    std::vector<std::array<std::size_t, 3>> triangles;
+    bool covers = true;  // false: no cut covers the polygon, and the triangles are its fan
+};
+
+/// Cuts a polygon of at least 3 corners with finite coordinates up to 1e30. Seen along Newell's normal, where
+/// the triangles of the fan from corner 0 all keep the polygon's winding (so always where it is convex), they
+/// are the answer; otherwise ears are clipped, the first from corner 0 on. A polygon that crosses itself, and
+/// one without a plane, may have no such cut: then it is the fan, and `covers` is false. Corners are compared
+/// on a grid of 2^-30 of the polygon's extent. Based on: Meisters, Polygons Have Ears (1975).
+PolygonTriangles triangulate_polygon(std::span<const Vec3> corners);
 
 }  // namespace trilens

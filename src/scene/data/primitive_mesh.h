@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "base/util/enum_names.h"
+#include "base/util/names.h"
 #include "scene/data/polygons.h"
 
 namespace trilens {

@@ -7,11 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "base/description/cage.h"
 #include "base/description/camera_description.h"
 #include "base/description/light.h"
 #include "base/description/material.h"
-#include "base/description/optic_settings.h"
+#include "base/description/optic_description.h"
 #include "base/math/vec.h"
 #include "base/raymesh/triangle_scene.h"
 
@@ -19,7 +18,7 @@ namespace trilens {
 
 /// What a scene may ask for at most.
 inline constexpr long long kMostPixels = 1LL << 28;  // of a film
-inline constexpr int kMostFilmSide = 32768;         // pixels
+inline constexpr int kMostFilmSide = 32768;          // pixels
 /// Coordinates beyond this are taken for mistakes: products of four still fit in a double.
 inline constexpr double kLargestCoordinate = 1e30;
 inline constexpr int kMaxSpp = 64;

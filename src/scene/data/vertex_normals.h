@@ -1,7 +1,7 @@
 // Normals of a polygon mesh's points: the mean of the faces around each, weighted by their angles there.
 #pragma once
 
-#include "base/util/enum_names.h"
+#include "base/util/names.h"
 #include "scene/data/polygons.h"
 
 namespace trilens {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scene/data/polygons.h"
-#include "scene/data/texture_reader.h"
+#include "scene/data/scene_inputs.h"
 
 namespace trilens {
 

@@ -1,11 +1,14 @@
-// Opening glTF and GLB files.
+// Opening glTF and GLB files, and numbers out of their buffers, with every bound checked.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace tinygltf {
+
 class Model;
-}
+}  // namespace tinygltf
 
 namespace trilens {
 
@@ -15,5 +18,22 @@ tinygltf::Model load_gltf_model(const std::string& file);
 
 /// A relative URI as a path: %20 becomes a space, and so on.
 std::string decode_gltf_uri(const std::string& uri);
+
+}  // namespace trilens
+
+// Numbers out of a glTF's buffers, with every bound checked.
+
+namespace tinygltf {
+class Model;
+}
+
+namespace trilens {
+
+/// The accessor's entries one after the other, `components` numbers each; normalised integers become 0..1 or
+/// -1..1; sparse ones are filled in. Throws InputError(file, "/accessors/n") where the accessor does not
+/// exist, has another number of components, reaches beyond its buffer, or holds a number that is not finite
+/// or beyond 1e30.
+std::vector<double> read_gltf_accessor(const tinygltf::Model& model, int accessor, int components,
+                                       const std::string& file);
 
 }  // namespace trilens

@@ -11,7 +11,6 @@
 
 #include "base/util/error.h"
 #include "scene/formats/gltf.h"
-#include "scene/formats/gltf_accessor.h"
 #include "scene/formats/gltf_file.h"
 
 namespace trilens {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/util/error.h"
-#include "scene/formats/obj.h"
+#include "json/json.h"
 #include "scene/formats/line_scanner.h"
-#include "scene/json/files.h"
+#include "scene/formats/obj.h"
 
 namespace trilens {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/util/error.h"
+#include "json/json.h"
 #include "scene/formats/line_scanner.h"
-#include "scene/json/files.h"
 
 namespace trilens {
 namespace {

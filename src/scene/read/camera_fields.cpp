@@ -1,7 +1,7 @@
 // The settings of cameras, each with the types that have it.
 #include <algorithm>
 
-#include "scene/read/scene_fields.h"
+#include "scene/read/reading.h"
 
 namespace trilens {
 namespace {

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "base/util/error.h"
-#include "base/util/suggestion.h"
-#include "scene/json/json_check.h"
+#include "base/util/names.h"
+#include "json/schema.h"
 #include "scene/read/reading.h"
-#include "scene/read/scene_fields.h"
 
 namespace trilens {
 
@@ -143,28 +142,6 @@ Json resolved_json(const Scene& scene) {
     if (count("meshes") != scene.meshes.size() || count("cameras") != scene.cameras.size())
         throw InputError(title, "", "its JSON has other meshes or cameras than the scene itself");
     return json;
-}
-
-void set_resolution(Scene& scene, int resolution, const std::string& optic) {
-    if (resolution < 1 || resolution > kMaxResolution)
-        throw InputError(scene_title(scene), "/meshes",
-                         "a resolution of " + std::to_string(resolution) + " is not in 1.." +
-                             std::to_string(kMaxResolution));
-    std::vector<std::size_t> meant;
-    std::vector<std::string> names;
-    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-        if (scene.meshes[m].role != Role::kOptic) continue;
-        names.push_back(scene.meshes[m].name);
-        if (optic.empty() || names.back() == optic) meant.push_back(m);
-    }
-    if (meant.empty() && !optic.empty())
-        throw UsageError("there is no optic \"" + optic + "\"" + suggestion(optic, names));
-    Json resolved;
-    if (!scene.resolved.empty()) resolved = resolved_json(scene);
-    for (const std::size_t m : meant) scene.meshes[m].resolution = resolution;
-    if (scene.resolved.empty() || scene.meshes.empty()) return;
-    for (const std::size_t m : meant) resolved["meshes"][m]["resolution"] = resolution;
-    scene.resolved = resolved.dump();
 }
 
 }  // namespace trilens

@@ -4,9 +4,9 @@
 #include <span>
 #include <string>
 
+#include "json/json.h"
 #include "scene/data/scene.h"
-#include "scene/data/scene_override.h"
-#include "scene/json/json.h"
+#include "scene/data/scene_inputs.h"
 
 namespace trilens {
 
@@ -19,10 +19,5 @@ void apply_overrides(Json& scene, std::span<const SceneOverride> overrides, cons
 /// Scene::resolved, which is not empty, as a document. Callers may have written it: throws InputError where
 /// it is no scene's, as the schema has it, or names other meshes or cameras than the scene has.
 Json resolved_json(const Scene& scene);
-
-/// Gives every optic this resolution, or with a name those of that name, in the scene and in its resolved
-/// JSON. Throws InputError unless it is in 1..1024, or where Scene::resolved is no scene's JSON, UsageError
-/// where no optic has the name; then nothing has changed.
-void set_resolution(Scene& scene, int resolution, const std::string& optic = "");
 
 }  // namespace trilens

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "scene/read/reading.h"
-#include "scene/read/scene_fields.h"
 
 namespace trilens {
 namespace {

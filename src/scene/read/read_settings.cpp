@@ -4,8 +4,8 @@
 #include <system_error>
 
 #include "base/util/check.h"
+#include "base/util/error.h"
 #include "scene/read/reading.h"
-#include "scene/read/scene_fields.h"
 
 namespace trilens {
 namespace {
@@ -222,8 +222,7 @@ Material read_material(const Node& node, Reading& reading) {
     read_fields(node, material_fields(), material);
     if (material.name == "inherit")
         node["name"].fail("'inherit' is taken: it stands for a file's own materials");
-    if (node.has("baseColorTexture"))
-        read_texture(node["baseColorTexture"], reading, material);
+    if (node.has("baseColorTexture")) read_texture(node["baseColorTexture"], reading, material);
     if (node.has("volume")) read_fields(node["volume"], volume_fields(), material);
     return material;
 }

@@ -1,4 +1,5 @@
-// What the readers of a scene file's parts share.
+// What the readers of a scene file's parts share: objects by name, and the tables of settings that the JSON
+// Schema and the readers are made of.
 #pragma once
 
 #include <cstddef>
@@ -7,10 +8,14 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "json/fields.h"
+#include "json/json.h"
 #include "scene/data/polygons.h"
-#include "scene/data/texture_reader.h"
-#include "scene/json/json.h"
+#include "scene/data/primitive_mesh.h"
+#include "scene/data/scene.h"
+#include "scene/data/scene_inputs.h"
 
 namespace trilens {
 
@@ -77,5 +82,42 @@ PolygonMesh read_mesh_file(const Node& mesh, bool inherit, Reading& reading);
 void read_subdivision(const Node& mesh, Cage& cage);
 /// Throws InputError where an optic's scheme does not fit its faces.
 void check_scheme(const Node& mesh, const Cage& cage);
+
+// The files that a scene names, with what was in them: how an image knows later that one has changed.
+
+/// One line per file, "hash path", the path from the scene's folder; the scene file itself is left out.
+std::string named_files_text(const Scene& scene);
+
+/// The files that the scene names now whose hash was another one in `text`, which named_files_text wrote.
+std::vector<std::string> changed_files(const Scene& scene, const std::string& text);
+
+// The tables of a scene's settings: what its JSON Schema and its readers are made of.
+
+const std::vector<Field<CameraDescription>>& camera_fields();
+const std::vector<Field<Film>>& film_fields();
+const std::vector<Field<Background>>& background_fields();
+const std::vector<Field<Material>>& material_fields();
+const std::vector<Field<Light>>& light_fields();
+const std::vector<Field<RenderSettings>>& render_fields();
+const std::vector<Field<Mesh>>& mesh_fields();
+const std::vector<Field<Cage>>& subdivision_fields();  // keys of a mesh, too
+const std::vector<Field<ObjectPrimitive>>& primitive_fields();
+const std::vector<Field<NormalOverride>>& normal_fields();
+
+/// scene_schema(), parsed; made once.
+const Json& scene_schema_json();
+
+// Their schemas, as definitions of the scene's.
+Json camera_schema();
+Json view_schema();  // of a multiPerspective camera
+Json film_schema();
+Json background_schema();
+Json material_schema();
+Json texture_schema();
+Json light_schema();
+Json render_schema();
+Json mesh_schema();
+Json primitive_schema();
+Json normals_schema();
 
 }  // namespace trilens

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "scene/json/json_check.h"
-#include "scene/read/scene_fields.h"
+#include "json/schema.h"
+#include "scene/read/reading.h"
 
 namespace trilens {
 namespace {

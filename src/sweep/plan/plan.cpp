@@ -8,8 +8,12 @@
 #include <optional>
 #include <string_view>
 
+#include "base/description/digest.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
-#include "base/util/hash.h"
+#include "json/fields.h"
+#include "json/json.h"
+#include "json/schema.h"
 
 namespace trilens {
 namespace {
@@ -125,6 +129,76 @@ Shard parse_shard(const std::string& text, const Environment& environment) {
     if (!index || !count || *index < 0 || *index >= *count)
         throw UsageError("--shard " + text + ": is not i/n with 0 <= i < n, nor auto");
     return {*index, *count};
+}
+
+namespace {
+
+/// What a sweep file may say; axes, scenes and what is set are read by hand.
+const std::vector<Field<SweepFile>>& sweep_fields() {
+    static const std::vector<Field<SweepFile>> fields = [] {
+        const Json axis = object_schema(
+            {.title = "an axis", .required = {"axis", "values"}},
+            std::vector<FieldSchema>{{.key = "axis", .schema = some_text(), .kinds = {}, .needed_by = {}},
+                                     {.key = "values",
+                                      .schema = {{"type", {"array", "string"}}, {"minItems", 1}},
+                                      .kinds = {},
+                                      .needed_by = {}}});
+        return std::vector<Field<SweepFile>>{
+            part<SweepFile>("version", whole_in(1, 1)),
+            part<SweepFile>("scenes", list_of(some_text(), 1)),
+            part<SweepFile>("over", list_of(axis, 1)),
+            setting("zip", &SweepFile::zip, yes_or_no()),
+            setting("truth", &SweepFile::truth, word_of({"limit", "facets"})),
+            setting("camera", &SweepFile::camera, some_text()),
+            setting("title", &SweepFile::title, some_text()),
+            setting("repeats", &SweepFile::repeats, whole_in(1, 1000)),
+            part<SweepFile>("set", {{"type", "object"}})};
+    }();
+    return fields;
+}
+
+/// A sweep file's JSON, checked.
+Json checked_sweep(const std::string& file) {
+    static const Json schema = object_schema({.title = "a sweep file", .required = {"over"}}, sweep_fields());
+    Json json = parse_json(read_required_file(file), file);
+    if (const auto found = find_problem(json, schema)) fail_at(file, found->place, found->message);
+    return json;
+}
+
+/// As --over takes it: texts bare, all else as JSON.
+std::string scalar_text(const Json& json) {
+    return json.is_string() ? json.get<std::string>() : json.dump();
+}
+
+AxisRequest read_axis(const Json& part) {
+    AxisRequest request{part.at("axis").get<std::string>(), {}};
+    const Json& values = part.at("values");
+    if (values.is_string())
+        request.values = parse_over(request.axis + "=" + values.get<std::string>()).values;
+    else
+        for (const Json& value : values) request.values.push_back(scalar_text(value));
+    return request;
+}
+
+}  // namespace
+
+SweepFile read_sweep_file(const std::string& file) {
+    const Json json = checked_sweep(file);
+    SweepFile sweep;
+    read_fields(Node{json, "", file}, sweep_fields(), sweep);
+    for (const Json& axis : json.at("over")) sweep.over.push_back(read_axis(axis));
+    if (json.contains("scenes")) sweep.scenes = json.at("scenes").get<std::vector<std::string>>();
+    if (json.contains("set"))
+        for (const auto& [pointer, value] : json.at("set").items())
+            sweep.set.emplace_back(pointer, value.dump());
+    return sweep;
+}
+
+bool is_sweep_file(const std::string& file) {
+    const std::optional<std::string> text = read_whole_file(file);
+    if (!text) return false;
+    const Json json = Json::parse(*text, nullptr, false, true);
+    return json.is_object() && json.contains("over");
 }
 
 }  // namespace trilens

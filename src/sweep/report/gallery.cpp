@@ -4,8 +4,8 @@
 #include <optional>
 #include <system_error>
 
-#include "base/files/file_bytes.h"
-#include "report/html.h"
+#include "base/files/files.h"
+#include "report/page.h"
 #include "report/text.h"
 #include "sweep/report/fit_runs.h"
 #include "sweep/report/report_text.h"

@@ -8,7 +8,6 @@
 #include "base/util/format.h"
 #include "report/text.h"
 #include "sweep/report/fit_runs.h"
-#include "sweep/report/plot_groups.h"
 #include "sweep/report/sweep_plots.h"
 
 namespace trilens {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/html.h"
+#include "report/page.h"
 #include "sweep/store/results.h"
 
 namespace trilens {

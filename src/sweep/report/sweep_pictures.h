@@ -1,5 +1,5 @@
 // The pictures of a sweep's runs: projected and truth, how far what is seen moved, how far the colours
-// differ.
+// differ; a section of the report for each run.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/image/image.h"
+#include "report/page.h"
 #include "report/pictures.h"
 #include "sweep/store/results.h"
 
@@ -76,5 +77,15 @@ class KeptPictures {
 /// The difference of a run's image and its truth, times a power of two such that it is neither black nor
 /// white all over, which the caption states; a caption alone where they are the same.
 PagePicture run_difference(const Image& image, const Image& truth, const RunRecord& run);
+
+// A section of a sweep's report for each run, with its pictures.
+
+class KeptPictures;
+
+/// Adds sections of all runs; where their pictures would take more bytes in the page than `most_bytes`, these
+/// lie beside it, in the folder pictures, which is else removed. Pictures in `kept` are taken from there, all
+/// others made of the runs' files. Throws OutputError.
+void fill_runs(const SweepSummary& summary, std::size_t most_bytes, Report& report,
+               KeptPictures* kept = nullptr);
 
 }  // namespace trilens

@@ -6,14 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/format.h"
-#include "report/html.h"
-#include "sweep/report/plot_groups.h"
-#include "sweep/report/report_runs.h"
+#include "report/page.h"
 #include "sweep/report/report_text.h"
+#include "sweep/report/sweep_pictures.h"
 #include "sweep/report/sweep_plots.h"
-#include "sweep/store/file_lock.h"
 #include "sweep/store/sweep_folder.h"
 #include "sweep/store/sweep_ownership.h"
 

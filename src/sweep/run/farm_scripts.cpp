@@ -4,7 +4,7 @@
 
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "base/util/suggestion.h"
+#include "base/util/names.h"
 
 namespace trilens {
 namespace {

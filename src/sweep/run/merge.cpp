@@ -6,10 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "sweep/store/file_lock.h"
 #include "sweep/store/results_json.h"
 #include "sweep/store/run_files.h"
 #include "sweep/store/sweep_folder.h"

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <string_view>
 
+#include "base/description/digest.h"
 #include "base/util/error.h"
-#include "base/util/hash.h"
-#include "base/util/suggestion.h"
+#include "base/util/names.h"
 #include "report/text.h"
 
 namespace trilens {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/util/ids.h"
-#include "report/page.h"
+#include "report/text.h"
 #include "sweep/store/axis.h"
 
 namespace trilens {

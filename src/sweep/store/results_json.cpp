@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
+#include "json/json.h"
 #include "report/text.h"
-#include "sweep/store/json.h"
 
 namespace trilens {
 namespace {

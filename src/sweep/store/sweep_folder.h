@@ -1,14 +1,43 @@
-// Whose a sweep's folder is: one sweep's, and as many processes of it as there are.
+// Whose a sweep's folder is: one sweep's, and as many processes of it as there are, by locks.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/util/progress.h"
-#include "sweep/store/file_lock.h"
 #include "sweep/store/results.h"
 
 namespace trilens {
+
+// Locks between processes that share a sweep's folder.
+
+/// kOne: one holder alone. kMany: any number of holders, but none of kOne.
+enum class LockKind { kOne, kMany };
+
+/// A lock on a file, held until it is destroyed. The system frees it when the process ends, however it ends;
+/// the empty file stays and means nothing. Two holders in one process exclude each other as two processes do.
+class FileLock {
+  public:
+    /// None while another holder is in the way. Makes the file. Throws OutputError where it cannot be made or
+    /// the file system has no locks.
+    static std::optional<FileLock> try_lock(const std::string& file, LockKind kind);
+
+    /// Waits for the other holders to end. Throws Interrupted once `progress` says so, and as try_lock does.
+    static FileLock wait(const std::string& file, LockKind kind, const Progress& progress);
+
+    ~FileLock();
+    FileLock(FileLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    FileLock& operator=(FileLock&& other) noexcept {
+        std::swap(descriptor_, other.descriptor_);
+        return *this;
+    }
+
+  private:
+    explicit FileLock(int descriptor) : descriptor_(descriptor) {}
+    int descriptor_;
+};
 
 /// Whether two manifests tell of one sweep, so that their results may lie in one folder: the same axis,
 /// camera and truth, of the same scene by its name or by what it holds. The values along the axis are free.

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/files/file_bytes.h"
+#include "base/files/files.h"
 #include "base/util/error.h"
 
 namespace trilens {

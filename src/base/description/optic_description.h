@@ -1,0 +1,97 @@
+// An optic as a scene gives it: subdivision cages (UsdGeomMesh's names), analytic primitives, how they are
+// cut into facets, and how the rays at corners are chosen.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/math/vec.h"
+#include "base/util/ids.h"
+#include "base/util/names.h"
+
+namespace trilens {
+
+// Subdivision cages (UsdGeomMesh's names) and analytic primitives.
+
+enum class SubdivisionScheme { kCatmullClark, kLoop, kBilinear };
+enum class InterpolateBoundary { kNothing, kEdgeOnly, kEdgeAndCorner };
+
+template <>
+struct EnumNames<SubdivisionScheme> {
+    static constexpr std::array kTable{
+        NamedValue<SubdivisionScheme>{SubdivisionScheme::kCatmullClark, "catmullClark"},
+        NamedValue<SubdivisionScheme>{SubdivisionScheme::kLoop, "loop"},
+        NamedValue<SubdivisionScheme>{SubdivisionScheme::kBilinear, "bilinear"}};
+};
+template <>
+struct EnumNames<InterpolateBoundary> {
+    static constexpr std::array kTable{
+        NamedValue<InterpolateBoundary>{InterpolateBoundary::kNothing, "none"},
+        NamedValue<InterpolateBoundary>{InterpolateBoundary::kEdgeOnly, "edgeOnly"},
+        NamedValue<InterpolateBoundary>{InterpolateBoundary::kEdgeAndCorner, "edgeAndCorner"}};
+};
+
+/// A polygon mesh with subdivision tags. As an object it is drawn as its polygons; as an optic it stands for
+/// its limit surface. Field names and meaning: UsdGeomMesh; a sharpness >= 10 is infinite.
+struct Cage {
+    std::vector<Vec3> points;
+    std::vector<int> face_vertex_counts;
+    std::vector<int> face_vertex_indices;
+    SubdivisionScheme scheme = SubdivisionScheme::kCatmullClark;
+    InterpolateBoundary interpolate_boundary = InterpolateBoundary::kEdgeAndCorner;
+    std::vector<int> crease_indices;         // chains of vertices, one after the other
+    std::vector<int> crease_lengths;         // vertices per chain
+    std::vector<double> crease_sharpnesses;  // one per chain, or one per edge of all chains
+    std::vector<int> corner_indices;
+    std::vector<double> corner_sharpnesses;
+    std::vector<int> hole_indices;  // faces that are not drawn
+};
+
+/// An optic given by a formula instead of a cage; world frame.
+struct Primitive {
+    enum class Type { kSphere, kParaboloid, kCylinder, kPlane };
+    Type type = Type::kSphere;
+    Vec3 center{0};  // sphere: centre; paraboloid: apex; cylinder and plane: middle
+    Vec3 axis{0, 1,
+              0};  // unit. paraboloid: from the apex towards the focus; cylinder: along it; plane: its normal
+    Vec3 tangent{
+        1, 0, 0};  // unit, at right angles to axis: where u begins (paraboloid, cylinder), the u side (plane)
+    double radius = 1;        // sphere, cylinder; paraboloid: radius of its rim
+    double focal_length = 1;  // paraboloid: apex to focus
+    double height = 2;        // cylinder: length along the axis
+    Vec2 size{2, 2};          // plane: lengths of its sides along tangent and axis x tangent
+};
+
+template <>
+struct EnumNames<Primitive::Type> {
+    static constexpr std::array kTable{
+        NamedValue<Primitive::Type>{Primitive::Type::kSphere, "sphere"},
+        NamedValue<Primitive::Type>{Primitive::Type::kParaboloid, "paraboloid"},
+        NamedValue<Primitive::Type>{Primitive::Type::kCylinder, "cylinder"},
+        NamedValue<Primitive::Type>{Primitive::Type::kPlane, "plane"}};
+};
+
+// How an optic is cut into facets: where they lie, and how the rays at their corners are chosen.
+
+/// kInterpolated: each corner has its own exact ray. kFitted: corner rays are such that what is interpolated
+/// between them comes nearest to the exact rays in the mean.
+enum class CornerRays : std::uint8_t { kInterpolated, kFitted };
+
+template <>
+struct EnumNames<CornerRays> {
+    static constexpr std::array kTable{NamedValue<CornerRays>{CornerRays::kFitted, "fitted"},
+                                       NamedValue<CornerRays>{CornerRays::kInterpolated, "interpolated"}};
+};
+
+/// kSurface: N x N per face of the surface (thesis 7.2.1). kScreen: N x N over the optic's bounds on the film
+/// (thesis 7.2.2); for optics of many small faces, or none.
+enum class GridKind { kSurface, kScreen };
+
+template <>
+struct EnumNames<GridKind> {
+    static constexpr std::array kTable{NamedValue<GridKind>{GridKind::kSurface, "surface"},
+                                       NamedValue<GridKind>{GridKind::kScreen, "screen"}};
+};
+
+}  // namespace trilens

@@ -1,0 +1,187 @@
+// Pictures for the eye: any file as a linear texture, linear pixels as an 8-bit PNG.
+#include "image/image_io.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "base/files/files.h"
+#include "base/util/check.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
+#include "image/exr_file.h"
+#include "image/picture_library.h"
+#include "image/png_file.h"
+#include "image/tone.h"
+
+namespace trilens {
+namespace {
+
+std::uint8_t stored_from_linear(double value) {
+    return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(value)));
+}
+
+/// The same by tables: which value the floats of a bucket start with, and where each value starts.
+class StoredTable {
+  public:
+    StoredTable() {
+        for (std::size_t b = 0; b < first_.size(); ++b)
+            first_[b] = stored_from_linear(static_cast<double>(start_of(static_cast<std::uint32_t>(b))));
+        for (int v = 1; v < 256; ++v) {
+            std::uint32_t low = 0, high = std::bit_cast<std::uint32_t>(1.0f);
+            while (high - low > 1) {
+                const std::uint32_t middle = (low + high) / 2;
+                const bool reached =
+                    stored_from_linear(static_cast<double>(std::bit_cast<float>(middle))) >= v;
+                (reached ? high : low) = middle;
+            }
+            start_[static_cast<std::size_t>(v)] = std::bit_cast<float>(high);
+        }
+        start_[256] = std::numeric_limits<float>::infinity();
+    }
+
+    std::uint8_t operator()(float value) const {
+        if (!(value > 0)) return 0;
+        const float inside = std::min(value, 1.0f);
+        std::size_t stored = first_[std::bit_cast<std::uint32_t>(inside) >> kShift];
+        while (inside >= start_[stored + 1]) ++stored;
+        return static_cast<std::uint8_t>(stored);
+    }
+
+  private:
+    static constexpr int kShift = 16;  // of a float's bits: a bucket spans a 128th of its values
+    static float start_of(std::uint32_t bucket) { return std::bit_cast<float>(bucket << kShift); }
+
+    std::array<std::uint8_t, (std::bit_cast<std::uint32_t>(1.0f) >> kShift) + 1> first_{};
+    std::array<float, 257> start_{};
+};
+
+constexpr const char* kNeedsLibrary = "needs trilens' library of pictures, which cannot be loaded: ";
+
+const PictureLibrary& library_to_read(const std::string& name) {
+    std::string reason;
+    if (const PictureLibrary* library = picture_library(reason)) return *library;
+    throw InputError(name, "", kNeedsLibrary + reason);
+}
+
+std::vector<unsigned char> encode_named_png(const std::string& name, int width, int height,
+                                            std::span<const float> rgb) {
+    TRILENS_CHECK(width > 0 && height > 0, "a picture has pixels");
+    TRILENS_CHECK(rgb.size() == 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                  "three values per pixel");
+    static const StoredTable stored_of;
+    std::vector<unsigned char> stored(rgb.size());
+    parallel_for(rgb.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) stored[i] = stored_of(rgb[i]);
+    });
+    return encode_stored_png(name, width, height, stored);
+}
+
+bool is_exr(std::span<const unsigned char> bytes) {
+    constexpr unsigned char kMagic[4] = {0x76, 0x2f, 0x31, 0x01};
+    return bytes.size() >= 4 && std::equal(kMagic, kMagic + 4, bytes.begin());
+}
+
+/// A channel's values as a texture has them: ids as fractions of their largest.
+std::vector<float> as_floats(const Channel& channel) {
+    if (!channel.is_id()) return channel.floats();
+    std::vector<float> values(channel.ids().size());
+    std::transform(channel.ids().begin(), channel.ids().end(), values.begin(),
+                   [](Id id) { return static_cast<float>(static_cast<double>(id) / 4294967295.0); });
+    return values;
+}
+
+/// Which channels are red, green and blue: by name, else the first three, else one grey.
+std::array<const Channel*, 3> colour_channels(const Image& image) {
+    const std::array named{image.find("R"), image.find("G"), image.find("B")};
+    if (named[0] && named[1] && named[2]) return named;
+    const std::vector<Channel>& all = image.channels;
+    if (all.size() >= 3) return {&all[0], &all[1], &all[2]};
+    return {&all[0], &all[0], &all[0]};
+}
+
+/// The display window of an OpenEXR file's first part; black where there is no data.
+std::shared_ptr<const Texture> exr_texture(ExrFile& in, const std::string& name) {
+    if (in.is_deep(0)) throw InputError(name, "", "is no flat picture");
+    const ExrWindows shape = in.windows(0);
+    const Image image = in.read(0);
+    for (const Channel& channel : image.channels)
+        if (!channel.is_id() && !std::all_of(channel.floats().begin(), channel.floats().end(),
+                                             [](float value) { return std::isfinite(value); }))
+            throw InputError(name, "", "holds a value that is not finite");
+
+    auto texture = std::make_shared<Texture>();
+    texture->width = shape.display_width;
+    texture->height = shape.display_height;
+    const auto columns = static_cast<std::size_t>(shape.display_width);
+    texture->rgb.assign(columns * static_cast<std::size_t>(shape.display_height) * 3, 0);
+    const int dx = shape.data_x - shape.display_x, dy = shape.data_y - shape.display_y;
+    const int first_x = std::max(0, dx), last_x = std::min(shape.display_width, dx + shape.data_width);
+    const int first_y = std::max(0, dy), last_y = std::min(shape.display_height, dy + shape.data_height);
+    std::size_t c = 0;
+    for (const Channel* channel : colour_channels(image)) {
+        const std::vector<float> values = as_floats(*channel);
+        for (int y = first_y; y < last_y; ++y)
+            for (int x = first_x; x < last_x; ++x) {
+                const std::size_t from =
+                    static_cast<std::size_t>(y - dy) * static_cast<std::size_t>(shape.data_width) +
+                    static_cast<std::size_t>(x - dx);
+                texture->rgb[3 * (static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)) + c] =
+                    values[from];
+            }
+        ++c;
+    }
+    return texture;
+}
+
+/// The library of all pictures would say on stderr what is wrong with a PNG.
+void require_sound_png(const std::optional<std::string>& fault, const std::string& name) {
+    if (fault) throw InputError(name, "", "is no picture, or is damaged: " + *fault);
+}
+
+}  // namespace
+
+std::shared_ptr<const Texture> read_texture(const std::string& file) {
+    if (std::shared_ptr<const Texture> texture = read_ordinary_png(file)) return texture;
+    if (!is_exr_file(file)) {
+        require_sound_png(png_fault(file), file);
+        return library_to_read(file).read(file);
+    }
+    ExrFile in(file);
+    // Luminance and chroma at different rates are the other library's work.
+    if (!in.is_deep(0) && !in.is_sampled_everywhere(0)) return library_to_read(file).read(file);
+    return exr_texture(in, file);
+}
+
+std::shared_ptr<const Texture> decode_texture(std::span<const unsigned char> encoded,
+                                              const std::string& name) {
+    if (std::shared_ptr<const Texture> texture = decode_ordinary_png(encoded)) return texture;
+    if (!is_exr(encoded)) {
+        require_sound_png(png_fault(encoded), name);
+        return library_to_read(name).decode(encoded, name);
+    }
+    ExrFile in(encoded, name);
+    if (!in.is_deep(0) && !in.is_sampled_everywhere(0)) return library_to_read(name).decode(encoded, name);
+    return exr_texture(in, name);
+}
+
+std::vector<unsigned char> encode_png(int width, int height, std::span<const float> rgb) {
+    return encode_named_png("PNG", width, height, rgb);
+}
+
+void write_png(const std::string& file, int width, int height, std::span<const float> rgb) {
+    replace_file(file, encode_named_png(file, width, height, rgb));
+}
+
+void set_image_threads(int threads) {
+    set_picture_threads(threads);
+}
+
+std::string image_library_version() {
+    return TRILENS_IMAGE_LIBRARIES;
+}
+
+}  // namespace trilens

@@ -1,0 +1,43 @@
+// Suites of regression tests, each test with its scene drawn.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/util/progress.h"
+#include "suite/suite.h"
+
+namespace trilens {
+
+/// Which tests are run, and what is written. A test is a folder with a test.json, at any depth below
+/// `folders`.
+struct SuiteRequest {
+    std::vector<std::string> folders;
+    std::string pattern;  // part of a name or tag; with * and ? in it all of one; empty: every test
+    int jobs = 0;         // tests at a time; 0: as many as there are threads
+    bool update = false;  // makes the stored pictures again before judging; what does not repeat is refused
+    std::string junit, html;  // files to write beside the result; empty: none
+    std::string title;        // of both; empty: "render tests"
+};
+
+/// How a suite says what it does; all may be empty.
+struct SuiteObserver {
+    Progress progress;
+    std::function<void(const TestResult& test)> on_test;  // after each, never from two threads at once
+    // Before any test: every file that the tests read, whether it is there or not. What it throws ends the
+    // suite
+    std::function<void(const std::vector<std::string>& files)> reads = {};
+};
+
+/// Runs the tests and returns them in the order of their names. A test that cannot be run is an error of its
+/// own (TestState::kError), and the others go on; results do not depend on `jobs`. Throws InputError for
+/// folders without tests, UsageError where the pattern means none or where `junit` or `html` is a file that
+/// tests below `folders` read, OutputError, Interrupted.
+SuiteResult run_suite(const SuiteRequest& request, const SuiteObserver& observer = {});
+
+/// The tests that run_suite would run, in the order in which they are found; nothing is drawn. Throws as
+/// run_suite does.
+std::vector<FoundTest> list_suite(const std::vector<std::string>& folders, const std::string& pattern = "");
+
+}  // namespace trilens

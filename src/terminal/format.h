@@ -1,4 +1,0 @@
-// The command room's door to libfmt.
-#pragma once
-
-#include <fmt/core.h>

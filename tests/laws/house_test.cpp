@@ -1,0 +1,87 @@
+// The size of the house: what a reader has to look through stays small.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "support/test.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct SourceFile {
+    std::string name, folder;  // relative to the project
+    std::size_t lines = 0;
+};
+
+/// The C++ files below these folders of the project.
+std::vector<SourceFile> files_below(const std::vector<std::string>& folders) {
+    std::vector<SourceFile> files;
+    for (const std::string& folder : folders)
+        for (const auto& entry :
+             fs::recursive_directory_iterator(fs::path(trilens_test::source_dir()) / folder)) {
+            const std::string end = entry.path().extension().string();
+            if (!entry.is_regular_file() || (end != ".h" && end != ".cpp")) continue;
+            std::ifstream in(entry.path());
+            SourceFile file;
+            file.name = fs::relative(entry.path(), trilens_test::source_dir()).string();
+            file.folder = fs::path(file.name).parent_path().string();
+            for (std::string line; std::getline(in, line);) ++file.lines;
+            files.push_back(file);
+        }
+    return files;
+}
+
+const std::vector<std::string> kProduct{"src", "surfaces", "reflect", "refract"};
+
+}  // namespace
+
+TEST_CASE("no file of the source has more than 400 lines", "[laws][law]") {
+    const std::vector<SourceFile> files =
+        files_below({"src", "surfaces", "reflect", "refract", "python", "bench", "tests"});
+    REQUIRE(files.size() > 500);
+    for (const SourceFile& file : files) {
+        INFO(file.name << " has " << file.lines << " lines");
+        CHECK(file.lines <= 400);
+    }
+}
+
+TEST_CASE("no folder of the source holds more than 30 files", "[laws][law]") {
+    std::map<std::string, std::size_t> count;
+    for (const SourceFile& file : files_below(kProduct)) ++count[file.folder];
+    for (const auto& [folder, files] : count) {
+        INFO(folder << " holds " << files << " files");
+        CHECK(files <= 30);
+    }
+}
+
+TEST_CASE("files are no scraps: half of them have more than 80 lines", "[laws][law]") {
+    std::vector<std::size_t> lines;
+    for (const SourceFile& file : files_below(kProduct)) lines.push_back(file.lines);
+    std::nth_element(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(lines.size() / 2),
+                     lines.end());
+    CHECK(lines[lines.size() / 2] > 80);
+}
+
+TEST_CASE("few headers are installed, and none of the machinery behind them", "[laws][law]") {
+    const fs::path installed = fs::path(trilens_test::build_dir()) / "include" / "trilens";
+    REQUIRE(fs::is_directory(installed));
+    std::size_t all = 0, own = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(installed)) {
+        if (entry.path().extension() != ".h") continue;
+        ++all;
+        own += entry.path().parent_path() == installed;
+        std::ifstream in(entry.path());
+        for (std::string line; std::getline(in, line);) {
+            INFO(fs::relative(entry.path(), installed).string() << ": " << line);
+            for (const char* machinery : {"struct World {", "struct SampleViews {", "struct Segments {",
+                                          "class Tracer {", "nlohmann"})
+                CHECK(line.find(machinery) == std::string::npos);
+        }
+    }
+    CHECK(own <= 25);
+    CHECK(all <= 120);
+}
