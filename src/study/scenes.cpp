@@ -13,7 +13,10 @@ namespace trilens {
 namespace {
 
 TextureReader texture_reader() {
-    return {read_texture, decode_texture};
+    return {[](const std::string& file) { return read_texture(file); },
+            [](std::span<const unsigned char> encoded, const std::string& name) {
+                return decode_texture(encoded, name);
+            }};
 }
 
 bool is_image(const std::string& file) {
