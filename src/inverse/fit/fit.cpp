@@ -181,12 +181,18 @@ void tell_pairs(FitProblem& problem, const Linearisation& at, double huber, FitR
 void tell_uncertainty(const FitProblem& problem, const Uncertainty& found, FitResult& result) {
     const std::vector<FitParameter>& parameters = problem.parameters();
     const std::size_t n = parameters.size();
-    const DenseMatrix correlation = correlations(found.covariance);
+    // What nothing fixes has no variance but rounding, and no correlations.
+    constexpr double kNoVariance = 1e-18;  // of large steps: pixels tell of nothing so well
+    DenseMatrix covariance = found.covariance;
+    for (std::size_t i = 0; i < n; ++i)
+        if (found.covariance(i, i) < kNoVariance)
+            for (std::size_t j = 0; j < n; ++j) covariance(i, j) = covariance(j, i) = 0;
+    const DenseMatrix correlation = correlations(covariance);
     result.covariance.assign(n, std::vector<double>(n));
     result.correlation = result.covariance;
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n; ++j) {
-            result.covariance[i][j] = found.covariance(i, j) * parameters[i].scale * parameters[j].scale;
+            result.covariance[i][j] = covariance(i, j) * parameters[i].scale * parameters[j].scale;
             result.correlation[i][j] = correlation(i, j);
             if (j < i && std::abs(correlation(i, j)) > kHighCorrelation)
                 result.warnings.push_back(
