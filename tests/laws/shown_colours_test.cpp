@@ -73,7 +73,7 @@ bool is_near(const Vec3& colour, const Shown& truth, int x, int y) {
             if (largest(colour - truth.at(u, v)) <= kUnlike) return true;
     for (int v = y0; v <= y1; ++v)
         for (int u = x0; u <= x1; ++u)
-            for (const auto [du, dv] : {std::pair(1, 0), {0, 1}, {1, 1}, {-1, 1}}) {
+            for (const auto& [du, dv] : {std::pair(1, 0), {0, 1}, {1, 1}, {-1, 1}}) {
                 if (u + du < x0 || u + du > x1 || v + dv > y1) continue;
                 if (off_mix(colour, truth.at(u, v), truth.at(u + du, v + dv)) <= kUnlike) return true;
             }
