@@ -136,17 +136,6 @@ Progress Console::progress(const std::string& job) {
     return progress;
 }
 
-std::optional<double> TimeLeft::at(double done, double now) {
-    if (done >= 1) return 0;
-    if (!(done > 0)) return std::nullopt;
-    if (!first_done_) {
-        first_done_ = done;
-        first_time_ = now;
-    }
-    if (!(done > *first_done_)) return std::nullopt;
-    return (now - first_time_) * (1 - done) / (done - *first_done_);
-}
-
 void Console::draw(const std::string& job, double done) {
     const std::lock_guard lock(mutex_);
     const auto now = std::chrono::steady_clock::now();

@@ -52,19 +52,6 @@ struct ConsoleOptions {
     bool is_stdout_answered = false;  // by the JSON object: nothing else may go there
 };
 
-/// How long work will still take, from the speed of what repeats: what was done before the first report
-/// (facets made, rays fitted) is done once, and no measure of the rest.
-class TimeLeft {
-  public:
-    /// Seconds left when the share `done` (0..1, growing) is done at `now` seconds; nothing before the second
-    /// report of a share above 0, when no speed is known.
-    std::optional<double> at(double done, double now);
-
-  private:
-    std::optional<double> first_done_;
-    double first_time_ = 0;
-};
-
 /// One writer for everything on stderr, so that a bar and a message never mix. Keeps the warnings for the
 /// JSON answer.
 class Console {

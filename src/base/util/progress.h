@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace trilens {
@@ -31,6 +32,28 @@ class Stopwatch {
 
   private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// How long work will still take, from the speed of what repeats: what was done before the first report
+/// (facets made, rays fitted) is done once, and no measure of the rest.
+class TimeLeft {
+  public:
+    /// Seconds left when the share `done` (0..1, growing) is done at `now` seconds; nothing before the second
+    /// report of a share above 0, when no speed is known.
+    std::optional<double> at(double done, double now) {
+        if (done >= 1) return 0;
+        if (!(done > 0)) return std::nullopt;
+        if (!first_done_) {
+            first_done_ = done;
+            first_time_ = now;
+        }
+        if (!(done > *first_done_)) return std::nullopt;
+        return (now - first_time_) * (1 - done) / (done - *first_done_);
+    }
+
+  private:
+    std::optional<double> first_done_;
+    double first_time_ = 0;
 };
 
 }  // namespace trilens

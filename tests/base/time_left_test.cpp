@@ -1,15 +1,15 @@
-// How the command tells the time that is left.
+// The time that is left of work that repeats.
 #include <cmath>
 #include <random>
 #include <vector>
 
+#include "base/util/progress.h"
 #include "support/test.h"
-#include "terminal/console.h"
 
 using namespace trilens;
 
 TEST_CASE("the time left is right within a factor of two, however long what is done once took",
-          "[cli][progress][law]") {
+          "[base][progress][law]") {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> share(0, 1);
     for (int round = 0; round < 500; ++round) {
