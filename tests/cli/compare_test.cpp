@@ -159,7 +159,7 @@ TEST_CASE("half against float, and a part of several", "[cli][compare]") {
 TEST_CASE("--max limits any metric by the name that the JSON has", "[cli][compare]") {
     const std::string folder = scratch_dir("cli_compare_max");
     const std::string scene = write_file(folder, "room.json", small_scene());
-    REQUIRE(run_trilens("render " + scene + " -n 2 -o " + folder + "/mine.exr").exit_code == 0);
+    REQUIRE(run_trilens("render " + scene + " -n 2 --facets all -o " + folder + "/mine.exr").exit_code == 0);
     REQUIRE(run_trilens("trace " + scene + " -o " + folder + "/truth.exr").exit_code == 0);
     const std::string both = "compare " + folder + "/truth.exr " + folder +
                              "/mine.exr --fail 100 --hardfail 100 "

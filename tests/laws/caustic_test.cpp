@@ -16,7 +16,7 @@ using namespace trilens_test;
 namespace {
 
 std::string cup() {
-    return source_dir() + "/scenes/cameras/cup.json";
+    return source_dir() + "/tests/laws/cup.json";
 }
 
 LineDrawing drawn(const Scene& scene, const std::string& camera, int resolution) {

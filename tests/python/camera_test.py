@@ -60,7 +60,7 @@ def test_a_lens_that_folds_the_film_is_refused(scene):
 
 
 def test_the_caustic_of_a_ring_is_a_nephroid():
-    renderer = trilens.Renderer(trilens.load_scene(SCENE.parent / "cameras/cup.json"))
+    renderer = trilens.Renderer(trilens.load_scene(SCENE.parent.parent / "tests/laws/cup.json"))
     drawing = renderer.draw_lines(16, "source", folds=True, caustics=True, rays="interpolated")
     (sheet,) = drawing.caustics
     assert (sheet["path"], sheet["optic"], sheet["sheet"], sheet["virtual"]) == ("reflect", 0, 0, False)

@@ -32,7 +32,7 @@ def test_a_largest_error_of_zero_still_divides():
     """Glass at n = 1 shows much of the scene far from where it is: facets are divided, whatever is asked for."""
     scene = trilens.parse_scene(trilens.scene_examples()["crystal-ball"],
                                 overrides={"/film/width": 64, "/film/height": 48, "/film/spp": 1}, warn=lambda message: None)
-    told = trilens.Renderer(scene).render(resolution=1, max_error=0, warn=lambda message: None).statistics
+    told = trilens.Renderer(scene).render(resolution=1, max_error=0, facets="all", warn=lambda message: None).statistics
     assert told["subdivided_pixels"] > 0
     assert "0: only those off by more than (32 / n)^2 pixels" in trilens.Renderer.render.__doc__
 

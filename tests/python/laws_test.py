@@ -114,11 +114,11 @@ def test_whole_paths_and_derivatives_of_points_are_the_commands(command):
 def test_facets_on_the_screen_and_folds_are_the_commands(command, tmp_path):
     scene = SOURCE / "scenes" / "saddle.json"
     renderer = trilens.Renderer(trilens.load_scene(scene, SMALL, 8, warn=silent), warn=silent)
-    code, _ = command("render", scene, "-n", 8, "--grid", "screen", *size_options(SMALL), "-o", tmp_path / "theirs.exr")
+    code, _ = command("render", scene, "-n", 8, "--grid", "screen", "--facets", "all", *size_options(SMALL), "-o", tmp_path / "theirs.exr")
     assert code == 0
-    ours, theirs = renderer.render(grid="screen"), trilens.read_image(tmp_path / "theirs.exr")
+    ours, theirs = renderer.render(grid="screen", facets="all"), trilens.read_image(tmp_path / "theirs.exr")
     assert all(ours[name].tobytes() == theirs[name].tobytes() for name in theirs)
-    assert not np.array_equal(ours["R"], renderer.render(grid="surface")["R"])
+    assert not np.array_equal(ours["R"], renderer.render(grid="surface", facets="all")["R"])
     code, answer = command("render", scene, "-n", 8, "--folds", *size_options(SMALL), "-o", tmp_path / "theirs.svg")
     lines = renderer.draw_lines(folds=True)
     assert code == 0 and lines.folds == answer["folds"] > 0
@@ -255,12 +255,12 @@ def balls():
 def test_optics_in_mirrors_are_layers_or_divided_as_asked():
     told = []
     renderer = balls()
-    layers = renderer.render(layers=["stat"], seen_optics="layers", warn=told.append)
-    divided = renderer.render(layers=["stat"], seen_optics="divided", warn=told.append)
+    layers = renderer.render(layers=["stat"], seen_optics="layers", facets="all", warn=told.append)
+    divided = renderer.render(layers=["stat"], seen_optics="divided", facets="all", warn=told.append)
     assert not any("no layers" in message for message in told)
     traced = [np.count_nonzero(image["stat.method"] == 2) for image in (layers, divided)]
     assert traced[0] < traced[1]
-    assert np.array_equal(renderer.render(layers=["stat"])["stat.method"], layers["stat.method"])
+    assert np.array_equal(renderer.render(layers=["stat"], facets="all")["stat.method"], layers["stat.method"])
     with pytest.raises(trilens.UsageError):
         renderer.render(seen_optics="both")
     with pytest.raises(trilens.UsageError):

@@ -70,7 +70,7 @@ def test_values_that_json_cannot_say_are_refused(sphere):
 def test_a_renderer_tells_what_it_draws(renderer, sphere):
     (optic,) = renderer.optics
     assert optic.to_dict() == {"object": 0, "name": "ball", "mirror": True, "resolution": 16, "faces": 6}
-    assert renderer.facet_count(3) == 6 * 2 * 9 and renderer.facet_count() == 6 * 2 * 64
+    assert renderer.facet_count(3) == 6 * 2 * 9 and renderer.facet_count() == 6 * 2 * 256
     assert renderer.triangle_count == sum(mesh.triangles for mesh in sphere.meshes)
     assert renderer.scene.to_dict() == sphere.to_dict()
     assert renderer.digest() == trilens.Renderer(sphere).digest() and len(renderer.digest()) == 16

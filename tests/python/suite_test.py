@@ -219,7 +219,7 @@ def test_broken_tests_are_errors_of_their_own(ball, command):
               "nothing": ('{ "scene": "scene.json" }', "a test needs 'against'"),
               "empty": ('{ "against": "truth", "max": {} }', "limits nothing"),
               "twice": ('{ "against": "truth", "fail": 1, "fail": 2 }', "stands twice"),
-              "half": ('{ "against": "truth", ', "parse error"),
+              "half": ('{ "against": "truth", ', "syntax error"),
               "list": ('[]', "expected an object"),
               "order": ('{ "against": "truth", "max": { "displacement_order": 2 } }', "needs several resolutions"),
               "scene": ('{ "against": "truth" }', "scene.json"),

@@ -2,11 +2,10 @@
 
 #include <trilens/text.h>
 
-#include <fmt/format.h>
-
 #include <iterator>
 
 #include "cli/print/projections.h"
+#include "terminal/libraries.h"
 
 namespace trilens {
 namespace {

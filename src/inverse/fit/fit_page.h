@@ -8,8 +8,8 @@
 
 namespace trilens {
 
-/// The residuals of all pairs as arrows over the film (an SVG document): from the pixel, `FitArrows::longer`
-/// times as long as they are; outliers in another colour, lost pairs as crosses.
+/// The residuals of all pairs as arrows over the film (an SVG document): from the pixel, `longer` times as
+/// long as they are; outliers in another colour, lost pairs as crosses.
 struct FitArrows {
     std::string svg;
     double longer = 1;

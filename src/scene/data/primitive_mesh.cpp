@@ -58,7 +58,8 @@ struct AxisFrame {
     explicit AxisFrame(const ObjectPrimitive& p)
         : axis(p.axis), tangent(p.tangent), side(cross(p.axis, p.tangent)) {}
     Vec3 around(double u) const {
-        const double angle = 2 * std::numbers::pi * u;
+        // Where the circle closes it is the same point to the last bit.
+        const double angle = 2 * std::numbers::pi * (u < 1 ? u : u - 1);
         return std::cos(angle) * tangent + std::sin(angle) * side;
     }
     Vec3 axis, tangent, side;
