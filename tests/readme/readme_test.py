@@ -93,7 +93,7 @@ class Reader:
                 self.look_at_frames(path)
         if not WRITTEN.search(line) and re.match(r"trilens", line) and not out.strip():
             raise Wrong("prints nothing")
-        if " project " in line and "--json" not in line:
+        if " project " in line and not re.search("--(json|steps)", line):
             rows = [row.split(",") for row in out.split()]
             images = [dict(zip(rows[0], row)) for row in rows[1:]]
             if not any(image["path"] != "direct" and image["visible"] == "1" for image in images):

@@ -138,7 +138,8 @@ std::optional<TargetPlace> Target::object_place(const Vec2& pixel) const {
     const Vec2 uv(pixel.x / description_.width, 1 - pixel.y / description_.height);
     const auto bin = [](double x) { return std::clamp(static_cast<int>(x * kBinSide), 0, kBinSide - 1); };
     for (const Id t : bins_[static_cast<std::size_t>(bin(uv.y) * kBinSide + bin(uv.x))]) {
-        const auto& [a, b, c] = object_->uvs[t];
+        const auto& uvs = object_->uvs[t];
+        const Vec2 &a = uvs[0], &b = uvs[1], &c = uvs[2];
         const double twice = cross2(b - a, c - a);
         if (twice == 0) continue;
         const double second = cross2(uv - a, c - a) / twice, third = cross2(b - a, uv - a) / twice;
