@@ -151,7 +151,9 @@ Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, co
     const Footprint sides = turned_square(footprint[0] * texels, footprint[1] * texels);
     double longer = length(sides[0]), shorter = length(sides[1]);
     if (longer <= kPointTexels) return lookup(*map.texture(), wrap, place);
-    if (!(longer < kMostTexels)) return lookup(map.level(map.level_count() - 1), wrap, place);
+    // Also where a side is no number: the mean of the whole picture.
+    if (!(longer < kMostTexels && shorter <= longer))
+        return lookup(map.level(map.level_count() - 1), wrap, place);
 
     // The finest level at which the footprint is less than twice as wide as it must be.
     std::size_t level = 0;
