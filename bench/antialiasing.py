@@ -9,26 +9,13 @@ Scenes that are in the CSV already are not measured again; without scenes the CS
 """
 import argparse
 import csv
-import json
-import os
 import pathlib
-import subprocess
 import tempfile
+
+from timed_command import run
 
 WAYS = {"by fragment": ["render", "--shading", "fragment"], "by sample": ["render", "--shading", "sample"], "traced": ["trace"]}
 COLOURS = {"by fragment": "#1f5fa8", "by sample": "#7a9fc9", "traced": "#c4572e"}
-
-
-def run(words, allowed=(0,)):
-    """The command's answer, and the processor's seconds in user mode."""
-    with tempfile.TemporaryFile("w+") as out:
-        child = subprocess.Popen([*words, "--json", "-q"], stdout=out)
-        _, status, usage = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
-        if child.returncode not in allowed:
-            raise RuntimeError(f"{' '.join(words)}: exit {child.returncode}")
-        out.seek(0)
-        return json.load(out), usage.ru_utime
 
 
 def measure(options, scene):
@@ -39,7 +26,7 @@ def measure(options, scene):
         for way, words in WAYS.items():
             for spp in options.spp:
                 command = [options.trilens, words[0], scene, "-o", image, "--spp", str(spp), "-t", "1", "--aov", "Z", *words[1:], *common]
-                seconds = min(run(command)[1] for _ in range(options.repeat))
+                seconds = min(run(command)[1].ru_utime for _ in range(options.repeat))
                 found, _ = run([options.trilens, "compare", truth, image], allowed=(0, 1))
                 yield {"scene": pathlib.Path(scene).stem, "way": way, "spp": spp, "seconds": round(seconds, 4),
                        "rmse": found["metrics"]["RGB"]["rmse"]}

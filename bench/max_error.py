@@ -11,27 +11,14 @@ max-error.md, rewritten after each scene; scenes that are in the CSV already are
 """
 import argparse
 import csv
-import json
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
+from timed_command import run
+
 FIELDS = ["scene", "film", "p99", "mean", "max", "pixels", "traced_percent", "predicted", "facets", "seconds", "uniform_n", "uniform_p99",
           "uniform_facets", "uniform_seconds"]
-
-
-def run(words, allowed=(0,)):
-    """The command's answer, and the processor's seconds."""
-    with tempfile.TemporaryFile("w+") as out:
-        child = subprocess.Popen([*words, "--json", "-q"], stdout=out)
-        _, status, usage = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
-        if child.returncode not in allowed:
-            raise RuntimeError(f"{' '.join(words)}: exit {child.returncode}")
-        out.seek(0)
-        return json.load(out), usage.ru_utime + usage.ru_stime
 
 
 class Study:
@@ -45,10 +32,10 @@ class Study:
 
     def draw(self, *settings):
         image = str(self.folder / "image.exr")
-        picture, seconds = run([self.options.trilens, "render", self.scene, "-o", image, "-t", "1", *self.view, *settings])
+        picture, usage = run([self.options.trilens, "render", self.scene, "-o", image, "-t", "1", *self.view, *settings])
         # Exit 1: the pictures differ, which is what is measured.
         found, _ = run([self.options.trilens, "compare", self.truth, image], allowed=(0, 1))
-        return picture, seconds, found["displacement_px"]
+        return picture, usage.ru_utime + usage.ru_stime, found["displacement_px"]
 
     def uniform(self, wanted):
         """The smallest n with a 99th percentile of at most `wanted`, by doubling and halving; None beyond --most."""

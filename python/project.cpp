@@ -24,19 +24,12 @@ struct ImageRow {
     double off, weight[3];
 };
 
-struct StepRow {
-    Id optic, face;
-    char32_t event[8];
-    bool front;
-    double uv[2], point[3], normal[3];
-};
-
-/// Rows of one length: each an ImageRow, so many StepRow, and two numbers for each parameter.
+/// Rows of one length: each an ImageRow, so many EventRow, and two numbers for each parameter.
 struct Rows {
     std::size_t steps = 1, parameters = 0;
     std::vector<std::byte> bytes;
 
-    std::size_t parameters_at() const { return sizeof(ImageRow) + steps * sizeof(StepRow); }
+    std::size_t parameters_at() const { return sizeof(ImageRow) + steps * sizeof(EventRow); }
     std::size_t row_size() const { return parameters_at() + 2 * parameters * sizeof(double); }
 };
 
@@ -61,14 +54,8 @@ py::dict row_type(const Rows& rows) {
     type.add("derivative", "(2,3)f8", offsetof(ImageRow, derivative));
     type.add("step_count", "u4", offsetof(ImageRow, step_count));
     RecordType step;
-    step.add("optic", "u4", offsetof(StepRow, optic));
-    step.add("event", "U8", offsetof(StepRow, event));
-    step.add("front", "?", offsetof(StepRow, front));
-    step.add("face", "u4", offsetof(StepRow, face));
-    step.add("uv", "(2,)f8", offsetof(StepRow, uv));
-    step.add("point", "(3,)f8", offsetof(StepRow, point));
-    step.add("normal", "(3,)f8", offsetof(StepRow, normal));
-    type.add("steps", py::make_tuple(step.of_size(sizeof(StepRow)), py::make_tuple(rows.steps)),
+    add_event_fields(step);
+    type.add("steps", py::make_tuple(step.of_size(sizeof(EventRow)), py::make_tuple(rows.steps)),
              sizeof(ImageRow));
     if (rows.parameters > 0)
         type.add("by_parameter", py::make_tuple("f8", py::make_tuple(2, rows.parameters)),
@@ -91,19 +78,16 @@ ImageRow row_of(const WorldImage& image) {
     return row;
 }
 
-StepRow row_of(const WorldImage& image, std::size_t place) {
-    auto row = empty_record<StepRow>();
+EventRow row_of(const WorldImage& image, std::size_t place) {
+    auto row = empty_record<EventRow>();
     row.optic = row.face = kNone;
     if (place >= image.steps.size()) return row;
-    row.optic = image.steps[place].optic;
-    copy_text(event_name(image.steps[place].event), row.event);
-    if (place >= image.events.size()) return row;
-    const PathEvent& event = image.events[place];
-    row.front = event.front;
-    row.face = event.face;
-    row.uv[0] = event.uv.x, row.uv[1] = event.uv.y;
-    copy_vector(event.point, row.point);
-    copy_vector(event.normal, row.normal);
+    if (place < image.events.size()) {
+        fill_event(image.events[place], row);
+    } else {
+        row.optic = image.steps[place].optic;
+        copy_text(event_name(image.steps[place].event), row.event);
+    }
     return row;
 }
 

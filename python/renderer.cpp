@@ -78,12 +78,44 @@ LayerRequest layer_request(const std::optional<Names>& layers, const std::option
 
 using File = std::optional<std::filesystem::path>;
 
-/// What is asked for: "render" or "trace", the file that takes it, and the viewer that shows it, if any.
+/// How light becomes what a screen shows, and whether before a pixel's samples are averaged.
+struct ToneArguments {
+    ToneMapping mapping;
+    bool filter_shown = false;
+
+    /// What is done when a file is written: nothing more, where it was done to the samples.
+    ToneMapping written() const { return filter_shown ? ToneMapping() : mapping; }
+};
+
+ToneArguments tone_arguments(double exposure, const std::string& tone, double white, bool filter_shown) {
+    const ToneArguments given{{exposure, tone_curve(tone), white}, filter_shown};
+    check_tone_mapping(given.mapping);
+    return given;
+}
+
+/// What is asked for: "render" or "trace", the file that takes it, the viewer that shows it, if any, and what
+/// of its light is shown.
 struct Job {
     std::string name;
     const File& file;
     const std::optional<std::string>& display_server;
+    ToneArguments tones;
 };
+
+/// Throws UsageError where light is to be changed that stays what it is.
+void check_tones(const Job& job) {
+    const ToneMapping usual, &asked = job.tones.mapping;
+    const bool maps =
+        asked.exposure != usual.exposure || asked.curve != usual.curve || asked.white != usual.white;
+    const bool is_exr = job.file && image_format(job.file->string()) == ImageFormat::kExr;
+    if (is_exr && (maps || job.tones.filter_shown))
+        throw UsageError(
+            "exposure, tone, white and filter_shown are for .png files; an .exr holds the light of the "
+            "scene");
+    if (!job.file && maps && !job.tones.filter_shown)
+        throw UsageError(
+            "exposure, tone and white are for .png files and for filter_shown; give them to Image.save");
+}
 
 /// Draws the picture, into the job's file where it has one.
 Picture draw_or_write(const Renderer& renderer, PictureRequest request, const Job& job, PythonCall& call) {
@@ -100,11 +132,16 @@ Picture draw_or_write(const Renderer& renderer, PictureRequest request, const Jo
     if (image_format(file) == ImageFormat::kExr)
         return renderer.write_exr(file, request, progress, call.warner());
     Picture picture = renderer.draw(request, progress, call.warner());
-    write_image(file, picture.image);
+    write_image(file, picture.image, job.tones.written());
     return picture;
 }
 
-HeldImage draw(const Renderer& renderer, const PictureRequest& request, const Job& job, PythonCall& call) {
+HeldImage draw(const Renderer& renderer, PictureRequest request, const Job& job, PythonCall& call) {
+    check_tones(job);
+    if (job.tones.filter_shown)
+        request.layers.shown = [mapping = job.tones.mapping](const Vec3& light) {
+            return glm::clamp(tone_mapped(light, mapping), 0.0, 1.0);
+        };
     Picture picture = call.run([&] { return draw_or_write(renderer, request, job, call); });
     py::dict statistics;
     statistics["optic_pixels"] = picture.statistics.optic_pixels;
@@ -114,17 +151,17 @@ HeldImage draw(const Renderer& renderer, const PictureRequest& request, const Jo
     statistics["layered_pixels"] = picture.statistics.layered_pixels;
     statistics["projected_facets"] = picture.statistics.projected_facets;
     statistics["predicted_error"] = picture.statistics.predicted_error;
-    py::list looks;
-    for (const OpticLooks& one : picture.statistics.looks) {
+    py::list probes;
+    for (const OpticProbes& one : picture.statistics.probes) {
         py::dict of_optic;
         of_optic["object"] = one.object;
         of_optic["surveyed_facets"] = one.surveyed;
         of_optic["least_samples"] = one.least_samples;
-        of_optic["look"] = one.look;
+        of_optic["cost"] = one.cost;
         of_optic["saved"] = one.saved;
-        looks.append(of_optic);
+        probes.append(of_optic);
     }
-    statistics["looks"] = looks;
+    statistics["probes"] = probes;
     statistics["outline_pixels"] = picture.statistics.outline_pixels;
     statistics["deep_pixels"] = picture.statistics.deep_pixels;
     statistics["fragment_pixels"] = picture.statistics.fragment_pixels;
@@ -146,7 +183,8 @@ void bind_pictures(RendererClass& renderer) {
            std::optional<int> pieces, std::optional<double> tolerance, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
            const std::optional<std::string>& seen_optics, const std::optional<std::string>& facets,
-           const std::string& shading, const File& file, const std::optional<std::string>& display_server,
+           const std::string& shading, double exposure, const std::string& tone, double white,
+           bool filter_shown, const File& file, const std::optional<std::string>& display_server,
            const py::object& progress, const py::object& warn) {
             PythonCall call(progress, warn);
             return draw(self,
@@ -154,15 +192,18 @@ void bind_pictures(RendererClass& renderer) {
                              frame_params(self, resolution, camera)),
                          projecting_engine(engine, {curves, clip, pieces, tolerance}),
                          layer_request(layers, window), require_named<Shading>("shading", shading)},
-                        {"render", file, display_server}, call);
+                        {"render", file, display_server, tone_arguments(exposure, tone, white, filter_shown)},
+                        call);
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::arg("engine") = "exact",
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("curves") = py::none(), py::arg("clip") = py::none(), py::arg("pieces") = py::none(),
         py::arg("tolerance") = py::none(), py::arg("rays") = py::none(), py::arg("max_error") = py::none(),
         py::arg("grid") = py::none(), py::arg("seen_optics") = py::none(), py::arg("facets") = py::none(),
-        py::arg("shading") = "fragment", py::arg("file") = py::none(), py::arg("display_server") = py::none(),
-        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
+        py::arg("shading") = "fragment", py::arg("exposure") = 0.0, py::arg("tone") = "none",
+        py::arg("white") = ToneMapping().white, py::arg("filter_shown") = false, py::arg("file") = py::none(),
+        py::arg("display_server") = py::none(), py::arg("progress") = py::none(),
+        py::arg("warn") = py::none(),
         "Draws the scene by projection. The same pixels for any number of threads.\n\n"
         "resolution: 1..1024, of every optic's grid; 0: as the scene says.\n"
         "camera: by name; None: the scene's own.\n"
@@ -183,13 +224,19 @@ void bind_pictures(RendererClass& renderer) {
         "seen_optics: \"layers\" (optics seen in mirrors are layers of their own, where they can be) or "
         "\"divided\";\n"
         "None: as the scene says.\n"
-        "facets: \"worthwhile\" (those that it takes longer to look into than to follow the rays of their "
+        "facets: \"worthwhile\" (those that it takes longer to probe than to follow the rays of their "
         "samples\nare traced) or \"all\" (none is for that); None: worthwhile.\n"
         "shading: where pixels have several samples: \"fragment\" (once for those that see one triangle by "
         "one "
         "way,\nthe classic engine each) or \"sample\".\n"
         "grid: \"surface\" (n x n facets on each face) or \"screen\" (n x n over each optic's bounds on the "
         "film);\nNone: as the scene says.\n"
+        "exposure, tone, white: of a .png file, as Image.save has them.\n"
+        "filter_shown: average a pixel's samples as the screen shows them, after exposure and tone, not "
+        "their "
+        "light:\nbright highlights neither stay jagged nor leave dark rings. R, G and B then are what is "
+        "shown, "
+        "0..1, linear; not\nfor .exr files, which hold the light of the scene.\n"
         "file: an OpenEXR file (.exr) that is written while the picture is drawn, which is then never held "
         "whole: the\nimage that is returned has header and statistics, but no channels; or the beauty as "
         "8-bit sRGB (.png), and\nthe image is whole. Raises UsageError for other endings, OutputError; an "
@@ -213,7 +260,8 @@ void bind_pictures(RendererClass& renderer) {
            const std::optional<Window>& window, const std::optional<std::string>& rays,
            std::optional<double> max_error, const std::optional<std::string>& grid,
            const std::optional<std::string>& seen_optics, const std::optional<std::string>& facets,
-           const File& file, const std::optional<std::string>& display_server, const py::object& progress,
+           double exposure, const std::string& tone, double white, bool filter_shown, const File& file,
+           const std::optional<std::string>& display_server, const py::object& progress,
            const py::object& warn) {
             require_known("surface", surface, Names{"limit", "facets"});
             if (surface == "limit" && (rays || max_error || grid || seen_optics || facets))
@@ -225,14 +273,16 @@ void bind_pictures(RendererClass& renderer) {
                         {FacetArguments{rays, max_error, grid, seen_optics, facets}.of(
                              frame_params(self, resolution, camera)),
                          engine_choice(surface), layer_request(layers, window)},
-                        {"trace", file, display_server}, call);
+                        {"trace", file, display_server, tone_arguments(exposure, tone, white, filter_shown)},
+                        call);
         },
         py::arg("surface") = "limit", py::arg("resolution") = 0, py::arg("camera") = py::none(),
         py::arg("layers") = py::none(), py::arg("window") = py::none(), py::kw_only(),
         py::arg("rays") = py::none(), py::arg("max_error") = py::none(), py::arg("grid") = py::none(),
-        py::arg("seen_optics") = py::none(), py::arg("facets") = py::none(), py::arg("file") = py::none(),
-        py::arg("display_server") = py::none(), py::arg("progress") = py::none(),
-        py::arg("warn") = py::none(),
+        py::arg("seen_optics") = py::none(), py::arg("facets") = py::none(), py::arg("exposure") = 0.0,
+        py::arg("tone") = "none", py::arg("white") = ToneMapping().white, py::arg("filter_shown") = false,
+        py::arg("file") = py::none(), py::arg("display_server") = py::none(),
+        py::arg("progress") = py::none(), py::arg("warn") = py::none(),
         "Draws the same scene by ray tracing: the truth.\n\n"
         "surface: \"limit\" (the exact surfaces) or \"facets\" (the rays that render's facets interpolate).\n"
         "rays, max_error, grid, seen_optics and facets are about facets: UsageError without "

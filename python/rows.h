@@ -68,4 +68,33 @@ inline void copy_vector(const Vec3& v, double* target) {
     for (int k = 0; k < 3; ++k) target[k] = v[k];
 }
 
+/// Where a path meets an optic, as numpy sees it.
+struct EventRow {
+    Id optic, face;
+    char32_t event[8];
+    bool front;
+    double uv[2], point[3], normal[3];
+};
+
+/// Its fields, in records where it stands at `offset`.
+inline void add_event_fields(RecordType& type, std::size_t offset = 0) {
+    type.add("optic", "u4", offset + offsetof(EventRow, optic));
+    type.add("event", "U8", offset + offsetof(EventRow, event));
+    type.add("front", "?", offset + offsetof(EventRow, front));
+    type.add("face", "u4", offset + offsetof(EventRow, face));
+    type.add("uv", "(2,)f8", offset + offsetof(EventRow, uv));
+    type.add("point", "(3,)f8", offset + offsetof(EventRow, point));
+    type.add("normal", "(3,)f8", offset + offsetof(EventRow, normal));
+}
+
+/// `row` is zero.
+inline void fill_event(const PathEvent& event, EventRow& row) {
+    row.optic = event.optic, row.face = event.face;
+    copy_text(event_name(event.event), row.event);
+    row.front = event.front;
+    row.uv[0] = event.uv.x, row.uv[1] = event.uv.y;
+    copy_vector(event.point, row.point);
+    copy_vector(event.normal, row.normal);
+}
+
 }  // namespace trilens::python

@@ -17,12 +17,9 @@ struct RayRow {
     double origin[3], direction[3], position[3], t, weight[3];
 };
 
-struct EventRow {
+struct ShotEventRow {
     std::int64_t ray;
-    Id optic, face;
-    char32_t event[8];
-    bool front;
-    double uv[2], point[3], normal[3];
+    EventRow event;
 };
 
 py::dict ray_type() {
@@ -43,15 +40,9 @@ py::dict ray_type() {
 
 py::dict event_type() {
     RecordType type;
-    type.add("ray", "i8", offsetof(EventRow, ray));
-    type.add("optic", "u4", offsetof(EventRow, optic));
-    type.add("event", "U8", offsetof(EventRow, event));
-    type.add("front", "?", offsetof(EventRow, front));
-    type.add("face", "u4", offsetof(EventRow, face));
-    type.add("uv", "(2,)f8", offsetof(EventRow, uv));
-    type.add("point", "(3,)f8", offsetof(EventRow, point));
-    type.add("normal", "(3,)f8", offsetof(EventRow, normal));
-    return type.of_size(sizeof(EventRow));
+    type.add("ray", "i8", offsetof(ShotEventRow, ray));
+    add_event_fields(type, offsetof(ShotEventRow, event));
+    return type.of_size(sizeof(ShotEventRow));
 }
 
 RayRow row_of(const ShotRay& ray) {
@@ -69,21 +60,16 @@ RayRow row_of(const ShotRay& ray) {
     return row;
 }
 
-EventRow row_of(const PathEvent& event, std::size_t ray) {
-    auto row = empty_record<EventRow>();
+ShotEventRow row_of(const PathEvent& event, std::size_t ray) {
+    auto row = empty_record<ShotEventRow>();
     row.ray = static_cast<std::int64_t>(ray);
-    row.optic = event.optic, row.face = event.face;
-    copy_text(event_name(event.event), row.event);
-    row.front = event.front;
-    row.uv[0] = event.uv.x, row.uv[1] = event.uv.y;
-    copy_vector(event.point, row.point);
-    copy_vector(event.normal, row.normal);
+    fill_event(event, row.event);
     return row;
 }
 
 struct ShotRows {
     std::vector<RayRow> rays;
-    std::vector<EventRow> events;
+    std::vector<ShotEventRow> events;
 };
 
 ShotRows shot_rows(const ShotRays& shots) {

@@ -85,9 +85,8 @@ std::vector<Option> facet_options(RenderOptions& options) {
          .choices = names_of<CornerRays>()},
         {.names = "--facets",
          .target = &options.facets,
-         .help =
-             "worthwhile: facets that it takes longer to look into than to follow the rays of their samples "
-             "are traced, by a count of samples; all: none is for that",
+         .help = "worthwhile: facets that it takes longer to probe than to follow the rays of their samples "
+                 "are traced, by a count of samples; all: none is for that",
          .choices = names_of<FacetUse>()},
         {.names = "--max-error",
          .target = &options.max_error,

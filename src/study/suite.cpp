@@ -103,22 +103,12 @@ SuiteScene open_suite_scene(const RenderTest& test, const Progress& progress, co
 
 SuiteResult run_suite(const SuiteRequest& request, const SuiteObserver& observer) {
     require_outputs_apart(request, observer);
-    SuiteParams params;
-    params.folders = request.folders;
-    params.pattern = request.pattern;
-    params.jobs = request.jobs;
-    params.update = request.update;
-    params.junit = request.junit;
-    params.html = request.html;
-    params.title = request.title;
-    params.progress = observer.progress;
-    params.on_test = observer.on_test;
-    SuiteCallbacks callbacks;
+    SuiteCallbacks callbacks{{}, {}, observer.progress, observer.on_test};
     callbacks.open = [&](const RenderTest& test, const Warn& warn) {
         return open_suite_scene(test, observer.progress, warn);
     };
     callbacks.read = [](const std::string& file) { return read_compared_image(file); };
-    return run_suite(params, callbacks);
+    return run_suite(request, callbacks);
 }
 
 std::vector<FoundTest> list_suite(const std::vector<std::string>& folders, const std::string& pattern) {

@@ -10,17 +10,6 @@
 
 namespace trilens {
 
-/// Which tests are run, and what is written. A test is a folder with a test.json, at any depth below
-/// `folders`.
-struct SuiteRequest {
-    std::vector<std::string> folders;
-    std::string pattern;  // part of a name or tag; with * and ? in it all of one; empty: every test
-    int jobs = 0;         // tests at a time; 0: as many as there are threads
-    bool update = false;  // makes the stored pictures again before judging; what does not repeat is refused
-    std::string junit, html;  // files to write beside the result; empty: none
-    std::string title;        // of both; empty: "render tests"
-};
-
 /// How a suite says what it does; all may be empty.
 struct SuiteObserver {
     Progress progress;

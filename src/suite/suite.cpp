@@ -30,13 +30,13 @@ namespace {
 /// The tests, taken one after the other by a few threads.
 class SuiteRun {
   public:
-    SuiteRun(const SuiteParams& params, const SuiteCallbacks& callbacks, std::vector<FoundTest> tests)
-        : params_(params), callbacks_(callbacks), tests_(std::move(tests)), outcomes_(tests_.size()) {}
+    SuiteRun(const SuiteRequest& request, const SuiteCallbacks& callbacks, std::vector<FoundTest> tests)
+        : request_(request), callbacks_(callbacks), tests_(std::move(tests)), outcomes_(tests_.size()) {}
 
     void run() {
-        const int wanted = params_.jobs > 0 ? params_.jobs : thread_count();
+        const int wanted = request_.jobs > 0 ? request_.jobs : thread_count();
         const std::size_t jobs = std::min(tests_.size(), static_cast<std::size_t>(wanted));
-        params_.progress(0);
+        callbacks_.progress(0);
         run_on_threads(jobs, [this] { work(); });
         if (failure_) std::rethrow_exception(failure_);
     }
@@ -70,14 +70,14 @@ class SuiteRun {
         try {
             for (;;) {
                 const std::size_t i = next_++;
-                if (i >= tests_.size() || params_.progress.cancelled()) return;
+                if (i >= tests_.size() || callbacks_.progress.cancelled()) return;
                 TestOutcome outcome =
-                    run_test(tests_[i], callbacks_, {params_.update, !params_.html.empty()});
+                    run_test(tests_[i], callbacks_, {request_.update, !request_.html.empty()});
                 const std::lock_guard lock(mutex_);
                 outcomes_[i] = std::move(outcome);
                 ++done_;
-                if (params_.on_test) params_.on_test(outcomes_[i]->result);
-                params_.progress(static_cast<double>(done_) / static_cast<double>(tests_.size()));
+                if (callbacks_.on_test) callbacks_.on_test(outcomes_[i]->result);
+                callbacks_.progress(static_cast<double>(done_) / static_cast<double>(tests_.size()));
             }
         } catch (const Interrupted&) {
             next_ = tests_.size();
@@ -88,7 +88,7 @@ class SuiteRun {
         }
     }
 
-    const SuiteParams& params_;
+    const SuiteRequest& request_;
     const SuiteCallbacks& callbacks_;
     std::vector<FoundTest> tests_;
     std::vector<std::optional<TestOutcome>> outcomes_;
@@ -100,16 +100,16 @@ class SuiteRun {
 
 }  // namespace
 
-SuiteResult run_suite(const SuiteParams& params, const SuiteCallbacks& callbacks) {
+SuiteResult run_suite(const SuiteRequest& request, const SuiteCallbacks& callbacks) {
     const Stopwatch watch;
-    SuiteRun run(params, callbacks, meant_tests(params.folders, params.pattern));
+    SuiteRun run(request, callbacks, meant_tests(request.folders, request.pattern));
     run.run();
     std::map<std::string, std::vector<TestPictures>> pictures;
     SuiteResult result = run.take(pictures);
     result.seconds = watch.seconds();
-    const std::string title = params.title.empty() ? "render tests" : params.title;
-    if (!params.junit.empty()) replace_text_file(params.junit, junit_xml(result, title));
-    if (!params.html.empty()) replace_text_file(params.html, suite_html(result, pictures, title));
+    const std::string title = request.title.empty() ? "render tests" : request.title;
+    if (!request.junit.empty()) replace_text_file(request.junit, junit_xml(result, title));
+    if (!request.html.empty()) replace_text_file(request.html, suite_html(result, pictures, title));
     if (!run.is_whole()) throw Interrupted();
     return result;
 }

@@ -64,30 +64,33 @@ struct SuiteScene {
     std::function<Image(const std::string& engine, int resolution)> draw;
 };
 
-/// How pictures come about; the suite knows nothing of scenes. Both are called from several threads at once.
+/// How pictures come about; the suite knows nothing of scenes. The first two are called from several threads
+/// at once.
 struct SuiteCallbacks {
     std::function<SuiteScene(const RenderTest& test, const Warn& warn)> open;
     std::function<Image(const std::string& file)> read;  // a stored picture
+    Progress progress = {};
+    std::function<void(const TestResult& test)> on_test =
+        {};  // after each, never from two threads at once; may be empty
 };
 
-struct SuiteParams {
+/// Which tests are run, and what is written. A test is a folder with a test.json, at any depth below
+/// `folders`.
+struct SuiteRequest {
     std::vector<std::string> folders;
-    std::string pattern;      // see matches_pattern; empty: all
-    int jobs = 0;             // tests at a time; 0: as many as there are threads
-    bool update = false;      // makes stored pictures again before judging; see TestResult::update
-    std::string junit, html;  // files to write; empty: none
+    std::string pattern;  // part of a name or tag; with * and ? in it all of one; empty: every test
+    int jobs = 0;         // tests at a time; 0: as many as there are threads
+    bool update = false;  // makes the stored pictures again before judging; what does not repeat is refused
+    std::string junit, html;  // files to write beside the result; empty: none
     std::string title;        // of both; empty: "render tests"
-    Progress progress;
-    std::function<void(const TestResult& test)>
-        on_test;  // after each, never from two threads at once; may be empty
 };
 
 /// Runs every test that the pattern means, in any order, and returns them in the order of their names. What
 /// goes wrong in one test (a broken test.json, a scene that cannot be read) is that test's error, and the
 /// others go on. Throws InputError for folders without tests, UsageError where the pattern means none,
-/// OutputError where the JUnit file or the page cannot be written, and Interrupted once params.progress says
-/// so, after writing both with the tests that were not run as skipped.
-SuiteResult run_suite(const SuiteParams& params, const SuiteCallbacks& callbacks);
+/// OutputError where the JUnit file or the page cannot be written, and Interrupted once callbacks.progress
+/// says so, after writing both with the tests that were not run as skipped.
+SuiteResult run_suite(const SuiteRequest& request, const SuiteCallbacks& callbacks);
 
 // Which tests there are below some folders, and which of them are meant.
 

@@ -1,5 +1,5 @@
-// Facets that are looked into where that is worth it: the same pixels for any crop and any number of threads,
-// no farther from the truth than with all facets, and less of them looked into where pixels are few.
+// Facets that are probed where that is worth it: the same pixels for any crop and any number of threads,
+// no farther from the truth than with all facets, and less of them probed where pixels are few.
 #include <cmath>
 #include <string>
 
@@ -65,8 +65,8 @@ TEST_CASE("which facets are worthwhile changes with no crop and no number of thr
             crop.x0 = 21, crop.y0 = 17, crop.x1 = 60, crop.y1 = 40;
             CHECK(agrees(whole.image, drawn(*world, FacetUse::kWorthwhile, crop).image));
             set_thread_count(0);
-            REQUIRE(whole.statistics.looks.size() == world->optics.size());
-            CHECK(drawn(*world, FacetUse::kAll).statistics.looks.empty());
+            REQUIRE(whole.statistics.probes.size() == world->optics.size());
+            CHECK(drawn(*world, FacetUse::kAll).statistics.probes.empty());
         }
 }
 

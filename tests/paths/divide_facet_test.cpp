@@ -56,11 +56,11 @@ bool all_agree(const PathProbe& centre, const std::vector<PathProbe>& others) {
 }
 
 /// What a part's corners, the middles of its edges and its centre see, all paths followed.
-struct FullLooks {
+struct FullProbes {
     std::vector<PathProbe> corners, middles;
     PathProbe centre;
 };
-FullLooks full_looks(const ProbeContext& context, const FacetPart& part) {
+FullProbes full_probes(const ProbeContext& context, const FacetPart& part) {
     const auto between = [&](std::initializer_list<std::size_t> corners, double least_weight) {
         Chord chord{Vec3(0), Vec3(0), part.reach};
         const double share = 1.0 / static_cast<double>(corners.size());
@@ -71,7 +71,7 @@ FullLooks full_looks(const ProbeContext& context, const FacetPart& part) {
         return probe_chord(context, chord, {.side = part.side, .least_weight = least_weight});
     };
     const double fainter = kFainter * kLeastWeight;
-    FullLooks full;
+    FullProbes full;
     for (const PartCorner& corner : part.corners) {
         PathProbe& probe = full.corners.emplace_back(*corner.probe);
         follow_all(context, probe, fainter);
@@ -143,7 +143,7 @@ TEST_CASE("parts are projected where all paths agree, and traced only where they
         if (!faces_eye) continue;
         const DividedFacet divided = divide_facet(context, facet, params);
         for (const FacetPart& part : divided.parts) {
-            const FullLooks full = full_looks(context, part);
+            const FullProbes full = full_probes(context, part);
             std::vector<PathProbe> others = full.corners;
             others.insert(others.end(), full.middles.begin(), full.middles.end());
             const bool agree = all_agree(full.centre, others);

@@ -240,10 +240,10 @@ TEST_CASE("a facet's rays do not depend on what was asked for before", "[paths][
     for (const Id f : facets) one_by_one.prepare(std::vector<Id>{f, f});
     one_by_one.prepare(facets);  // known already
 
-    CHECK(at_once.looks().plan.decides() == (params.per_pixel > 0));
-    CHECK(at_once.looks().surveyed == one_by_one.looks().surveyed);
+    CHECK(at_once.probe_report().plan.decides() == (params.per_pixel > 0));
+    CHECK(at_once.probe_report().surveyed == one_by_one.probe_report().surveyed);
     if (params.per_pixel > 0)
-        CHECK(at_once.looks().plan.least_samples() == one_by_one.looks().plan.least_samples());
+        CHECK(at_once.probe_report().plan.least_samples() == one_by_one.probe_report().plan.least_samples());
     Random random(53);
     CHECK(at_once.leaves().size() == one_by_one.leaves().size());
     CHECK(at_once.nodes().size() == one_by_one.nodes().size());

@@ -36,8 +36,8 @@ void write_test(const std::string& folder, const std::string& json) {
     replace_text_file(folder + "/test.json", json);
 }
 
-TestResult only(const SuiteParams& params, const SuiteCallbacks& callbacks) {
-    const SuiteResult result = run_suite(params, callbacks);
+TestResult only(const SuiteRequest& request, const SuiteCallbacks& callbacks) {
+    const SuiteResult result = run_suite(request, callbacks);
     REQUIRE(result.tests.size() == 1);
     return result.tests[0];
 }
@@ -51,31 +51,31 @@ TEST_CASE("what does not repeat is refused, and the stored picture stays", "[sui
     const SuiteCallbacks still = drawing([](const std::string&) { return grey(0.5f); });
     const SuiteCallbacks restless =
         drawing([&](const std::string&) { return grey(0.5f + 0.001f * static_cast<float>(calls++)); });
-    SuiteParams params;
-    params.folders = {folder};
-    params.update = true;
-    CHECK(only(params, still).update == "new");
+    SuiteRequest request;
+    request.folders = {folder};
+    request.update = true;
+    CHECK(only(request, still).update == "new");
     const std::string stored = *read_whole_file(folder + "/ref/main.exr");
     CHECK(read_exr(folder + "/ref/main.exr").metadata.count("trilens:folder") == 0);
 
-    const TestResult refused = only(params, restless);
+    const TestResult refused = only(request, restless);
     CHECK(refused.state == TestState::kError);
     CHECK(refused.reasons[0].find("two pictures of the same scene differ (channel R differs in 96 pixels)") !=
           std::string::npos);
     CHECK(*read_whole_file(folder + "/ref/main.exr") == stored);
-    CHECK(only(params, still).update == "unchanged");
+    CHECK(only(request, still).update == "unchanged");
 }
 
 TEST_CASE("NaN, a lost channel and another size are broken whatever the limits", "[suite][bad-input]") {
     const std::string folder = trilens_test::scratch_dir("suite_always");
     write_test(folder, R"({ "against": "golden", "max": { "rmse": 1000 } })");
-    SuiteParams params;
-    params.folders = {folder};
-    params.update = true;
-    only(params, drawing([](const std::string&) { return grey(0.5f); }));
-    params.update = false;
+    SuiteRequest request;
+    request.folders = {folder};
+    request.update = true;
+    only(request, drawing([](const std::string&) { return grey(0.5f); }));
+    request.update = false;
     const auto reason = [&](const Image& picture) {
-        const TestResult test = only(params, drawing([&](const std::string&) { return picture; }));
+        const TestResult test = only(request, drawing([&](const std::string&) { return picture; }));
         CHECK(test.state == TestState::kFailed);
         REQUIRE_FALSE(test.reasons.empty());
         return test.reasons[0];
@@ -93,9 +93,9 @@ TEST_CASE("rules that are not asked for do not count, and those that are do", "[
     const std::string folder = trilens_test::scratch_dir("suite_rules");
     const auto state = [&](const std::string& rules) {
         write_test(folder, R"({ "against": "truth")" + rules + " }");
-        SuiteParams params;
-        params.folders = {folder};
-        return only(params,
+        SuiteRequest request;
+        request.folders = {folder};
+        return only(request,
                     drawing([](const std::string& engine) { return grey(engine == "limit" ? 0.5f : 0.6f); }))
             .state;
     };

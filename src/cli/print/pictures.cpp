@@ -20,13 +20,13 @@ Json shares_of(const LayerStatistics& counts) {
             {"traced", share(counts.traced_pixels)}};
 }
 
-Json looks_of(const Renderer& renderer, const LayerStatistics& counts) {
+Json probes_of(const Renderer& renderer, const LayerStatistics& counts) {
     Json all = Json::array();
-    for (const OpticLooks& one : counts.looks)
+    for (const OpticProbes& one : counts.probes)
         all.push_back({{"object", renderer.scene().meshes[one.object].name},
                        {"surveyed_facets", one.surveyed},
                        {"least_samples", one.least_samples},
-                       {"look", one.look},
+                       {"cost", one.cost},
                        {"saved", one.saved}});
     return all;
 }
@@ -44,7 +44,7 @@ Json picture_fields(const Renderer& renderer, const Picture& picture) {
             {"traced_pixels", picture.statistics.traced_pixels},
             {"layered_pixels", picture.statistics.layered_pixels},
             {"shares", shares_of(picture.statistics)},
-            {"looks", looks_of(renderer, picture.statistics)},
+            {"probes", probes_of(renderer, picture.statistics)},
             {"projected_facets", picture.statistics.projected_facets},
             {"predicted_error", picture.statistics.predicted_error},
             {"outline_pixels", picture.statistics.outline_pixels},

@@ -72,13 +72,18 @@ class HeightSolver {
                     at.x, at.y));
 }
 
-std::vector<double> solved(const HeightSolver& solver) {
+/// Takes the solver's heights; their largest change.
+double take_heights(HeightSolver& solver, HeightField& field) {
     std::vector<double> heights = solver.solve();
     if (heights.empty())
         throw ComputationError(
             "the samples do not fix all control points: take more samples, fewer controls, or a "
             "fairness above 0");
-    return heights;
+    double change = 0;
+    for (std::size_t i = 0; i < heights.size(); ++i)
+        change = std::max(change, std::abs(heights[i] - field.heights[i]));
+    field.heights = std::move(heights);
+    return change;
 }
 
 /// One linear step; the largest change of a height.
@@ -93,12 +98,7 @@ double picard_step(const DesignWish& wish, const WishedRays& rays, std::span<con
         solver.add(basis, basis.x, needed.slopes.x, weight);
         solver.add(basis, basis.y, needed.slopes.y, weight);
     }
-    const std::vector<double> heights = solved(solver);
-    double change = 0;
-    for (std::size_t i = 0; i < heights.size(); ++i)
-        change = std::max(change, std::abs(heights[i] - field.heights[i]));
-    field.heights = heights;
-    return change;
+    return take_heights(solver, field);
 }
 
 /// Of the rays, their rows linear in the heights about the present ones.
@@ -119,12 +119,7 @@ double gauss_newton_step(const DesignWish& wish, const WishedRays& rays, std::sp
             solver.add(basis, row, there - rows.residual[k], weight);
         }
     }
-    const std::vector<double> heights = solved(solver);
-    double change = 0;
-    for (std::size_t i = 0; i < heights.size(); ++i)
-        change = std::max(change, std::abs(heights[i] - field.heights[i]));
-    field.heights = heights;
-    return change;
+    return take_heights(solver, field);
 }
 
 double rms(std::span<const double> values) {

@@ -92,7 +92,7 @@ double OpticPaths::predicted(const FittedLeaf& open) const {
     return most;
 }
 
-/// So many at a time, so that what was looked at for their parts takes little room.
+/// So many at a time, so that what was probed for their parts takes little room.
 void OpticPaths::divide_by_error(std::span<const FittedLeaf> open) {
     constexpr std::size_t kBatch = 1024;
     if (std::isinf(params_.max_error)) return;
@@ -111,7 +111,7 @@ void OpticPaths::divide_batch_by_error(std::vector<FittedLeaf> open) {
             for (std::size_t i = from; i < to; ++i) {
                 error[i] = predicted(open[i]);
                 if (error[i] > params_.max_error)
-                    divided[i] = divide_part(context_, *open[i].part, params_, looks_.plan);
+                    divided[i] = divide_part(context_, *open[i].part, params_, probe_report_.plan);
             }
         });
         set_ray_scales(divided);

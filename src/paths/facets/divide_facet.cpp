@@ -18,18 +18,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Divider {
   public:
-    struct Looks {
+    struct Probed {
         ProbeSide side;
         double reach;
-        const LookPlan& plan;
+        const ProbePlan& plan;
     };
-    Divider(const ProbeContext& context, const Looks& looks, const DivideParams& params)
+    Divider(const ProbeContext& context, const Probed& probed, const DivideParams& params)
         : context_(context),
-          side_(looks.side),
+          side_(probed.side),
           params_(params),
-          plan_(looks.plan),
-          reach_(looks.reach),
-          probes_(context, {looks.side, looks.reach, !params.estimates}) {
+          plan_(probed.plan),
+          reach_(probed.reach),
+          probes_(context, {probed.side, probed.reach, !params.estimates}) {
         mirror_ = context.world->optics[context.optic].mirror;
     }
     DividedFacet divide(const std::array<PartCorner, 3>& from);
@@ -45,7 +45,7 @@ class Divider {
     }
     void divide(Id cell, const Triangle& corners, int level);
     void split(Id cell, const Triangle& corners, const Inside& inside, int level);
-    bool is_least(const Triangle& corners, int level, bool looked) const;
+    bool is_least(const Triangle& corners, int level, bool probed) const;
     bool has_break(const Triangle& corners) const;
     bool project(const Triangle& corners, std::span<const FacetPoint> inside, int level);
     bool is_proven(const Triangle& corners) const;
@@ -64,7 +64,7 @@ class Divider {
     const ProbeContext& context_;
     ProbeSide side_ = ProbeSide::kFront;
     const DivideParams& params_;
-    const LookPlan& plan_;
+    const ProbePlan& plan_;
     double reach_ = 0;
     bool mirror_ = true;
     ProbeCache probes_;
@@ -115,7 +115,7 @@ void Divider::project_mirror(const Triangle& corners) {
         if (point.at.probe->state == ProbeState::kSeen) point.segment = {0};
 }
 
-/// Whether the nested optics over this mirror show what the exact paths meet next, wherever they were looked
+/// Whether the nested optics over this mirror show what the exact paths meet next, wherever they were probed
 /// at.
 bool Divider::layered(const Triangle& corners, std::span<const FacetPoint> inside, int level) {
     if (!params_.nested_agree || level > 0 || !mirror_) return false;
@@ -203,11 +203,11 @@ std::array<Vec3, 3> on_screen(const std::array<FacetPoint, 3>& corners) {
     return {corners[0].screen, corners[1].screen, corners[2].screen};
 }
 
-/// Whether a part is not to be divided. `looked`: it was looked into.
-bool Divider::is_least(const Triangle& corners, int level, bool looked) const {
+/// Whether a part is not to be divided. `probed`: it was.
+bool Divider::is_least(const Triangle& corners, int level, bool probed) const {
     const double area = screen_area(on_screen(corners));
     if (level >= params_.most_levels) return true;
-    if (plan_.decides()) return !plan_.is_worth_dividing(level, plan_.samples_in(area), looked);
+    if (plan_.decides()) return !plan_.is_worth_dividing(level, plan_.samples_in(area), probed);
     return area < params_.least_area;
 }
 
@@ -228,16 +228,16 @@ void Divider::divide(Id cell, const Triangle& corners, int level) {
     // Nobody sees what is off the film.
     if (level > 0 && !may_reach_film(on_screen(corners), context_.camera.film))
         return trace(cell, corners, level);
-    // Nobody looks into a part that would be traced anyway, or for more than tracing it takes.
+    // A part is not probed that would be traced anyway, or for more than tracing it takes.
     const bool agree = may_project(corners);
-    LookTally::Level& tally = divided_.tally.at(level);
+    ProbeTally::Level& tally = divided_.tally.at(level);
     ++tally.parts;
     tally.agree += agree;
     if (!agree && is_least(corners, level, false)) return trace(cell, corners, level);
     if (agree && plan_.decides() &&
         !plan_.is_worth_inside(level, plan_.samples_in(screen_area(on_screen(corners)))))
         return trace(cell, corners, level);
-    tally.looked += agree;
+    tally.probed += agree;
     Inside inside{probes_.middle_of(corners[1], corners[2]), probes_.middle_of(corners[2], corners[0]),
                   probes_.middle_of(corners[0], corners[1])};
     if (probe_inside(corners, inside, level)) {
@@ -312,7 +312,7 @@ DividedFacet Divider::divide_on(const FacetPart& part) {
 }  // namespace
 
 DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet, const DivideParams& params,
-                          const LookPlan& plan) {
+                          const ProbePlan& plan) {
     double reach = facet.reach;
     for (std::size_t k = 0; k < 3 && facet.reach == 0; ++k)
         reach = std::max(reach, length(facet.corners[k].chord - facet.corners[(k + 1) % 3].chord));
@@ -329,7 +329,7 @@ DividedFacet traced_facet(const std::array<Vec3, 3>& screen) {
 }
 
 DividedFacet divide_part(const ProbeContext& context, const FacetPart& part, const DivideParams& params,
-                         const LookPlan& plan) {
+                         const ProbePlan& plan) {
     return Divider(context, {part.side, part.reach, plan}, params).divide_on(part);
 }
 

@@ -16,7 +16,7 @@ struct PartCorner {
     Vec3 chord{0};  // the point on the facet's plane, world
 };
 
-/// A point between the corners of a part that was looked at.
+/// A point between the corners of a part that was probed.
 struct PartInside {
     PartCorner at;                     // never shared
     std::vector<std::size_t> segment;  // per history: of the probe's; empty where it is not seen
@@ -32,7 +32,7 @@ struct FacetPart {
     std::vector<Id> node;                // per history: of OpticPaths::nodes, once it has one
     std::vector<Id> node_facet;          // per history: of the node's mesh
     std::array<PartCorner, 3> corners;
-    std::array<std::vector<std::size_t>, 3> segment;  // per corner and history: of the corner's look; empty
+    std::array<std::vector<std::size_t>, 3> segment;  // per corner and history: of the corner's probe; empty
                                                       // for a corner that is turned away from the eye
     ProbeSide side = ProbeSide::kFront;               // the one that the facet shows
     double reach = 0;  // how far the surface may be from the facet's plane: the facet's longest edge
@@ -54,7 +54,7 @@ struct DividedFacet {
     std::vector<FacetPart> parts;
     std::deque<PathProbe> probes;  // at points that are no corners of the grid
     CutPaths cut;                  // the most at any point
-    LookTally tally;               // of its parts
+    ProbeTally tally;              // of its parts
 };
 
 /// A facet to divide.
@@ -84,15 +84,15 @@ inline constexpr double kFainter = 1.0 / 8;
 
 /// As far as the plan finds it worth it.
 DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet, const DivideParams& params,
-                          const LookPlan& plan = {});
+                          const ProbePlan& plan = {});
 
-/// A facet that is traced, no part of it looked at; by its corners' homogeneous screen positions.
+/// A facet that is traced, no part of it probed; by its corners' homogeneous screen positions.
 DividedFacet traced_facet(const std::array<Vec3, 3>& screen);
 
 /// A projected part divided in four, and on where their histories differ: cells[0] is the part, and has
 /// children. One that is too small is a traced part instead. What the part's corners point to must live as
 /// long as the result.
 DividedFacet divide_part(const ProbeContext& context, const FacetPart& part, const DivideParams& params,
-                         const LookPlan& plan = {});
+                         const ProbePlan& plan = {});
 
 }  // namespace trilens

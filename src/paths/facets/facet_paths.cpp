@@ -138,8 +138,8 @@ std::vector<Id> OpticPaths::wanted_facets(std::span<const Id> facets) {
     return fresh;
 }
 
-/// Which facets' paths there is room for, by what the looks at some corners take: the same whatever is asked
-/// for first. A facet has four looks of its own and half a corner.
+/// Which facets' paths there is room for, by what the probes at some corners take: the same whatever is asked
+/// for first. A facet has four probes of its own and half a corner.
 void OpticPaths::keep_room() {
     constexpr std::size_t kFew = 2048, kSample = 64;
     if (!has_room_.empty()) return;
@@ -187,15 +187,15 @@ void OpticPaths::prepare(std::span<const Id> facets) {
     keep_room();
     survey();
     const std::vector<Id> fresh = wanted_facets(facets);
-    std::vector<Id> looked;
+    std::vector<Id> probed;
     for (const Id f : fresh) {
         if (!has_room_[f]) continue;
-        if (is_worth_looking(f))
-            looked.push_back(f);
+        if (is_worth_probing(f))
+            probed.push_back(f);
         else
-            ++looks_.not_worth;
+            ++probe_report_.not_worth;
     }
-    probe_corners(looked);
+    probe_corners(probed);
 
     std::vector<DividedFacet> divided(fresh.size());
     parallel_for(fresh.size(), kFacetsPerTask, [&](std::size_t from, std::size_t to) {
@@ -203,10 +203,10 @@ void OpticPaths::prepare(std::span<const Id> facets) {
             const auto surveyed = surveyed_.find(fresh[i]);
             if (surveyed != surveyed_.end())
                 divided[i] = std::move(*surveyed->second);
-            else if (!has_room_[fresh[i]] || !is_worth_looking(fresh[i]))
+            else if (!has_room_[fresh[i]] || !is_worth_probing(fresh[i]))
                 divided[i] = traced_facet(screen_corners(fresh[i]));
             else
-                divided[i] = divide_facet(context_, facet_to_divide(fresh[i]), params_, looks_.plan);
+                divided[i] = divide_facet(context_, facet_to_divide(fresh[i]), params_, probe_report_.plan);
         }
     });
     for (const Id f : fresh) surveyed_.erase(f);

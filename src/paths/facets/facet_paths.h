@@ -13,7 +13,7 @@
 
 #include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
-#include "paths/facets/look_plan.h"
+#include "paths/facets/probe_plan.h"
 #include "paths/probe/path_probe.h"
 
 namespace trilens {
@@ -64,7 +64,7 @@ struct PathNode {
 /// How finely facets are divided whose corners do not tell the truth about the rays between them.
 struct DivideParams {
     double least_area = 8;  // square pixels: parts below this are traced
-    double plain_area = 0;  // square pixels: of facets below this the corners alone are looked at
+    double plain_area = 0;  // square pixels: of facets below this the corners alone are probed
     int most_levels = 6;
     // Pixels: parts whose predicted displacement is more are divided too; infinity: whatever it is.
     double max_error = std::numeric_limits<double>::infinity();
@@ -81,7 +81,7 @@ struct DivideParams {
     // Of a mirror with nested optics: whether that optic is drawn as a nested optic somewhere within these
     // bounds on the film, in pixels.
     std::function<bool(Id optic, const Vec2& low, const Vec2& high)> nested_covers = {};
-    // Samples in a square pixel, where facets and parts are looked into that are worth it (look_plan.h); 0:
+    // Samples in a square pixel, where facets and parts are probed that are worth it (probe_plan.h); 0:
     // all are.
     double per_pixel = 0;
 };
@@ -91,11 +91,11 @@ struct FacetPart;
 struct FacetToDivide;
 struct FittedLeaf;
 
-/// How it was decided which facets are looked into.
-struct LookReport {
-    std::size_t surveyed = 0;  // facets looked into first
-    LookPlan plan;
-    std::size_t not_worth = 0;  // facets, of those asked for, that are traced for what looking costs
+/// How it was decided which facets are probed.
+struct ProbeReport {
+    std::size_t surveyed = 0;  // facets probed first
+    ProbePlan plan;
+    std::size_t not_worth = 0;  // facets, of those asked for, that are traced for what probes cost
 };
 
 /// A window of the film, in pixels, and how finely it is cut.
@@ -166,13 +166,13 @@ class OpticPaths {
     std::vector<Id> nodes_in_order() const;
     /// The grid's facets on the screen; its rays are not set.
     const RayMesh& outline() const { return outline_; }
-    /// The most that was left out at any point looked at.
+    /// The most that was left out at any point probed.
     const CutPaths& cut() const { return cut_; }
     /// Leaves that are projected, of the facets worked out.
     std::size_t projected_count() const { return projected_count_; }
     /// Facets that are traced for want of room (DivideParams::most_bytes).
     std::size_t crowded_out() const { return crowded_out_; }
-    const LookReport& looks() const { return looks_; }
+    const ProbeReport& probe_report() const { return probe_report_; }
     const ProbeContext& context() const { return context_; }
 
   private:
@@ -195,7 +195,7 @@ class OpticPaths {
     void append_part(Id leaf, FacetPart& part);
     void keep_room();
     void survey();
-    bool is_worth_looking(Id facet) const;
+    bool is_worth_probing(Id facet) const;
     FacetToDivide facet_to_divide(Id facet) const;
     void divide_by_error(std::span<const FittedLeaf> open);
     void divide_batch_by_error(std::vector<FittedLeaf> open);
@@ -214,7 +214,7 @@ class OpticPaths {
     std::vector<Cell> cells_;                                // one per facet, then parts
     std::vector<char> has_room_;                             // one per facet, once they are counted
     std::size_t crowded_out_ = 0;
-    LookReport looks_;
+    ProbeReport probe_report_;
     std::unordered_map<Id, std::unique_ptr<DividedFacet>> surveyed_;  // facets of the survey, until asked for
     bool is_surveyed_ = false;
     std::vector<char> prepared_;

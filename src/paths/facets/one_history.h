@@ -10,7 +10,7 @@ namespace trilens {
 /// What is asked about a part of a facet.
 struct HistoryProof {
     const ProbeContext& context;
-    const FacetPart& part;  // projected: with its histories, corners and what was looked at inside
+    const FacetPart& part;  // projected: with its histories, corners and what was probed inside
     /// Whether an optic that the first reflection may meet is drawn over it, wherever it is met. Unset: none
     /// is.
     std::function<bool(Id optic)> drawn_over = {};
@@ -19,7 +19,7 @@ struct HistoryProof {
     bool from_camera = false;
 };
 
-/// Proof that every ray between those that were looked at has the part's histories: between one optic and the
+/// Proof that every ray between those that were probed has the part's histories: between one optic and the
 /// next each beam, from the hull of its rays, touches no patch of any optic but those where it starts and
 /// where its history has it arrive; there it crosses no silhouette (the cone of normals against that of
 /// directions), no crease and no border; and no refraction passes the critical angle. False where that cannot

@@ -1,4 +1,4 @@
-// A survey (systematic sample) of an optic's facets: what looking into all of them is likely to bring.
+// A survey (systematic sample) of an optic's facets: what probing all of them is likely to bring.
 #include <algorithm>
 #include <cmath>
 
@@ -24,21 +24,22 @@ double evenly(std::size_t k) {
 
 }  // namespace
 
-/// Whether a facet is looked into at all.
-bool OpticPaths::is_worth_looking(Id facet) const {
-    return !looks_.plan.decides() || surveyed_.contains(facet) ||
-           looks_.plan.is_worth_corners(looks_.plan.samples_in(screen_area(screen_corners(facet))));
+/// Whether a facet is probed at all.
+bool OpticPaths::is_worth_probing(Id facet) const {
+    return !probe_report_.plan.decides() || surveyed_.contains(facet) ||
+           probe_report_.plan.is_worth_corners(
+               probe_report_.plan.samples_in(screen_area(screen_corners(facet))));
 }
 
-/// Looks into some facets, the same whatever is asked for first, and makes the plan for all others.
+/// Probes some facets, the same whatever is asked for first, and makes the plan for all others.
 void OpticPaths::survey() {
     if (is_surveyed_ || params_.per_pixel == 0) return;
     is_surveyed_ = true;
-    const LookCosts costs = LookCosts::of(params_.per_pixel, context_.surface->has_closed_form());
-    looks_.plan = LookPlan(params_.per_pixel, costs, {});
+    const ProbeCosts costs = ProbeCosts::of(params_.per_pixel, context_.surface->has_closed_form());
+    probe_report_.plan = ProbePlan(params_.per_pixel, costs, {});
     std::vector<Id> shown;
     for (Id f = 0; f < outline_.facets.size(); ++f)
-        if (on_film(f) && has_room_[f] && is_worth_looking(f)) shown.push_back(f);
+        if (on_film(f) && has_room_[f] && is_worth_probing(f)) shown.push_back(f);
     const std::size_t wanted = std::min(shown.size(), std::clamp(shown.size() / kOneIn, kFewest, kMost));
     std::vector<Id> chosen;
     for (std::size_t k = 0; k < kTries * wanted && chosen.size() < wanted; ++k) {
@@ -54,15 +55,15 @@ void OpticPaths::survey() {
     parallel_for(found.size(), 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i)
             found[i] = std::make_unique<DividedFacet>(
-                divide_facet(context_, facet_to_divide(chosen[i]), params_, looks_.plan));
+                divide_facet(context_, facet_to_divide(chosen[i]), params_, probe_report_.plan));
     });
-    LookTally tally;
+    ProbeTally tally;
     for (std::size_t i = 0; i < found.size(); ++i) {
         tally.add(found[i]->tally);
         surveyed_[chosen[i]] = std::move(found[i]);
     }
-    looks_.surveyed = chosen.size();
-    looks_.plan = LookPlan(params_.per_pixel, costs, tally);
+    probe_report_.surveyed = chosen.size();
+    probe_report_.plan = ProbePlan(params_.per_pixel, costs, tally);
 }
 
 }  // namespace trilens

@@ -18,7 +18,7 @@ namespace trilens {
 inline constexpr double kAnyError = std::numeric_limits<double>::infinity();
 
 /// Which facets stand for the samples in them. kAll: each that may. kWorthwhile: those that it takes less to
-/// look into than to follow their samples' own rays, which the others' are (paths/facets/look_plan.h).
+/// probe than to follow their samples' own rays, which the others' are (paths/facets/probe_plan.h).
 /// Pictures are drawn so; what facets themselves are good for is seen with all.
 enum class FacetUse { kAll, kWorthwhile };
 
@@ -121,12 +121,12 @@ struct PictureRequest {
 };
 
 /// How it was decided which of an optic's facets are worthwhile.
-struct OpticLooks {
+struct OpticProbes {
     Id object = kNone;         // index into Scene::meshes
-    std::size_t surveyed = 0;  // facets looked into first, to know what the others are likely to bring
+    std::size_t surveyed = 0;  // facets probed first, to know what the others are likely to bring
     double least_samples = 0;  // facets that have fewer are traced; infinite: all are
-    // In samples' paths followed: looking into a facet, and what each of its samples then saves.
-    double look = 0, saved = 0;
+    // In samples' paths followed: probing a facet, and what each of its samples then saves.
+    double cost = 0, saved = 0;
 };
 
 /// Counts of what the user would want to know.
@@ -151,7 +151,7 @@ struct LayerStatistics {
     // their fragments; of the rays that these shade, those that had to be shaded at each sample, and the
     // pixels that have such rays.
     std::size_t fragment_pixels = 0, fragments = 0, rays_by_sample = 0, pixels_shaded_by_sample = 0;
-    std::vector<OpticLooks> looks;  // per optic, where facets are used that are worthwhile
+    std::vector<OpticProbes> probes;  // per optic, where facets are used that are worthwhile
 
     /// 0 where no pixel is shaded by fragments.
     double fragments_per_pixel() const {

@@ -82,15 +82,15 @@ void advise_on_facets(const World& world, const PictureRequest& request, const L
 /// Of the light on all optics: less is not told of.
 constexpr double kToldShare = 0.002;
 
-/// What looking into the optics' facets was found to cost and to bring; empty where all of them are used.
-std::vector<OpticLooks> looks_of(const World& world, const FacetViews& views) {
-    std::vector<OpticLooks> found;
+/// What probing the optics' facets was found to cost and to bring; empty where all of them are used.
+std::vector<OpticProbes> probes_of(const World& world, const FacetViews& views) {
+    std::vector<OpticProbes> found;
     for (std::size_t i = 0; views.paths && i < world.optics.size(); ++i) {
-        const LookReport& looks = views.paths(i).looks();
-        if (!looks.plan.decides()) continue;
-        const LookCosts& costs = looks.plan.costs();
+        const ProbeReport& report = views.paths(i).probe_report();
+        if (!report.plan.decides()) continue;
+        const ProbeCosts& costs = report.plan.costs();
         found.push_back(
-            {world.optics[i].mesh, looks.surveyed, looks.plan.least_samples(), costs.inside, costs.saved});
+            {world.optics[i].mesh, report.surveyed, report.plan.least_samples(), costs.inside, costs.saved});
     }
     return found;
 }
@@ -233,7 +233,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
         draw_layers(world, views, layers, progress, &picture.statistics, in_strips ? &described : nullptr);
     if (in_strips && !sink) picture.image = std::move(collected);
     picture.draw_seconds = drawing.seconds();
-    picture.statistics.looks = looks_of(world, views);
+    picture.statistics.probes = probes_of(world, views);
     describe(world, request, picture.image);
     if (warn) {
         tell(world, layers, picture.statistics, warn);

@@ -1,4 +1,4 @@
-// Which facets, and which parts of them, are worth looking into: optimal stopping over their quadtree by
+// Which facets, and which parts of them, are worth probing: optimal stopping over their quadtree by
 // dynamic programming (Bellman), in samples of the film.
 #pragma once
 
@@ -7,58 +7,58 @@
 
 namespace trilens {
 
-/// What looking at facets costs and saves. The unit is following the paths of one sample: that takes as much
-/// of a scene's own time as looking at one point of a facet does, whatever the scene, so these are constants.
+/// What probing facets costs and saves. The unit is following the paths of one sample: that takes as much
+/// of a scene's own time as probing one point of a facet does, whatever the scene, so these are constants.
 /// Measured, as docs/speed.md tells.
-struct LookCosts {
-    double corner = 1;   // a facet's share of the looks at the grid's corners
-    double middle = 2;   // looks at the middles of a part's edges, its principal paths alone
+struct ProbeCosts {
+    double corner = 1;   // a facet's share of the probes at the grid's corners
+    double middle = 2;   // probes at the middles of a part's edges, its principal paths alone
     double inside = 10;  // all paths there and at the centre, the proof, the corner rays, the prediction
     double saved = 0.7;  // by each sample that is projected instead
 
     /// `per_pixel`: samples of a pixel; from two on what they see is shaded by fragments. `closed_form`: the
     /// optic is met in closed form, for less than proofs take.
-    static LookCosts of(double per_pixel, bool closed_form);
+    static ProbeCosts of(double per_pixel, bool closed_form);
 };
 
-/// Of the parts of facets on each level that were looked at.
-struct LookTally {
+/// Of the parts of facets on each level that were probed.
+struct ProbeTally {
     static constexpr int kLevels = 8;  // deeper ones count with the last
     struct Level {
         std::size_t parts = 0;      // that are on the film
         std::size_t agree = 0;      // of them: may be projected, by their corners' principal paths
-        std::size_t looked = 0;     // of these: were looked into
+        std::size_t probed = 0;     // of these: were probed
         std::size_t projected = 0;  // of these: are projected
     };
     std::array<Level, kLevels> level{};
 
     Level& at(int depth) { return level[static_cast<std::size_t>(depth < kLevels ? depth : kLevels - 1)]; }
-    void add(const LookTally& other);
+    void add(const ProbeTally& other);
 };
 
 /// Decides for one optic, by what was found at some of its facets.
-class LookPlan {
+class ProbePlan {
   public:
-    /// All parts are looked into.
-    LookPlan() = default;
+    /// All parts are probed.
+    ProbePlan() = default;
     /// `per_pixel`: samples in a square pixel, > 0.
-    LookPlan(double per_pixel, const LookCosts& costs, const LookTally& survey);
+    ProbePlan(double per_pixel, const ProbeCosts& costs, const ProbeTally& survey);
 
     bool decides() const { return per_pixel_ > 0; }
     /// Samples in that many square pixels.
     double samples_in(double area) const;
 
-    /// Whether a whole facet with so many samples is worth the looks at its corners.
+    /// Whether a whole facet with so many samples is worth the probes at its corners.
     bool is_worth_corners(double samples) const;
-    /// Whether a part whose corners agree is worth the looks inside.
+    /// Whether a part whose corners agree is worth the probes inside.
     bool is_worth_inside(int level, double samples) const;
-    /// Whether a part that is not projected is worth dividing. `looked`: it was looked into.
-    bool is_worth_dividing(int level, double samples, bool looked) const;
+    /// Whether a part that is not projected is worth dividing. `probed`: it was.
+    bool is_worth_dividing(int level, double samples, bool probed) const;
 
-    /// The fewest samples of a facet whose corners are looked at; infinite where none is worth it.
+    /// The fewest samples of a facet whose corners are probed; infinite where none is worth it.
     double least_samples() const;
 
-    const LookCosts& costs() const { return costs_; }
+    const ProbeCosts& costs() const { return costs_; }
 
   private:
     struct Share {
@@ -69,9 +69,9 @@ class LookPlan {
     double inside(int level, double samples, double of_parts) const;
     double part(int level, double samples) const;
 
-    double per_pixel_ = 0;  // 0: all parts are looked into
-    LookCosts costs_;
-    std::array<Share, LookTally::kLevels> share_{};
+    double per_pixel_ = 0;  // 0: all parts are probed
+    ProbeCosts costs_;
+    std::array<Share, ProbeTally::kLevels> share_{};
 };
 
 }  // namespace trilens

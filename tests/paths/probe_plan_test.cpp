@@ -1,5 +1,5 @@
-// When looking into facets is worth it: the plan against played chances, and what it decides at its ends.
-#include "paths/facets/look_plan.h"
+// When probing facets is worth it: the plan against played chances, and what it decides at its ends.
+#include "paths/facets/probe_plan.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ namespace {
 
 /// What is true of the parts of each level: shares that agree, and of these that are projected.
 struct Chances {
-    std::array<double, LookTally::kLevels> agree{}, projected{};
+    std::array<double, ProbeTally::kLevels> agree{}, projected{};
 };
 
 Chances random_chances(Random& random) {
@@ -26,8 +26,8 @@ Chances random_chances(Random& random) {
 }
 
 /// A survey so large that it says those.
-LookTally survey_of(const Chances& chances) {
-    LookTally tally;
+ProbeTally survey_of(const Chances& chances) {
+    ProbeTally tally;
     constexpr double kParts = 1e9;
     for (std::size_t i = 0; i < tally.level.size(); ++i) {
         const double agree = kParts * chances.agree[i];
@@ -38,11 +38,11 @@ LookTally survey_of(const Chances& chances) {
     return tally;
 }
 
-/// What one part played out saves. `inside(level, samples)` and `divides(level, samples, looked)` decide.
+/// What one part played out saves. `inside(level, samples)` and `divides(level, samples, probed)` decide.
 template <typename Inside, typename Divides>
-double played(const Chances& chances, const LookCosts& costs, int level, double samples, const Inside& inside,
-              const Divides& divides, Random& random) {
-    if (level >= LookTally::kLevels - 1 || samples < 1) return 0;
+double played(const Chances& chances, const ProbeCosts& costs, int level, double samples,
+              const Inside& inside, const Divides& divides, Random& random) {
+    if (level >= ProbeTally::kLevels - 1 || samples < 1) return 0;
     const auto at = static_cast<std::size_t>(level);
     const bool agree = random.uniform(0, 1) < chances.agree[at];
     double saved = 0;
@@ -60,8 +60,8 @@ double played(const Chances& chances, const LookCosts& costs, int level, double 
 
 }  // namespace
 
-TEST_CASE("a plan without a survey looks at everything", "[paths][law]") {
-    const LookPlan plan;
+TEST_CASE("a plan without a survey probes everything", "[paths][law]") {
+    const ProbePlan plan;
     CHECK_FALSE(plan.decides());
     for (const double samples : {0.0, 1.0, 1e6}) {
         CHECK(plan.is_worth_corners(samples));
@@ -70,12 +70,12 @@ TEST_CASE("a plan without a survey looks at everything", "[paths][law]") {
     }
 }
 
-TEST_CASE("what is worth it for some samples is so for more; few are never worth a look", "[paths][law]") {
+TEST_CASE("what is worth it for some samples is so for more; few are never worth a probe", "[paths][law]") {
     Random random(71);
     for (int trial = 0; trial < 200; ++trial) {
         const double per_pixel = trial % 2 ? 1 : 64;
-        const LookPlan plan(per_pixel, LookCosts::of(per_pixel, trial % 3 == 0),
-                            survey_of(random_chances(random)));
+        const ProbePlan plan(per_pixel, ProbeCosts::of(per_pixel, trial % 3 == 0),
+                             survey_of(random_chances(random)));
         CHECK(plan.samples_in(3) == 3 * per_pixel);
         const double least = plan.least_samples();
         CHECK(least > plan.costs().inside / plan.costs().saved);
@@ -83,15 +83,15 @@ TEST_CASE("what is worth it for some samples is so for more; few are never worth
             CHECK(plan.is_worth_corners(least));
             CHECK_FALSE(plan.is_worth_corners(0.99 * least));
         }
-        for (const bool looked : {false, true}) {
+        for (const bool probed : {false, true}) {
             bool corners = false, inside = false, divides = false;
             for (double samples = 1; samples < 1e6; samples *= 1.3) {
                 CHECK((!corners || plan.is_worth_corners(samples)));
                 CHECK((!inside || plan.is_worth_inside(1, samples)));
-                CHECK((!divides || plan.is_worth_dividing(1, samples, looked)));
+                CHECK((!divides || plan.is_worth_dividing(1, samples, probed)));
                 corners = plan.is_worth_corners(samples);
                 inside = plan.is_worth_inside(1, samples);
-                divides = plan.is_worth_dividing(1, samples, looked);
+                divides = plan.is_worth_dividing(1, samples, probed);
             }
         }
     }
@@ -101,7 +101,7 @@ TEST_CASE("played out, no simpler rule saves more than the plan", "[paths][law]"
     Random random(72);
     for (int trial = 0; trial < 12; ++trial) {
         const Chances chances = random_chances(random);
-        const LookPlan plan(1, LookCosts::of(1, trial % 2 == 0), survey_of(chances));
+        const ProbePlan plan(1, ProbeCosts::of(1, trial % 2 == 0), survey_of(chances));
         const double samples = std::pow(10, random.uniform(1, 3));
         constexpr int kPlays = 3000;
         // The mean and its standard error.
@@ -116,7 +116,7 @@ TEST_CASE("played out, no simpler rule saves more than the plan", "[paths][law]"
         };
         const auto [own, own_error] = mean_of(
             [&](int level, double s) { return plan.is_worth_inside(level, s); },
-            [&](int level, double s, bool looked) { return plan.is_worth_dividing(level, s, looked); });
+            [&](int level, double s, bool probed) { return plan.is_worth_dividing(level, s, probed); });
         for (const double least : {4.0, 15.0, 60.0, 250.0}) {
             const auto [other, other_error] = mean_of([&](int, double s) { return s >= least; },
                                                       [&](int, double s, bool) { return s >= 4 * least; });
