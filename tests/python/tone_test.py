@@ -1,41 +1,39 @@
 """What a picture's file shows of its light: exposure, tone and filters of what is shown, as the command has them."""
+import os
 import re
 import subprocess
-import os
 
 import numpy as np
 import pytest
 
 import trilens
 
-from conftest import SOURCE, SMALL, size_options
-
-SCENE = SOURCE / "scenes/sphere.json"
-BRIGHT = {**SMALL, "/film/width": 48, "/film/height": 36, "/film/spp": 3, "/film/filter": "mitchell",
-          "/background/color": [90, 90, 90]}
+# A sky far beyond the screen's white behind a dim wall and a mirror ball, filtered with negative lobes.
+BRIGHT = """{
+  "version": 1, "film": {"width": 48, "height": 36, "spp": 3, "filter": "mitchell"},
+  "cameras": [{"name": "main", "yfov": 40, "lookAt": {"eye": [0, 0, 4], "at": [0, 0, 0]}}],
+  "background": {"color": [90, 90, 90]},
+  "materials": [{"name": "dim", "baseColorFactor": [0.1, 0.2, 0.3], "unlit": true},
+                {"name": "chrome", "baseColorFactor": [0.9, 0.9, 0.9], "metallicFactor": 1}],
+  "meshes": [
+    {"name": "ball", "role": "optic", "material": "chrome", "primitive": {"type": "sphere", "center": [0.6, 0, 0], "radius": 0.5}},
+    {"name": "wall", "role": "object", "material": "dim", "points": [[-9, -9, -1], [0.13, -9, -1], [0.13, 9, -1], [-9, 9, -1]],
+     "faceVertexCounts": [4], "faceVertexIndices": [0, 1, 2, 3]}],
+  "lights": [{"type": "ambient", "color": [1, 1, 1]}]
+}"""
 
 
 @pytest.fixture(scope="module")
 def bright():
-    """A sky far beyond the screen's white, several samples a pixel, a filter with negative lobes."""
-    return trilens.Renderer(trilens.load_scene(SCENE, BRIGHT))
-
-
-def luminance(image):
-    return image.rgb() @ np.array([0.2126, 0.7152, 0.0722], np.float32)
+    return trilens.Renderer(trilens.parse_scene(BRIGHT, warn=lambda message: None))
 
 
 def test_a_filter_of_what_is_shown_leaves_no_dark_rings(bright):
     light, shown = bright.render(resolution=4), bright.render(resolution=4, filter_shown=True)
-    assert light.rgb().min() < -1 and light.rgb().max() > 10
+    assert light.rgb().min() < -0.3 and light.rgb().max() > 10
     assert shown.rgb().min() > -0.15 and shown.rgb().max() < 1.15
-    # Where nothing is brighter than the screen's white all around, both show the same.
-    height, width = luminance(light).shape
-    rooms = np.pad(light.rgb().max(axis=2), 2, constant_values=9) < 1
-    calm = np.all([rooms[y:y + height, x:x + width] for y in range(5) for x in range(5)], axis=0)
-    calm &= np.abs(light.rgb()).max(axis=2) < 0.8
-    if calm.any():
-        assert np.abs(light.rgb() - shown.rgb())[calm].max() < 1e-5
+    # Away from the sky and the ball both show the same.
+    assert np.abs(light.rgb() - shown.rgb())[:, :18].max() < 1e-5
 
 
 def test_trace_filters_what_is_shown_too(bright):
@@ -47,9 +45,8 @@ def test_trace_filters_what_is_shown_too(bright):
     ([], {}), (["--tone", "neutral", "--exposure", "-2"], {"tone": "neutral", "exposure": -2}),
     (["--tone", "reinhard", "--white", "8", "--filter-shown"], {"tone": "reinhard", "white": 8, "filter_shown": True})])
 def test_a_png_is_the_commands(bright, command, tmp_path, words, arguments):
-    sets = [word for key in ("/film/filter", "/background/color")
-            for word in ("--set", f"{key}={str(BRIGHT[key]) if isinstance(BRIGHT[key], list) else BRIGHT[key]}")]
-    code, _ = command("render", SCENE, "-n", 4, *size_options(BRIGHT), *sets, *words, "-o", tmp_path / "theirs.png")
+    (tmp_path / "scene.json").write_text(BRIGHT)
+    code, _ = command("render", tmp_path / "scene.json", "-n", 4, *words, "-o", tmp_path / "theirs.png")
     assert code == 0
     bright.render(resolution=4, file=tmp_path / "ours.png", **arguments)
     assert (tmp_path / "ours.png").read_bytes() == (tmp_path / "theirs.png").read_bytes()
@@ -66,15 +63,12 @@ def test_light_that_stays_what_it_is_takes_no_tones(bright, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-# How Python says each option of `trilens render`: an argument of Renderer.render, or what does it.
+# Options of `trilens render` that are no arguments of Renderer.render: what does the same in Python.
 ELSEWHERE = {
-    "--size": "overrides", "--spp": "overrides", "--filter": "overrides", "--set": "overrides",
-    "--max-depth": "overrides", "--crop": "window", "--aov": "layers", "--output": "file",
-    "--pixel": trilens.Renderer.explain, "--frames": trilens.Scene.at_frame, "--turntable": trilens.Scene.at_frame,
-    "--slices": "pieces", "--tessellate": "pieces", "--format": "file", "--wire": trilens.Renderer.draw_lines,
-    "--folds": trilens.Renderer.draw_lines, "--help": "help()", "--version": trilens.version,
-    "--quiet": "warn", "--verbose": "warn", "--threads": trilens.set_threads, "--json": "statistics",
-    "--color": "none", "--certify": "max_error",
+    "overrides of load_scene": {"--size", "--spp", "--filter", "--set", "--max-depth"},
+    "other names": {"--crop", "--aov", "--output", "--format", "--slices", "--tessellate"},
+    "Renderer.explain, Scene.at_frame, Renderer.draw_lines": {"--pixel", "--frames", "--turntable", "--wire", "--folds"},
+    "the whole module": {"--help", "--version", "--threads", "--json", "--color", "--quiet", "--verbose"},
 }
 
 
@@ -86,5 +80,5 @@ def test_every_option_of_render_is_had_in_python():
     options = set(re.findall(r"^ +(?:-\w,)?(--[a-z-]+)", told, re.M))
     assert {"--resolution", "--filter-shown", "--threads"} <= options
     had = set(re.findall(r"(\w+):", trilens.Renderer.render.__doc__.split("\n\n")[0]))
-    for option in sorted(options - set(ELSEWHERE)):
+    for option in sorted(options - set().union(*ELSEWHERE.values())):
         assert option[2:].replace("-", "_") in had, f"{option}: no argument of Renderer.render, nor said elsewhere"
