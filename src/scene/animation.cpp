@@ -22,6 +22,12 @@ bool same_part(const Json& a, const Json& b, const char* key) {
     return a.contains(key) == b.contains(key) && (!a.contains(key) || a.at(key) == b.at(key));
 }
 
+/// Whether a light has an object, now or in the changed scene.
+bool shows_lights(const Scene& scene, const Json& changed) {
+    if (std::any_of(scene.lights.begin(), scene.lights.end(), is_visible)) return true;
+    return changed.contains("lights") && changed.at("lights").size() != scene.lights.size();
+}
+
 /// Reads what stands beside meshes, materials and background again, into a copy of `from`.
 Scene with_cameras(const Scene& from, const Json& json, const TextureReader& textures) {
     const std::string title = scene_title(from);
@@ -32,9 +38,7 @@ Scene with_cameras(const Scene& from, const Json& json, const TextureReader& tex
     for (std::size_t i = 0; i < reading.scene.cameras.size(); ++i)
         reading.scene.cameras[i] = read_camera(root["cameras"][i], i, reading);
     reading.scene.lights.clear();
-    if (root.has("lights"))
-        for (std::size_t i = 0; i < root["lights"].size(); ++i)
-            reading.scene.lights.push_back(read_light(root["lights"][i]));
+    read_lights(root, reading);
     reading.scene.render = read_render(root);
     return std::move(reading.scene);
 }
@@ -76,7 +80,8 @@ Scene load_frame(const Scene& scene, double frame, std::span<const SceneOverride
     apply_overrides(json, changes, title);
     Scene next;
     if (json.at("cameras").size() == scene.cameras.size() && same_part(still, json, "meshes") &&
-        same_part(still, json, "materials") && same_part(still, json, "background")) {
+        same_part(still, json, "materials") && same_part(still, json, "background") &&
+        (same_part(still, json, "lights") || !shows_lights(scene, json))) {
         if (const auto found = find_problem(json, scene_schema_json()))
             throw InputError(title, found->place, found->message);
         next = with_cameras(scene, json, textures);

@@ -9,6 +9,7 @@
 #include "json/json.h"
 #include "json/schema.h"
 #include "scene/animation/animation_keys.h"
+#include "scene/data/light_objects.h"
 #include "scene/read/override.h"
 #include "scene/read/reading.h"
 
@@ -106,9 +107,8 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
     reading.scene.background = read_background(root, reading);
     read_materials(root, reading);
     read_meshes(root, reading);
-    if (root.has("lights"))
-        for (std::size_t i = 0; i < root["lights"].size(); ++i)
-            reading.scene.lights.push_back(read_light(root["lights"][i]));
+    read_lights(root, reading);
+    add_light_objects(reading.scene);
     reading.scene.render = read_render(root);
     warn_of_appearance(root, reading);
     return std::move(reading.scene);

@@ -60,30 +60,32 @@ Frame frame_at(const ShadeScene& scene, const Hit& hit, const Vec3& toward_surfa
     return frame;
 }
 
-/// Irradiance over pi of one light, or the ambient radiance.
-Vec3 light_arriving(const ShadeScene& scene, const Light& light, const Frame& frame) {
-    if (light.type == Light::Type::kAmbient) return light.intensity * light.color;
-    Vec3 toward_light = -light.direction, target = frame.position + 2 * scene.size * toward_light;
-    double irradiance = light.intensity;
-    if (light.type == Light::Type::kPoint) {
-        const Vec3 step = light.position - frame.position;
-        const double distance2 = dot(step, step);
-        if (!(distance2 > 0)) return Vec3(0);
-        toward_light = normalize_or_zero(step);
-        target = light.position;
-        irradiance /= distance2;
+/// Whether anything stands between the surface and a sample of a light. Light that arrives from behind a
+/// flat triangle is in the triangle's own shadow; on a smooth one it may still pass over the surface that the
+/// triangle stands for.
+bool is_shadowed(const ShadeScene& scene, const Frame& frame, const LightSample& sample) {
+    if (!frame.smooth && dot(frame.geometric_normal, sample.toward) <= 0) return true;
+    Segments segment;
+    segment.add(frame.shadow_start, sample.target - frame.shadow_start);
+    return scene.occluded(segment) != 0;
+}
+
+/// Adds the irradiance over pi of one light, or the ambient radiance.
+void add_light(const ShadeScene& scene, std::size_t index, const Frame& frame, Vec3& arriving) {
+    const Light& light = scene.lights[index];
+    const bool shadows = light.shadows && scene.occluded;
+    if (std::holds_alternative<AmbientLight>(light.kind) && !shadows) {
+        arriving += light.intensity * light.color;
+        return;
     }
-    const double cosine = dot(frame.normal, toward_light);
-    if (cosine <= 0) return Vec3(0);
-    if (light.shadows && scene.occluded) {
-        // Light that arrives from behind a flat triangle is in the triangle's own shadow. On a smooth one
-        // it may still pass over the surface that the triangle stands for.
-        if (!frame.smooth && dot(frame.geometric_normal, toward_light) <= 0) return Vec3(0);
-        Segments segment;
-        segment.add(frame.shadow_start, target - frame.shadow_start);
-        if (scene.occluded(segment)) return Vec3(0);
+    const LitPoint at{frame.position, frame.normal, scene.size};
+    for (std::size_t k = 0; k < sample_count(scene, index); ++k) {
+        const LightSample sample = light_sample(scene, index, k, at);
+        const double cosine = dot(frame.normal, sample.toward);
+        if (cosine <= 0 || sample.irradiance == 0) continue;
+        if (shadows && is_shadowed(scene, frame, sample)) continue;
+        arriving += kInversePi * sample.irradiance * cosine * (sample.color * light.color);
     }
-    return kInversePi * irradiance * cosine * light.color;
 }
 
 }  // namespace
@@ -96,7 +98,7 @@ Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
     if (material.unlit) return base;
 
     Vec3 arriving(0);
-    for (const Light& light : scene.lights) arriving += light_arriving(scene, light, frame);
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) add_light(scene, l, frame, arriving);
     return base * arriving;
 }
 

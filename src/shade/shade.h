@@ -13,6 +13,7 @@
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/segments.h"
 #include "base/raymesh/triangle_scene.h"
+#include "shade/lights/light_sample.h"
 #include "shade/texture_filter.h"
 
 namespace trilens {
@@ -31,6 +32,9 @@ struct ShadeScene {
     // where it has none. Set by prepare_textures(); without them nothing is filtered.
     std::vector<std::shared_ptr<const MipMap>> base_color_maps;
     std::shared_ptr<const MipMap> environment_map;
+    // By light: what stands for the background where the light is one of it, else null; set by
+    // prepare_lights(), without which an environment's light must not be asked for.
+    std::vector<std::shared_ptr<const EnvironmentSamples>> environment_samples;
     double size = 1;  // diagonal of the scene's bounding box, the unit of shadow offsets
 
     /// Which of the segments meet anything that casts a shadow; only asked for lights with shadows.
@@ -50,8 +54,22 @@ inline constexpr double kShadowOffset = 1e-5;
 /// Radiance of the background along `direction` (any length, world).
 Vec3 shade_background(const Background& background, const Vec3& direction);
 
+/// The mean of the background's radiance about `direction` (world, any length) over a footprint, whose two
+/// sides are steps of the direction; `map`: of its picture.
+Vec3 background_radiance(const Background& background, const MipMap& map, const Vec3& direction,
+                         const std::array<Vec3, 2>& sides);
+
 /// Sets the mip maps of materials and background; keeps those of pictures that stay.
 void prepare_textures(ShadeScene& scene);
+
+/// Sets the samples of environment lights.
+void prepare_lights(ShadeScene& scene);
+
+/// How many samples a light of the scene has.
+std::size_t sample_count(const ShadeScene& scene, std::size_t light);
+
+/// One of them, as a point sees it. sample < sample_count().
+LightSample light_sample(const ShadeScene& scene, std::size_t light, std::size_t sample, const LitPoint& at);
 
 /// What of a ray's origin and direction (both as the ray has them, not unit) changes along the two sides of
 /// the part of the film that it stands for.
@@ -71,8 +89,10 @@ struct SeenAlong {
 
 /// The light at a point of a surface.
 struct ReachingLight {
-    std::uint64_t lights = 0;  // which lights reach it, as a hash of the set: equal sets have equal ones
-    Vec3 arriving{0};          // irradiance over pi, and the ambient radiance
+    // Which lights reach it, as a hash of the set: equal sets have equal ones. Lights of several samples
+    // reach it with all, or with some, or not.
+    std::uint64_t lights = 0;
+    Vec3 arriving{0};  // irradiance over pi, and the ambient radiance
 };
 
 /// What the rays show: each hit's shade (the same bits as shade_hit's where neither base nor differential is

@@ -147,6 +147,22 @@ void find_light(ShadeBatch& batch, const ShadeLight& light) {
     using namespace shade_lanes;
     HWY_DYNAMIC_DISPATCH(find_light_here)(batch, light);
 }
+void find_sampled_light(ShadeBatch& batch, std::span<const LightSample> samples, bool casts_shadows) {
+    constexpr double kInversePi = 0.31830988618379067154;
+    batch.lit = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const LightSample& sample = samples[i];
+        const double cosine = dot(batch.normal.get(i), sample.toward);
+        batch.irradiance[i] = kInversePi * sample.irradiance * cosine;
+        if (!(cosine > 0) || sample.irradiance == 0) continue;
+        if (casts_shadows) {
+            const bool smooth = (batch.smooth & Segments::bit(i)) != 0;
+            if (!smooth && !(dot(batch.geometric_normal.get(i), sample.toward) > 0)) continue;
+            batch.way.set(i, sample.target - batch.shadow_start.get(i));
+        }
+        batch.lit |= Segments::bit(i);
+    }
+}
 void add_ambient(ShadeBatch& batch, const Vec3& radiance) {
     using namespace shade_lanes;
     HWY_DYNAMIC_DISPATCH(add_ambient_here)(batch, radiance);

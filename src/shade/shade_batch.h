@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "base/raymesh/segments.h"
+#include "shade/lights/light_sample.h"
 
 namespace trilens {
 
@@ -41,7 +43,7 @@ struct ShadeBatch {
     ShadeLanes3 arriving;  // irradiance over pi of all lights so far, and the ambient radiance
 };
 
-/// A light as all lanes see it.
+/// A point light, or a directional one without an angle, as all lanes see it.
 struct ShadeLight {
     bool is_point = false;
     Vec3 position{0};        // of a point light
@@ -56,6 +58,9 @@ void find_surfaces(ShadeBatch& batch, double offset);
 
 /// What would come of the light where nothing is in the way.
 void find_light(ShadeBatch& batch, const ShadeLight& light);
+
+/// The same, of one sample of a light per lane: `samples` has batch.count of them.
+void find_sampled_light(ShadeBatch& batch, std::span<const LightSample> samples, bool casts_shadows);
 
 /// Adds radiance that arrives from everywhere alike.
 void add_ambient(ShadeBatch& batch, const Vec3& radiance);

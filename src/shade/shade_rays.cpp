@@ -1,6 +1,7 @@
 // What many rays show: their hits shaded in batches.
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "base/util/check.h"
 #include "shade/shade.h"
@@ -9,12 +10,19 @@
 namespace trilens {
 namespace {
 
-ShadeLight as_lanes_see_it(const ShadeScene& scene, const Light& light) {
+/// A light that is the same to all lanes; none: its samples are asked for lane by lane.
+std::optional<ShadeLight> as_lanes_see_it(const ShadeScene& scene, const Light& light) {
     ShadeLight seen;
-    seen.is_point = light.type == Light::Type::kPoint;
-    seen.position = light.position;
-    seen.toward = -light.direction;
-    seen.far = 2 * scene.size * seen.toward;
+    const auto* directional = std::get_if<DirectionalLight>(&light.kind);
+    if (const auto* point = std::get_if<PointLight>(&light.kind)) {
+        seen.is_point = true;
+        seen.position = point->position;
+    } else if (directional && !(directional->angle > 0)) {
+        seen.toward = -directional->direction;
+        seen.far = 2 * scene.size * seen.toward;
+    } else {
+        return std::nullopt;
+    }
     seen.intensity = light.intensity;
     seen.casts_shadows = light.shadows && scene.occluded;
     return seen;
@@ -33,9 +41,12 @@ ShadeBatch::Bits unhindered(const ShadeScene& scene, const ShadeBatch& batch, Sh
     return lanes;
 }
 
+/// How much of a light reaches a point.
+enum class Reach : std::size_t { kAll, kPart };
+
 /// Of sets of lights the hash is the sum of these: a number like a random one (splitmix64's finalizer).
-std::uint64_t number_of_light(std::size_t light) {
-    std::uint64_t x = (light + 1) * 0x9e3779b97f4a7c15u;
+std::uint64_t number_of_light(std::size_t light, Reach reach) {
+    std::uint64_t x = (2 * light + static_cast<std::size_t>(reach) + 1) * 0x9e3779b97f4a7c15u;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
     return x ^ (x >> 31);
@@ -55,6 +66,8 @@ struct Shaded {
     void add(const SeenAlong& seen, std::size_t index);
     void pad();
     void arrive();
+    void arrive_from(std::size_t light, ShadeBatch::Bits wanted);
+    Vec3 find_sample(std::size_t light, std::size_t sample);
     void shade(std::span<Vec3> light);
     void find_reaching(std::span<ReachingLight> to);
 
@@ -98,19 +111,45 @@ void Shaded::arrive() {
     if (wanted == 0) return;
     pad();
     find_surfaces(batch, kShadowOffset * scene.size);
-    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
-        const Light& light = scene.lights[l];
-        if (light.type == Light::Type::kAmbient) {
-            add_ambient(batch, light.intensity * light.color);
-            continue;
-        }
-        const ShadeLight as_seen = as_lanes_see_it(scene, light);
-        find_light(batch, as_seen);
-        ShadeBatch::Bits lit = batch.lit & wanted;
-        if (as_seen.casts_shadows) lit = unhindered(scene, batch, lit);
-        add_light(batch, light.color, lit);
-        for_each_of(lit, [&](std::size_t i) { lights[i] += number_of_light(l); });
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) arrive_from(l, wanted);
+}
+
+/// What one light sends to the lanes that are wanted.
+void Shaded::arrive_from(std::size_t l, ShadeBatch::Bits wanted) {
+    const Light& light = scene.lights[l];
+    const bool shadows = light.shadows && scene.occluded;
+    if (std::holds_alternative<AmbientLight>(light.kind) && !shadows) {
+        add_ambient(batch, light.intensity * light.color);
+        return;
     }
+    const std::optional<ShadeLight> as_seen = as_lanes_see_it(scene, light);
+    const std::size_t samples = sample_count(scene, l);
+    ShadeBatch::Bits by_any = 0, by_all = wanted;
+    for (std::size_t k = 0; k < samples; ++k) {
+        Vec3 color = light.color;
+        if (as_seen)
+            find_light(batch, *as_seen);
+        else
+            color = find_sample(l, k) * light.color;
+        ShadeBatch::Bits lit = batch.lit & wanted;
+        if (shadows) lit = unhindered(scene, batch, lit);
+        add_light(batch, color, lit);
+        by_any |= lit;
+        by_all &= lit;
+    }
+    for_each_of(by_any, [&](std::size_t i) {
+        lights[i] += number_of_light(l, by_all & Segments::bit(i) ? Reach::kAll : Reach::kPart);
+    });
+}
+
+/// One sample of a light as each lane sees it; gives its colour beside the light's.
+Vec3 Shaded::find_sample(std::size_t light, std::size_t sample) {
+    std::array<LightSample, kShadeLanes> at;
+    for (std::size_t i = 0; i < batch.count; ++i)
+        at[i] = light_sample(scene, light, sample, {batch.position.get(i), batch.normal.get(i), scene.size});
+    find_sampled_light(batch, std::span(at).first(batch.count),
+                       scene.lights[light].shadows && scene.occluded);
+    return at[0].color;
 }
 
 /// Puts the batch into the light that was asked for.

@@ -86,15 +86,18 @@ Vec3 shade_background(const Background& background, const Vec3& direction) {
     return lookup_latitude_longitude(*background.environment, turned(background, direction));
 }
 
+Vec3 background_radiance(const Background& background, const MipMap& map, const Vec3& direction,
+                         const std::array<Vec3, 2>& sides) {
+    return lookup_latitude_longitude(map, turned(background, direction),
+                                     {turned(background, sides[0]), turned(background, sides[1])});
+}
+
 Vec3 base_colour(const ShadeScene& scene, const SeenAlong& seen) {
     if (!seen.hit->seen()) {
         if (!seen.differential || !scene.environment_map)
             return shade_background(scene.background, seen.ray->direction);
-        std::array<Vec3, 2> sides;
-        for (std::size_t k = 0; k < 2; ++k)
-            sides[k] = turned(scene.background, seen.differential->direction[k]);
-        return lookup_latitude_longitude(*scene.environment_map,
-                                         turned(scene.background, seen.ray->direction), sides);
+        return background_radiance(scene.background, *scene.environment_map, seen.ray->direction,
+                                   seen.differential->direction);
     }
     const Id index = scene.material[seen.hit->triangle];
     if (!seen.differential || index >= scene.base_color_maps.size() || !scene.base_color_maps[index])

@@ -42,9 +42,9 @@ TEST_CASE("a scene file becomes plain data", "[scene]") {
     CHECK(wall.object.uvs[1][1] == Vec2(1, 1));
 
     REQUIRE(scene.lights.size() == 3);
-    CHECK(length(scene.lights[0].direction) == Approx(1));
+    CHECK(length(std::get<DirectionalLight>(scene.lights[0].kind).direction) == Approx(1));
     CHECK(scene.lights[0].shadows);
-    CHECK(scene.lights[1].position == Vec3(2, 3, 2));
+    CHECK(std::get<PointLight>(scene.lights[1].kind).position == Vec3(2, 3, 2));
     CHECK(scene.render.reflect);
 }
 

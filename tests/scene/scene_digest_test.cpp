@@ -32,7 +32,9 @@ Scene full_scene() {
     mesh.primitive = Primitive{};
     mesh.cage = {{{1, 2, 3}}, {3}, {0, 0, 0}, {}, {}, {0}, {2}, {1.5}, {0}, {2.5}, {0}};
     scene.meshes = {mesh, mesh};
-    scene.lights = {Light{}};
+    Light sun;
+    sun.kind = DirectionalLight{};
+    scene.lights = {sun};
     return scene;
 }
 
@@ -60,13 +62,31 @@ std::vector<Change> changes_of_looks() {
             [](Scene& s) { s.materials[0].dispersion = 1; },
             [](Scene& s) { s.materials[0].attenuation_color.x = 0; },
             [](Scene& s) { s.materials[0].attenuation_distance = 1; },
-            [](Scene& s) { s.lights[0].type = Light::Type::kPoint; },
+            [](Scene& s) { s.lights[0].kind = PointLight{}; },
+            [](Scene& s) {
+                s.lights[0].kind = PointLight{{0, 1, 0}};
+            },
+            [](Scene& s) { s.lights[0].kind = SpotLight{}; },
+            [](Scene& s) { s.lights[0].kind = SpotLight{.outer_cone_angle = 30}; },
+            [](Scene& s) { s.lights[0].kind = RectangleLight{}; },
+            [](Scene& s) {
+                s.lights[0].kind = RectangleLight{.size = {1, 2}};
+            },
+            [](Scene& s) { s.lights[0].kind = DiskLight{}; },
+            [](Scene& s) { s.lights[0].kind = DiskLight{.samples = 4}; },
+            [](Scene& s) { s.lights[0].kind = SphereLight{}; },
+            [](Scene& s) { s.lights[0].kind = SphereLight{.visible = false}; },
+            [](Scene& s) { s.lights[0].kind = AmbientLight{}; },
+            [](Scene& s) { s.lights[0].kind = AmbientLight{.distance = 1}; },
+            [](Scene& s) { s.lights[0].kind = EnvironmentLight{}; },
+            [](Scene& s) { s.lights[0].kind = EnvironmentLight{.samples = 1}; },
+            [](Scene& s) { s.lights[0].name = "a"; },
             [](Scene& s) { s.lights[0].color.x = 0; },
             [](Scene& s) { s.lights[0].intensity = 2; },
             [](Scene& s) {
-                s.lights[0].direction = {1, 0, 0};
+                s.lights[0].kind = DirectionalLight{.direction = {1, 0, 0}};
             },
-            [](Scene& s) { s.lights[0].position.y = 1; },
+            [](Scene& s) { s.lights[0].kind = DirectionalLight{.angle = 1}; },
             [](Scene& s) { s.lights[0].shadows = true; },
             [](Scene& s) { s.lights.clear(); },
             [](Scene& s) { s.render.max_depth = 1; },

@@ -32,14 +32,34 @@ TriangleScene any_triangles(Random& random, double size) {
     return scene;
 }
 
+LightKind any_kind(Random& random, double size) {
+    const Vec3 position = random.in_box(2 * size), direction = random.unit();
+    const int samples = 1 + static_cast<int>(random.below(9));
+    switch (random.below(8)) {
+        case 0:
+            return PointLight{position};
+        case 1:
+            return DirectionalLight{direction, random.below(2) ? random.uniform(0, 90) : 0, samples};
+        case 2:
+            return SpotLight{position, direction, random.uniform(0, 30), random.uniform(31, 90)};
+        case 3:
+            return RectangleLight{position, direction, Vec2(size, 2 * size), random.unit(), samples};
+        case 4:
+            return DiskLight{position, direction, random.uniform(0, size), samples};
+        case 5:
+            return SphereLight{position, random.uniform(0, size), samples};
+        case 6:
+            return EnvironmentLight{samples};
+        default:
+            return AmbientLight{random.uniform(0, size), samples};
+    }
+}
+
 Light any_light(Random& random, double size) {
-    constexpr std::array kTypes{Light::Type::kPoint, Light::Type::kDirectional, Light::Type::kAmbient};
     Light light;
-    light.type = kTypes[random.below(3)];
     light.color = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
     light.intensity = random.uniform(0, 10);
-    light.direction = random.unit();
-    light.position = random.in_box(2 * size);
+    light.kind = any_kind(random, size);
     light.shadows = random.below(3) > 0;
     return light;
 }
@@ -67,7 +87,8 @@ ShadeScene any_scene(Random& random, const TriangleScene& triangles, double size
     for (auto& corners : shading.normals)
         for (Vec3& normal : corners) normal = random.below(9) ? random.unit() : Vec3(0);
     for (std::size_t l = random.below(5); l > 0; --l) shading.lights.push_back(any_light(random, size));
-    shading.background.color = random.in_box(1);
+    shading.background.color = random.in_box(1) + Vec3(1);
+    prepare_lights(shading);
     if (random.below(4) > 0)
         shading.occluded = [](const Segments& segments) {
             Segments::Bits hidden = 0;

@@ -41,9 +41,8 @@ TEST_CASE("a diffuse surface follows Lambert's cosine law from both sides", "[sh
     const TriangleScene triangles = one_triangle();
     for (double angle = 0; angle < 1.5; angle += 0.1) {
         Light light;
-        light.type = Light::Type::kDirectional;
         light.intensity = 3;
-        light.direction = Vec3(std::sin(angle), 0, -std::cos(angle));
+        light.kind = DirectionalLight{.direction = Vec3(std::sin(angle), 0, -std::cos(angle))};
         const ShadeScene shading = lit_by(triangles, light);
         const Vec3 front = shade_hit(shading, middle(), {Vec3(0, 0, 1), Vec3(0, 0, -1)});
         CHECK(front.x == Approx(0.5 * 3 * std::cos(angle) / 3.14159265358979).epsilon(1e-12));
@@ -55,11 +54,10 @@ TEST_CASE("a diffuse surface follows Lambert's cosine law from both sides", "[sh
 TEST_CASE("a point light falls off with the square of the distance", "[shade]") {
     const TriangleScene triangles = one_triangle();
     Light light;
-    light.type = Light::Type::kPoint;
     light.intensity = 10;
-    light.position = Vec3(0, 0, 2);
+    light.kind = PointLight{Vec3(0, 0, 2)};
     const double near = shade_hit(lit_by(triangles, light), middle(), {Vec3(0, 0, 1), Vec3(0, 0, -1)}).x;
-    light.position = Vec3(0, 0, 4);
+    light.kind = PointLight{Vec3(0, 0, 4)};
     const double far = shade_hit(lit_by(triangles, light), middle(), {Vec3(0, 0, 1), Vec3(0, 0, -1)}).x;
     CHECK(near == Approx(4 * far).epsilon(1e-12));
     CHECK(near > 0);
@@ -68,8 +66,7 @@ TEST_CASE("a point light falls off with the square of the distance", "[shade]") 
 TEST_CASE("a shadow removes exactly the light that it hides", "[shade]") {
     const TriangleScene triangles = one_triangle();
     Light light;
-    light.type = Light::Type::kDirectional;
-    light.direction = Vec3(0, 0, -1);
+    light.kind = DirectionalLight{.direction = Vec3(0, 0, -1)};
     light.shadows = true;
     ShadeScene shading = lit_by(triangles, light);
     Light ambient;

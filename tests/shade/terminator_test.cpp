@@ -110,8 +110,7 @@ std::array<Vec3, 2> outward_normals(const Body& body, const Hit& hit) {
 
 Light sun(const Vec3& toward) {
     Light light;
-    light.type = Light::Type::kDirectional;
-    light.direction = -toward;
+    light.kind = DirectionalLight{.direction = -toward};
     light.shadows = true;
     return light;
 }

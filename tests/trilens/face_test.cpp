@@ -248,8 +248,7 @@ TEST_CASE("mirrors cast their exact shadow, whatever their resolution", "[trilen
     scene.materials[1].unlit = false;
     scene.materials[1].base_color_factor = {1, 1, 1};
     Light sun;
-    sun.type = Light::Type::kDirectional;
-    sun.direction = {0, -1, 0};
+    sun.kind = DirectionalLight{.direction = {0, -1, 0}};
     sun.shadows = true;
     scene.lights = {sun};
     const Renderer renderer(std::move(scene));

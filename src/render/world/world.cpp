@@ -144,6 +144,7 @@ void set_up_shading(World& world) {
     world.shading.lights = world.scene.lights;
     world.shading.background = world.scene.background;
     prepare_textures(world.shading);
+    prepare_lights(world.shading);
     world.shading.occluded = {};
     if (has_shadows(world))
         world.shading.occluded = [self = &world](const Segments& segments) {

@@ -87,9 +87,32 @@ void SceneCheck::materials() const {
 void SceneCheck::lights() const {
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light& light = scene_.lights[i];
-        require(is_finite(light.color) && is_finite(light.intensity) && is_finite(light.direction) &&
-                    is_finite(light.position),
-                "/lights/" + std::to_string(i), "is not finite");
+        const std::string place = "/lights/" + std::to_string(i);
+        require(is_finite(light.color) && is_finite(light.intensity), place, "is not finite");
+        std::visit(
+            [&](const auto& kind) {
+                if constexpr (requires { kind.position; })
+                    require(is_finite(kind.position), place, "is not finite");
+                if constexpr (requires { kind.direction; })
+                    require(std::fabs(length(kind.direction) - 1) < 1e-6, place,
+                            "has a direction that is not unit");
+                if constexpr (requires { kind.radius; })
+                    require(is_finite(kind.radius) && kind.radius > 0, place + "/radius", "is not positive");
+                if constexpr (requires { kind.size; })
+                    require(std::isfinite(kind.size.x) && std::isfinite(kind.size.y) && kind.size.x > 0 &&
+                                kind.size.y > 0,
+                            place + "/size", "is not positive");
+                if constexpr (requires { kind.samples; })
+                    require(kind.samples >= 1 && kind.samples <= kMostLightSamples, place + "/samples",
+                            "is not in 1.." + std::to_string(kMostLightSamples));
+                if constexpr (requires { kind.angle; })
+                    require(kind.angle >= 0 && kind.angle < 180, place + "/angle", "is not in 0..180");
+                if constexpr (requires { kind.outer_cone_angle; })
+                    require(kind.inner_cone_angle >= 0 && kind.inner_cone_angle < kind.outer_cone_angle &&
+                                kind.outer_cone_angle <= 90,
+                            place, "has no inner cone within an outer one of at most 90 degrees");
+            },
+            light.kind);
     }
 }
 

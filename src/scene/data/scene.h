@@ -24,6 +24,7 @@ inline constexpr double kLargestCoordinate = 1e30;
 inline constexpr int kMaxSpp = 64;
 inline constexpr int kMaxResolution = 1024;
 inline constexpr int kMostDepth = 64;          // optic hits after the first
+inline constexpr int kMostLightSamples = 4096;
 inline constexpr double kMostMaxError = 1000;  // pixels
 
 /// How samples make a pixel's colour: see make_pixel_filter.

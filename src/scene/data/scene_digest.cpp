@@ -46,8 +46,8 @@ void add(const Background& background, Digest& digest) {
 }
 
 void add(const Material& material, Digest& digest) {
-    const auto& [name, color, texture, sampler, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
-                 distance] = material;
+    const auto& [name, color, texture, sampler, unlit, metallic, roughness, transmission, ior, dispersion,
+                 attenuation, distance] = material;
     digest.add_all(name, color, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
                    distance);
     add(texture, digest);
@@ -55,9 +55,50 @@ void add(const Material& material, Digest& digest) {
     digest.add_all(wrap_s, wrap_t, at_zero, along_u, along_v);
 }
 
+void add(const DirectionalLight& light, Digest& digest) {
+    const auto& [direction, angle, samples] = light;
+    digest.add_all(direction, angle, samples);
+}
+
+void add(const PointLight& light, Digest& digest) {
+    const auto& [position] = light;
+    digest.add(position);
+}
+
+void add(const SpotLight& light, Digest& digest) {
+    const auto& [position, direction, inner, outer] = light;
+    digest.add_all(position, direction, inner, outer);
+}
+
+void add(const RectangleLight& light, Digest& digest) {
+    const auto& [position, direction, size, up, samples, visible] = light;
+    digest.add_all(position, direction, size, up, samples, visible);
+}
+
+void add(const DiskLight& light, Digest& digest) {
+    const auto& [position, direction, radius, samples, visible] = light;
+    digest.add_all(position, direction, radius, samples, visible);
+}
+
+void add(const SphereLight& light, Digest& digest) {
+    const auto& [position, radius, samples, visible] = light;
+    digest.add_all(position, radius, samples, visible);
+}
+
+void add(const AmbientLight& light, Digest& digest) {
+    const auto& [distance, samples] = light;
+    digest.add_all(distance, samples);
+}
+
+void add(const EnvironmentLight& light, Digest& digest) {
+    const auto& [samples] = light;
+    digest.add(samples);
+}
+
 void add(const Light& light, Digest& digest) {
-    const auto& [type, color, intensity, direction, position, shadows] = light;
-    digest.add_all(type, color, intensity, direction, position, shadows);
+    const auto& [name, color, intensity, shadows, kind] = light;
+    digest.add_all(name, color, intensity, shadows, kind.index());
+    std::visit([&](const auto& one) { add(one, digest); }, kind);
 }
 
 void add(const Primitive& primitive, Digest& digest) {

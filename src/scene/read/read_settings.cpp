@@ -1,4 +1,4 @@
-// Film, background, lights, materials and render settings out of checked JSON.
+// Film, background, materials and render settings out of checked JSON.
 #include <algorithm>
 #include <cmath>
 #include <system_error>
@@ -98,40 +98,6 @@ Background read_background(const Node& scene, Reading& reading) {
     read_fields(node, background_fields(), background);
     if (node.has("file")) background.environment = read_picture(reading, node["file"]);
     return background;
-}
-
-const std::vector<Field<Light>>& light_fields() {
-    static const std::vector<Field<Light>> fields = [] {
-        Field<Light> direction =
-            part<Light>("direction", ref("vec3"), "directional: the way the light travels.");
-        return std::vector<Field<Light>>{
-            part<Light>("name", ref("name")),
-            choice("type", &Light::type).without_default(),
-            setting("color", &Light::color, ref("color")),
-            setting("intensity", &Light::intensity, ref("notNegative"),
-                    "directional: lux; point: candela; ambient: radiance."),
-            std::move(direction).of({"directional!"}),
-            setting("position", &Light::position, ref("vec3")).of({"point!"}).without_default(),
-            setting(
-                "shadows", &Light::shadows, yes_or_no(),
-                "Whether objects and mirrors cast shadows in this light: objects by their triangles, mirrors "
-                "by their exact surface, at any resolution. Glass casts none: it lets the light through, "
-                "unbent and undimmed.")
-                .of({"directional", "point"})};
-    }();
-    return fields;
-}
-
-Json light_schema() {
-    return object_schema({.title = "a light", .required = {"type"}, .kind_title = "a # light"},
-                         light_fields());
-}
-
-Light read_light(const Node& node) {
-    Light light;
-    read_fields(node, light_fields(), light);
-    if (node.has("direction")) light.direction = read_direction(node["direction"]);
-    return light;
 }
 
 const std::vector<Field<RenderSettings>>& render_fields() {

@@ -63,7 +63,8 @@ Vec3 read_direction(const Node& direction);
 CameraDescription read_camera(const Node& camera, std::size_t index, Reading& reading);
 Film read_film(const Node& scene);
 Background read_background(const Node& scene, Reading& reading);
-Light read_light(const Node& light);
+/// Adds the lights, in order.
+void read_lights(const Node& scene, Reading& reading);
 RenderSettings read_render(const Node& scene);
 Material read_material(const Node& material, Reading& reading);
 /// Sets the material's base colour texture and how it lies.
