@@ -139,7 +139,12 @@ Json resolved_json(const Scene& scene) {
     if (const auto found = find_problem(json, scene_schema_json()))
         throw InputError(title, found->place, found->message);
     const auto count = [&](const char* key) { return json.contains(key) ? json.at(key).size() : 0; };
-    if (count("meshes") != scene.meshes.size() || count("cameras") != scene.cameras.size())
+    // Objects of lights stand after the file's own; lights of a caller's may have none.
+    const std::size_t shown =
+        static_cast<std::size_t>(std::count_if(scene.lights.begin(), scene.lights.end(), is_visible));
+    const bool meshes_fit =
+        scene.meshes.size() == count("meshes") || scene.meshes.size() == count("meshes") + shown;
+    if (!meshes_fit || count("cameras") != scene.cameras.size())
         throw InputError(title, "", "its JSON has other meshes or cameras than the scene itself");
     return json;
 }
