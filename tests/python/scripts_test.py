@@ -38,3 +38,13 @@ def test_each_package_is_named_once_for_a_purpose():
 def test_a_purpose_that_there_is_not_is_refused():
     run = subprocess.run([SOURCE / "scripts/install-deps", "nothing"], capture_output=True, text=True)
     assert run.returncode == 2 and "nothing" in run.stderr
+
+
+@pytest.mark.parametrize("script, folder", [("make-path-scenes", "paths"), ("make-camera-scenes", "cameras")])
+def test_scenes_that_a_script_makes_are_as_it_makes_them(script, folder, tmp_path):
+    """A change by hand would be lost when the script runs again."""
+    subprocess.run([SOURCE / "scripts" / script, tmp_path], check=True, capture_output=True)
+    made = sorted((tmp_path / folder).iterdir())
+    assert len(made) > 4
+    for file in made:
+        assert file.read_text() == (SOURCE / "scenes" / folder / file.name).read_text(), file.name

@@ -68,13 +68,6 @@ TEST_CASE("many points in one search have each the list that it has alone", "[sp
     CHECK(mirror.different == 0);
     CHECK(mirror.images > 3000);
 
-    // Points side by side have most of the work in common.
-    std::vector<Vec3> close;
-    for (int p = 0; p < 1000; ++p) close.push_back(Vec3(1.5, 1.2, 2) + draw.in_cube(0.1));
-    const BatchTally side_by_side = compare(searcher, query, close);
-    CHECK(side_by_side.different == 0);
-    CHECK(side_by_side.cells <= side_by_side.cells_alone / 2);  // of spheres none
-
     query.event = SpecularEvent::kRefract;
     query.point_index = 1.5;
     const BatchTally glass = compare(searcher, query, points, true);
@@ -118,6 +111,21 @@ TEST_CASE("points on caustics, on the surface and on one another have the lists 
     std::vector<Vec3> around;
     for (int k = 0; k < 200; ++k) around.push_back(Vec3(0, 0, 1.5) + draw.in_cube(0.7));
     CHECK(compare(in_bowl, query, around).different == 0);
+}
+
+TEST_CASE("points side by side have most of the work in common", "[specular]") {
+    Draw draw(84);
+    const Patch bowl(Vec3(0), 1, 0.5);
+    const SpecularSearcher searcher(bowl);
+    SpecularQuery query;
+    query.camera = camera_at({0.4, 0.3, 1.5}, {0, 0.1, 0});
+    std::vector<Vec3> close;
+    for (int p = 0; p < 300; ++p) close.push_back(Vec3(0.3, -0.2, 1.7) + draw.in_cube(0.05));
+    const BatchTally together = compare(searcher, query, close);
+    CHECK(together.different == 0);
+    CHECK(together.images > 0);
+    CHECK(together.cells_alone > 0);  // a sphere has no cells at all
+    CHECK(together.cells < together.cells_alone / 2);
 }
 
 TEST_CASE("points that a sphere lights, shades or hides have the lists that they have alone",

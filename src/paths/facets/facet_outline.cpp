@@ -135,6 +135,7 @@ OpticPaths::OpticPaths(ProbeContext context, const FirstPaths& first)
         node.ends.assign(facets, 1);
         node.principal.assign(facets, 1);
         node.touches.assign(facets, 0);
+        node.rests.assign(facets, 0);
         node.next.assign(mesh.rays.size(), kUnbounded);
         node.weight.assign(mesh.rays.size(), Vec3(1));
         return node;

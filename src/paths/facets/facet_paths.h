@@ -51,6 +51,7 @@ struct PathNode {
     std::vector<char> ends;  // per facet: no other optic follows
     std::vector<char> principal;  // per facet: see PathSegment
     std::vector<char> touches;    // per facet: an object lies on the next optic, at its middle
+    std::vector<char> rests;      // per facet: see rests_on_object
     std::vector<double> next;     // per corner: t of the next optic; infinity: none
     std::vector<Vec3> weight;     // per corner: see PathSegment::weight
     // Per corner: by how much its screen position is longer than the camera's, see node_corner.h; empty: all

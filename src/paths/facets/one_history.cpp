@@ -323,6 +323,11 @@ bool Prover::prove() {
 
 }  // namespace
 
+bool rests_on_object(const FacetPart& part, std::size_t h) {
+    const Stretch stretch = stretch_of(part, h);
+    return stretch.centre && rests(stretch);
+}
+
 bool has_one_history(const HistoryProof& proof) {
     return Prover(proof).prove();
 }

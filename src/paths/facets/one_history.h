@@ -29,4 +29,8 @@ struct HistoryProof {
 /// between the samples as Beam allows. Paths too faint to be matched are not asked either.
 bool has_one_history(const HistoryProof& proof);
 
+/// Whether all rays of a part that were probed come, after its history h, to where an optic lies on an
+/// object: that is what they see, whatever follows. False where its centre was not probed.
+bool rests_on_object(const FacetPart& part, std::size_t h);
+
 }  // namespace trilens

@@ -7,6 +7,7 @@
 #include "paths/facets/divide_facet.h"
 #include "paths/facets/facet_paths.h"
 #include "paths/facets/node_corner.h"
+#include "paths/facets/one_history.h"
 
 namespace trilens {
 namespace {
@@ -146,6 +147,7 @@ void OpticPaths::append_part(Id leaf, FacetPart& part) {
         node.ends.push_back(history.ends);
         node.principal.push_back(history.principal);
         node.touches.push_back(touches_object(part, h));
+        node.rests.push_back(rests_on_object(part, h));
     }
 }
 

@@ -1,6 +1,7 @@
 #include "render/engines/history_drawer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/util/parallel.h"
@@ -46,6 +47,16 @@ bool lies_where_rays_start(const PathNode& node, Id leaf, const Vec3& place) {
            std::fabs(dot(place - a, normal)) <= kOnPlane * std::max(length(along_b), length(along_c));
 }
 
+/// How far a facet reaches where its rays come to the next optic: the longest of its sides there.
+double size_at_next(const PathNode& node, Id facet) {
+    std::array<Vec3, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Id corner = node.mesh.facets[facet][k];
+        at[k] = node.mesh.rays[corner].origin + node.next[corner] * node.mesh.rays[corner].direction;
+    }
+    return std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
+}
+
 /// Where the ends of each facet's samples begin in a list that has `before` already.
 std::vector<std::size_t> first_ends(const FacetSamples& owned, const std::vector<char>& is_end,
                                     std::size_t before) {
@@ -69,6 +80,9 @@ bool HistoryDrawer::ends_before_next(Id index, Id facet, const Hit& hit, const V
     if (!node.touches[facet]) return false;
     if (hit.t <= next * (1 + kNearTouch)) return true;
     const Ray ray = interpolated_ray(node.mesh, facet, share);
+    // In a corner of objects on which the optic lies they are farther than the plane through three rays'
+    // ends.
+    if (node.rests[facet] && (hit.t - next) * length(ray.direction) <= size_at_next(node, facet)) return true;
     const Vec3 place = ray.origin + hit.t * ray.direction;
     return std::any_of(paths_.nodes().begin(), paths_.nodes().end(), [&](const PathNode& other) {
         return other.parent == index && lies_where_rays_start(other, node.leaves[facet], place);
