@@ -1,5 +1,5 @@
 # What cmake --install puts where: headers, libraries, command, CMake package, pkg-config. Components: library (what
-# programs load), development, program; python is in python/.
+# programs load), development, program, viewer; python is in python/.
 include(CMakePackageConfigHelpers)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/trilens)
@@ -12,6 +12,10 @@ if(NOT TRILENS_CORE_ONLY)
   set_target_properties(trilens PROPERTIES INSTALL_RPATH "$ORIGIN")
   install(TARGETS trilens_pictures_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
   install(TARGETS trilens_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  if(TARGET trilens_viewer)
+    set_target_properties(trilens_viewer PROPERTIES INSTALL_RPATH "$ORIGIN/${to_libraries}")
+    install(TARGETS trilens_viewer RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT viewer)
+  endif()
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/TrilensRenderTests.cmake DESTINATION ${package_folder} COMPONENT development)
 endif()
 install(TARGETS ${targets} EXPORT trilens_targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}

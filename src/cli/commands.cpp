@@ -22,7 +22,7 @@ Command make_commands() {
     for (Command& command : std::vector<Command>{
              compare_command(), sweep_command(), report_command(), test_command(), project_command(),
              shoot_command(), fit_command(), design_command(), unwrap_command(), map_command(),
-             anamorph_command(), scene_command(), info_command()})
+             anamorph_command(), view_command(), scene_command(), info_command()})
         root.commands.push_back(std::move(command));
     add_examples(root, root.name);
     return root;
@@ -117,6 +117,10 @@ std::vector<Example> examples_of(const std::string& called) {
          {{"trilens design --example > wish.json", "a wish to start from: a driver's mirror"},
           {"trilens design wish.json -o mirror.json --compare sphere --stl mirror.stl",
            "the mirror as a scene and for a mill, beside the best sphere"}}},
+        {"trilens view",
+         {{"trilens view scene.json", "a window: drag to orbit, ctrl-click for the path of a pixel"},
+          {"trilens view scene.json --script steps.json --screenshot view.png",
+           "the same without a window"}}},
         {"trilens scene validate", {{"trilens scene validate scene.json", "before long work"}}},
         {"trilens scene info", {{"trilens scene info scene.json", "cameras, optics, triangles, bounds"}}},
         {"trilens scene schema",

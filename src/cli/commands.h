@@ -24,6 +24,7 @@ Command design_command();
 Command test_command();
 Command scene_command();
 Command info_command();
+Command view_command();  // starts the viewer, a program of its own
 
 /// The whole program, each command with its examples.
 Command make_commands();

@@ -50,6 +50,7 @@ struct ConsoleOptions {
     ColourStyle colour = ColourStyle::kAuto;
     bool wants_json = false;          // the answer's fields will be read
     bool is_stdout_answered = false;  // by the JSON object: nothing else may go there
+    std::vector<std::string> words;   // the command line behind the program's name
 };
 
 /// One writer for everything on stderr, so that a bar and a message never mix. Keeps the warnings for the
@@ -75,6 +76,7 @@ class Console {
     bool wants_json() const { return options_.wants_json; }
     bool is_stdout_answered() const { return options_.is_stdout_answered; }
     bool is_quiet() const { return options_.quiet; }
+    const std::vector<std::string>& words() const { return options_.words; }
     FileRoles& files() { return files_; }
     const FileRoles& files() const { return files_; }
 

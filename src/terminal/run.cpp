@@ -241,7 +241,9 @@ int run_program(Command root, int argc, const char* const* argv) {
         Console console(console_options(run.common));
         return fail(run, console, error);
     }
-    Console console(console_options(run.common));
+    ConsoleOptions options = console_options(run.common);
+    options.words = run.words;
+    Console console(options);
     if (!run.common.help && !run.common.version) return run_command(run, console);
     try {
         print(run.common.help ? help_text(run.located) : "trilens " + version());

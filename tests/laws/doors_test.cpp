@@ -118,6 +118,8 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"CLI/", {"src/terminal/parse.cpp"}},
     {"fmt/", {"src/base/util/format.h", "src/terminal/libraries.h"}},
     {"Imath/", {"src/image/"}},
+    {"imgui", {"src/view/window/"}},
+    {"GLFW/", {"src/view/window/gl_screen.cpp"}},
 };
 
 bool allowed(const std::set<std::string>& doors, const std::string& file) {

@@ -1,0 +1,72 @@
+// trilens view: starts the viewer, which is a program and a package of its own.
+#include <trilens/error.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "cli/commands.h"
+#include "cli/view_options.h"
+
+namespace trilens {
+namespace {
+
+constexpr const char* kViewerProgram = "trilens-view";
+
+/// Becomes the viewer, with the same words; beside this program, or where PATH has it. Throws
+/// ComputationError.
+Answer start_viewer(const ViewOptions&, Console& console) {
+    std::vector<std::string> words{kViewerProgram};
+    words.insert(words.end(), console.words().begin(), console.words().end());
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    std::error_code none;
+    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", none);
+    if (!none) execv((self.parent_path() / kViewerProgram).c_str(), arguments.data());
+    execvp(kViewerProgram, arguments.data());
+    if (errno == ENOENT)
+        throw ComputationError(
+            "the viewer is not installed; it is a Debian package of its own, trilens-viewer, and is built "
+            "where "
+            "libglfw3-dev and libimgui-dev are");
+    throw ComputationError(std::string("the viewer trilens-view cannot be started: ") + std::strerror(errno));
+}
+
+}  // namespace
+
+Command view_command(std::function<Answer(const ViewOptions&, Console&)> view) {
+    auto options = std::make_shared<ViewOptions>();
+    Command command{.name = "view",
+                    .summary = "see the scene in a window: move, compare, point at pixels",
+                    .schema = "view"};
+    command.options =
+        joined({scene_argument(options->scene),
+                scene_overrides(options->scene),
+                {{.names = "--script",
+                  .target = &options->script,
+                  .help = "steps (JSON) instead of a user's hands, without a window; - for standard "
+                          "input",
+                  .value = "STEPS.json",
+                  .offer = Offer::kFile},
+                 {.names = "--screenshot",
+                  .target = &options->screenshot,
+                  .help = "the whole window at the end, once all is drawn, without a window",
+                  .value = "FILE.png",
+                  .offer = Offer::kImage},
+                 {.names = "--window", .target = &options->window, .help = "runs the script in a window"},
+                 {.names = "--window-size",
+                  .target = &options->window_size,
+                  .help = "in pixels; else 1280x800",
+                  .value = "WxH"}}});
+    command.body = [options, view = std::move(view)](Console& console) { return view(*options, console); };
+    return command;
+}
+
+Command view_command() {
+    return view_command(start_viewer);
+}
+
+}  // namespace trilens

@@ -1,0 +1,158 @@
+#include "view/viewer.h"
+
+#include <trilens/animation.h>
+#include <trilens/error.h>
+#include <trilens/files.h>
+
+#include <cmath>
+
+namespace trilens {
+
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr double kTurnSeconds = 12;  // of a turntable's whole turn
+
+double seconds_between(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double>(to - from).count();
+}
+
+bool ends_in(const std::string& file, const std::string& ending) {
+    return file.size() >= ending.size() &&
+           file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+std::string camera_pointer(const ViewSettings& settings) {
+    return "/cameras/" + std::to_string(settings.frame.camera);
+}
+
+}  // namespace
+
+Viewer::Viewer(const SceneRequest& source) : source_(source), session_(open_session(source)) {
+    reach_ = session_.reach;
+    drawing_.ask(session_);
+}
+
+template <typename Work>
+bool Viewer::attempt(const Work& work) {
+    try {
+        work();
+        message_.clear();
+        failed_ = false;
+    } catch (const Error& error) {
+        message_ = error.what();
+        failed_ = true;
+    }
+    return !failed_;
+}
+
+void Viewer::change(const std::string& gesture, const ViewSettings& settings) {
+    begin_change(session_, gesture);
+    session_.now.settings = settings;
+    message_.clear();
+    failed_ = false;
+    drawing_.ask(session_);
+}
+
+void Viewer::move(const CameraMove& move) {
+    attempt([&] {
+        const std::string pointer = camera_pointer(settings());
+        const Json* camera = find_value(scene(), pointer);
+        if (!camera) throw UsageError("the scene has no " + pointer);
+        Json moved = *camera;
+        move_camera(moved, move, reach_);
+        set_value(session_, pointer, moved);
+        drawing_.ask(session_);
+    });
+}
+
+void Viewer::set(const std::string& pointer, const Json& value) {
+    attempt([&] {
+        set_value(session_, pointer, value);
+        drawing_.ask(session_);
+    });
+}
+
+void Viewer::undo_step() {
+    if (undo(session_)) drawing_.ask(session_);
+}
+
+void Viewer::redo_step() {
+    if (redo(session_)) drawing_.ask(session_);
+}
+
+void Viewer::reload_files() {
+    attempt([&] {
+        reload(session_, source_);
+        reach_ = session_.reach;
+        drawing_.ask(session_);
+    });
+}
+
+void Viewer::look_for_changes() {
+    const auto now = Clock::now();
+    if (seconds_between(looked_, now) < 0.5) return;
+    looked_ = now;
+    if (files_changed(session_)) reload_files();
+}
+
+void Viewer::play(bool runs, bool turns) {
+    playing_ = {runs, turns, Clock::now()};
+    end_gesture(session_);
+}
+
+void Viewer::advance() {
+    const auto drawn = drawing_.latest();
+    // A state that is not shown yet must be, or nothing would move.
+    if (!playing_.runs || !drawn || !drawing_.is_shown()) return;
+    const auto now = Clock::now();
+    const double seconds = seconds_between(playing_.last, now);
+    playing_.last = now;
+    if (playing_.turns) {
+        move({CameraMove::Kind::kOrbit, {360 * seconds / kTurnSeconds, 0, 0}});
+        if (failed_) playing_.runs = false;
+        return;
+    }
+    if (!drawn->animation) {
+        message_ = "the scene has no animation";
+        playing_.runs = false;
+        return;
+    }
+    ViewSettings next = settings();
+    const AnimationInfo& animation = *drawn->animation;
+    next.time += seconds * animation.fps;
+    if (next.time > animation.last)
+        next.time = animation.first +
+                    std::fmod(next.time - animation.last, std::max(animation.last - animation.first, 1e-9));
+    change("play", next);
+}
+
+void Viewer::save_or_throw(const std::string& file) {
+    if (ends_in(file, ".json")) {
+        replace_text_file(file, session_text(session_));
+    } else if (ends_in(file, ".svg")) {
+        std::string svg;
+        drawing_.with_painter([&](Painter& painter) { svg = painter.svg(); });
+        replace_text_file(file, svg);
+    } else if (ends_in(file, ".exr") || ends_in(file, ".png")) {
+        Image picture;
+        drawing_.with_painter([&](Painter& painter) { picture = painter.picture(); });
+        write_image(file, picture, settings().tone);
+    } else {
+        throw UsageError("\"" + file + "\" ends in none of .json, .exr, .png and .svg");
+    }
+}
+
+bool Viewer::save(const std::string& file) {
+    if (attempt([&] { save_or_throw(file); })) message_ = "saved " + file;
+    return !failed_;
+}
+
+std::string Viewer::error() const {
+    if (failed_) return message_;
+    const auto drawn = drawing_.latest();
+    return drawn ? drawn->error : "";
+}
+
+}  // namespace trilens
