@@ -32,7 +32,7 @@ def measure(options, scene):
                        "rmse": found["metrics"]["RGB"]["rmse"]}
 
 
-def plot(rows, file):
+def plot(rows, options):
     import matplotlib
 
     matplotlib.use("svg")
@@ -52,10 +52,10 @@ def plot(rows, file):
         axis.set_xlabel("processor's seconds", fontsize=8)
         axis.tick_params(labelsize=7, which="both")
         axis.grid(True, which="both", linewidth=0.3)
-    axes[0][0].set_ylabel("rms error against 16 x 16 samples", fontsize=8)
+    axes[0][0].set_ylabel(f"rms error against {options.truth} x {options.truth} samples", fontsize=8)
     axes[0][0].legend(fontsize=7, frameon=False)
     figure.tight_layout()
-    figure.savefig(file, metadata={"Date": None})
+    figure.savefig(options.plot, metadata={"Date": None})
 
 
 def main():
@@ -80,7 +80,7 @@ def main():
             writer.writeheader()
             writer.writerows(rows)
     if options.plot:
-        plot(rows, options.plot)
+        plot(rows, options)
 
 
 if __name__ == "__main__":
