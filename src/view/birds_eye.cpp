@@ -3,6 +3,7 @@
 #include <trilens/camera.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -52,6 +53,28 @@ class LineDrawer {
     Camera camera_;
     ShownBirdsEye& shown_;
 };
+
+/// Dots over a sheet: at its points and inside its triangles, orange where light meets, violet where only the
+/// lines of its rays do.
+void draw_caustic(const LineDrawer& drawer, const CausticSheet& sheet, Pixels& picture) {
+    const std::array<std::uint8_t, 3> colour = sheet.is_virtual ? std::array<std::uint8_t, 3>{170, 110, 255}
+                                                                : std::array<std::uint8_t, 3>{255, 150, 30};
+    const auto dot_at = [&](const Vec3& point) {
+        const auto at = drawer.place(point);
+        if (!at || !(at->x >= 0 && at->y >= 0 && at->x < picture.width && at->y < picture.height)) return;
+        const auto pixel = static_cast<std::size_t>(at->y) * static_cast<std::size_t>(picture.width) +
+                           static_cast<std::size_t>(at->x);
+        std::copy(colour.begin(), colour.end(),
+                  picture.rgba.begin() + static_cast<std::ptrdiff_t>(4 * pixel));
+    };
+    for (const Vec3& point : sheet.points) dot_at(point);
+    for (const IdTriple& corners : sheet.triangles) {
+        const Vec3 &a = sheet.points[corners[0]], &b = sheet.points[corners[1]],
+                   &c = sheet.points[corners[2]];
+        dot_at((a + b + c) / 3.0);
+        for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}}) dot_at(0.5 * (from + to));
+    }
+}
 
 }  // namespace
 
@@ -146,6 +169,9 @@ ShownBirdsEye draw_birds_eye(const Renderer& renderer, const BirdsEyeRequest& re
     if (corners.size() == 10)
         for (std::size_t i = 0; i < 4; ++i)
             drawer.add(corners[2 * i + 1], corners[(2 * i + 3) % 8], of_camera);
+    if (request.caustics)
+        for (const LineDrawing::Caustic& caustic : *request.caustics)
+            draw_caustic(drawer, caustic.sheet, shown.picture);
     if (request.place_images) {
         for (const PlaceImage& image : request.place_images->images)
             if (image.visible) drawer.add(image.line, DrawnLine::Kind::kPlacePath);

@@ -29,10 +29,11 @@ Scene birds_eye_scene(const Renderer& renderer, std::size_t camera, const std::v
                       const PlaceImages* place_images);
 
 struct BirdsEyeRequest {
-    std::size_t camera = 0;                              // whose view is explained
-    double reach = 10;                                   // scene_reach
-    const std::vector<PathLine>* pixel_paths = nullptr;  // may be null
-    const PlaceImages* place_images = nullptr;           // may be null
+    std::size_t camera = 0;                                       // whose view is explained
+    double reach = 10;                                            // scene_reach
+    const std::vector<PathLine>* pixel_paths = nullptr;           // may be null
+    const PlaceImages* place_images = nullptr;                    // may be null
+    const std::vector<LineDrawing::Caustic>* caustics = nullptr;  // may be null
     ToneMapping tone;
 };
 

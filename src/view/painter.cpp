@@ -208,12 +208,16 @@ struct Painter::Work {
     void draw_lines(const Progress& progress) {
         use_film(scene->film.width, scene->film.height, 1);
         drawn.folds = nullptr;
-        if (settings().overlays.folds) {
+        LineDrawing lines;
+        const Overlays& overlays = settings().overlays;
+        if (overlays.folds || overlays.caustics) {
             LineChoice choice;
-            choice.folds = true;
-            drawn.folds = std::make_shared<const std::vector<FoldCurve>>(
-                renderer->draw_lines(settings().frame, choice).fold_curves);
+            choice.folds = overlays.folds;
+            choice.caustics = overlays.caustics;
+            lines = renderer->draw_lines(settings().frame, choice);
         }
+        if (overlays.folds)
+            drawn.folds = std::make_shared<const std::vector<FoldCurve>>(std::move(lines.fold_curves));
         const double reach = scene_reach(*base);
         drawn.pixel_paths = nullptr;
         if (settings().pixel)
@@ -230,6 +234,7 @@ struct Painter::Work {
         wanted.reach = reach;
         wanted.pixel_paths = drawn.pixel_paths.get();
         wanted.place_images = drawn.place_images.get();
+        wanted.caustics = &lines.caustics;
         wanted.tone = settings().tone;
         const std::vector<Vec3> corners = camera_corners(*renderer, wanted.camera, reach / 4);
         Scene seen = birds_eye_scene(*renderer, wanted.camera, wanted.pixel_paths, wanted.place_images);

@@ -116,6 +116,7 @@ const std::map<std::string, TakeSetting>& setting_takers() {
         {"facets", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.facets = flag_in(v); }},
         {"folds", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.folds = flag_in(v); }},
         {"method", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.method = flag_in(v); }},
+        {"caustics", [](ViewSettings& to, const Json& v, const Json&) { to.overlays.caustics = flag_in(v); }},
         {"birdsEye", [](ViewSettings& to, const Json& v, const Json&) { to.birds_eye.shown = flag_in(v); }},
         {"azimuth",
          [](ViewSettings& to, const Json& v, const Json&) { to.birds_eye.azimuth = number_in(v); }},
@@ -316,7 +317,7 @@ void Script::run_random(Viewer& viewer) {
             settings.place = viewer.reach() * Vec3(share(), share(), share());
             break;
         case 9:
-            settings.overlays = {next(2) == 0, next(2) == 0, next(2) == 0};
+            settings.overlays = {next(2) == 0, next(2) == 0, next(2) == 0, next(2) == 0};
             break;
         case 10:
             settings.birds_eye.shown = !settings.birds_eye.shown;

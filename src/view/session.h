@@ -33,9 +33,10 @@ struct EnumNames<ShownPicture> {
 
 /// Lines and tints over the picture.
 struct Overlays {
-    bool facets = false;  // outlines of the facets that pixels were projected through
-    bool folds = false;   // curves where what the optics show turns over
-    bool method = false;  // a tint: projected, part of a divided facet, traced
+    bool facets = false;    // outlines of the facets that pixels were projected through
+    bool folds = false;     // curves where what the optics show turns over
+    bool method = false;    // a tint: projected, part of a divided facet, traced
+    bool caustics = false;  // in the bird\'s-eye view: where neighbouring rays behind the optics meet
 
     bool operator==(const Overlays&) const = default;
 };

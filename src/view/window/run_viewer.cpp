@@ -78,6 +78,7 @@ class MemoryWindow {
         ImGuiIO& io = ImGui::GetIO();
         io.DisplaySize = {static_cast<float>(size.width), static_cast<float>(size.height)};
         io.DeltaTime = 1.0f / 60;
+        io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;  // more than 65536 corners
     }
     void frame(Viewer& viewer, InterfaceState& state) {
         ImGui::NewFrame();

@@ -1,7 +1,7 @@
 #include <imgui.h>
-#include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "view/window/interface.h"
@@ -33,6 +33,13 @@ bool choose(const char* label, E& chosen) {
     if (!choose(label, one, nullptr)) return false;
     chosen = *one;
     return true;
+}
+
+/// A line of text that is typed.
+void type_text(const char* label, const char* hint, std::string& text) {
+    std::array<char, 512> typed{};
+    text.copy(typed.data(), typed.size() - 1);
+    if (ImGui::InputTextWithHint(label, hint, typed.data(), typed.size())) text = typed.data();
 }
 
 /// A slider whose numbers are finite whatever is typed into it.
@@ -136,6 +143,11 @@ void overlays(Viewer& viewer) {
     changed = ImGui::Checkbox("folds", &next.overlays.folds) || changed;
     ImGui::SameLine();
     changed = ImGui::Checkbox("method", &next.overlays.method) || changed;
+    if (ImGui::Checkbox("caustics", &next.overlays.caustics)) {
+        next.birds_eye.shown = next.birds_eye.shown || next.overlays.caustics;
+        changed = true;
+    }
+    ImGui::SameLine();
     changed = ImGui::Checkbox("bird's eye", &next.birds_eye.shown) || changed;
     ImGui::SameLine();
     if (ImGui::Button("clear marks")) {
@@ -169,7 +181,7 @@ void numbers(Viewer& viewer, InterfaceState& state) {
     if (!ImGui::CollapsingHeader("numbers of the scene", ImGuiTreeNodeFlags_DefaultOpen)) return;
     if (!state.chosen_number.empty()) one_number(viewer, state);
     ImGui::SetNextItemWidth(-1);
-    ImGui::InputTextWithHint("##filter", "part of a JSON pointer", &state.number_filter);
+    type_text("##filter", "part of a JSON pointer", state.number_filter);
     ImGui::BeginChild("list", {0, 110}, true);
     for (const std::string& pointer : scene_numbers(viewer.scene()))
         if (pointer.find(state.number_filter) != std::string::npos &&
@@ -205,7 +217,7 @@ void files_and_time(Viewer& viewer, InterfaceState& state) {
     ImGui::SameLine();
     if (ImGui::Button("stop")) viewer.play(false, false);
     ImGui::SetNextItemWidth(-60);
-    ImGui::InputTextWithHint("##save", ".json .exr .png .svg", &state.save_name);
+    type_text("##save", ".json .exr .png .svg", state.save_name);
     ImGui::SameLine();
     if (ImGui::Button("save")) viewer.save(state.save_name);
     if (ImGui::Button("undo")) viewer.undo_step();
