@@ -330,6 +330,11 @@ bool Painter::draw_next(const Progress& progress) {
         throw;
     } catch (const Error& error) {
         work_->drawn = before;
+        if (work_->next == DrawStage::kLines) {  // a mark off the film: pictures still get better
+            work_->drawn.warnings.push_back(error.what());
+            work_->next = DrawStage::kComparison;
+            return true;
+        }
         work_->drawn.error = error.what();
         work_->next = DrawStage::kDone;
         return false;

@@ -283,6 +283,8 @@ void Script::run_random(Viewer& viewer) {
         return (z ^ (z >> 31)) % below;
     };
     const auto share = [&] { return static_cast<double>(next(2001)) / 1000 - 1; };
+    // What is no scene is shown for a while, then taken back.
+    if (!viewer.error().empty() && next(4) == 0) return viewer.undo_step();
     ViewSettings settings = viewer.settings();
     switch (next(12)) {
         case 0:
@@ -307,7 +309,8 @@ void Script::run_random(Viewer& viewer) {
             const std::vector<std::string> numbers = scene_numbers(viewer.scene());
             const std::string& pointer = numbers[next(numbers.size())];
             const Json* value = find_value(viewer.scene(), pointer);
-            viewer.set(pointer, value->get<double>() * (1 + share()) + (next(3) == 0 ? share() : 0.0));
+            const double to = value->get<double>() * (1 + share()) + (next(3) == 0 ? share() : 0.0);
+            viewer.set(pointer, value->is_number_integer() ? Json(std::llround(to)) : Json(to));
             return;
         }
         case 7:

@@ -170,6 +170,20 @@ TEST_CASE("paths of a pixel begin at the eye, lie on the mirror and end where th
     CHECK(found);
 }
 
+TEST_CASE("a mark off the film is told of, and the picture still gets all its samples", "[view]") {
+    const std::string folder = trilens_test::scratch_dir("view_off_film");
+    Session session = open_session(small_request(folder));
+    session.now.settings.pixel = Vec2(900, 24);
+    Painter painter;
+    painter.begin({1, session.file, session.folder, session.now});
+    while (painter.draw_next()) {
+    }
+    CHECK(painter.drawn().error.empty());
+    CHECK(painter.drawn().stage == DrawStage::kDone);
+    CHECK_FALSE(painter.drawn().warnings.empty());
+    CHECK_FALSE(painter.drawn().pixel_paths);
+}
+
 TEST_CASE("the comparison's numbers are those of the library, and its pictures are there", "[view]") {
     const std::string folder = trilens_test::scratch_dir("view_comparison");
     SceneRequest request = small_request(folder);
