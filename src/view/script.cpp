@@ -284,7 +284,7 @@ void Script::run_random(Viewer& viewer) {
     };
     const auto share = [&] { return static_cast<double>(next(2001)) / 1000 - 1; };
     // What is no scene is shown for a while, then taken back.
-    if (!viewer.error().empty() && next(4) == 0) return viewer.undo_step();
+    if (!viewer.error().empty() && next(4) != 0) return viewer.undo_step();
     ViewSettings settings = viewer.settings();
     switch (next(12)) {
         case 0:
@@ -385,7 +385,7 @@ bool Script::run(Viewer& viewer, const Json& step) {
     } else if (action == "random") {
         if (frame_ == 0) random_ = static_cast<std::uint64_t>(number_in(value));
         run_random(viewer);
-        if (random_ % 4 == 0) viewer.drawing().wait_shown(kPatience);
+        if (random_ % 4 != 0) viewer.drawing().wait_shown(kPatience);
         return frame_ + 1 < (step.contains("frames") ? static_cast<int>(number_in(step.at("frames"))) : 1);
     }
     return false;
