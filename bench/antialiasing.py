@@ -68,7 +68,7 @@ def main():
     parser.add_argument("--truth", type=int, default=16)
     parser.add_argument("--repeat", type=int, default=1)
     parser.add_argument("--trilens", default="build/release/trilens")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
 
     rows = list(csv.DictReader(open(options.csv, encoding="utf-8"))) if options.csv.exists() else []
     for scene in options.scenes:
