@@ -78,6 +78,15 @@ def in_memory(scene, steps):
     return answer
 
 
+def undone(scene):
+    """A step of a script is one step of undo, however many frames it has."""
+    steps = [{"orbit": [30, 5], "frames": 5}, {"dolly": 0.8, "frames": 3}, {"undo": 2}, {"save": "undone.json"}]
+    (FOLDER / "undo.json").write_text(json.dumps(steps))
+    trilens("view", scene, "--script", "undo.json", "--screenshot", "undone.png", "--window-size", "300x200")
+    before = json.loads((FOLDER / scene).read_text())
+    assert json.loads((FOLDER / "undone.json").read_text())["cameras"] == before["cameras"]
+
+
 def refused(scene):
     """What the viewer says where it cannot show: each with its exit code."""
     _, err = trilens("view", scene, code=5)
@@ -131,6 +140,7 @@ scene_text["film"] = {"width": 96, "height": 72}
     {"show": {"birdsEye": True, "facets": True, "wipe": 0.5}}, {"orbit": [20, 5], "frames": 12}, {"pixel": [48, 36]},
     {"wait": "done"}]}))
 in_memory("small.json", "mouse.json")
+undone("small.json")
 refused("small.json")
 trilens("view", "small.json", "--script", "steps.json", "--screenshot", "memory-window.png", "--window-size", "480x300")
 print("in memory and in a window: mean difference %.2f of 255, %.2f %% of pixels far off" %

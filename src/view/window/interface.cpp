@@ -95,7 +95,8 @@ void build_interface(Viewer& viewer, InterfaceState& state, TextureStore& textur
     settings_panel(viewer, state);
     ImGui::EndChild();
     ImGui::End();
-    if (!ImGui::IsAnyMouseDown() && !ImGui::IsAnyItemActive() && !ImGui::GetIO().WantTextInput)
+    if (!state.is_scripted && !ImGui::IsAnyMouseDown() && !ImGui::IsAnyItemActive() &&
+        !ImGui::GetIO().WantTextInput)
         viewer.release();
 }
 

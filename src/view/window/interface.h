@@ -39,6 +39,7 @@ struct InterfaceState {
     std::string chosen_number;  // a JSON pointer
     SliderSpan span;            // of its slider
     bool slides = false;        // the slider is being dragged
+    bool is_scripted = false;   // a script says where one step of undo ends, not the mouse
     bool drags_wipe = false;
     double frames_per_second = 0;  // of the window
 };

@@ -223,6 +223,7 @@ Answer run_viewer(const ViewOptions& options, Console& console) {
         viewer.change("", shown_settings({{"camera", name}}, first, viewer.scene()));
     }
     InterfaceState state;
+    state.is_scripted = is_scripted;
     ViewerRun run;
     run.begun = begun;
     if (screen) run.gl = screen->renderer_name();
