@@ -38,6 +38,7 @@ def plot(rows, options):
     matplotlib.use("svg")
     matplotlib.rcParams["svg.hashsalt"] = "trilens"
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     figure, axes = plt.subplots(1, len(scenes), figsize=(2.6 * len(scenes) + 0.6, 3.2), squeeze=False)
@@ -48,6 +49,10 @@ def plot(rows, options):
                       markersize=3.5, linewidth=1.2, label=way)
         axis.set_xscale("log")
         axis.set_yscale("log")
+        for scale in (axis.xaxis, axis.yaxis):
+            scale.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            scale.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            scale.set_minor_formatter(NullFormatter())
         axis.set_title(scene, fontsize=9)
         axis.set_xlabel("processor's seconds", fontsize=8)
         axis.tick_params(labelsize=7, which="both")
