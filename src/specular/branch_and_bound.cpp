@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "specular/simd_bounds.h"
-#include "specular/specular_law.h"
+#include "specular/specular_point.h"
 
 namespace trilens {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "specular/specular_law.h"
+#include "specular/specular_point.h"
 #include "specular/specular_search.h"
 #include "specular/view_tree.h"
 

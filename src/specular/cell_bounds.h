@@ -2,7 +2,6 @@
 #pragma once
 
 #include "base/raymesh/surface.h"
-#include "specular/specular_law.h"
 #include "specular/specular_point.h"
 
 namespace trilens {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "specular/specular_law.h"
+#include "specular/specular_point.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "specular/simd_bounds.cpp"

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "specular/cell_bounds.h"
-#include "specular/specular_law.h"
+#include "specular/specular_point.h"
 
 namespace trilens {
 

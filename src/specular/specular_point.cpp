@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/util/check.h"
-#include "specular/specular_law.h"
 
 namespace trilens {
 namespace {
@@ -228,6 +228,98 @@ std::optional<SpecularPoint> refine_specular_point(const Surface& surface, const
                                                    const SurfacePoint& point, const SpecularQuery& query) {
     TRILENS_CHECK(clamped(surface.domain(start.face), start.uv) == start.uv, "the start lies in the domain");
     return refine_from(surface, evaluate_at(start, point, query), query);
+}
+
+PathIndices path_indices(const SpecularQuery& query) {
+    if (query.event == SpecularEvent::kReflect) return {1, 1};
+    return {query.eye_index, query.point_index};
+}
+
+SpecularPath specular_path(const SpecularQuery& query, const Vec3& position) {
+    SpecularPath path;
+    const Vec3 incident = incident_direction(query.camera, position), back = position - query.point;
+    path.from_eye = normalize_or_zero(incident);
+    path.from_point = normalize_or_zero(back);
+    path.eye_distance = query.camera.parallel ? std::numeric_limits<double>::infinity() : length(incident);
+    path.point_distance = length(back);
+    const PathIndices n = path_indices(query);
+    path.bend = n.eye * path.from_eye + n.point * path.from_point;
+    return path;
+}
+
+namespace {
+
+/// How the unit direction to P from a fixed point changes as P moves by `step`.
+Vec3 turn(const Vec3& direction, double distance, const Vec3& step) {
+    return (step - dot(direction, step) * direction) / distance;
+}
+
+}  // namespace
+
+Mat2 path_hessian(const SpecularQuery& query, const SurfacePoint& point) {
+    return path_hessian(query, specular_path(query, point.position), point);
+}
+
+Mat2 path_hessian(const SpecularQuery& query, const SpecularPath& path, const SurfacePoint& point) {
+    const PathIndices n = path_indices(query);
+    auto bend_change = [&](const Vec3& step) {
+        return n.eye * turn(path.from_eye, path.eye_distance, step) +
+               n.point * turn(path.from_point, path.point_distance, step);
+    };
+    const Vec3 change_u = bend_change(point.du), change_v = bend_change(point.dv);
+    const double uu = dot(change_u, point.du) + dot(path.bend, point.duu);
+    const double uv = dot(change_u, point.dv) + dot(path.bend, point.duv);
+    const double vv = dot(change_v, point.dv) + dot(path.bend, point.dvv);
+    return {Vec2(uu, uv), Vec2(uv, vv)};
+}
+
+bool sides_fit(const SpecularQuery& query, const SpecularPath& path, const Vec3& normal) {
+    const double sides = dot(path.from_eye, normal) * dot(path.from_point, normal);
+    const bool front = dot(path.from_eye, normal) < 0;
+    if (query.viewed != ViewedSide::kEither && front != (query.viewed == ViewedSide::kFront)) return false;
+    return query.event == SpecularEvent::kReflect ? sides > 0 : sides < 0;
+}
+
+std::vector<SpecularPoint> specular_points(const Surface& surface, std::span<const SurfaceParameter> starts,
+                                           const SpecularQuery& query) {
+    std::vector<SpecularPoint> images;
+    for (const SurfaceParameter& start : starts) {
+        if (const auto image = refine_specular_point(surface, start, query)) images.push_back(*image);
+    }
+    return distinct_images(std::move(images));
+}
+
+std::vector<SurfaceParameter> regular_starts(const Surface& surface, int n) {
+    TRILENS_CHECK(n > 0, "a domain is divided into one cell at least");
+    std::vector<SurfaceParameter> starts;
+    for (Id face = 0; face < surface.face_count(); ++face) {
+        const bool triangle = surface.domain(face) == FaceDomain::kTriangle;
+        const double middle = triangle ? 1.0 / 3 : 0.5;
+        for (int row = 0; row < n; ++row) {
+            for (int column = 0; column < (triangle ? n - row : n); ++column) {
+                starts.push_back({face, (Vec2(column, row) + middle) / static_cast<double>(n)});
+            }
+        }
+    }
+    return starts;
+}
+
+std::vector<SpecularPoint> distinct_images(std::vector<SpecularPoint> images) {
+    std::stable_sort(images.begin(), images.end(),
+                     [](const SpecularPoint& a, const SpecularPoint& b) { return a.residual < b.residual; });
+    auto same = [](const SpecularPoint& a, const SpecularPoint& b) {
+        return a.front == b.front && length(a.pixel - b.pixel) < kSamePixels &&
+               length(a.position - b.position) <= kSameCrossing * a.distance;
+    };
+    std::vector<SpecularPoint> distinct;
+    for (const SpecularPoint& image : images) {
+        const bool known = std::any_of(distinct.begin(), distinct.end(),
+                                       [&](const SpecularPoint& other) { return same(other, image); });
+        if (!known) distinct.push_back(image);
+    }
+    std::stable_sort(distinct.begin(), distinct.end(),
+                     [](const SpecularPoint& a, const SpecularPoint& b) { return a.t < b.t; });
+    return distinct;
 }
 
 }  // namespace trilens

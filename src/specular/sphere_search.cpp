@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "specular/specular_law.h"
+#include "specular/specular_point.h"
 
 namespace trilens {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "specular/specular_law.h"
+#include "specular/specular_point.h"
 #include "support/closed_forms.h"
 #include "support/draw.h"
 #include "support/test.h"
