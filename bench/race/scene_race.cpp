@@ -67,11 +67,11 @@ void draw_bands(const Preparation& made, const SampleGrid& film, ViewCollector* 
     const auto keep = [&](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& part) {
         if (collector) collector->add(mesh, owned, part);
     };
-    const FacetViews facets = make_facet_views(*made.world, made.frame, Engine::kExact, keep);
+    const std::unique_ptr<Viewer> viewer = make_facet_viewer(*made.world, made.frame, Engine::kExact, keep);
     SampleViews views;
     for (int y = film.y0; y < film.y1; y += rows) {
         band.y0 = y, band.y1 = std::min(y + rows, film.y1);
-        facets.viewer(band, views);
+        viewer->view(band, views);
         for (double& sum : shading) sum += milliseconds([&] { shade(*made.world, views); });
     }
     result.shade_ms = median(shading);

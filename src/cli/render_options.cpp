@@ -159,7 +159,7 @@ EngineChoice chosen_engine(const RenderOptions& options) {
 PictureRequest picture_request(const RenderOptions& options, const EngineChoice& engine) {
     PictureRequest request;
     request.engine = engine;
-    request.shading = find_named<Shading>(options.shading).value();
+    request.layers.shading = find_named<Shading>(options.shading).value();
     request.layers = layer_request(options.scene);
     if (options.filter_shown) {
         const ToneMapping mapping = options.tone_mapping();

@@ -141,7 +141,8 @@ SweepSubject subject_of(const SweepRequest& request, const SweepAxes& axes, cons
 // named here. The camera stands beside them by its name.
 
 void add(const LayerRequest& window, Digest& digest) {
-    const auto& [x0, y0, x1, y1, layers, shown] = window;
+    // How often pixels are shaded is no matter to truths: picture_key adds it.
+    [[maybe_unused]] const auto& [x0, y0, x1, y1, layers, shown, shading] = window;
     TRILENS_CHECK(!shown, "pictures of sweeps hold light");
     digest.add_all(x0, y0, x1, y1, layers.size());
     for (const std::string& layer : layers) digest.add(layer);
@@ -170,12 +171,12 @@ void add(const EngineChoice& choice, Digest& digest) {
 }
 
 std::string picture_key(const PictureRequest& picture) {
-    const auto& [frame, engine, window, shading, watch] = picture;
+    [[maybe_unused]] const auto& [frame, engine, window, watch] = picture;
     Digest digest;
     add(frame, digest);
     add(engine, digest);
     add(window, digest);
-    digest.add(shading);
+    digest.add(window.shading);
     return digest.digits();
 }
 

@@ -39,7 +39,7 @@ std::vector<Id> camera_facets(const RayMesh& mesh, const SampleGrid& grid) {
 }
 
 /// `first_facet`: where each optic's facets begin among the visible triangles.
-SampleIds look(const Viewer& viewer, const SampleGrid& grid, const std::vector<Id>& first_facet) {
+SampleIds look(Viewer& viewer, const SampleGrid& grid, const std::vector<Id>& first_facet) {
     SampleIds ids;
     for (std::vector<Id>* list :
          {&ids.visible, &ids.optic, &ids.leaf, &ids.node[0], &ids.node[1], &ids.seen[0], &ids.seen[1]})
@@ -47,7 +47,7 @@ SampleIds look(const Viewer& viewer, const SampleGrid& grid, const std::vector<I
     SampleViews views;
     for (int y = grid.y0; y < grid.y1; y += kBandRows) {
         const SampleGrid band{grid.x0, y, grid.x1, std::min(y + kBandRows, grid.y1), grid.side};
-        viewer(band, views);
+        viewer.view(band, views);
         const std::size_t first = grid.first_sample(grid.x0, y);
         for (std::size_t s = 0; s < views.samples.size(); ++s) {
             const SampleView& view = views.samples[s];
@@ -136,8 +136,8 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
         append_facets(frame.optics[i].facets->grid(), optic.mesh, drawing->visible);
         material.resize(drawing->visible.size(), optic.material);
     }
-    const FacetViews views = make_facet_views(world, frame, Engine::kExact);
-    SampleIds ids = look(views.viewer, grid, first_facet);
+    const std::unique_ptr<Viewer> viewer = make_facet_viewer(world, frame, Engine::kExact);
+    SampleIds ids = look(*viewer, grid, first_facet);
     if (ids.traced > 0 && warn)
         warn(fmt::format("no lines where paths are traced, not projected: {:.2f} % of the film",
                          100.0 * static_cast<double>(ids.traced) / static_cast<double>(grid.size())));
@@ -170,14 +170,14 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
     for (Id i = 0; i < world.optics.size(); ++i)
         for (std::size_t p = 0; p < kOpticPaths.size(); ++p)
             for (const Id index : nodes_seen(ids, i, p)) {
-                const OpticPaths& paths = views.paths(i);
-                const PathNode& node = paths.nodes()[index];
+                const OpticPaths& paths = viewer->paths(i);
+                const PathNode& node = paths.nodes[index];
                 const std::vector<Id> facets = facets_at(ids, i, p, index, node);
                 add(kOpticPaths[p], world.optics[i].mesh,
                     {world.objects, edges, node.mesh, grid, facets, ids.seen[p], lines.wire});
                 add_folds(node.mesh, facets);
                 for (EdgeCurve& curve : drawing->layers.back()->curves)
-                    curve.facet = frame.optics[i].grid_facet(paths.leaves()[node.leaves[curve.facet]].facet);
+                    curve.facet = frame.optics[i].grid_facet(paths.leaves[node.leaves[curve.facet]].facet);
             }
     return drawing;
 }

@@ -64,12 +64,12 @@ void close_edge_ties(const World& world, std::vector<Differing>& open) {
         if (open.empty()) return;
         const CameraRays camera = shifted(make_camera_rays(world.scene, 0), by);
         const Frame frame = make_frame(world, camera, FrameParams{}, ignore);
-        const Viewer project = make_facet_viewer(world, frame, Engine::kExact);
-        const Viewer trace = make_facet_viewer(world, frame, Engine::kFacetsTruth);
+        const std::unique_ptr<Viewer> project = make_facet_viewer(world, frame, Engine::kExact);
+        const std::unique_ptr<Viewer> trace = make_facet_viewer(world, frame, Engine::kFacetsTruth);
         std::erase_if(open, [&](const Differing& pixel) {
             SampleViews a, b;
-            project({pixel.x, pixel.y, pixel.x + 1, pixel.y + 1, 1}, a);
-            trace({pixel.x, pixel.y, pixel.x + 1, pixel.y + 1, 1}, b);
+            project->view({pixel.x, pixel.y, pixel.x + 1, pixel.y + 1, 1}, a);
+            trace->view({pixel.x, pixel.y, pixel.x + 1, pixel.y + 1, 1}, b);
             return seen(a, 0) == pixel.traced || seen(b, 0) == pixel.projected;
         });
     }
@@ -81,8 +81,8 @@ Agreement compare_engines(const World& world) {
     const Film& film = world.scene.film;
     const SampleGrid grid{0, 0, film.width, film.height, 1};
     SampleViews projected, traced;
-    make_viewer(world, {}, Engine::kExact, ignore)(grid, projected);
-    make_viewer(world, {}, Engine::kFacetsTruth, ignore)(grid, traced);
+    make_viewer(world, {}, Engine::kExact, ignore)->view(grid, projected);
+    make_viewer(world, {}, Engine::kFacetsTruth, ignore)->view(grid, traced);
 
     Agreement result;
     result.pixels = grid.size();

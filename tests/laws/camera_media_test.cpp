@@ -78,8 +78,8 @@ TEST_CASE("from inside of glass the projected picture is the truth's", "[laws][o
         world_from("in_glass", glass_room(kPlainPerspective, R"("maxDepth":8,"fresnel":false)"), 16);
     const SampleGrid grid{0, 0, 96, 72, 1};
     SampleViews projected, traced;
-    make_viewer(*world, {}, Engine::kExact, ignore)(grid, projected);
-    make_viewer(*world, {}, Engine::kLimitTruth, ignore)(grid, traced);
+    make_viewer(*world, {}, Engine::kExact, ignore)->view(grid, projected);
+    make_viewer(*world, {}, Engine::kLimitTruth, ignore)->view(grid, traced);
     std::size_t other = 0, drawn = 0;
     double worst = 0;
     for (std::size_t s = 0; s < grid.size(); ++s) {
@@ -107,7 +107,7 @@ TEST_CASE("tinted glass around the eye takes light on the way to what is seen in
     const auto world = world_from("in_glass", glass_room(kPlainPerspective, R"("maxDepth":8)"), 8);
     for (const Engine engine : {Engine::kExact, Engine::kLimitTruth}) {
         SampleViews views;
-        make_viewer(*world, {}, engine, ignore)({0, 0, 96, 72, 1}, views);
+        make_viewer(*world, {}, engine, ignore)->view({0, 0, 96, 72, 1}, views);
         std::size_t seen = 0;
         for (const SampleView& view : views.samples) {
             if (view.optic != kNone || !view.hit.seen()) continue;
@@ -128,7 +128,7 @@ TEST_CASE("points are imaged into glass where its truth shows them", "[laws][law
         world_from("in_glass", glass_room(kPlainPerspective, R"("maxDepth":8,"fresnel":false)"), 16);
     SampleViews views;
     const SampleGrid grid{0, 0, 96, 72, 1};
-    make_viewer(*world, {}, Engine::kLimitTruth, ignore)(grid, views);
+    make_viewer(*world, {}, Engine::kLimitTruth, ignore)->view(grid, views);
     std::vector<Vec3> points;
     std::vector<Vec2> pixels;
     std::vector<std::vector<Step>> steps;

@@ -73,7 +73,7 @@ SampleViews look(const World& world, Engine engine, GridKind grid = GridKind::kS
     SampleViews views;
     FrameParams frame;
     frame.grid = grid;
-    make_viewer(world, frame, engine, ignore)({0, 0, kOpticsWidth, kHeight, 1}, views);
+    make_viewer(world, frame, engine, ignore)->view({0, 0, kOpticsWidth, kHeight, 1}, views);
     return views;
 }
 

@@ -56,7 +56,7 @@ std::unique_ptr<World> room(int width, int height, int n, const std::string& cam
 SampleViews look(const World& world, std::size_t camera, const EngineChoice& engine) {
     const Film& film = world.scene.film;
     SampleViews views;
-    make_viewer(world, {camera, 0}, engine, ignore)({0, 0, film.width, film.height, 1}, views);
+    make_viewer(world, {camera, 0}, engine, ignore)->view({0, 0, film.width, film.height, 1}, views);
     return views;
 }
 

@@ -17,7 +17,7 @@ SampleViews look(const World& world, const EngineChoice& engine) {
     const Film& film = world.scene.film;
     const SampleGrid grid{0, 0, film.width, film.height, 1};
     SampleViews views;
-    make_viewer(world, {}, engine, ignore)(grid, views);
+    make_viewer(world, {}, engine, ignore)->view(grid, views);
     return views;
 }
 

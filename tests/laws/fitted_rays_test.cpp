@@ -58,11 +58,11 @@ double difference(const RayMesh& a, const RayMesh& b) {
 }
 
 /// All paths over one optic's facets.
-std::unique_ptr<OpticPaths> all_paths(const World& world, const Frame& frame, std::size_t optic) {
+PathBuilder all_paths(const World& world, const Frame& frame, std::size_t optic) {
     auto paths = make_optic_paths(world, frame, optic);
     std::vector<Id> facets(frame.optics[optic].facets->grid().facets.size());
     for (std::size_t f = 0; f < facets.size(); ++f) facets[f] = static_cast<Id>(f);
-    paths->prepare(facets);
+    paths.prepare(facets);
     return paths;
 }
 
@@ -117,11 +117,12 @@ TEST_CASE("fitting leaves the rays of flat mirrors as they are, one after the ot
     const Frame after = make_frame(*many, with(CornerRays::kFitted), ignore);
     std::size_t later = 0;
     for (std::size_t i = 0; i < 2; ++i) {
-        const auto a = all_paths(*many, before, i), b = all_paths(*many, after, i);
-        REQUIRE(a->nodes().size() == b->nodes().size());
-        REQUIRE(a->leaves().size() == b->leaves().size());
-        for (const Id n : a->nodes_in_order()) {
-            const PathNode &x = a->nodes()[n], &y = b->nodes()[n];
+        const PathBuilder first = all_paths(*many, before, i), second = all_paths(*many, after, i);
+        const OpticPaths &a = first.paths(), &b = second.paths();
+        REQUIRE(a.nodes.size() == b.nodes.size());
+        REQUIRE(a.leaves.size() == b.leaves.size());
+        for (const Id n : nodes_in_order(a)) {
+            const PathNode &x = a.nodes[n], &y = b.nodes[n];
             later += x.step_count > 1;
             // Corners of divided facets are numbered apart, so facets are compared, not corners.
             REQUIRE(x.leaves == y.leaves);

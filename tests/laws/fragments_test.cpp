@@ -48,7 +48,7 @@ Difference beauty_difference(const Image& a, const Image& b) {
 
 Picture drawn(const World& world, Shading shading) {
     PictureRequest request;
-    request.shading = shading;
+    request.layers.shading = shading;
     return draw_picture(world, request, {}, ignore, nullptr);
 }
 
@@ -58,16 +58,16 @@ TEST_CASE("a sample's key is that of what its view shows", "[laws][law][fragment
     for (const std::string& scene : kScenes) {
         CAPTURE(scene);
         const auto world = world_of(scene, 3);
-        const FacetViews facets = make_views(*world, {}, Engine::kExact, ignore);
+        const std::unique_ptr<Viewer> viewer = make_viewer(*world, {}, Engine::kExact, ignore);
         const SampleGrid grid{3, 2, 60, 47, 3, SampleOrder::kLattice};
         std::vector<FragmentKey> keys(grid.size());
-        facets.keys.find(grid, keys);
+        viewer->find_keys(grid, keys);
         SampleViews views;
-        facets.viewer(grid, views);
+        viewer->view(grid, views);
         std::size_t alone = 0, unlike = 0;
         for (std::size_t s = 0; s < keys.size(); ++s) {
             alone += keys[s] == kAlone;
-            unlike += keys[s] != kAlone && keys[s] != facets.keys.of(views, views.samples[s]);
+            unlike += keys[s] != kAlone && keys[s] != viewer->key_of(views, views.samples[s]);
         }
         CHECK(unlike == 0);
         CHECK(alone < keys.size() / 2);
@@ -77,16 +77,16 @@ TEST_CASE("a sample's key is that of what its view shows", "[laws][law][fragment
 TEST_CASE("samples in rows of the lattice, and chosen ones of them, see what they see pixel by pixel",
           "[laws][law][fragments]") {
     const auto world = world_of("sphere", 3);
-    const FacetViews facets = make_views(*world, {}, Engine::kExact, ignore);
+    const std::unique_ptr<Viewer> viewer = make_viewer(*world, {}, Engine::kExact, ignore);
     const SampleGrid pixels{3, 2, 60, 47, 3}, rows{3, 2, 60, 47, 3, SampleOrder::kLattice};
     SampleGrid chosen = rows;
     std::vector<Id> list;
     for (Id s = 5; s < rows.size(); s += 1 + s % 7) list.push_back(s);
     chosen.chosen = list;
     SampleViews by_pixels, by_rows, of_chosen;
-    facets.viewer(pixels, by_pixels);
-    facets.viewer(rows, by_rows);
-    facets.viewer(chosen, of_chosen);
+    viewer->view(pixels, by_pixels);
+    viewer->view(rows, by_rows);
+    viewer->view(chosen, of_chosen);
 
     const auto same = [](const SampleViews& a, std::size_t i, const SampleViews& b, std::size_t j) {
         const SampleView &x = a.samples[i], &y = b.samples[j];
@@ -163,7 +163,7 @@ TEST_CASE("the channel of fragments adds up to their number", "[laws][law][fragm
           Approx(static_cast<double>(by_fragment.statistics.fragments) / (64 * 48)));
     CHECK(by_fragment.statistics.pixels_shaded_by_sample > 0);
     CHECK(by_fragment.statistics.pixels_shaded_by_sample <= by_fragment.statistics.rays_by_sample);
-    request.shading = Shading::kSample;
+    request.layers.shading = Shading::kSample;
     CHECK(sum_of(draw_picture(*world, request, {}, ignore, nullptr)) == 64 * 48 * 9);
 }
 

@@ -176,9 +176,9 @@ using History = std::vector<std::pair<Id, int>>;  // optics and events
 
 Film film_of(const World& world, const FrameParams& frame, Engine engine) {
     Film film;
-    const Viewer viewer = make_viewer(world, frame, engine, [](const std::string&) {});
+    const std::unique_ptr<Viewer> viewer = make_viewer(world, frame, engine, [](const std::string&) {});
     film.width = world.scene.film.width, film.height = world.scene.film.height;
-    viewer({0, 0, film.width, film.height, 1}, film.views);
+    viewer->view({0, 0, film.width, film.height, 1}, film.views);
     film.histories.resize(film.views.samples.size());
     for (std::size_t s = 0; s < film.histories.size(); ++s) {
         const SampleView& view = film.views.samples[s];

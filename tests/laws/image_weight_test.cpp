@@ -42,11 +42,11 @@ Tally compare(const World& world, int step) {
     Tally tally;
     const Film& film = world.scene.film;
     const PictureRequest truth = traced();
-    const Viewer viewer = make_viewer(world, truth.frame, truth.engine, {});
+    const std::unique_ptr<Viewer> viewer = make_viewer(world, truth.frame, truth.engine, {});
     for (int y = step / 2; y < film.height; y += step)
         for (int x = step / 2; x < film.width; x += step) {
             SampleViews pixel;
-            viewer({x, y, x + 1, y + 1, 1}, pixel);
+            viewer->view({x, y, x + 1, y + 1, 1}, pixel);
             for (const PathEnd& end : pixel.ends_of(pixel.samples.front())) {
                 // Of a dispersed path green alone is searched for.
                 if (!end.hit.seen() || (end.colours != kAllColours && end.colours != 1)) continue;

@@ -41,7 +41,7 @@ TEST_CASE("a flat mirror shows what a second camera behind it sees, at any resol
         const Film& film = world->scene.film;
         const SampleGrid grid{0, 0, film.width, film.height, 1};
         SampleViews views;
-        make_viewer(*world, {}, Engine::kExact, ignore)(grid, views);
+        make_viewer(*world, {}, Engine::kExact, ignore)->view(grid, views);
 
         // The virtual eye, from the mirror's own plane.
         const SurfacePoint plane = world->optics[0].surface->eval(0, Vec2(0.5));
@@ -103,9 +103,9 @@ TEST_CASE("the same file for one thread and for two", "[laws][law]") {
         for (const std::string command : {"render", "trace", "trace --surface facets"}) {
             std::string first;
             for (const std::string threads : {"1", "2"}) {
-                const CommandRun run =
-                    run_trilens(command + " " + source_dir() + "/scenes/" + scene +
-                                ".json --size 160x120 --spp 2 -t " + threads + " -o " + folder + "/out.exr -q");
+                const CommandRun run = run_trilens(command + " " + source_dir() + "/scenes/" + scene +
+                                                   ".json --size 160x120 --spp 2 -t " + threads + " -o " +
+                                                   folder + "/out.exr -q");
                 REQUIRE(run.exit_code == 0);
                 if (first.empty()) first = bytes_of(folder + "/out.exr");
                 INFO(scene << " " << command);

@@ -61,7 +61,7 @@ FrameParams layered(bool layers, CornerRays rays = CornerRays::kInterpolated) {
 SampleViews views_of(const World& world, const FrameParams& frame, Engine engine) {
     SampleViews views;
     const Film& film = world.scene.film;
-    make_viewer(world, frame, engine, ignore)({0, 0, film.width, film.height, 1}, views);
+    make_viewer(world, frame, engine, ignore)->view({0, 0, film.width, film.height, 1}, views);
     return views;
 }
 
@@ -191,8 +191,8 @@ void check_flat_layer(const std::string& material, int n) {
     const CameraRays camera =
         mirrored_camera(make_camera_rays(alone->scene, 0), both->optics[1].surface->eval(0, Vec2(0.5)));
     SampleViews direct;
-    make_facet_viewer(*alone, make_frame(*alone, camera, layered(true), ignore), Engine::kExact)(
-        {0, 0, 240, 240, 1}, direct);
+    make_facet_viewer(*alone, make_frame(*alone, camera, layered(true), ignore), Engine::kExact)
+        ->view({0, 0, 240, 240, 1}, direct);
 
     std::size_t compared = 0, other = 0, ball_only_there = 0;
     for (std::size_t s = 0; s < in_mirror.samples.size(); ++s) {

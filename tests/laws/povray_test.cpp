@@ -203,8 +203,8 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
     REQUIRE(!other.empty());
     const auto world = world_from("povray_" + name, scene_json(stage), 8);
     SampleViews views;
-    make_limit_views(*world, make_camera_rays(world->scene, 0))
-        .viewer({0, 0, kPovrayWidth, kHeight, 1}, views);
+    make_limit_viewer(*world, make_camera_rays(world->scene, 0))
+        ->view({0, 0, kPovrayWidth, kHeight, 1}, views);
     Against result;
     for (std::size_t p = 0; p < other.size(); ++p) {
         const CutPaths cut = views.samples[p].optic == kNone ? CutPaths() : views.of_optics[p].cut;
@@ -225,8 +225,8 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
             const double far = reach * (k / 8 + 1) / 3.0;
             const Vec2 by(far * std::cos(k * M_PI / 4), far * std::sin(k * M_PI / 4));
             SampleViews one;
-            make_limit_views(*world, shifted_rays(make_camera_rays(world->scene, 0), by))
-                .viewer({x, y, x + 1, y + 1, 1}, one);
+            make_limit_viewer(*world, shifted_rays(make_camera_rays(world->scene, 0), by))
+                ->view({x, y, x + 1, y + 1, 1}, one);
             explained = apart(beauty(*world, one, 0), other[p]) <= same + left_out;
         }
         if (explained) continue;

@@ -43,7 +43,7 @@ struct Missed {
 
 Missed missed(const World& world) {
     PictureRequest by_fragment, by_sample;
-    by_sample.shading = Shading::kSample;
+    by_sample.layers.shading = Shading::kSample;
     const Picture fast = draw_picture(world, by_fragment, {}, ignore, nullptr),
                   whole = draw_picture(world, by_sample, {}, ignore, nullptr);
     const std::vector<float>&a = fast.image.find("G")->floats(), &b = whole.image.find("G")->floats();

@@ -121,20 +121,20 @@ TEST_CASE("printed grounds against 64 x 64 samples, in plane, sphere and lens",
 TEST_CASE("differentials of facets in closed form are those of their rays, and those of exact paths",
           "[laws][law][textures]") {
     const auto world = printed_ground("mirror", Print::kCheckerboard);
-    const FacetViews facets = make_views(*world, {}, Engine::kExact, ignore),
-                     limit = make_views(*world, {}, Engine::kLimitTruth, ignore);
+    const std::unique_ptr<Viewer> facets = make_viewer(*world, {}, Engine::kExact, ignore),
+                                  limit = make_viewer(*world, {}, Engine::kLimitTruth, ignore);
     const SampleGrid grid{0, 0, 48, 36, 1};
     SampleViews projected, traced;
-    facets.viewer(grid, projected);
-    limit.viewer(grid, traced);
-    const RayDifferentials of_facets(*world, facets, grid), of_paths(*world, limit, grid);
+    facets->view(grid, projected);
+    limit->view(grid, traced);
+    const RayDifferentials of_facets(*world, *facets, grid), of_paths(*world, *limit, grid);
     std::vector<double> unlike;
     for (std::size_t s = 0; s < grid.size(); ++s) {
         const SampleView &a = projected.samples[s], &b = traced.samples[s];
         if (a.optic != 0 || b.optic != 0 || projected.ends_of(a).empty() || traced.ends_of(b).empty())
             continue;
         const PathEnd &end = projected.ends_of(a)[0], &other = traced.ends_of(b)[0];
-        const FacetMap map = facet_map(facets, a, &end);
+        const FacetMap map = facet_map(*facets, a, &end);
         REQUIRE(map.mesh);
         const Vec2 at = grid.position(s);
         const RayDifferential closed = map.differential(at);

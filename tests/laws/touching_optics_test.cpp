@@ -58,7 +58,7 @@ TEST_CASE("from water through the glass that it fills there is no air between, w
         check_engines(*world);
         for (const Engine engine : {Engine::kLimitTruth, Engine::kExact}) {
             SampleViews views;
-            make_viewer(*world, {}, engine, ignore)({0, 0, 96, 72, 1}, views);
+            make_viewer(*world, {}, engine, ignore)->view({0, 0, 96, 72, 1}, views);
             std::size_t through = 0, turned_back = 0;
             for (const SampleView& view : views.samples) {
                 const Vec3 d = normalize_or_zero(view.ray.direction);
@@ -107,7 +107,7 @@ TEST_CASE("a body in a body with one side in common is met there once", "[laws][
         const auto world = world_from("common_side", room(meshes, "[0.1,0.2,3]", "[0,0,0]"), 2);
         check_engines(*world);
         SampleViews views;
-        make_viewer(*world, {}, Engine::kLimitTruth, ignore)({0, 0, 96, 72, 1}, views);
+        make_viewer(*world, {}, Engine::kLimitTruth, ignore)->view({0, 0, 96, 72, 1}, views);
         std::size_t seen = 0;
         for (const SampleView& view : views.samples) {
             const Vec3 d = normalize_or_zero(view.ray.direction);

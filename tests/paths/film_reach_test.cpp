@@ -1,6 +1,6 @@
 // Triangles that may reach the film, against all of their points.
-#include "paths/facets/film_reach.h"
 #include "intersect/random_scene.h"
+#include "paths/facets/divide_facet.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -1,6 +1,6 @@
 // The RayMeshes of an optic's paths: parts that cover a facet once, rays that are those of the exact paths,
 // and flat mirrors that stay exact.
-#include "paths/facets/facet_paths.h"
+#include "paths/facets/path_builder.h"
 
 #include <algorithm>
 #include <map>
@@ -45,15 +45,14 @@ std::optional<FollowedPaths> exact_paths(const Stage& stage, Id optic, const Pat
 }
 
 std::vector<Id> all_facets(const OpticPaths& paths) {
-    std::vector<Id> all(paths.outline().facets.size());
+    std::vector<Id> all(paths.outline.facets.size());
     for (std::size_t f = 0; f < all.size(); ++f) all[f] = static_cast<Id>(f);
     return all;
 }
 
 std::vector<Step> steps_of(const OpticPaths& paths, Id node) {
     std::vector<Step> steps;
-    for (Id n = node; n != kNone; n = paths.nodes()[n].parent)
-        steps.insert(steps.begin(), paths.nodes()[n].step);
+    for (Id n = node; n != kNone; n = paths.nodes[n].parent) steps.insert(steps.begin(), paths.nodes[n].step);
     return steps;
 }
 
@@ -71,7 +70,7 @@ OnFacet on_facet(const OpticPaths& paths, const SurfaceGrid& grid, Id facet, con
     OnFacet at;
     for (int k = 0; k < 3; ++k) {
         const Id corner = grid.facets[facet][static_cast<std::size_t>(k)];
-        at.screen += weights[k] * paths.outline().screen[corner];
+        at.screen += weights[k] * paths.outline.screen[corner];
         at.chord += weights[k] * grid.points[grid.corner_point[corner]];
     }
     return at;
@@ -81,10 +80,10 @@ OnFacet on_facet(const OpticPaths& paths, const SurfaceGrid& grid, Id facet, con
 using RaysAt = std::map<std::tuple<std::string, int, bool>, std::array<double, 8>>;
 RaysAt rays_at(const OpticPaths& paths, const SurfaceGrid& grid, Id facet, const Vec3& weights) {
     RaysAt rays;
-    const Id leaf = paths.leaf_at(facet, weights);
+    const Id leaf = leaf_at(paths, facet, weights);
     const Vec3 s = on_facet(paths, grid, facet, weights).screen;
-    for (std::size_t n = 0; n < paths.nodes().size(); ++n) {
-        const PathNode& node = paths.nodes()[n];
+    for (std::size_t n = 0; n < paths.nodes.size(); ++n) {
+        const PathNode& node = paths.nodes[n];
         const Id own = node.facet_of(leaf);
         if (own == kNone) continue;
         std::string history;
@@ -96,7 +95,7 @@ RaysAt rays_at(const OpticPaths& paths, const SurfaceGrid& grid, Id facet, const
             rays.insert({{history, node.colours, node.medium != kNone},
                          {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
                           ray.direction.z, static_cast<double>(node.ends[own]),
-                          static_cast<double>(paths.leaves()[leaf].level)}})
+                          static_cast<double>(paths.leaves[leaf].level)}})
                 .second;
         CHECK(added);
     }
@@ -136,12 +135,13 @@ void check_flat_mirrors(const std::vector<Primitive>& planes, const Vec3& eye, b
     for (const Primitive& plane : planes) stage.add(make_primitive_surface(plane), mirror_of());
     const SurfaceGrid grid = make_grid(stage.surface(0), 3);
     const PathCamera camera = camera_at(eye, parallel);
-    OpticPaths paths({&stage.world, 0, &stage.surface(0), camera}, grid, DivideParams{});
-    paths.prepare(all_facets(paths));
+    PathBuilder builder = paths_over_grid({&stage.world, 0, &stage.surface(0), camera}, grid, DivideParams{});
+    const OpticPaths& paths = builder.paths();
+    builder.prepare(all_facets(paths));
 
     std::size_t most_steps = 0, rays = 0;
-    for (std::size_t n = 0; n < paths.nodes().size() && !parallel; ++n) {
-        const PathNode& node = paths.nodes()[n];
+    for (std::size_t n = 0; n < paths.nodes.size() && !parallel; ++n) {
+        const PathNode& node = paths.nodes[n];
         const std::vector<Step> steps = steps_of(paths, static_cast<Id>(n));
         const Vec3 image = virtual_eye(eye, steps, planes);
         CHECK(node.unfolds);
@@ -155,10 +155,10 @@ void check_flat_mirrors(const std::vector<Primitive>& planes, const Vec3& eye, b
             const Vec3 weights = random_weights(random);
             const OnFacet at = on_facet(paths, grid, f, weights);
             const auto exact = exact_paths(stage, 0, camera, at.chord);
-            const Id leaf = paths.leaf_at(f, weights);
-            if (!exact || paths.leaves()[leaf].method != LeafMethod::kProjected) continue;
-            for (std::size_t n = 0; n < paths.nodes().size(); ++n) {
-                const PathNode& node = paths.nodes()[n];
+            const Id leaf = leaf_at(paths, f, weights);
+            if (!exact || paths.leaves[leaf].method != LeafMethod::kProjected) continue;
+            for (std::size_t n = 0; n < paths.nodes.size(); ++n) {
+                const PathNode& node = paths.nodes[n];
                 const Id own = node.facet_of(leaf);
                 if (own == kNone) continue;
                 const std::vector<Step> steps = steps_of(paths, static_cast<Id>(n));
@@ -186,18 +186,20 @@ TEST_CASE("the parts of a facet cover it once, each where leaf_at says", "[paths
     Stage stage;
     put_up(stage);
     const SurfaceGrid grid = make_grid(stage.surface(0), 4);
-    OpticPaths paths({&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})}, grid, DivideParams{});
-    paths.prepare(all_facets(paths));
+    PathBuilder builder =
+        paths_over_grid({&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})}, grid, DivideParams{});
+    const OpticPaths& paths = builder.paths();
+    builder.prepare(all_facets(paths));
 
     Random random(52);
-    std::vector<double> hits(paths.leaves().size(), 0);
+    std::vector<double> hits(paths.leaves.size(), 0);
     std::size_t projected = 0, traced = 0, divided = 0;
     for (Id f = 0; f < grid.facets.size(); ++f)
         for (int i = 0; i < 200; ++i) {
             const Vec3 weights = random_weights(random);
-            const Id l = paths.leaf_at(f, weights);
-            REQUIRE(l < paths.leaves().size());
-            const PathLeaf& leaf = paths.leaves()[l];
+            const Id l = leaf_at(paths, f, weights);
+            REQUIRE(l < paths.leaves.size());
+            const PathLeaf& leaf = paths.leaves[l];
             CHECK(leaf.facet == f);
             CHECK((leaf.level == 0) == paths.is_whole(f));
             const Vec3& corner = grid.points[grid.corner_point[grid.facets[f][0]]];
@@ -206,7 +208,7 @@ TEST_CASE("the parts of a facet cover it once, each where leaf_at says", "[paths
             divided += leaf.level > 0;
             // Every mesh of the leaf has the place inside of its facet on the screen.
             const Vec3 s = on_facet(paths, grid, f, weights).screen;
-            for (const PathNode& node : paths.nodes()) {
+            for (const PathNode& node : paths.nodes) {
                 const Id own = node.facet_of(l);
                 if (own == kNone) continue;
                 const FacetWeights of_node = facet_weights(node.mesh, own);
@@ -223,7 +225,7 @@ TEST_CASE("the parts of a facet cover it once, each where leaf_at says", "[paths
     for (const Vec3& weights :
          {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0.5, 0.5, 0), Vec3(0, 0.25, 0.75)})
         for (Id f = 0; f < grid.facets.size(); ++f)
-            CHECK(paths.leaves()[paths.leaf_at(f, weights)].facet == f);
+            CHECK(paths.leaves[leaf_at(paths, f, weights)].facet == f);
 }
 
 TEST_CASE("a facet's rays do not depend on what was asked for before", "[paths][law]") {
@@ -233,23 +235,25 @@ TEST_CASE("a facet's rays do not depend on what was asked for before", "[paths][
     const ProbeContext context{&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})};
     DivideParams params;
     params.per_pixel = GENERATE(0.0, 2e-4, 1e-2);  // all are looked into; the large ones; all but parts
-    OpticPaths at_once(context, grid, params), one_by_one(context, grid, params);
+    PathBuilder first = paths_over_grid(context, grid, params),
+                second = paths_over_grid(context, grid, params);
+    const OpticPaths &at_once = first.paths(), &one_by_one = second.paths();
     std::vector<Id> facets = all_facets(at_once);
-    at_once.prepare(facets);
+    first.prepare(facets);
     std::reverse(facets.begin(), facets.end());
-    for (const Id f : facets) one_by_one.prepare(std::vector<Id>{f, f});
-    one_by_one.prepare(facets);  // known already
+    for (const Id f : facets) second.prepare(std::vector<Id>{f, f});
+    second.prepare(facets);  // known already
 
-    CHECK(at_once.probe_report().plan.decides() == (params.per_pixel > 0));
-    CHECK(at_once.probe_report().surveyed == one_by_one.probe_report().surveyed);
+    CHECK(at_once.probe_report.plan.decides() == (params.per_pixel > 0));
+    CHECK(at_once.probe_report.surveyed == one_by_one.probe_report.surveyed);
     if (params.per_pixel > 0)
-        CHECK(at_once.probe_report().plan.least_samples() == one_by_one.probe_report().plan.least_samples());
+        CHECK(at_once.probe_report.plan.least_samples() == one_by_one.probe_report.plan.least_samples());
     Random random(53);
-    CHECK(at_once.leaves().size() == one_by_one.leaves().size());
-    CHECK(at_once.nodes().size() == one_by_one.nodes().size());
+    CHECK(at_once.leaves.size() == one_by_one.leaves.size());
+    CHECK(at_once.nodes.size() == one_by_one.nodes.size());
     std::vector<std::vector<Step>> order_a, order_b;
-    for (const Id n : at_once.nodes_in_order()) order_a.push_back(steps_of(at_once, n));
-    for (const Id n : one_by_one.nodes_in_order()) order_b.push_back(steps_of(one_by_one, n));
+    for (const Id n : nodes_in_order(at_once)) order_a.push_back(steps_of(at_once, n));
+    for (const Id n : nodes_in_order(one_by_one)) order_b.push_back(steps_of(one_by_one, n));
     CHECK(order_a == order_b);
     for (const Id f : facets)
         for (int i = 0; i < 20; ++i) {
@@ -266,17 +270,18 @@ TEST_CASE("facets whose paths there is no room for are traced, the same ones wha
     const ProbeContext context{&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})};
     DivideParams tight;
     tight.most_bytes = 1u << 18;
-    OpticPaths roomy(context, grid, DivideParams{}), at_once(context, grid, tight),
-        one_by_one(context, grid, tight);
+    PathBuilder wide = paths_over_grid(context, grid, DivideParams{}),
+                first = paths_over_grid(context, grid, tight), second = paths_over_grid(context, grid, tight);
+    const OpticPaths &roomy = wide.paths(), &at_once = first.paths(), &one_by_one = second.paths();
     std::vector<Id> facets = all_facets(at_once);
-    roomy.prepare(facets);
-    at_once.prepare(facets);
+    wide.prepare(facets);
+    first.prepare(facets);
     std::reverse(facets.begin(), facets.end());
-    for (const Id f : facets) one_by_one.prepare(std::vector<Id>{f});
-    CHECK(roomy.crowded_out() == 0);
-    CHECK(at_once.crowded_out() > facets.size() / 10);
-    CHECK(at_once.crowded_out() < facets.size());
-    CHECK(one_by_one.crowded_out() == at_once.crowded_out());
+    for (const Id f : facets) second.prepare(std::vector<Id>{f});
+    CHECK(roomy.crowded_out == 0);
+    CHECK(at_once.crowded_out > facets.size() / 10);
+    CHECK(at_once.crowded_out < facets.size());
+    CHECK(one_by_one.crowded_out == at_once.crowded_out);
 
     Random random(54);
     std::size_t traced = 0;
@@ -284,12 +289,12 @@ TEST_CASE("facets whose paths there is no room for are traced, the same ones wha
         const Vec3 weights = random_weights(random);
         const bool is_traced =
             at_once.is_whole(f) &&
-            at_once.leaves()[at_once.leaf_at(f, Vec3(1.0 / 3))].method == LeafMethod::kTraced;
+            at_once.leaves[leaf_at(at_once, f, Vec3(1.0 / 3))].method == LeafMethod::kTraced;
         traced += is_traced;
         CHECK(rays_at(at_once, grid, f, weights) == rays_at(one_by_one, grid, f, weights));
         if (!is_traced) CHECK(rays_at(at_once, grid, f, weights) == rays_at(roomy, grid, f, weights));
     }
-    CHECK(traced >= at_once.crowded_out());
+    CHECK(traced >= at_once.crowded_out);
 }
 
 TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times ray_scale", "[paths]") {
@@ -298,14 +303,15 @@ TEST_CASE("a corner's ray is the exact path's, as long as the eye's ray times ra
     const Vec3 eye(0.3, 0.2, 5);
     const PathCamera camera = camera_at(eye);
     const SurfaceGrid grid = make_grid(stage.surface(0), 4);
-    OpticPaths paths({&stage.world, 0, &stage.surface(0), camera}, grid, DivideParams{});
-    paths.prepare(all_facets(paths));
+    PathBuilder builder = paths_over_grid({&stage.world, 0, &stage.surface(0), camera}, grid, DivideParams{});
+    const OpticPaths& paths = builder.paths();
+    builder.prepare(all_facets(paths));
     std::size_t compared = 0;
     for (Id f = 0; f < grid.facets.size(); ++f) {
         if (!paths.is_whole(f)) continue;
-        const Id leaf = paths.leaf_at(f, Vec3(1.0 / 3));
-        for (std::size_t n = 0; n < paths.nodes().size(); ++n) {
-            const PathNode& node = paths.nodes()[n];
+        const Id leaf = leaf_at(paths, f, Vec3(1.0 / 3));
+        for (std::size_t n = 0; n < paths.nodes.size(); ++n) {
+            const PathNode& node = paths.nodes[n];
             const Id own = node.facet_of(leaf);
             if (own == kNone) continue;
             for (std::size_t k = 0; k < 3; ++k) {
@@ -378,10 +384,11 @@ TEST_CASE("what is left at the smallest size is traced, what is whole is not div
     put_up(stage);
     const SurfaceGrid grid = make_grid(stage.surface(0), 4);
     for (const double least_area : {8.0, 200.0, 1e9}) {
-        OpticPaths paths({&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})}, grid,
-                         DivideParams{least_area, 6});
-        paths.prepare(all_facets(paths));
-        for (const PathLeaf& leaf : paths.leaves()) {
+        PathBuilder builder = paths_over_grid({&stage.world, 0, &stage.surface(0), camera_at({0.3, 0.2, 5})},
+                                              grid, DivideParams{least_area, 6});
+        const OpticPaths& paths = builder.paths();
+        builder.prepare(all_facets(paths));
+        for (const PathLeaf& leaf : paths.leaves) {
             CHECK(leaf.level <= 6);
             if (least_area == 1e9) CHECK(leaf.level == 0);
         }

@@ -6,8 +6,7 @@
 #include <optional>
 
 #include "base/util/parallel.h"
-#include "paths/facets/facet_paths.h"
-#include "paths/facets/fit_nodes.h"
+#include "paths/facets/path_build.h"
 #include "paths/facets/predict.h"
 
 namespace trilens {
@@ -58,16 +57,14 @@ struct LeafPoint {
     }
 };
 
-}  // namespace
-
 /// The most at any point; some number above the limit where one is above it.
-double OpticPaths::predicted(const FittedLeaf& open) const {
+double predicted_error(const PathBuild& build, const FittedLeaf& open) {
     const FacetPart& part = *open.part;
     double most = 0;
     std::array<std::optional<PathProbe>, kInsideWeights.size()> closer_inside;
     std::array<std::optional<PathProbe>, 3> closer_corner;
-    for (std::size_t h = 0; h < part.histories.size() && !(most > params_.max_error); ++h) {
-        const PathNode& node = nodes_[part.node[h]];
+    for (std::size_t h = 0; h < part.histories.size() && !(most > build.in.params.max_error); ++h) {
+        const PathNode& node = build.out.nodes[part.node[h]];
         const Id facet = part.node_facet[h];
         const IdTriple& corners = node.mesh.facets[facet];
         const auto probe_facet_point = [&](const PathProbe& probe, std::optional<PathProbe>& closer,
@@ -76,13 +73,13 @@ double OpticPaths::predicted(const FittedLeaf& open) const {
             for (std::size_t k = 0; k < 3; ++k)
                 weights[static_cast<int>(k)] *=
                     part.corners[k].probe->screen.z / node.mesh.screen[corners[k]].z;
-            const LeafPoint point{context_, node, facet, probe, closer, segment[h], params_};
+            const LeafPoint point{build.in.context, node, facet, probe, closer, segment[h], build.in.params};
             most = std::max(most, point.predicted(weights / (weights.x + weights.y + weights.z)));
         };
         for (std::size_t i = 0; i < part.inside.size(); ++i)
             probe_facet_point(*part.inside[i].at.probe, closer_inside[i], part.inside[i].segment,
                               kInsideWeights[i]);
-        if (!params_.fit) continue;
+        if (!build.in.params.fit) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             Vec3 weights(0);
             weights[static_cast<int>(k)] = 1;
@@ -92,48 +89,53 @@ double OpticPaths::predicted(const FittedLeaf& open) const {
     return most;
 }
 
-/// So many at a time, so that what was probed for their parts takes little room.
-void OpticPaths::divide_by_error(std::span<const FittedLeaf> open) {
-    constexpr std::size_t kBatch = 1024;
-    if (std::isinf(params_.max_error)) return;
-    for (std::size_t first = 0; first < open.size(); first += kBatch) {
-        const auto batch = open.subspan(first, std::min(kBatch, open.size() - first));
-        divide_batch_by_error({batch.begin(), batch.end()});
-    }
-}
-
-void OpticPaths::divide_batch_by_error(std::vector<FittedLeaf> open) {
+void divide_batch_by_error(PathBuild& build, std::vector<FittedLeaf> open) {
     std::deque<std::vector<DividedFacet>> levels;  // what later parts point into
     while (!open.empty()) {
         std::vector<double> error(open.size());
         std::vector<DividedFacet>& divided = levels.emplace_back(open.size());
         parallel_for(open.size(), kLeavesPerTask, [&](std::size_t from, std::size_t to) {
             for (std::size_t i = from; i < to; ++i) {
-                error[i] = predicted(open[i]);
-                if (error[i] > params_.max_error)
-                    divided[i] = divide_part(context_, *open[i].part, params_, probe_report_.plan);
+                error[i] = predicted_error(build, open[i]);
+                if (error[i] > build.in.params.max_error)
+                    divided[i] = divide_part(build.in.context, *open[i].part, build.in.params,
+                                             build.out.probe_report.plan);
             }
         });
-        set_ray_scales(divided);
+        set_ray_scales(build.in, divided);
         std::vector<FittedLeaf> next;
         for (std::size_t i = 0; i < open.size(); ++i) {
             const FittedLeaf& leaf = open[i];
-            if (!(error[i] > params_.max_error)) {
-                if (!params_.estimates) leaves_[leaf.leaf].predicted = error[i];
+            if (!(error[i] > build.in.params.max_error)) {
+                if (!build.in.params.estimates) build.out.leaves[leaf.leaf].predicted = error[i];
                 continue;
             }
             for (std::size_t h = 0; h < leaf.part->node.size(); ++h)
-                nodes_[leaf.part->node[h]].mesh.facets[leaf.part->node_facet[h]] = {kNone, kNone, kNone};
-            --projected_count_;
-            const Id first_leaf = static_cast<Id>(leaves_.size());
-            append(leaves_[leaf.leaf].facet, leaf_cell_[leaf.leaf], divided[i]);
+                build.out.nodes[leaf.part->node[h]].mesh.facets[leaf.part->node_facet[h]] = {kNone, kNone,
+                                                                                             kNone};
+            --build.out.projected_count;
+            const Id first_leaf = static_cast<Id>(build.out.leaves.size());
+            append_facet(build, build.out.leaves[leaf.leaf].facet, build.caches.leaf_cell[leaf.leaf],
+                         divided[i]);
             for (std::size_t p = 0; p < divided[i].parts.size(); ++p) {
                 if (divided[i].parts[p].method != LeafMethod::kProjected) continue;
                 next.push_back({static_cast<Id>(first_leaf + p), &divided[i].parts[p]});
-                if (params_.fit) fit_alone(next.back(), nodes_);
+                if (build.in.params.fit) fit_alone(next.back(), build.out.nodes);
             }
         }
         open = std::move(next);
+    }
+}
+
+}  // namespace
+
+/// So many at a time, so that what was probed for their parts takes little room.
+void divide_by_error(PathBuild& build, std::span<const FittedLeaf> open) {
+    constexpr std::size_t kBatch = 1024;
+    if (std::isinf(build.in.params.max_error)) return;
+    for (std::size_t first = 0; first < open.size(); first += kBatch) {
+        const auto batch = open.subspan(first, std::min(kBatch, open.size() - first));
+        divide_batch_by_error(build, {batch.begin(), batch.end()});
     }
 }
 

@@ -6,7 +6,6 @@
 #include <limits>
 #include <span>
 
-#include "paths/facets/film_reach.h"
 #include "paths/facets/one_history.h"
 #include "paths/probe/probe_cache.h"
 #include "paths/probe/same_histories.h"
@@ -310,6 +309,28 @@ DividedFacet Divider::divide_on(const FacetPart& part) {
 }
 
 }  // namespace
+
+bool may_reach_film(const std::array<Vec3, 3>& screen, const Vec2& film) {
+    constexpr double kMargin = 1;
+    bool left = true, right = true, below = true, above = true, behind = true;
+    for (const Vec3& s : screen) {
+        left = left && s.x <= -kMargin * s.z;
+        right = right && s.x >= (film.x + kMargin) * s.z;
+        below = below && s.y <= -kMargin * s.z;
+        above = above && s.y >= (film.y + kMargin) * s.z;
+        behind = behind && !(s.z > 0);
+    }
+    return !(left || right || below || above || behind);
+}
+
+double screen_area(const std::array<Vec3, 3>& screen) {
+    const auto behind = [](const Vec3& s) { return !(s.z > 0); };
+    if (std::all_of(screen.begin(), screen.end(), behind)) return 0;
+    if (std::any_of(screen.begin(), screen.end(), behind)) return std::numeric_limits<double>::infinity();
+    const auto pixel = [&](std::size_t k) { return Vec2(screen[k]) / screen[k].z; };
+    const Vec2 b = pixel(1) - pixel(0), c = pixel(2) - pixel(0);
+    return 0.5 * std::fabs(b.x * c.y - b.y * c.x);
+}
 
 DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet, const DivideParams& params,
                           const ProbePlan& plan) {

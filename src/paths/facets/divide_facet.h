@@ -5,7 +5,7 @@
 #include <deque>
 #include <vector>
 
-#include "paths/facets/facet_paths.h"
+#include "paths/facets/path_builder.h"
 
 namespace trilens {
 
@@ -81,6 +81,15 @@ inline Vec3 child_weights(const Vec3& weights, int child) {
 /// Paths this much fainter than followed at the centre are followed elsewhere, so that one that is just above
 /// the limit at the centre is found there too.
 inline constexpr double kFainter = 1.0 / 8;
+
+/// False where all of the triangle lies off one side of a film of that size (pixels; its low corner at the
+/// origin), or behind the eye; true else, and by a pixel more on all sides. Homogeneous screen positions: a
+/// triangle may pass through the eye's plane.
+bool may_reach_film(const std::array<Vec3, 3>& screen, const Vec2& film);
+
+/// The area of a triangle of homogeneous screen positions, in square pixels: infinite where the eye's plane
+/// passes through it, 0 where all of it lies behind the eye.
+double screen_area(const std::array<Vec3, 3>& screen);
 
 /// As far as the plan finds it worth it.
 DividedFacet divide_facet(const ProbeContext& context, const FacetToDivide& facet, const DivideParams& params,

@@ -5,7 +5,6 @@
 
 #include "base/util/parallel.h"
 #include "paths/facets/fit_linear.h"
-#include "paths/facets/node_corner.h"
 
 namespace trilens {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "paths/facets/divide_facet.h"
-#include "paths/facets/facet_paths.h"
+#include "paths/facets/optic_paths.h"
 
 namespace trilens {
 

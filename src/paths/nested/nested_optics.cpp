@@ -121,9 +121,9 @@ NestedOptic::NestedOptic(const NestedStage& stage, std::vector<Id> chain, Id opt
             return nested->may_cover(seen, low, high);
         };
     }
-    paths_ = std::make_unique<OpticPaths>(
-        ProbeContext{&world_, optic, stage.optics[optic].surface, make_camera()}, own, views_, divide);
-    cover_ = NestedCover(paths_->outline(), unfolded_facets());
+    builder_ = paths_over_views(ProbeContext{&world_, optic, stage.optics[optic].surface, make_camera()}, own,
+                                views_, divide);
+    cover_ = NestedCover(builder_->paths().outline, unfolded_facets());
     if (deeper_) deeper_->set_room(cover_.area());
 }
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "paths/facets/facet_paths.h"
+#include "paths/facets/path_builder.h"
 #include "paths/nested/mirror_chain.h"
 #include "paths/nested/nested_cover.h"
 #include "shade/optic_weights.h"
@@ -89,7 +89,7 @@ class NestedOptic {
     Id optic() const { return optic_; }
     const std::vector<Id>& chain() const { return chain_; }
     const NestedCover& cover() const { return cover_; }
-    OpticPaths& paths() { return *paths_; }
+    PathBuilder& builder() { return *builder_; }
     /// What is seen in it; null where nothing is looked for: it is glass, or paths end there.
     NestedOptics* deeper() { return deeper_.get(); }
     const SurfaceGrid& grid() const { return *stage_.optics[optic_].grid; }
@@ -114,7 +114,7 @@ class NestedOptic {
     std::vector<std::optional<ChainRay>> images_;
     std::vector<CornerView> views_;  // per corner; w = 0: no image
     std::unique_ptr<NestedOptics> deeper_;
-    std::unique_ptr<OpticPaths> paths_;
+    std::optional<PathBuilder> builder_;
     NestedCover cover_;
 };
 

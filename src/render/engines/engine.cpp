@@ -10,25 +10,20 @@
 
 namespace trilens {
 
-FacetViews make_views(const World& world, const FrameParams& frame, const EngineChoice& engine,
-                      const Warn& warn) {
+std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
+                                    const Warn& warn) {
     prepare_shadows(world);
     if (engine.engine == Engine::kLimitTruth) {
         CameraRays camera = make_camera_rays(world.scene, frame.camera);
         warn_of_unsure_media(world, camera_media_of(world, camera), warn);
-        return make_limit_views(world, std::move(camera));
+        return make_limit_viewer(world, std::move(camera));
     }
     FrameParams params = frame;
     if (engine.engine == Engine::kEnvironment || engine.engine == Engine::kPlanar)
         params.rays = CornerRays::kInterpolated;
     Frame placed = make_frame(world, params, warn);
     warn_of_unsure_media(world, placed.camera_media, warn);
-    return make_facet_views(world, std::move(placed), engine);
-}
-
-Viewer make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
-                   const Warn& warn) {
-    return make_views(world, frame, engine, warn).viewer;
+    return make_facet_viewer(world, std::move(placed), engine);
 }
 
 std::string engine_name(Engine engine) {

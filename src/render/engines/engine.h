@@ -1,7 +1,8 @@
 // The engines behind one seam: each fills in what every sample shows.
 #pragma once
 
-#include <functional>
+#include <memory>
+#include <span>
 
 #include "base/raymesh/sample_grid.h"
 #include "render/frame/fragment_key.h"
@@ -11,34 +12,36 @@
 
 namespace trilens {
 
-/// Replaces `views` by what each sample of the grid shows.
-using Viewer = std::function<void(const SampleGrid& grid, SampleViews& views)>;
+/// Shows a world through one camera by one engine. Facets are worked out when a view first needs them and are
+/// kept: what a sample shows does not depend on what was viewed before. One thread at a time.
+class Viewer {
+  public:
+    virtual ~Viewer() = default;
 
-/// A viewer, and what it has of facets. The limit truth has none: no `paths` and no `keys`.
-struct FacetViews {
-    Viewer viewer;
-    /// The paths over each optic worked out so far: SampleView::leaf and PathEnd::node count in them.
-    std::function<const OpticPaths&(std::size_t optic)> paths;
-    const RayMesh* camera = nullptr;  // that SampleView::camera_facet counts in
-    // The exact rays of a camera that is not linear; null: those of `camera` are.
-    const CameraModel* exact_camera = nullptr;
+    /// Replaces `views` by what each sample of the grid shows.
+    virtual void view(const SampleGrid& grid, SampleViews& views) = 0;
 
-    /// Which samples make fragments: set for engines that project without outlines. `find`: see
-    /// find_fragment_keys(); `of`: the key of a sample of the viewer's.
-    struct Keys {
-        std::function<void(const SampleGrid& grid, std::span<FragmentKey> keys)> find;
-        std::function<FragmentKey(const SampleViews& views, const SampleView& view)> of;
-    };
-    Keys keys;
+    /// Whether it shows facets; the limit truth has none.
+    virtual bool has_facets() const = 0;
+    /// The paths over an optic worked out so far: SampleView::leaf and PathEnd::node count in them. Of
+    /// viewers with facets.
+    virtual const OpticPaths& paths(std::size_t optic) const = 0;
+    /// That SampleView::camera_facet counts in; null: the camera has exact rays alone.
+    virtual const RayMesh* camera_mesh() const = 0;
+    /// The exact rays of a camera that is not linear; null: those of camera_mesh() are.
+    virtual const CameraModel* exact_camera() const = 0;
+
+    /// Whether it can tell which samples make fragments: engines that project, without outlines.
+    virtual bool has_keys() const = 0;
+    /// See find_fragment_keys(). Of viewers with keys.
+    virtual void find_keys(const SampleGrid& grid, std::span<FragmentKey> keys) = 0;
+    /// The key of a sample of its own views.
+    virtual FragmentKey key_of(const SampleViews& views, const SampleView& view) const = 0;
 };
 
-/// Views of `world`, which must outlive them. Throws InputError where the camera cannot show what the scene
+/// A viewer of `world`, which must outlive it. Throws InputError where the camera cannot show what the scene
 /// has, or the optics have too many facets to hold.
-FacetViews make_views(const World& world, const FrameParams& frame, const EngineChoice& engine,
-                      const Warn& warn);
-
-/// Its viewer alone.
-Viewer make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
-                   const Warn& warn);
+std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
+                                    const Warn& warn);
 
 }  // namespace trilens

@@ -40,25 +40,24 @@ DrawMesh watched(const WatchMesh& watch, const DrawMesh& draw_mesh) {
 }
 
 /// All facet engines: the projectors and Embree on the same rays.
-struct FacetViewer {
-    const World* world = nullptr;
-    Frame frame;
-    DrawMesh draw_first;                // objects, for what lies before what
-    DrawMesh draw_objects;              // objects, as the engine shows them
-    DrawMesh draw_paths;                // the same, for the rays that leave optics
-    std::vector<DrawMesh> draw_optics;  // each optic's facets
-    std::vector<SampleGrid> windows;    // where they may be seen
-    bool redraws_direct = false;        // draw_objects is another engine than draw_first
-    std::optional<NestedStage> stage;
-    std::vector<std::unique_ptr<NestedOptics>> nested;  // per optic; null: it has none
-    std::vector<std::unique_ptr<OpticPaths>> paths;     // per optic
-    OpticRims rims;
+class FacetViewer : public Viewer {
+  public:
+    FacetViewer(const World& world, Frame frame, const EngineChoice& engine, const WatchMesh& watch);
 
-    void operator()(const SampleGrid& grid, SampleViews& views) const;
+    void view(const SampleGrid& grid, SampleViews& views) override;
+    bool has_facets() const override { return true; }
+    const OpticPaths& paths(std::size_t optic) const override { return paths_[optic].paths(); }
+    const RayMesh* camera_mesh() const override { return &frame_.camera.mesh; }
+    const CameraModel* exact_camera() const override { return frame_.camera.model.get(); }
+    bool has_keys() const override { return has_keys_; }
+    void find_keys(const SampleGrid& grid, std::span<FragmentKey> keys) override;
+    FragmentKey key_of(const SampleViews& views, const SampleView& view) const override;
 
   private:
     /// Along the camera's rays as far as its far plane.
-    double reach() const { return frame.camera.far_depth - frame.camera.near_depth; }
+    double reach() const { return frame_.camera.far_depth - frame_.camera.near_depth; }
+    void make_paths(const EngineChoice& engine);
+    void choose_drawers(const EngineChoice& engine, const WatchMesh& watch);
     void view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     bool comes_first(std::size_t index, const Hit& hit, const SampleViews& views,
                      const SampleView& view) const;
@@ -71,6 +70,22 @@ struct FacetViewer {
                     std::vector<PathEnds>& ends) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void describe_optic(std::size_t index, const Hit& hit, SampleView& view, OpticView& on_optic) const;
+
+    const World& world_;
+    Frame frame_;
+    DrawMesh draw_first_;                // objects, for what lies before what
+    DrawMesh draw_objects_;              // objects, as the engine shows them
+    DrawMesh draw_paths_;                // the same, for the rays that leave optics
+    std::vector<DrawMesh> draw_optics_;  // each optic's facets
+    std::vector<SampleGrid> windows_;    // where they may be seen
+    bool redraws_direct_ = false;        // draw_objects_ is another engine than draw_first_
+    bool has_keys_ = false;
+    OpticRims rims_;
+    std::optional<NestedStage> stage_;
+
+    // What views work out, and later ones find.
+    std::vector<std::unique_ptr<NestedOptics>> nested_;  // per optic; null: it has none
+    std::vector<PathBuilder> paths_;                     // per optic
 };
 
 /// As comes_before has it.
@@ -84,7 +99,7 @@ Vec3 corner_weights(const Hit& hit) {
 
 void FacetViewer::describe_optic(std::size_t index, const Hit& hit, SampleView& view,
                                  OpticView& on_optic) const {
-    const SurfaceGrid& grid = frame.optics[index].facets->grid();
+    const SurfaceGrid& grid = frame_.optics[index].facets->grid();
     view.hit = {};
     view.depth = hit.t;
     view.optic = static_cast<Id>(index);
@@ -110,13 +125,13 @@ void FacetViewer::describe_optic(std::size_t index, const Hit& hit, SampleView& 
 /// Starts the views: the camera's rays, and what they see first of the objects.
 void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const {
     std::vector<Hit> hits(grid.size());
-    draw_first(frame.camera.mesh, owned, grid, hits);
+    draw_first_(frame_.camera.mesh, owned, grid, hits);
     // Samples of no facet stay as they are made here; all others are set below.
     if (owned.sample.size() < grid.size())
         views.reset(grid.size());
     else
         views.restart(grid.size());
-    for_each_camera_ray(frame.camera.mesh, owned, grid, [&](Id s, Id facet, const Ray& ray) {
+    for_each_camera_ray(frame_.camera.mesh, owned, grid, [&](Id s, Id facet, const Ray& ray) {
         SampleView& view = views.samples[s];
         view = {};
         view.ray = ray;
@@ -131,19 +146,19 @@ void FacetViewer::view_objects(const FacetSamples& owned, const SampleGrid& grid
 /// the sample shows so far.
 bool FacetViewer::comes_first(std::size_t index, const Hit& hit, const SampleViews& views,
                               const SampleView& view) const {
-    const SurfaceGrid& grid = frame.optics[index].facets->grid();
-    const int own = coincident_order(world->optics[index].mirror,
+    const SurfaceGrid& grid = frame_.optics[index].facets->grid();
+    const int own = coincident_order(world_.optics[index].mirror,
                                      faces_front(grid, grid.facets[hit.triangle], view.ray.direction));
     const int other =
-        coincident_order(world->optics[view.optic].mirror, views.on_optic(view).incidence.front);
+        coincident_order(world_.optics[view.optic].mirror, views.on_optic(view).incidence.front);
     return own < other || (own == other && index < view.optic);
 }
 
 /// Whether the ray comes to a glass body's surface from inside: an object on which the body lies is seen
 /// then.
 bool FacetViewer::leaves_body(std::size_t index, const Hit& hit, const Ray& ray) const {
-    const SurfaceGrid& grid = frame.optics[index].facets->grid();
-    return !world->optics[index].mirror && !faces_front(grid, grid.facets[hit.triangle], ray.direction);
+    const SurfaceGrid& grid = frame_.optics[index].facets->grid();
+    return !world_.optics[index].mirror && !faces_front(grid, grid.facets[hit.triangle], ray.direction);
 }
 
 /// What a sample shows by now that it meets the optic, too.
@@ -151,18 +166,18 @@ void FacetViewer::meet_optic(std::size_t index, const Hit& hit, std::size_t samp
                              SampleViews& views) const {
     SampleView& view = views.samples[sample];
     const bool sees_optic = view.optic != kNone, sees_object = view.hit.seen();
-    if (rims.limit != kAnyError && (sees_optic || sees_object)) {
+    if (rims_.limit != kAnyError && (sees_optic || sees_object)) {
         const MetSurface shown{view.optic, view.facet, view.depth};
-        view.unsure = view.unsure || may_change_order({*world, frame, rims, reach()}, view.ray,
+        view.unsure = view.unsure || may_change_order({world_, frame_, rims_, reach()}, view.ray,
                                                       {static_cast<Id>(index), hit.triangle, hit.t}, shown);
     }
     if (sees_object && touches(hit.t, view.depth) && leaves_body(index, hit, view.ray)) return;
     if (sees_optic || sees_object) {
         const Id other =
-            sees_optic ? world->optics[view.optic].mesh : world->objects.object[view.hit.triangle];
+            sees_optic ? world_.optics[view.optic].mesh : world_.objects.object[view.hit.triangle];
         if (sees_optic && touches(hit.t, view.depth)) {
             if (!comes_first(index, hit, views, view)) return;
-        } else if (!comes_before(hit.t, world->optics[index].mesh, view.depth, other)) {
+        } else if (!comes_before(hit.t, world_.optics[index].mesh, view.depth, other)) {
             return;
         }
     }
@@ -171,13 +186,13 @@ void FacetViewer::meet_optic(std::size_t index, const Hit& hit, std::size_t samp
 
 void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const SampleGrid& grid,
                              SampleViews& views) const {
-    const SampleGrid part = part_in(grid, windows[index]);
+    const SampleGrid part = part_in(grid, windows_[index]);
     if (part.size() == 0) return;
     std::vector<Hit> hits(part.size());
     if (part.size() == grid.size())
-        draw_optics[index](frame.camera.mesh, owned, part, hits);
+        draw_optics_[index](frame_.camera.mesh, owned, part, hits);
     else
-        draw_optics[index](frame.camera.mesh, rasterize_facets(frame.camera.mesh, part), part, hits);
+        draw_optics_[index](frame_.camera.mesh, rasterize_facets(frame_.camera.mesh, part), part, hits);
     const std::size_t row = hits.size() / part.runs();
     parallel_for(part.runs(), 1024 / row, [&](std::size_t from, std::size_t to) {
         for (std::size_t y = from; y < to; ++y) {
@@ -192,24 +207,24 @@ void FacetViewer::view_optic(std::size_t index, const FacetSamples& owned, const
 
 /// Where facets end elsewhere than the surface, what that shows; and what of the outlines is left as it is.
 void FacetViewer::view_rims(const SampleGrid& grid, SampleViews& views) const {
-    if (rims.limit != kAnyError) {
-        decide_rims({*world, frame, rims, reach()}, grid, views);
-        views.outline_error = rims.error;
+    if (rims_.limit != kAnyError) {
+        decide_rims({world_, frame_, rims_, reach()}, grid, views);
+        views.outline_error = rims_.error;
     }
     if (!grid.chosen.empty()) return;  // an area is that of all pixels
-    for (std::size_t i = 0; i < rims.edges.size(); ++i) {
+    for (std::size_t i = 0; i < rims_.edges.size(); ++i) {
         const auto shows = [&](const Vec2& at) {
             const std::size_t sample = grid.first_sample(static_cast<int>(at.x), static_cast<int>(at.y));
             return views.samples[sample].optic == i;
         };
-        views.outline_pixels += outline_area(rims.edges[i], rims.limit, grid, shows);
+        views.outline_pixels += outline_area(rims_.edges[i], rims_.limit, grid, shows);
     }
 }
 
 /// Where no optic is first, what the engine itself shows of the objects.
 void FacetViewer::redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const {
     std::vector<Hit> hits(grid.size());
-    draw_objects(frame.camera.mesh, owned, grid, hits);
+    draw_objects_(frame_.camera.mesh, owned, grid, hits);
     for (std::size_t s = 0; s < hits.size(); ++s) {
         SampleView& view = views.samples[s];
         if (view.optic != kNone) continue;
@@ -221,90 +236,86 @@ void FacetViewer::redraw_direct(const FacetSamples& owned, const SampleGrid& gri
 /// The ends of samples that no facet speaks for, by the optic that their exact rays meet first.
 void FacetViewer::trace_each(std::span<const Id> samples, const SampleGrid& grid, SampleViews& views,
                              std::vector<PathEnds>& ends) const {
-    const auto met = decide_traced({*world, frame, rims, reach()}, grid, samples, views);
-    std::vector<std::vector<TracedSample>> of_optic(frame.optics.size());
+    const auto met = decide_traced({world_, frame_, rims_, reach()}, grid, samples, views);
+    std::vector<std::vector<TracedSample>> of_optic(frame_.optics.size());
     for (std::size_t i = 0; i < samples.size(); ++i)
         of_optic[views.samples[samples[i]].optic].push_back({samples[i], met[i]});
     for (std::size_t i = 0; i < of_optic.size(); ++i)
-        trace_samples({*world, static_cast<Id>(i), paths[i]->context().camera, grid}, of_optic[i], views,
+        trace_samples({world_, static_cast<Id>(i), paths_[i].context().camera, grid}, of_optic[i], views,
                       ends[i]);
 }
 
-void FacetViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
-    const FacetSamples owned = rasterize_facets(frame.camera.mesh, grid);
+void FacetViewer::view(const SampleGrid& grid, SampleViews& views) {
+    const FacetSamples owned = rasterize_facets(frame_.camera.mesh, grid);
     view_objects(owned, grid, views);
-    set_initial_media(frame.camera_media, views);
-    for (std::size_t i = 0; i < frame.optics.size(); ++i) view_optic(i, owned, grid, views);
+    set_initial_media(frame_.camera_media, views);
+    for (std::size_t i = 0; i < frame_.optics.size(); ++i) view_optic(i, owned, grid, views);
     view_rims(grid, views);
-    if (redraws_direct) redraw_direct(owned, grid, views);
-    count_from_eye(frame.camera, views.samples);
+    if (redraws_direct_) redraw_direct(owned, grid, views);
+    count_from_eye(frame_.camera, views.samples);
     std::vector<PathEnds> ends;
-    ends.reserve(frame.optics.size());
+    ends.reserve(frame_.optics.size());
     std::vector<Id> traced;
-    for (std::size_t i = 0; i < frame.optics.size(); ++i)
-        ends.push_back(draw_optic_paths({*world, static_cast<Id>(i), draw_paths, frame.optics[i],
-                                         nested[i].get(), grid, part_in(grid, windows[i])},
-                                        *paths[i], views, traced));
+    for (std::size_t i = 0; i < frame_.optics.size(); ++i)
+        ends.push_back(draw_optic_paths({world_, static_cast<Id>(i), draw_paths_, frame_.optics[i],
+                                         nested_[i].get(), grid, part_in(grid, windows_[i])},
+                                        paths_[i], views, traced));
     trace_each(traced, grid, views, ends);
     collect_ends(std::move(ends), views);
 }
 
-}  // namespace
-
-Viewer make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine) {
-    return make_facet_views(world, std::move(frame), engine).viewer;
+void FacetViewer::make_paths(const EngineChoice& engine) {
+    const bool follows = follows_paths(engine.engine);
+    if (follows) stage_ = make_nested_stage(world_, frame_);
+    for (std::size_t i = 0; i < frame_.optics.size(); ++i) {
+        nested_.push_back(stage_ ? make_nested_optics(world_, frame_, *stage_, i) : nullptr);
+        paths_.push_back(follows ? make_optic_paths(world_, frame_, i, nested_[i].get())
+                                 : make_approximate_paths(world_, frame_, i, engine.engine));
+    }
+    const bool has_limit = frame_.max_error > 0 && follows;
+    rims_ = make_rims(world_, frame_, has_limit ? frame_.max_error : kAnyError);
 }
 
-FacetViews make_facet_views(const World& world, Frame frame, const EngineChoice& engine,
-                            const WatchMesh& watch) {
-    auto viewer = std::make_shared<FacetViewer>();
-    viewer->world = &world;
-    viewer->frame = std::move(frame);
-    if (follows_paths(engine.engine)) viewer->stage = make_nested_stage(world, viewer->frame);
-    for (std::size_t i = 0; i < viewer->frame.optics.size(); ++i) {
-        viewer->nested.push_back(viewer->stage ? make_nested_optics(world, viewer->frame, *viewer->stage, i)
-                                               : nullptr);
-        viewer->paths.push_back(follows_paths(engine.engine)
-                                    ? make_optic_paths(world, viewer->frame, i, viewer->nested[i].get())
-                                    : make_approximate_paths(world, viewer->frame, i, engine.engine));
-    }
-    const bool has_limit = viewer->frame.max_error > 0 && follows_paths(engine.engine);
-    viewer->rims = make_rims(world, viewer->frame, has_limit ? viewer->frame.max_error : kAnyError);
+void FacetViewer::choose_drawers(const EngineChoice& engine, const WatchMesh& watch) {
     const bool traces = engine.engine == Engine::kFacetsTruth;
-    viewer->draw_first =
-        traces ? trace_through(object_tracer(world)) : project_through(prepared_objects(world));
-    viewer->draw_objects = viewer->draw_first;
-    for (const FramedOptic& optic : viewer->frame.optics) {
-        viewer->windows.push_back(window_with_rim(viewer->rims, viewer->windows.size(),
-                                                  optic_window(optic, viewer->frame.camera),
-                                                  viewer->frame.camera.film));
-        viewer->draw_optics.push_back(traces ? trace_through(optic.facets->tracer())
-                                             : project_through(optic.facets->prepared()));
+    draw_first_ = traces ? trace_through(object_tracer(world_)) : project_through(prepared_objects(world_));
+    draw_objects_ = draw_first_;
+    for (const FramedOptic& optic : frame_.optics) {
+        windows_.push_back(
+            window_with_rim(rims_, windows_.size(), optic_window(optic, frame_.camera), frame_.camera.film));
+        draw_optics_.push_back(traces ? trace_through(optic.facets->tracer())
+                                      : project_through(optic.facets->prepared()));
     }
     if (engine.engine == Engine::kClassic) {
-        viewer->draw_objects = classic_through(prepared_objects(world), engine.classic);
-        viewer->redraws_direct = true;
+        draw_objects_ = classic_through(prepared_objects(world_), engine.classic);
+        redraws_direct_ = true;
     }
-    viewer->draw_paths = watch ? watched(watch, viewer->draw_objects) : viewer->draw_objects;
-    FacetViews views{[viewer](const SampleGrid& grid, SampleViews& seen) { (*viewer)(grid, seen); },
-                     [viewer](std::size_t optic) -> const OpticPaths& { return *viewer->paths[optic]; },
-                     &viewer->frame.camera.mesh,
-                     viewer->frame.camera.model.get(),
-                     {}};
-    if (projects(engine.engine) && engine.engine != Engine::kClassic)
-        views.keys = {[viewer](const SampleGrid& grid, std::span<FragmentKey> keys) {
-                          find_fragment_keys({*viewer->world, viewer->frame, viewer->windows, viewer->paths,
-                                              viewer->nested, viewer->rims},
-                                             grid, keys);
-                      },
-                      [viewer](const SampleViews& seen, const SampleView& view) {
-                          const Id face =
-                              view.optic == kNone
-                                  ? kNone
-                                  : viewer->frame.optics[view.optic].facets->grid().facet_face[view.facet];
-                          return fragment_key(seen, view, face);
-                      }};
-    return views;
+    draw_paths_ = watch ? watched(watch, draw_objects_) : draw_objects_;
+}
+
+FacetViewer::FacetViewer(const World& world, Frame frame, const EngineChoice& engine, const WatchMesh& watch)
+    : world_(world),
+      frame_(std::move(frame)),
+      has_keys_(projects(engine.engine) && engine.engine != Engine::kClassic) {
+    make_paths(engine);
+    choose_drawers(engine, watch);
+}
+
+void FacetViewer::find_keys(const SampleGrid& grid, std::span<FragmentKey> keys) {
+    find_fragment_keys({world_, frame_, windows_, paths_, nested_, rims_}, grid, keys);
+}
+
+FragmentKey FacetViewer::key_of(const SampleViews& views, const SampleView& view) const {
+    const Id face =
+        view.optic == kNone ? kNone : frame_.optics[view.optic].facets->grid().facet_face[view.facet];
+    return fragment_key(views, view, face);
+}
+
+}  // namespace
+
+std::unique_ptr<Viewer> make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine,
+                                          const WatchMesh& watch) {
+    return std::make_unique<FacetViewer>(world, std::move(frame), engine, watch);
 }
 
 }  // namespace trilens

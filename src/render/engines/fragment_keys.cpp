@@ -142,7 +142,7 @@ void KeyFinder::set_apart_rims() {
 void KeyFinder::follow_optic(std::size_t index, std::span<FragmentKey> keys) const {
     const SampleGrid part = part_in(grid_, params_.windows[index]);
     if (part.size() == 0) return;
-    OpticPaths& paths = *params_.paths[index];
+    const OpticPaths& paths = params_.paths[index].paths();
     const FramedOptic& framed = params_.frame.optics[index];
     std::vector<Id> owner(part.size(), kNone);
     std::vector<FragmentKey> joint(part.size(), kAlone);
@@ -158,30 +158,30 @@ void KeyFinder::follow_optic(std::size_t index, std::span<FragmentKey> keys) con
             const FirstSeen& first = first_[there + x];
             if (first.optic != index || alone_[there + x]) continue;
             const std::size_t s = here + x;
-            owner[s] = paths.is_on_film() ? paths.film_facet(part.position(s))
+            owner[s] = paths.is_on_film() ? film_facet(paths.window, part.position(s))
                        : framed.film_grid ? framed.mesh_facet(first.seen.triangle, part.position(s))
                                           : first.seen.triangle;
             joint[s] = key_of_optic(static_cast<Id>(index), face[first.seen.triangle]);
         }
     });
 
-    const FacetSamples owned = group_by_facet(owner, paths.outline().facets.size());
+    const FacetSamples owned = group_by_facet(owner, paths.outline.facets.size());
     const std::vector<Id> seen = seen_facets(owned);
     if (seen.empty()) return;
     if (params_.nested[index]) params_.nested[index]->build();
-    paths.prepare(seen);
+    params_.paths[index].prepare(seen);
     std::vector<Id> leaf = leaves_of_samples(paths, owned, part);
     parallel_for(leaf.size(), 4096, [&](std::size_t from, std::size_t to) {
         for (std::size_t s = from; s < to; ++s) {
             if (leaf[s] == kNone) continue;
-            const PathLeaf& shown = paths.leaves()[leaf[s]];
+            const PathLeaf& shown = paths.leaves[leaf[s]];
             if (shown.method != LeafMethod::kTraced && !shown.layered) continue;
             leaf[s] = kNone;
             joint[s] = kAlone;
         }
     });
     HistoryKeys histories({paths, part, leaf});
-    for (const Id node : paths.nodes_in_order()) histories.join(prepared_objects(params_.world), node, joint);
+    for (const Id node : nodes_in_order(paths)) histories.join(prepared_objects(params_.world), node, joint);
     for_each_run([&](std::size_t here, std::size_t there) {
         for (std::size_t x = 0; x < run; ++x)
             if (first_[there + x].optic == index) keys[there + x] = joint[here + x];

@@ -20,7 +20,7 @@ struct FragmentKeysParams {
     const World& world;
     const Frame& frame;
     const std::vector<SampleGrid>& windows;                    // where each optic may be seen
-    const std::vector<std::unique_ptr<OpticPaths>>& paths;     // per optic
+    std::vector<PathBuilder>& paths;                           // per optic
     const std::vector<std::unique_ptr<NestedOptics>>& nested;  // per optic; null: it has none
     const OpticRims& rims;
 };

@@ -72,7 +72,7 @@ std::vector<std::size_t> first_ends(const FacetSamples& owned, const std::vector
 
 /// Whether what a sample sees lies before the next optic or on it: the path ends there.
 bool HistoryDrawer::ends_before_next(Id index, Id facet, const Hit& hit, const Vec3& share) const {
-    const PathNode& node = paths_.nodes()[index];
+    const PathNode& node = paths_.nodes[index];
     const IdTriple& corner = node.mesh.facets[facet];
     double next = 0;
     for (int k = 0; k < 3; ++k) next += share[k] * node.next[corner[static_cast<std::size_t>(k)]];
@@ -84,14 +84,14 @@ bool HistoryDrawer::ends_before_next(Id index, Id facet, const Hit& hit, const V
     // ends.
     if (node.rests[facet] && (hit.t - next) * length(ray.direction) <= size_at_next(node, facet)) return true;
     const Vec3 place = ray.origin + hit.t * ray.direction;
-    return std::any_of(paths_.nodes().begin(), paths_.nodes().end(), [&](const PathNode& other) {
+    return std::any_of(paths_.nodes.begin(), paths_.nodes.end(), [&](const PathNode& other) {
         return other.parent == index && lies_where_rays_start(other, node.leaves[facet], place);
     });
 }
 
 /// Which of the owned samples end here; those whose path goes on are marked.
 std::vector<char> HistoryDrawer::find_ends(Id index, const FacetSamples& owned, std::span<const Hit> hits) {
-    const PathNode& node = paths_.nodes()[index];
+    const PathNode& node = paths_.nodes[index];
     std::vector<char>& goes_on = goes_on_[index];
     goes_on.resize(grid_.size(), 0);
     std::vector<char> is_end(owned.sample.size(), 0);
@@ -114,7 +114,7 @@ std::vector<char> HistoryDrawer::find_ends(Id index, const FacetSamples& owned, 
 
 /// Sets the end of a sample over a facet of the node, all but its steps.
 void HistoryDrawer::set_end(Id index, Id facet, const Vec3& share, PathEnd& end) const {
-    const PathNode& node = paths_.nodes()[index];
+    const PathNode& node = paths_.nodes[index];
     const IdTriple& corner = node.mesh.facets[facet];
     end.path = node.path;
     end.principal = node.principal[facet];
@@ -135,7 +135,7 @@ void HistoryDrawer::set_end(Id index, Id facet, const Vec3& share, PathEnd& end)
 }
 
 void HistoryDrawer::draw(Id index, PathEnds& out) {
-    const PathNode& node = paths_.nodes()[index];
+    const PathNode& node = paths_.nodes[index];
     const std::span<const char> came =
         node.parent == kNone ? std::span<const char>() : std::span<const char>(goes_on_[node.parent]);
     const FacetSamples owned = group_by_facet(owners_of_node(node, leaf_, came), node.mesh.facets.size());
@@ -146,7 +146,7 @@ void HistoryDrawer::draw(Id index, PathEnds& out) {
 
     // The history, once for all its ends.
     const std::size_t first_step = out.steps.size();
-    for (Id n = index; n != kNone; n = paths_.nodes()[n].parent) out.steps.push_back(paths_.nodes()[n].step);
+    for (Id n = index; n != kNone; n = paths_.nodes[n].parent) out.steps.push_back(paths_.nodes[n].step);
     std::reverse(out.steps.begin() + static_cast<std::ptrdiff_t>(first_step), out.steps.end());
 
     const std::vector<std::size_t> first_end = first_ends(owned, is_end, out.ends.size());

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/raymesh/sample_grid.h"
-#include "paths/facets/facet_paths.h"
+#include "paths/facets/optic_paths.h"
 #include "render/frame/views.h"
 
 namespace trilens {
@@ -32,7 +32,7 @@ class HistoryDrawer {
     /// `leaf`: per sample; kNone: it is not drawn. All must live longer.
     HistoryDrawer(const DrawMesh& draw_mesh, const OpticPaths& paths, const SampleGrid& grid,
                   const std::vector<Id>& leaf)
-        : draw_mesh_(draw_mesh), paths_(paths), grid_(grid), leaf_(leaf), goes_on_(paths.nodes().size()) {}
+        : draw_mesh_(draw_mesh), paths_(paths), grid_(grid), leaf_(leaf), goes_on_(paths.nodes.size()) {}
 
     /// Parents first.
     void draw(Id node, PathEnds& out);

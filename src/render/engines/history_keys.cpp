@@ -37,7 +37,7 @@ std::vector<Id> owners_of_node(const PathNode& node, const std::vector<Id>& leaf
 
 void HistoryKeys::join_facet(Id index, std::size_t facet, std::span<const Id> samples,
                              std::span<FragmentKey> keys) {
-    const PathNode& node = drawn_.paths.nodes()[index];
+    const PathNode& node = drawn_.paths.nodes[index];
     const FacetWeights weights = facet_weights(node.mesh, facet);
     if (weights.edge_on) return;
     const IdTriple& corner = node.mesh.facets[facet];
@@ -61,7 +61,7 @@ void HistoryKeys::join_facet(Id index, std::size_t facet, std::span<const Id> sa
 }
 
 void HistoryKeys::join(const PreparedScene& objects, Id index, std::span<FragmentKey> keys) {
-    const PathNode& node = drawn_.paths.nodes()[index];
+    const PathNode& node = drawn_.paths.nodes[index];
     const std::span<const char> came =
         node.parent == kNone ? std::span<const char>() : std::span<const char>(goes_on_[node.parent]);
     const FacetSamples owned =

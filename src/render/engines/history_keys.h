@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/raymesh/sample_grid.h"
-#include "paths/facets/facet_paths.h"
+#include "paths/facets/optic_paths.h"
 #include "projector/projector.h"
 #include "render/frame/fragment_key.h"
 
@@ -25,7 +25,7 @@ std::vector<Id> owners_of_node(const PathNode& node, const std::vector<Id>& leaf
 /// Finds what each sample sees at the end of each history, by bounds of where that lies.
 class HistoryKeys {
   public:
-    explicit HistoryKeys(const DrawnSamples& drawn) : drawn_(drawn), goes_on_(drawn.paths.nodes().size()) {}
+    explicit HistoryKeys(const DrawnSamples& drawn) : drawn_(drawn), goes_on_(drawn.paths.nodes.size()) {}
 
     /// Joins the node and what is seen to the keys of the samples that end there; of samples for which bounds
     /// do not tell, kAlone. Parents first.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/raymesh/rasterize.h"
+#include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "render/engines/first_surface.h"
 #include "render/engines/trace_samples.h"
@@ -20,23 +21,37 @@ struct Found {
     std::vector<Step> steps;
 };
 
-struct LimitViewer {
-    const World* world = nullptr;
-    CameraRays camera;
-    const PathWorld* paths = nullptr;
-    const Tracer* objects = nullptr;
-    CameraMedia camera_media;
+class LimitViewer : public Viewer {
+  public:
+    LimitViewer(const World& world, CameraRays camera)
+        : world_(world), camera_(std::move(camera)), camera_media_(camera_media_of(world, camera_)) {}
 
-    void operator()(const SampleGrid& grid, SampleViews& views) const;
+    void view(const SampleGrid& grid, SampleViews& views) override;
+    bool has_facets() const override { return false; }
+    const OpticPaths& paths(std::size_t) const override { has_none(); }
+    const RayMesh* camera_mesh() const override { return camera_.model ? nullptr : &camera_.mesh; }
+    const CameraModel* exact_camera() const override { return camera_.model.get(); }
+    bool has_keys() const override { return false; }
+    void find_keys(const SampleGrid&, std::span<FragmentKey>) override { has_none(); }
+    FragmentKey key_of(const SampleViews&, const SampleView&) const override { has_none(); }
 
   private:
+    [[noreturn]] static void has_none() {
+        check_failed("has_facets()", __FILE__, __LINE__, "the limit truth has neither facets nor keys");
+    }
     void view_sample(SampleView& view, OpticView& on_optic, const Media& around, Found& found) const;
+
+    const World& world_;
+    CameraRays camera_;
+    CameraMedia camera_media_;
+    const PathWorld& paths_ = path_world(world_);
+    const Tracer& objects_ = object_tracer(world_);
 };
 
 void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media& around,
                               Found& found) const {
-    const double reach = camera.far_depth - camera.near_depth;
-    const FirstSurface first = first_surface(*paths, *objects, view.ray, reach);
+    const double reach = camera_.far_depth - camera_.near_depth;
+    const FirstSurface first = first_surface(paths_, objects_, view.ray, reach);
     view.hit = first.object;
     if (view.hit.seen()) view.depth = view.hit.t;
     if (first.optic == kNone) return;
@@ -46,24 +61,24 @@ void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media
     on_optic = {};
     on_optic.uv = first.at.uv;
     on_optic.first_end = found.ends.size();
-    follow_sample(*world, {first.at, around}, view, {on_optic, found.ends, found.steps});
+    follow_sample(world_, {first.at, around}, view, {on_optic, found.ends, found.steps});
     on_optic.end_count = found.ends.size() - on_optic.first_end;
 }
 
-void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
+void LimitViewer::view(const SampleGrid& grid, SampleViews& views) {
     views.reset(grid.size());
     FacetSamples owned;
-    if (camera.model) {
-        owned = set_exact_rays(*camera.model, grid, views.samples);
+    if (camera_.model) {
+        owned = set_exact_rays(*camera_.model, grid, views.samples);
     } else {
-        owned = rasterize_facets(camera.mesh, grid);
-        for_each_camera_ray(camera.mesh, owned, grid, [&](Id s, Id facet, const Ray& ray) {
+        owned = rasterize_facets(camera_.mesh, grid);
+        for_each_camera_ray(camera_.mesh, owned, grid, [&](Id s, Id facet, const Ray& ray) {
             views.samples[s].ray = ray;
             views.samples[s].camera_facet = facet;
         });
     }
 
-    set_initial_media(camera_media, views);
+    set_initial_media(camera_media_, views);
     const std::size_t count = owned.sample.size();
     std::vector<Found> found((count + kSamplesPerTask - 1) / kSamplesPerTask);
     const auto samples_of = [&](std::size_t task) {
@@ -84,23 +99,13 @@ void LimitViewer::operator()(const SampleGrid& grid, SampleViews& views) const {
         views.ends.insert(views.ends.end(), found[task].ends.begin(), found[task].ends.end());
         views.steps.insert(views.steps.end(), found[task].steps.begin(), found[task].steps.end());
     }
-    count_from_eye(camera, views.samples);
+    count_from_eye(camera_, views.samples);
 }
 
 }  // namespace
 
-FacetViews make_limit_views(const World& world, CameraRays camera) {
-    auto viewer = std::make_shared<LimitViewer>();
-    viewer->world = &world;
-    viewer->camera_media = camera_media_of(world, camera);
-    viewer->camera = std::move(camera);
-    viewer->objects = &object_tracer(world);
-    viewer->paths = &path_world(world);
-    FacetViews views;
-    views.viewer = [viewer](const SampleGrid& grid, SampleViews& seen) { (*viewer)(grid, seen); };
-    views.camera = viewer->camera.model ? nullptr : &viewer->camera.mesh;
-    views.exact_camera = viewer->camera.model.get();
-    return views;
+std::unique_ptr<Viewer> make_limit_viewer(const World& world, CameraRays camera) {
+    return std::make_unique<LimitViewer>(world, std::move(camera));
 }
 
 }  // namespace trilens

@@ -1,11 +1,11 @@
-// Views of the exact surfaces: the limit truth.
+// Viewer of the exact surfaces: the limit truth.
 #pragma once
 
 #include "render/engines/engine.h"
 
 namespace trilens {
 
-/// Views that follow every sample's camera ray to the exact surface and on into the scene.
-FacetViews make_limit_views(const World& world, CameraRays camera);
+/// A viewer that follows every sample's camera ray to the exact surface and on into the scene.
+std::unique_ptr<Viewer> make_limit_viewer(const World& world, CameraRays camera);
 
 }  // namespace trilens

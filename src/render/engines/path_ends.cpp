@@ -18,18 +18,18 @@ std::vector<Id> seen_facets(const FacetSamples& owned) {
 std::vector<Id> leaves_of_samples(const OpticPaths& paths, const FacetSamples& owned,
                                   const SampleGrid& grid) {
     std::vector<Id> leaf(grid.size(), kNone);
-    parallel_for(paths.outline().facets.size(), 64, [&](std::size_t from, std::size_t to) {
+    parallel_for(paths.outline.facets.size(), 64, [&](std::size_t from, std::size_t to) {
         for (std::size_t f = from; f < to; ++f) {
             if (owned.of(f).empty()) continue;
             const Id facet = static_cast<Id>(f);
-            const FacetWeights weights = facet_weights(paths.outline(), f);
+            const FacetWeights weights = facet_weights(paths.outline, f);
             for (const Id s : owned.of(f)) {
                 Vec3 e(1);
                 if (!paths.is_whole(facet) && !weights.edge_on) {
                     const Vec2 at = grid.position(s);
                     e = weights.unnormalised(at.x, at.y);
                 }
-                leaf[s] = paths.leaf_at(facet, e / (e.x + e.y + e.z));
+                leaf[s] = leaf_at(paths, facet, e / (e.x + e.y + e.z));
             }
         }
     });
@@ -58,14 +58,15 @@ FacetSamples samples_by_facet(const PathEndsParams& params, const OpticPaths& pa
         const SampleView& view = views.samples[of_grid];
         if (view.optic != params.optic || view.traced) return;
         const Vec2 at = params.part.position(s);
-        owner[s] = paths.is_on_film() ? paths.film_facet(at) : params.framed.mesh_facet(view.facet, at);
+        owner[s] =
+            paths.is_on_film() ? film_facet(paths.window, at) : params.framed.mesh_facet(view.facet, at);
     });
-    return group_by_facet(owner, paths.outline().facets.size());
+    return group_by_facet(owner, paths.outline.facets.size());
 }
 
 /// What is drawn: an optic that the camera sees itself, or a nested optic.
 struct Shown {
-    OpticPaths& paths;
+    PathBuilder& builder;
     NestedOptics* nested = nullptr;  // what is seen in it; null: none is a nested optic
     FacetSamples owned;              // by facet of its paths
     std::uint8_t depth = 0;          // nested optics that it lies over
@@ -106,20 +107,20 @@ class ShownDrawer {
 void ShownDrawer::note(const Shown& shown, const std::vector<Id>& leaf) {
     for_each_sample(grid_, whole_, [&](std::size_t s, std::size_t of_whole) {
         if (leaf[s] == kNone) return;
-        const PathLeaf& of_sample = shown.paths.leaves()[leaf[s]];
+        const PathLeaf& of_sample = shown.builder.paths().leaves[leaf[s]];
         SampleView& view = views_.samples[of_whole];
         OpticView& on_optic = views_.on_optic(view);
         if (shown.depth == 0) view.leaf = leaf[s];
         view.nested = shown.depth;
         view.level = of_sample.level;
         on_optic.predicted = of_sample.predicted;
-        on_optic.cut = most_cut(on_optic.cut, shown.paths.cut());
+        on_optic.cut = most_cut(on_optic.cut, shown.builder.paths().cut);
         on_optic.cut.faint = glm::max(on_optic.cut.faint, of_sample.faint);
         on_optic.deep = glm::max(on_optic.deep, of_sample.too_deep);
         if (of_sample.method == LeafMethod::kTraced) traced_.push_back(static_cast<Id>(of_whole));
     });
-    views_.projected_facets += shown.paths.projected_count();
-    views_.crowded_out += shown.paths.crowded_out();
+    views_.projected_facets += shown.builder.paths().projected_count;
+    views_.crowded_out += shown.builder.paths().crowded_out;
 }
 
 /// Whether what the ray meets lies no nearer than the nested optic's point there.
@@ -142,7 +143,7 @@ std::vector<NestedSamples> ShownDrawer::take_covered(const Shown& shown, const s
     parallel_for(own.ends.size(), kEndsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             const Id s = own.sample[i];
-            if (!shown.paths.leaves()[leaf[s]].layered) continue;
+            if (!shown.builder.paths().leaves[leaf[s]].layered) continue;
             const std::optional<NestedPlace> there = shown.nested->at(grid_.position(s));
             if (there && covers(*nested[there->optic], there->facet, own.ends[i])) covered[i] = there;
         }
@@ -215,19 +216,20 @@ void ShownDrawer::draw(const Shown& shown, PathEnds& out) {
     const std::vector<Id> seen = seen_facets(shown.owned);
     if (seen.empty()) return;
     if (shown.nested) shown.nested->build();
-    shown.paths.prepare(seen);
-    const std::vector<Id> leaf = leaves_of_samples(shown.paths, shown.owned, grid_);
+    shown.builder.prepare(seen);
+    const OpticPaths& paths = shown.builder.paths();
+    const std::vector<Id> leaf = leaves_of_samples(paths, shown.owned, grid_);
     PathEnds own;
-    HistoryDrawer drawer(params_.draw, shown.paths, grid_, leaf);
-    for (const Id node : shown.paths.nodes_in_order()) drawer.draw(node, own);
+    HistoryDrawer drawer(params_.draw, paths, grid_, leaf);
+    for (const Id node : nodes_in_order(paths)) drawer.draw(node, own);
     note(shown, leaf);
     if (shown.nested && !shown.nested->all().empty()) {
         const std::vector<NestedSamples> taken = take_covered(shown, leaf, own);
         for (std::size_t l = 0; l < taken.size(); ++l) {
             NestedOptic& one = *shown.nested->all()[l];
             PathEnds behind;
-            draw({one.paths(), one.deeper(),
-                  group_by_facet(taken[l].owner, one.paths().outline().facets.size()),
+            draw({one.builder(), one.deeper(),
+                  group_by_facet(taken[l].owner, one.builder().paths().outline.facets.size()),
                   static_cast<std::uint8_t>(shown.depth + 1)},
                  behind);
             put_behind(one, taken[l], behind);
@@ -239,13 +241,13 @@ void ShownDrawer::draw(const Shown& shown, PathEnds& out) {
 
 }  // namespace
 
-PathEnds draw_optic_paths(const PathEndsParams& params, OpticPaths& paths, SampleViews& views,
+PathEnds draw_optic_paths(const PathEndsParams& params, PathBuilder& paths, SampleViews& views,
                           std::vector<Id>& traced) {
     const SampleGrid& grid = params.grid;
     PathEnds out;
     if (params.part.size() == 0) return out;
     ShownDrawer drawer(params, grid, views);
-    drawer.draw({paths, params.nested, samples_by_facet(params, paths, grid, views)}, out);
+    drawer.draw({paths, params.nested, samples_by_facet(params, paths.paths(), grid, views)}, out);
     for (Id& s : out.sample) s = static_cast<Id>(params.part.sample_in(grid, s));
     traced.insert(traced.end(), drawer.traced().begin(), drawer.traced().end());
     // Those at the outline were given to the optic without one of its facets.

@@ -27,7 +27,7 @@ struct PathEndsParams {
 /// optics are nested optics, the nearest that covers the sample and that no object is nearer than is seen,
 /// and so on in that one. Works out the facets that are seen and were not before. `traced`: gets the samples
 /// that no facet speaks for, whose ends are still to be found; those near outlines are among them.
-PathEnds draw_optic_paths(const PathEndsParams& params, OpticPaths& paths, SampleViews& views,
+PathEnds draw_optic_paths(const PathEndsParams& params, PathBuilder& paths, SampleViews& views,
                           std::vector<Id>& traced);
 
 /// The facets that have samples.

@@ -211,8 +211,8 @@ SeenGrid seen_grid(const Frame& frame, const FramedOptic& framed) {
 
 }  // namespace
 
-std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
-                                             const NestedOptics* nested, const PathWorld* followed) {
+PathBuilder make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
+                             const NestedOptics* nested, const PathWorld* followed) {
     const FramedOptic& framed = frame.optics[optic];
     const bool for_error = frame.max_error > 0 && frame.max_error != kAnyError;
     const SeenGrid seen = seen_grid(frame, framed);
@@ -247,12 +247,12 @@ std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& fr
         context.camera = path_camera(frame.camera, window.depth);
         context.camera.film = film;
         context.camera.around = media_at(frame);
-        return std::make_unique<OpticPaths>(context, window, params);
+        return paths_over_film(context, window, params);
     }
     context.camera = path_camera(*frame.camera.linear);
     context.camera.film = film;
     context.camera.around = media_at(frame);
-    return std::make_unique<OpticPaths>(context, *seen.grid, params);
+    return paths_over_grid(context, *seen.grid, params);
 }
 
 std::optional<NestedStage> make_nested_stage(const World& world, const Frame& frame) {
@@ -285,8 +285,7 @@ std::unique_ptr<NestedOptics> make_nested_optics(const World& world, const Frame
     return nested;
 }
 
-std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,
-                                                   Engine engine) {
+PathBuilder make_approximate_paths(const World& world, const Frame& frame, std::size_t optic, Engine engine) {
     const FramedOptic& framed = frame.optics[optic];
     const SeenGrid seen = seen_grid(frame, framed);
     const double ior = relative_ior(world, optic, frame.camera_media.fixed);
@@ -302,8 +301,8 @@ std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Fra
     };
     ProbeContext context{&path_world(world), static_cast<Id>(optic), world.optics[optic].surface.get(), {}};
     context.camera.around = media_at(frame);
-    return std::make_unique<OpticPaths>(
-        context, FirstPaths{seen.grid, seen.views, find(Path::kReflect), find(Path::kRefract)});
+    return first_optic_paths(context,
+                             FirstPaths{seen.grid, seen.views, find(Path::kReflect), find(Path::kRefract)});
 }
 
 const RayMesh* find_path(const FramedOptic& optic, Path path) {

@@ -1,10 +1,10 @@
-// What depends on a picture's camera and resolution: the camera's rays, and the RayMeshes that leave the
+// What depends on a picture's camera and resolution: the camera's rays, and optics as facets that it sees.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "paths/facets/facet_paths.h"
+#include "paths/facets/path_builder.h"
 #include "paths/first/corner_rays.h"
 #include "paths/nested/nested_optics.h"
 #include "render/frame/camera_media.h"
@@ -60,9 +60,8 @@ PathCamera path_camera(const CameraRays& camera, double depth);
 /// The paths over an optic's facets, as far as the scene has them followed, or `followed`, another
 /// path_world. The frame must live longer, and `nested optics`: what is seen in the optic as nested optics;
 /// null: nothing.
-std::unique_ptr<OpticPaths> make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
-                                             const NestedOptics* nested = nullptr,
-                                             const PathWorld* followed = nullptr);
+PathBuilder make_optic_paths(const World& world, const Frame& frame, std::size_t optic,
+                             const NestedOptics* nested = nullptr, const PathWorld* followed = nullptr);
 
 /// What all nested optics of this camera have in common; none where it has no eye in air.
 std::optional<NestedStage> make_nested_stage(const World& world, const Frame& frame);
@@ -73,8 +72,7 @@ std::unique_ptr<NestedOptics> make_nested_optics(const World& world, const Frame
                                                  const NestedStage& stage, std::size_t optic);
 
 /// The paths as one of the usual approximations has them: kEnvironment or kPlanar.
-std::unique_ptr<OpticPaths> make_approximate_paths(const World& world, const Frame& frame, std::size_t optic,
-                                                   Engine engine);
+PathBuilder make_approximate_paths(const World& world, const Frame& frame, std::size_t optic, Engine engine);
 
 /// The mesh of this path, or null.
 const RayMesh* find_path(const FramedOptic& optic, Path path);

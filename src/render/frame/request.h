@@ -87,18 +87,6 @@ Engine find_engine(const std::string& name);
 /// How the classic engine draws: "arcs", "slices 4, clip screen".
 std::string classic_name(const ClassicParams& params);
 
-/// The window of the film that is drawn, in pixels [x0, x1) x [y0, y1), and its layers.
-struct LayerRequest {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
-    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat", "magnification", "position"
-    // and "ray".
-    std::vector<std::string> layers;
-    // Of a sample's light what is shown of it, 0..1: the film's filter averages that, R G B are then no
-    // light. None: light. A highlight a thousand times as bright as the screen's white else outweighs all
-    // samples beside it: edges stay jagged, and filters with negative lobes leave dark rings.
-    std::function<Vec3(const Vec3& light)> shown = {};
-};
-
 /// How often a pixel of several samples is shaded. kFragment: once for all its samples that see one triangle
 /// through one history, by the engines that project without outlines; all others shade every sample. kSample:
 /// at every sample.
@@ -110,11 +98,23 @@ struct EnumNames<Shading> {
                                        NamedValue<Shading>{Shading::kSample, "sample"}};
 };
 
+/// The window of the film that is drawn, in pixels [x0, x1) x [y0, y1), and its layers.
+struct LayerRequest {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // all zero: the whole film
+    // Names to keep beside RGBA, of layer_names(); empty: all but "path", "stat", "magnification", "position"
+    // and "ray".
+    std::vector<std::string> layers;
+    // Of a sample's light what is shown of it, 0..1: the film's filter averages that, R G B are then no
+    // light. None: light. A highlight a thousand times as bright as the screen's white else outweighs all
+    // samples beside it: edges stay jagged, and filters with negative lobes leave dark rings.
+    std::function<Vec3(const Vec3& light)> shown = {};
+    Shading shading = Shading::kFragment;
+};
+
 struct PictureRequest {
     FrameParams frame;
     EngineChoice engine;
     LayerRequest layers;
-    Shading shading = Shading::kFragment;
     // Told of every strip as it is drawn, beside whoever takes the picture; null: nobody. Changes no pixel.
     // Must live while it is drawn.
     const StripSink* watch = nullptr;

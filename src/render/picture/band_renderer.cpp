@@ -45,8 +45,7 @@ SampleColour mean_colour(const PixelFilter& filter, std::span<const SampleColour
 /// The samples of a window and of the pixels around it that a filter reaches, with their colours.
 class FilteredSamples {
   public:
-    FilteredSamples(const World& world, const FacetViews& facets, const SampleGrid& window,
-                    const PixelFilter& filter)
+    FilteredSamples(const World& world, Viewer& viewer, const SampleGrid& window, const PixelFilter& filter)
         : filter_(filter), grid_(window) {
         const Film& film = world.scene.film;
         grid_.x0 = std::max(0, window.x0 - filter.reach);
@@ -54,9 +53,9 @@ class FilteredSamples {
         grid_.x1 = std::min(film.width, window.x1 + filter.reach);
         grid_.y1 = std::min(film.height, window.y1 + filter.reach);
         SampleViews views;
-        facets.viewer(grid_, views);
+        viewer.view(grid_, views);
         colours_.resize(grid_.size());
-        const RayDifferentials differentials(world, facets, grid_);
+        const RayDifferentials differentials(world, viewer, grid_);
         parallel_for(colours_.size(), 1024, [&](std::size_t from, std::size_t to) {
             sample_colours(world, views, from, std::span(colours_).subspan(from, to - from),
                            grid_.side == 1 ? &differentials : nullptr);
@@ -95,8 +94,8 @@ class FilteredSamples {
     std::vector<SampleColour> colours_;
 };
 
-bool makes_fragments(const FacetViews& facets, int side) {
-    return side > 1 && facets.keys.find;
+bool makes_fragments(const Viewer& viewer, const LayerRequest& request, int side) {
+    return side > 1 && request.shading == Shading::kFragment && viewer.has_keys();
 }
 
 /// How many rows of pixels are drawn together: whole blocks where they are many, one for every two threads at
@@ -141,27 +140,28 @@ struct Band {
 /// What all bands are drawn of.
 struct BandSource {
     const World& world;
-    const FacetViews& facets;
+    Viewer& viewer;
     const PixelFilter& filter;
+    bool by_fragments = false;  // see makes_fragments()
 };
 
 void view_band(const BandSource& source, Band& band) {
-    const auto& [world, facets, filter] = source;
+    const auto& [world, viewer, filter, by_fragments] = source;
     const SampleGrid& grid = band.grid;
     band.filtered.reset();
     band.fragments.reset();
-    if (makes_fragments(facets, grid.side))
-        band.fragments = std::make_unique<FragmentColours>(world, facets, grid, filter);
+    if (by_fragments)
+        band.fragments = std::make_unique<FragmentColours>(world, viewer, grid, filter);
     else if (filter.reach > 0)
-        band.filtered = std::make_unique<FilteredSamples>(world, facets, grid, filter);
-    if (grid.side == 1 || (!band.filtered && !band.fragments)) facets.viewer(grid, band.views);
-    if (grid.side > 1) facets.viewer({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
+        band.filtered = std::make_unique<FilteredSamples>(world, viewer, grid, filter);
+    if (grid.side == 1 || (!band.filtered && !band.fragments)) viewer.view(grid, band.views);
+    if (grid.side > 1) viewer.view({grid.x0, grid.y0, grid.x1, grid.y1, 1}, band.centres);
 }
 
 /// Colours of the pixels of a band from `first` on, as many as there is room for.
 void find_colours(const BandSource& source, const Band& band, std::size_t first,
                   std::span<SampleColour> colours) {
-    const auto& [world, facets, filter] = source;
+    const auto& [world, viewer, filter, by_fragments] = source;
     const SampleGrid& grid = band.grid;
     if (band.filtered || band.fragments) {
         const std::size_t width = static_cast<std::size_t>(grid.width());
@@ -174,7 +174,7 @@ void find_colours(const BandSource& source, const Band& band, std::size_t first,
     }
     const std::size_t per_pixel = static_cast<std::size_t>(grid.side * grid.side);
     if (per_pixel == 1) {
-        const RayDifferentials differentials(world, facets, grid);
+        const RayDifferentials differentials(world, viewer, grid);
         sample_colours(world, band.views, first, colours, &differentials);
         for (SampleColour& colour : colours) colour = filter.averaged(colour);
         return;
@@ -259,11 +259,12 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
 
 }  // namespace
 
-Image draw_layers(const World& world, const FacetViews& facets, const LayerRequest& request,
-                  const Progress& progress, LayerStatistics* statistics, const StripSink* sink) {
+Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& request, const Progress& progress,
+                  LayerStatistics* statistics, const StripSink* sink) {
     const int side = world.scene.film.spp, width = request.x1 - request.x0, height = request.y1 - request.y0;
-    const int rows = band_rows(static_cast<std::size_t>(width * side * side),
-                               makes_fragments(facets, side) ? kMostKeys : kMostBandSamples);
+    const bool by_fragments = makes_fragments(viewer, request, side);
+    const int rows =
+        band_rows(static_cast<std::size_t>(width * side * side), by_fragments ? kMostKeys : kMostBandSamples);
     const std::size_t bands = static_cast<std::size_t>((height + rows - 1) / rows);
     const std::size_t slots = std::min(bands, kBandsAtOnce);
 
@@ -282,7 +283,7 @@ Image draw_layers(const World& world, const FacetViews& facets, const LayerReque
     LayerStatistics counts;
     PixelFilter filter = make_pixel_filter(world.scene.film.filter, side);
     filter.shown = request.shown;
-    const BandSource source{world, facets, filter};
+    const BandSource source{world, viewer, filter, by_fragments};
     std::vector<Band> band(slots);
     PipelineStages stages;
     stages.begin = [&](std::size_t item, std::size_t slot) {

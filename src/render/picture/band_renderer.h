@@ -13,8 +13,7 @@ namespace trilens {
 /// the pixel's centre, whatever the number of samples. Throws Interrupted, and ComputationError when a pixel
 /// is not finite. `sink`: takes the pixels band by band where it is given; then the image that comes back has
 /// no channels.
-Image draw_layers(const World& world, const FacetViews& facets, const LayerRequest& request,
-                  const Progress& progress, LayerStatistics* statistics = nullptr,
-                  const StripSink* sink = nullptr);
+Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& request, const Progress& progress,
+                  LayerStatistics* statistics = nullptr, const StripSink* sink = nullptr);
 
 }  // namespace trilens

@@ -24,7 +24,7 @@ void name_camera_facet(const World& world, std::size_t index, const SampleGrid& 
 }
 
 /// Of the optic that the sample shows first, and of the ends of the paths over it.
-void describe_optic(const FacetViews& views, const SampleViews& shown, PixelExplanation& explained) {
+void describe_optic(const Viewer& viewer, const SampleViews& shown, PixelExplanation& explained) {
     const SampleView& view = shown.samples.front();
     explained.optic = view.optic;
     explained.facet = view.facet;
@@ -37,8 +37,8 @@ void describe_optic(const FacetViews& views, const SampleViews& shown, PixelExpl
     for (const PathEnd& end : shown.ends_of(view)) {
         const std::span<const Step> steps = shown.steps_of(end);
         explained.ends.push_back({end, {steps.begin(), steps.end()}, std::nullopt});
-        if (end.node == kNone || view.leaf == kNone || !views.paths) continue;
-        const PathNode& node = views.paths(view.optic).nodes()[end.node];
+        if (end.node == kNone || view.leaf == kNone || !viewer.has_facets()) continue;
+        const PathNode& node = viewer.paths(view.optic).nodes[end.node];
         explained.ends.back().facet_kind = facet_kind(node.mesh, node.facet_of(view.leaf));
     }
 }
@@ -60,16 +60,16 @@ PixelExplanation explain_pixel(const World& world, const PictureRequest& request
     explained.x = x;
     explained.y = y;
     const SampleGrid grid{x, y, x + 1, y + 1, 1};
-    const FacetViews views = make_views(world, request.frame, request.engine, {});
+    const std::unique_ptr<Viewer> viewer = make_viewer(world, request.frame, request.engine, {});
     SampleViews shown;
-    views.viewer(grid, shown);
+    viewer->view(grid, shown);
     const SampleView& view = shown.samples.front();
     explained.ray = view.ray;
     explained.hit = view.hit;
     explained.depth = view.depth;
-    if (view.optic != kNone) describe_optic(views, shown, explained);
-    if (views.paths) name_camera_facet(world, request.frame.camera, grid, explained);
-    const RayDifferentials differentials(world, views, grid);
+    if (view.optic != kNone) describe_optic(*viewer, shown, explained);
+    if (viewer->has_facets()) name_camera_facet(world, request.frame.camera, grid, explained);
+    const RayDifferentials differentials(world, *viewer, grid);
     const SampleColour colour = sample_colour(world, shown, view, &differentials);
     explained.direct = colour.direct;
     explained.reflect = colour.reflect;

@@ -59,7 +59,7 @@ class SpreadContribution {
     SpreadContribution(const FragmentShading& shading, const ShownFragment& fragment,
                        const Contribution& contribution)
         : shading_(shading), fragment_(fragment), contribution_(contribution) {
-        if (sample_count() > 1) map_ = facet_map(shading.facets, *fragment.view, contribution.end);
+        if (sample_count() > 1) map_ = facet_map(shading.viewer, *fragment.view, contribution.end);
         if (!map_.mesh) return;
         find_corners();
         find_spread();

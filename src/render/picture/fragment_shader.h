@@ -28,7 +28,7 @@ struct ShadedFragment {
 /// What is needed to shade fragments.
 struct FragmentShading {
     const World& world;
-    const FacetViews& facets;
+    const Viewer& viewer;
     const SampleViews& views;
     int side = 1;  // samples along a pixel's edge
 };

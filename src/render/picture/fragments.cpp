@@ -32,13 +32,13 @@ struct FragmentColours::PixelRow {
     std::vector<std::uint16_t> key_of;
 };
 
-FragmentColours::FragmentColours(const World& world, const FacetViews& facets, const SampleGrid& window,
+FragmentColours::FragmentColours(const World& world, Viewer& viewer, const SampleGrid& window,
                                  const PixelFilter& filter)
     : world_(world),
-      facets_(facets),
+      viewer_(viewer),
       filter_(filter),
       grid_(with_margin(window, world.scene.film, filter.reach)) {
-    facets_.viewer({grid_.x0, grid_.y0, grid_.x1, grid_.y1, 1}, centres_);
+    viewer_.view({grid_.x0, grid_.y0, grid_.x1, grid_.y1, 1}, centres_);
     find_fragments();
     shaded_.resize(fragments_.size());
     shade_centres();
@@ -106,7 +106,7 @@ void FragmentColours::split_pixel(std::size_t pixel, std::span<const FragmentKey
 
 void FragmentColours::find_fragments() {
     std::vector<FragmentKey> keys(grid_.size());
-    facets_.keys.find(grid_, keys);
+    viewer_.find_keys(grid_, keys);
     const std::size_t width = static_cast<std::size_t>(grid_.width()),
                       height = static_cast<std::size_t>(grid_.height()),
                       side = static_cast<std::size_t>(grid_.side);
@@ -122,7 +122,7 @@ void FragmentColours::find_fragments() {
                     const FragmentKey* line = &keys[(y * side + j) * grid_.columns() + x * side];
                     for (std::size_t i = 0; i < side; ++i) one = one && line[i] == first;
                 }
-                if (one && facets_.keys.of(centres_, centres_.samples[pixel]) == first)
+                if (one && viewer_.key_of(centres_, centres_.samples[pixel]) == first)
                     row.fragments.push_back({});
                 else
                     split_pixel(pixel, keys, row);
@@ -156,7 +156,7 @@ void FragmentColours::shade_centres() {
             of.push_back(first_[p]);
         }
         std::vector<ShadedFragment> shaded(shown.size());
-        shade_fragments({world_, facets_, centres_, grid_.side}, shown, shaded);
+        shade_fragments({world_, viewer_, centres_, grid_.side}, shown, shaded);
         for (std::size_t k = 0; k < of.size(); ++k) shaded_[of[k]] = shaded[k];
     });
 }
@@ -185,14 +185,14 @@ void FragmentColours::shade_samples() {
         for (const Wanted& one : now) chosen.push_back(one.sample);
         SampleGrid grid = grid_;
         grid.chosen = chosen;
-        facets_.viewer(grid, views);
+        viewer_.view(grid, views);
         parallel_for(now.size(), kFragmentsPerTask, [&](std::size_t from, std::size_t to) {
             std::vector<ShownFragment> shown;
             for (std::size_t k = from; k < to; ++k)
                 shown.push_back(
                     {&views.samples[k], pixel_corner(now[k].pixel), members_of(fragments_[now[k].fragment])});
             std::vector<ShadedFragment> shaded(shown.size());
-            shade_fragments({world_, facets_, views, grid_.side}, shown, shaded);
+            shade_fragments({world_, viewer_, views, grid_.side}, shown, shaded);
             for (std::size_t k = from; k < to; ++k) shaded_[now[k].fragment] = shaded[k - from];
         });
     }

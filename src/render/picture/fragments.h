@@ -22,9 +22,8 @@ struct FragmentCounts {
 /// The colours of all fragments in a window and the pixels around it that a filter reaches.
 class FragmentColours {
   public:
-    /// `window`: with the samples of a pixel that the film has, in any order. `facets` has keys.
-    FragmentColours(const World& world, const FacetViews& facets, const SampleGrid& window,
-                    const PixelFilter& filter);
+    /// `window`: with the samples of a pixel that the film has, in any order. `viewer` has keys.
+    FragmentColours(const World& world, Viewer& viewer, const SampleGrid& window, const PixelFilter& filter);
 
     /// The pixel of the window as the filter makes it. Pixels beyond the film have no samples: the weights of
     /// those that there are count as one.
@@ -62,7 +61,7 @@ class FragmentColours {
     std::size_t lattice_sample(std::size_t pixel, int inside) const;
 
     const World& world_;
-    const FacetViews& facets_;
+    Viewer& viewer_;
     const PixelFilter& filter_;
     SampleGrid grid_;  // in lattice order
     SampleViews centres_;

@@ -83,10 +83,10 @@ void advise_on_facets(const World& world, const PictureRequest& request, const L
 constexpr double kToldShare = 0.002;
 
 /// What probing the optics' facets was found to cost and to bring; empty where all of them are used.
-std::vector<OpticProbes> probes_of(const World& world, const FacetViews& views) {
+std::vector<OpticProbes> probes_of(const World& world, const Viewer& viewer) {
     std::vector<OpticProbes> found;
-    for (std::size_t i = 0; views.paths && i < world.optics.size(); ++i) {
-        const ProbeReport& report = views.paths(i).probe_report();
+    for (std::size_t i = 0; viewer.has_facets() && i < world.optics.size(); ++i) {
+        const ProbeReport& report = viewer.paths(i).probe_report;
         if (!report.plan.decides()) continue;
         const ProbeCosts& costs = report.plan.costs();
         found.push_back(
@@ -204,8 +204,7 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     if (warn && projects(request.engine.engine)) advise_on_facets(world, request, layers, warn);
     Picture picture;
     const Stopwatch preparing;
-    FacetViews views = make_views(world, request.frame, request.engine, warn);
-    if (request.shading == Shading::kSample) views.keys = {};
+    const std::unique_ptr<Viewer> viewer = make_viewer(world, request.frame, request.engine, warn);
     picture.prepare_seconds = preparing.seconds();
 
     // Strips pass by the one who watches to the one who takes the picture; without one they are collected.
@@ -230,10 +229,10 @@ Picture draw_picture(const World& world, const PictureRequest& request, const Pr
     const bool in_strips = sink || request.watch;
     const Stopwatch drawing;
     picture.image =
-        draw_layers(world, views, layers, progress, &picture.statistics, in_strips ? &described : nullptr);
+        draw_layers(world, *viewer, layers, progress, &picture.statistics, in_strips ? &described : nullptr);
     if (in_strips && !sink) picture.image = std::move(collected);
     picture.draw_seconds = drawing.seconds();
-    picture.statistics.probes = probes_of(world, views);
+    picture.statistics.probes = probes_of(world, *viewer);
     describe(world, request, picture.image);
     if (warn) {
         tell(world, layers, picture.statistics, warn);

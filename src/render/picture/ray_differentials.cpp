@@ -57,13 +57,13 @@ RayDifferential FacetMap::differential(const Vec2& place) const {
     return differential;
 }
 
-FacetMap facet_map(const FacetViews& facets, const SampleView& view, const PathEnd* end) {
+FacetMap facet_map(const Viewer& viewer, const SampleView& view, const PathEnd* end) {
     FacetMap map;
     if (!end) {
-        map.mesh = facets.camera;
+        map.mesh = viewer.camera_mesh();
         map.facet = view.camera_facet;
     } else if (end->node != kNone) {
-        const PathNode& node = facets.paths(view.optic).nodes()[end->node];
+        const PathNode& node = viewer.paths(view.optic).nodes[end->node];
         map.mesh = &node.mesh;
         map.facet = node.facet_of(view.leaf);
     }
@@ -73,8 +73,8 @@ FacetMap facet_map(const FacetViews& facets, const SampleView& view, const PathE
 }
 
 std::optional<Ray> RayDifferentials::camera_ray(const SampleView& view, const Vec2& place) const {
-    if (facets_.exact_camera) return facets_.exact_camera->ray(place);
-    const FacetMap map = facet_map(facets_, view, nullptr);
+    if (const CameraModel* exact = viewer_.exact_camera()) return exact->ray(place);
+    const FacetMap map = facet_map(viewer_, view, nullptr);
     if (!map.mesh) return std::nullopt;
     return map.at(place);
 }
@@ -91,7 +91,7 @@ std::optional<RayDifferential> RayDifferentials::of(const SampleViews& views, st
                                                     const Contribution& contribution) const {
     const SampleView& view = views.samples[sample];
     const Vec2 place = grid_.position(sample);
-    if (const FacetMap map = facet_map(facets_, view, contribution.end); map.mesh)
+    if (const FacetMap map = facet_map(viewer_, view, contribution.end); map.mesh)
         return map.differential(place);
     if (contribution.end && contribution.end->step_count == 0) return std::nullopt;
     const Ray& ray = *contribution.seen.ray;

@@ -24,13 +24,13 @@ struct FacetMap {
 
 /// The map of the facet that a sample's path leads over (`end`; null: of the camera's own ray); none where it
 /// was traced, or the facet is seen edge on.
-FacetMap facet_map(const FacetViews& facets, const SampleView& view, const PathEnd* end);
+FacetMap facet_map(const Viewer& viewer, const SampleView& view, const PathEnd* end);
 
 /// The differentials of the samples of one grid of views, whose pixels have one sample.
 class RayDifferentials {
   public:
-    RayDifferentials(const World& world, const FacetViews& facets, const SampleGrid& grid)
-        : world_(world), facets_(facets), grid_(grid) {}
+    RayDifferentials(const World& world, const Viewer& viewer, const SampleGrid& grid)
+        : world_(world), viewer_(viewer), grid_(grid) {}
 
     /// Of a contribution's ray, per pixel; none where rays beside it have another history or none.
     std::optional<RayDifferential> of(const SampleViews& views, std::size_t sample,
@@ -42,7 +42,7 @@ class RayDifferentials {
                                   const Vec2& place) const;
 
     const World& world_;
-    const FacetViews& facets_;
+    const Viewer& viewer_;
     SampleGrid grid_;
 };
 

@@ -50,34 +50,34 @@ bool is_hidden(const ProbeContext& context, const Vec3& screen, const Vec3& poin
 }
 
 /// Which corners of some facets the optic itself hides from the camera.
-std::vector<char> hidden_corners(const OpticPaths& paths, const SurfaceGrid& grid, std::span<const Id> facets,
-                                 double size) {
+std::vector<char> hidden_corners(const PathBuilder& paths, const SurfaceGrid& grid,
+                                 std::span<const Id> facets, double size) {
     std::vector<char> wanted(grid.corner_point.size(), 0), hidden(grid.corner_point.size(), 0);
     for (const Id f : facets)
         for (const Id corner : grid.facets[f]) wanted[corner] = 1;
     parallel_for(hidden.size(), kPathFacetsPerTask, [&](std::size_t from, std::size_t to) {
         for (std::size_t c = from; c < to; ++c)
-            hidden[c] = wanted[c] && is_hidden(paths.context(), paths.outline().screen[c],
+            hidden[c] = wanted[c] && is_hidden(paths.context(), paths.paths().outline.screen[c],
                                                grid.points[grid.corner_point[c]], size);
     });
     return hidden;
 }
 
-bool is_middle_hidden(const OpticPaths& paths, const SurfaceGrid& grid, Id facet, double size) {
+bool is_middle_hidden(const PathBuilder& paths, const SurfaceGrid& grid, Id facet, double size) {
     Vec3 screen(0), middle(0);
     for (const Id corner : grid.facets[facet]) {
-        screen += paths.outline().screen[corner] / 3.0;
+        screen += paths.paths().outline.screen[corner] / 3.0;
         middle += grid.points[grid.corner_point[corner]] / 3.0;
     }
     return is_hidden(paths.context(), screen, middle, size);
 }
 
 /// The facets that may lie on the film and that the camera may see: it sees a corner or the middle.
-std::vector<Id> facets_in_view(const OpticPaths& paths, const SurfaceGrid& grid, const Film& film) {
+std::vector<Id> facets_in_view(const PathBuilder& paths, const SurfaceGrid& grid, const Film& film) {
     std::vector<Id> facets;
-    for (Id f = 0; f < paths.outline().facets.size(); ++f)
-        if (may_be_on_film(paths.outline(), f, film)) facets.push_back(f);
-    if (paths.is_on_film()) return facets;
+    for (Id f = 0; f < paths.paths().outline.facets.size(); ++f)
+        if (may_be_on_film(paths.paths().outline, f, film)) facets.push_back(f);
+    if (paths.paths().is_on_film()) return facets;
     Box box;
     for (const Vec3& point : grid.points) box.include(point);
     const double size = 2 * length(box.size());
@@ -138,8 +138,8 @@ SeveralOpticsImages::SeveralOpticsImages(const World& world, const Frame& frame,
       frame_(frame),
       choice_(choice),
       followed_(world_of_word(world, choice.word)),
-      paths_(make_optic_paths(world, frame, optic, nullptr, &followed_)) {
-    paths_->prepare(facets_in_view(*paths_, frame.optics[optic].facets->grid(), world.scene.film));
+      builder_(make_optic_paths(world, frame, optic, nullptr, &followed_)) {
+    builder_.prepare(facets_in_view(builder_, frame.optics[optic].facets->grid(), world.scene.film));
     add_nodes();
     add_lone_rays();
     drop_histories();
@@ -172,7 +172,7 @@ std::optional<HistoryImage> SeveralOpticsImages::refine(const HistoryQuery& quer
 }
 
 void SeveralOpticsImages::add_nodes() {
-    const std::vector<PathNode>& nodes = paths_->nodes();
+    const std::vector<PathNode>& nodes = builder_.paths().nodes;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
         // Where light parts into colours the middle one stands for all.
         if (nodes[n].step_count < 2 || (nodes[n].colours != kAllColours && nodes[n].colours != 1)) continue;
@@ -190,7 +190,8 @@ void SeveralOpticsImages::add_nodes() {
         history.seeds = std::make_unique<MeshPointImages>(nodes[n].mesh);
         for (const Vec3& weight : nodes[n].weight)
             history.most_light = std::max(history.most_light, of_worst_colour(weight));
-        for (const Id leaf : nodes[n].leaves) history.grid_facet.push_back(paths_->leaves()[leaf].facet);
+        for (const Id leaf : nodes[n].leaves)
+            history.grid_facet.push_back(builder_.paths().leaves[leaf].facet);
     }
 }
 
@@ -223,7 +224,7 @@ SeveralOpticsImages::History& SeveralOpticsImages::history_of(const std::vector<
 
 void SeveralOpticsImages::add_lone_rays() {
     std::vector<const PathLeaf*> traced;
-    for (const PathLeaf& leaf : paths_->leaves())
+    for (const PathLeaf& leaf : builder_.paths().leaves)
         if (leaf.method == LeafMethod::kTraced && leaf.centre.z > 0) traced.push_back(&leaf);
     std::vector<std::vector<PathSegment>> followed;
     for (std::size_t first = 0; first < traced.size(); first += kLoneBatch) {
@@ -238,7 +239,7 @@ void SeveralOpticsImages::add_lone_rays() {
 
 std::vector<PathSegment> SeveralOpticsImages::followed_from(const Vec2& pixel) const {
     const PathWorld& world = followed_;
-    const Id optic = paths_->context().optic;
+    const Id optic = builder_.context().optic;
     const Ray ray = history_query(world_, frame_, {}, {}).camera_ray(pixel);
     const std::optional<SurfaceHit> hit = world.optics[optic].tracer->first_hit(ray);
     if (!hit) return {};

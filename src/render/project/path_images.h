@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "paths/facets/facet_paths.h"
+#include "paths/facets/path_builder.h"
 #include "paths/trace/history_image.h"
 #include "render/frame/frame.h"
 #include "render/shoot/event_word.h"
@@ -84,7 +84,7 @@ class SeveralOpticsImages {
     const Frame& frame_;
     SeveralOpticsChoice choice_;
     PathWorld followed_;  // as deep as the word goes
-    std::unique_ptr<OpticPaths> paths_;
+    PathBuilder builder_;
     std::vector<History> histories_;
     std::map<StepFrom, Id> places_;
     std::map<HistoryEnd, std::size_t> history_at_;
