@@ -25,5 +25,6 @@
 #include <trilens/surface.h>
 #include <trilens/sweep.h>
 #include <trilens/text.h>
+#include <trilens/types.h>
 #include <trilens/unwrap.h>
 #include <trilens/version.h>

@@ -107,22 +107,30 @@ const std::map<std::string, std::string> kElsewhere{
     {"remove_file", "tests/sweep"},
 };
 
-/// The public headers and those that they include to pass on, as they are installed; what these include again
-/// is theirs alone.
+/// Adds the headers that one includes; those of the study room pass on what they include, too.
+void add_passed_on(const fs::path& header, std::set<std::string>& headers) {
+    static const std::regex kInclude(R"(^#include "([\w/]+\.h)") ");
+        const fs::path source = fs::path(source_dir()) / "src";
+    std::ifstream in(header);
+    std::smatch match;
+    for (std::string line; std::getline(in, line);) {
+        if (!std::regex_search(line, match, kInclude)) continue;
+        const std::string name = match[1].str();
+        headers.insert((source / name).string());
+        if (name.rfind("study/", 0) == 0) add_passed_on(source / name, headers);
+    }
+}
+
+/// The public headers and those that they include to pass on, in the source; what these include again is
+/// theirs alone.
 std::set<std::string> public_headers() {
-    static const std::regex kInclude(R"(^#include <trilens/([\w/]+\.h)>)");
-    const fs::path root = fs::path(trilens_test::build_dir()) / "include" / "trilens";
     std::set<std::string> headers;
-    for (const fs::path& folder : {root, root / "study"})
-        for (const auto& entry : fs::directory_iterator(folder)) {
-            if (!entry.is_regular_file()) continue;
-            headers.insert(entry.path().string());
-            std::ifstream in(entry.path());
-            std::smatch match;
-            for (std::string line; std::getline(in, line);)
-                if (std::regex_search(line, match, kInclude))
-                    headers.insert((root / match[1].str()).string());
-        }
+    const fs::path installed = fs::path(trilens_test::build_dir()) / "include" / "trilens";
+    for (const auto& entry : fs::directory_iterator(installed)) {
+        const fs::path header = fs::path(source_dir()) / "src" / "trilens" / entry.path().filename();
+        headers.insert(header.string());
+        add_passed_on(header, headers);
+    }
     return headers;
 }
 
