@@ -109,8 +109,8 @@ const std::map<std::string, std::string> kElsewhere{
 
 /// Adds the headers that one includes; those of the study room pass on what they include, too.
 void add_passed_on(const fs::path& header, std::set<std::string>& headers) {
-    static const std::regex kInclude(R"(^#include "([\w/]+\.h)") ");
-        const fs::path source = fs::path(source_dir()) / "src";
+    static const std::regex kInclude(R"x(^#include "([\w/]+\.h)")x");
+    const fs::path source = fs::path(source_dir()) / "src";
     std::ifstream in(header);
     std::smatch match;
     for (std::string line; std::getline(in, line);) {
