@@ -159,8 +159,8 @@ EngineChoice chosen_engine(const RenderOptions& options) {
 PictureRequest picture_request(const RenderOptions& options, const EngineChoice& engine) {
     PictureRequest request;
     request.engine = engine;
-    request.layers.shading = find_named<Shading>(options.shading).value();
     request.layers = layer_request(options.scene);
+    request.layers.shading = find_named<Shading>(options.shading).value();
     if (options.filter_shown) {
         const ToneMapping mapping = options.tone_mapping();
         check_tone_mapping(mapping);
