@@ -224,6 +224,28 @@ void bind_image(py::module_& module) {
         py::arg("file"),
         "Reads every channel of an OpenEXR file in its own type (half becomes float32).\n"
         "Raises InputError where the file cannot be used.");
+    module.def(
+        "layer_names", layer_names,
+        "The layers that may be asked for beside R G B A, and the channels of each, where the scene has what "
+        "they show:\n\n"
+        "Z: Z (depth of the first surface, 1e30 in the environment).\n"
+        "optic: optic.object, optic.facet, optic.U, optic.V (the first optic, its facet, the place in it).\n"
+        "direct: direct.R, direct.G, direct.B (what no optic shows).\n"
+        "reflect: reflect.R, reflect.G, reflect.B (light), reflectID.object, reflectID.primitive (what is "
+        "seen),\n"
+        "reflectP.X, reflectP.Y, reflectP.Z (where, world frame), reflectP.length (of the way from the "
+        "optic).\n"
+        "refract: the same, refract.R and so on.\n"
+        "path: path.count (optics on the way).\n"
+        "stat: stat.method (projected 0, subdivided 1, traced 2), stat.level (of subdivision), "
+        "stat.fragments (of the pixel).\n"
+        "magnification: reflectM.area, refractM.area, beside those layers.\n"
+        "ray: reflectD.X, reflectD.Y, reflectD.Z, reflectO.X, reflectO.Y, reflectO.Z and refractD, refractO "
+        "beside\n"
+        "those layers (unit direction and origin of the last ray, world frame).\n"
+        "position: directID.object, directID.primitive, directP.X, directP.Y, directP.Z, directP.length "
+        "(what the\n"
+        "camera sees itself).");
 }
 
 }  // namespace trilens::python

@@ -26,6 +26,8 @@ const std::map<std::string, std::string> kElsewhere{
     {"shoot_rays", "Renderer::shoot"},
     {"make_optic_surface", "Renderer, of scenes that are no data"},
     {"name_of", "of an enumerator"},
+    {"normalize_or_zero", "of any vector"},
+    {"triple", "of any vectors"},
     {"names_of", "of an enumeration"},
     {"append_facets", "of grids that make_surface_grid made"},
     {"make_linear_view", "make_camera, of descriptions that are no data"},
