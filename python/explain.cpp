@@ -1,4 +1,4 @@
-// One pixel explained, as a dict of the command's form.
+// What a renderer says of itself, and of one pixel, as a dict of the command's form.
 #include <pybind11/stl.h>
 
 #include "bindings.h"
@@ -110,6 +110,21 @@ void bind_explain(RendererClass& renderer) {
         "engine: \"exact\", \"classic\", \"envmap\", \"planar\", \"limit\" or \"facets\". Raises UsageError "
         "outside of "
         "the\nfilm and for a camera or resolution that there is not, InputError as render does.");
+}
+
+void bind_facts(RendererClass& renderer) {
+    renderer
+        .def_property_readonly(
+            "scene", [](const Renderer& self) -> const Scene& { return self.scene(); },
+            py::return_value_policy::reference_internal)
+        .def_property_readonly("optics", &Renderer::optics, "In scene order.")
+        .def_property_readonly("triangle_count", &Renderer::triangle_count, "Of the objects.")
+        .def("facet_count", &Renderer::facet_count, py::arg("resolution") = 0,
+             "Of the optics' grids; 0: at the scene's resolutions. Raises UsageError for one beyond 1..1024.")
+        .def("digest", &Renderer::digest, py::call_guard<py::gil_scoped_release>(),
+             "16 hexadecimal digits of what the scene loaded from all its files: equal digests, equal "
+             "pictures of\n"
+             "equal scenes.");
 }
 
 }  // namespace trilens::python

@@ -337,21 +337,6 @@ void bind_line_drawing(py::module_& module, RendererClass& renderer) {
         "max_error.");
 }
 
-void bind_facts(RendererClass& renderer) {
-    renderer
-        .def_property_readonly(
-            "scene", [](const Renderer& self) -> const Scene& { return self.scene(); },
-            py::return_value_policy::reference_internal)
-        .def_property_readonly("optics", &Renderer::optics, "In scene order.")
-        .def_property_readonly("triangle_count", &Renderer::triangle_count, "Of the objects.")
-        .def("facet_count", &Renderer::facet_count, py::arg("resolution") = 0,
-             "Of the optics' grids; 0: at the scene's resolutions. Raises UsageError for one beyond 1..1024.")
-        .def("digest", &Renderer::digest, py::call_guard<py::gil_scoped_release>(),
-             "16 hexadecimal digits of what the scene loaded from all its files: equal digests, equal "
-             "pictures of\n"
-             "equal scenes.");
-}
-
 }  // namespace
 
 FrameParams frame_params(const Renderer& renderer, int resolution, const std::optional<std::string>& camera) {
