@@ -61,7 +61,7 @@ void read_meshes(const Node& root, Reading& reading) {
 }
 
 /// What would be seen, but is black or plain.
-void warn_of_appearance(const Node& root, Reading& reading) {
+void warn_of_appearance(Reading& reading) {
     const Scene& scene = reading.scene;
     std::set<Id> of_objects;
     for (const Mesh& mesh : scene.meshes) {
@@ -72,10 +72,6 @@ void warn_of_appearance(const Node& root, Reading& reading) {
     for (const Id i : of_objects) {
         if (i >= scene.materials.size()) continue;
         needs_light = needs_light || !scene.materials[i].unlit;
-        if (i < reading.named_materials && root["materials"][i].has("roughnessFactor") &&
-            scene.materials[i].roughness_factor != 1)
-            reading.warn("/materials/" + std::to_string(i) + "/roughnessFactor",
-                         "does nothing on an object: objects are matt, as of roughness 1");
     }
     if (needs_light && scene.lights.empty())
         reading.warn("/lights", "there is no light: every object whose material is not unlit is black");
@@ -110,7 +106,7 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
     read_lights(root, reading);
     add_light_objects(reading.scene);
     reading.scene.render = read_render(root);
-    warn_of_appearance(root, reading);
+    warn_of_appearance(reading);
     return std::move(reading.scene);
 }
 

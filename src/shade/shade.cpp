@@ -92,14 +92,19 @@ void add_light(const ShadeScene& scene, std::size_t index, const Frame& frame, V
 
 Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
     const Material& material = scene.materials[scene.material[hit.triangle]];
-    const Frame frame = frame_at(scene, hit, ray.direction);
-
     const Vec3 base = base_colour(scene, hit);
     if (material.unlit) return base;
+    if (!is_plain(scene, hit)) {
+        Vec3 light;
+        const SeenAlong seen{&hit, &ray};
+        shade_rays(scene, {&seen, 1}, {&light, 1});
+        return light;
+    }
+    const Frame frame = frame_at(scene, hit, ray.direction);
 
     Vec3 arriving(0);
     for (std::size_t l = 0; l < scene.lights.size(); ++l) add_light(scene, l, frame, arriving);
-    return base * arriving;
+    return outgoing_radiance(look_at(scene, hit, base), {.matt = arriving});
 }
 
 Vec3 metal_reflectance(const Vec3& f0, double cos_incident) {

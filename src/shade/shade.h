@@ -14,6 +14,7 @@
 #include "base/raymesh/segments.h"
 #include "base/raymesh/triangle_scene.h"
 #include "shade/lights/light_sample.h"
+#include "shade/metallic_roughness.h"
 #include "shade/texture_filter.h"
 
 namespace trilens {
@@ -41,10 +42,11 @@ struct ShadeScene {
     std::function<Segments::Bits(const Segments&)> occluded;
 };
 
-/// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided
-/// and diffuse (radiance = base colour times irradiance over pi, plus ambient), or show their base colour if
-/// unlit. Where a triangle has corner normals its shadow rays start above it, on the smooth surface that they
-/// promise (Hanika 2021), so that the edge of a round body's own shadow does not follow its triangles.
+/// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided;
+/// they are matt (radiance = base colour times irradiance over pi, plus ambient), or of the
+/// metallic-roughness BRDF where they have a roughness, or show their base colour if unlit. Where a triangle
+/// has corner normals its shadow rays start above it, on the smooth surface that they promise (Hanika 2021),
+/// so that the edge of a round body's own shadow does not follow its triangles.
 Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray);
 
 /// How far along its normal a shadow ray starts, as a share of the scene's size: above float rounding of a
@@ -87,12 +89,12 @@ struct SeenAlong {
     const RayDifferential* differential = nullptr;  // where textures are averaged; null: it stands for itself
 };
 
-/// The light at a point of a surface.
+/// The light at a point of a surface, as it arrives.
 struct ReachingLight {
     // Which lights reach it, as a hash of the set: equal sets have equal ones. Lights of several samples
     // reach it with all, or with some, or not.
     std::uint64_t lights = 0;
-    Vec3 arriving{0};  // irradiance over pi, and the ambient radiance
+    ArrivedLight arrived;  // of a plain surface only `matt`: irradiance over pi, and the ambient radiance
 };
 
 /// What the rays show: each hit's shade (the same bits as shade_hit's where neither base nor differential is
@@ -105,6 +107,20 @@ void shade_rays(const ShadeScene& scene, std::span<const SeenAlong> seen, std::s
 /// Only the light at each hit. All must be hits of materials that are lit.
 void find_reaching_light(const ShadeScene& scene, std::span<const SeenAlong> seen,
                          std::span<ReachingLight> reaching);
+
+/// What the surface there is like, for that base colour.
+SurfaceLook look_at(const ShadeScene& scene, const Hit& hit, const Vec3& base);
+
+/// The normal there that light comes to, by the material's normal map: `normal` and `toward_surface` (both
+/// world, the normal unit and on the side that is looked at) as the mesh has them. Tangents are the
+/// triangle's own derivatives by u and v, at right angles to the normal.
+Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const Vec3& normal, const Vec3& geometric_normal);
+
+/// Share of ambient and environment light that the material's occlusion map lets arrive there.
+double occlusion_at(const ShadeScene& scene, const Hit& hit);
+
+/// Whether the surface there is matt and has no map but its colours'.
+bool is_plain(const ShadeScene& scene, const Hit& hit);
 
 /// Whether the material there is lit: else it shows its base colour.
 bool is_lit(const ShadeScene& scene, const Hit& hit);

@@ -1,6 +1,7 @@
 // What many rays show: their hits shaded in batches.
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <optional>
 
 #include "base/util/check.h"
@@ -41,6 +42,34 @@ ShadeBatch::Bits unhindered(const ShadeScene& scene, const ShadeBatch& batch, Sh
     return lanes;
 }
 
+/// Whether the light comes from all around.
+bool is_dome(const Light& light) {
+    return std::holds_alternative<AmbientLight>(light.kind) ||
+           std::holds_alternative<EnvironmentLight>(light.kind);
+}
+
+std::size_t lobe_count(const Light& dome) {
+    const auto* environment = std::get_if<EnvironmentLight>(&dome.kind);
+    return static_cast<std::size_t>(environment ? environment->samples
+                                                : std::get<AmbientLight>(dome.kind).samples);
+}
+
+/// How far shadow rays of its reflection go.
+double lobe_length(const ShadeScene& scene, const Light& dome) {
+    const auto* ambient = std::get_if<AmbientLight>(&dome.kind);
+    return ambient && ambient->distance > 0 ? ambient->distance : 2 * scene.size;
+}
+
+/// The mean radiance over a square of directions, `side` radians wide.
+Vec3 dome_radiance(const ShadeScene& scene, const Light& dome, const Vec3& toward, double side) {
+    const Vec3 factor = dome.intensity * dome.color;
+    if (std::holds_alternative<AmbientLight>(dome.kind)) return factor;
+    if (!scene.environment_map) return factor * shade_background(scene.background, toward);
+    const auto [u, v] = tangent_basis(toward);
+    return factor *
+           background_radiance(scene.background, *scene.environment_map, toward, {side * u, side * v});
+}
+
 /// How much of a light reaches a point.
 enum class Reach : std::size_t { kAll, kPart };
 
@@ -52,6 +81,13 @@ std::uint64_t number_of_light(std::size_t light, Reach reach) {
     return x ^ (x >> 31);
 }
 
+/// A lane whose surface is no plain one.
+struct ViewedLane {
+    ViewedSurface surface;
+    double occlusion = 1;
+    ArrivedLight arrived;
+};
+
 /// A batch on its way, with what is not the same number in all lanes.
 struct Shaded {
     explicit Shaded(const ShadeScene& of_scene)
@@ -62,12 +98,19 @@ struct Shaded {
     std::array<const SeenAlong*, kShadeLanes> seen;
     std::array<std::size_t, kShadeLanes> answer;    // index of the light that comes out
     std::array<std::uint64_t, kShadeLanes> lights;  // as ReachingLight has them
+    // Lanes that the batch's sums are not enough for, with their own.
+    ShadeBatch::Bits viewed = 0;
+    std::array<ViewedLane, kShadeLanes> viewed_lane;
 
     void add(const SeenAlong& seen, std::size_t index);
     void pad();
     void arrive();
     void arrive_from(std::size_t light, ShadeBatch::Bits wanted);
+    void find_viewed(ShadeBatch::Bits wanted);
     Vec3 find_sample(std::size_t light, std::size_t sample);
+    void add_viewed(std::size_t light, std::size_t sample, ShadeBatch::Bits lit);
+    void add_lobe(std::size_t light, std::size_t lane);
+    ArrivedLight arrived(std::size_t lane) const;
     void shade(std::span<Vec3> light);
     void find_reaching(std::span<ReachingLight> to);
 
@@ -111,6 +154,7 @@ void Shaded::arrive() {
     if (wanted == 0) return;
     pad();
     find_surfaces(batch, kShadowOffset * scene.size);
+    find_viewed(wanted);
     for (std::size_t l = 0; l < scene.lights.size(); ++l) arrive_from(l, wanted);
 }
 
@@ -120,6 +164,11 @@ void Shaded::arrive_from(std::size_t l, ShadeBatch::Bits wanted) {
     const bool shadows = light.shadows && scene.occluded;
     if (std::holds_alternative<AmbientLight>(light.kind) && !shadows) {
         add_ambient(batch, light.intensity * light.color);
+        for (std::size_t k = 0; viewed && k < sample_count(scene, l); ++k) {
+            find_sample(l, k);
+            add_viewed(l, k, batch.lit & viewed);
+        }
+        for_each_of(viewed, [&](std::size_t i) { add_lobe(l, i); });
         return;
     }
     const std::optional<ShadeLight> as_seen = as_lanes_see_it(scene, light);
@@ -134,12 +183,80 @@ void Shaded::arrive_from(std::size_t l, ShadeBatch::Bits wanted) {
         ShadeBatch::Bits lit = batch.lit & wanted;
         if (shadows) lit = unhindered(scene, batch, lit);
         add_light(batch, color, lit);
+        add_viewed(l, k, lit & viewed);
         by_any |= lit;
         by_all &= lit;
     }
+    if (is_dome(light)) for_each_of(viewed, [&](std::size_t i) { add_lobe(l, i); });
     for_each_of(by_any, [&](std::size_t i) {
         lights[i] += number_of_light(l, by_all & Segments::bit(i) ? Reach::kAll : Reach::kPart);
     });
+}
+
+/// Normals by the materials' maps, and how surfaces that are not plain are looked at.
+void Shaded::find_viewed(ShadeBatch::Bits wanted) {
+    viewed = 0;
+    for_each_of(wanted, [&](std::size_t i) {
+        const Hit& hit = *seen[i]->hit;
+        if (is_plain(scene, hit)) return;
+        viewed |= Segments::bit(i);
+        const Vec3 normal = mapped_normal(scene, hit, batch.normal.get(i), batch.geometric_normal.get(i));
+        batch.normal.set(i, normal);
+        const Vec3 view = -normalize_or_zero(batch.toward.get(i));
+        viewed_lane[i] = {
+            {normal, view, look_at(scene, hit, Vec3(1)).roughness}, occlusion_at(scene, hit), {}};
+    });
+}
+
+/// The light found last, in lanes that it reaches.
+void Shaded::add_viewed(std::size_t l, std::size_t sample, ShadeBatch::Bits lit) {
+    const Light& light = scene.lights[l];
+    for_each_of(lit, [&](std::size_t i) {
+        ViewedLane& lane = viewed_lane[i];
+        const LightSample at =
+            light_sample(scene, l, sample, {batch.position.get(i), batch.normal.get(i), scene.size});
+        const Vec3 irradiance = std::numbers::pi * batch.irradiance[i] * (at.color * light.color);
+        ArrivedLight one = arrived_from(lane.surface, at.toward, irradiance, at.spread);
+        if (is_dome(light)) {  // its reflection comes by add_lobe
+            one.glossy = one.glossy_grazing = Vec3(0);
+            one *= lane.occlusion;
+        }
+        lane.arrived += one;
+    });
+}
+
+/// The reflection of light that comes from everywhere, in the directions that the lane's lobe has.
+void Shaded::add_lobe(std::size_t l, std::size_t i) {
+    const Light& light = scene.lights[l];
+    ViewedLane& lane = viewed_lane[i];
+    const std::size_t count = lobe_count(light);
+    const double far = lobe_length(scene, light);
+    const bool shadows = light.shadows && scene.occluded;
+    Segments segments;
+    std::array<LobeDirection, Segments::kMost> direction;
+    const auto add_up = [&] {
+        const Segments::Bits hidden = shadows && segments.count > 0 ? scene.occluded(segments) : 0;
+        for_each_of(segments.all() & ~hidden, [&](std::size_t s) {
+            const Vec3 radiance =
+                lane.occlusion * dome_radiance(scene, light, direction[s].toward, direction[s].side);
+            lane.arrived.glossy += direction[s].glossy * radiance;
+            lane.arrived.glossy_grazing += direction[s].grazing * radiance;
+        });
+        segments.count = 0;
+    };
+    for (std::size_t k = 0; k < count; ++k) {
+        const LobeDirection one = lobe_direction(lane.surface, k, count);
+        if (one.glossy == 0) continue;
+        direction[segments.count] = one;
+        segments.add(batch.shadow_start.get(i), far * one.toward);
+        if (segments.count == Segments::kMost) add_up();
+    }
+    add_up();
+}
+
+ArrivedLight Shaded::arrived(std::size_t lane) const {
+    if (viewed & Segments::bit(lane)) return viewed_lane[lane].arrived;
+    return {.matt = batch.arriving.get(lane)};
 }
 
 /// One sample of a light as each lane sees it; gives its colour beside the light's.
@@ -159,13 +276,14 @@ void Shaded::shade(std::span<Vec3> light) {
     for (std::size_t i = 0; i < batch.count; ++i) {
         const Hit& hit = *seen[i]->hit;
         const Vec3 base = seen[i]->base ? *seen[i]->base : base_colour(scene, *seen[i]);
-        light[answer[i]] = is_lit(scene, hit) ? base * batch.arriving.get(i) : base;
+        light[answer[i]] =
+            is_lit(scene, hit) ? outgoing_radiance(look_at(scene, hit, base), arrived(i)) : base;
     }
 }
 
 void Shaded::find_reaching(std::span<ReachingLight> to) {
     for (std::size_t i = 0; i < batch.count; ++i)
-        if (is_lit(scene, *seen[i]->hit)) to[answer[i]] = {lights[i], batch.arriving.get(i)};
+        if (is_lit(scene, *seen[i]->hit)) to[answer[i]] = {lights[i], arrived(i)};
 }
 
 }  // namespace

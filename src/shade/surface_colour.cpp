@@ -19,6 +19,10 @@ Vec2 uv_at(const ShadeScene& scene, const Hit& hit) {
            hit.barycentric.y * uv[2];
 }
 
+Vec3 look_up(const ShadeScene& scene, const Hit& hit, const PlacedTexture& texture) {
+    return lookup(*texture.picture, texture.sampler, texture.sampler.place(uv_at(scene, hit)));
+}
+
 /// How uv at the hit change along the sides of the ray's footprint.
 Footprint uv_footprint(const ShadeScene& scene, const SeenAlong& seen) {
     if (seen.hit->triangle >= scene.uvs.size()) return {Vec2(0), Vec2(0)};
@@ -84,6 +88,65 @@ Vec3 base_colour(const ShadeScene& scene, const Hit& hit) {
 Vec3 shade_background(const Background& background, const Vec3& direction) {
     if (!background.environment) return background.color;
     return lookup_latitude_longitude(*background.environment, turned(background, direction));
+}
+
+SurfaceLook look_at(const ShadeScene& scene, const Hit& hit, const Vec3& base) {
+    const Material& material = material_of(scene, hit);
+    SurfaceLook look;
+    look.base = base;
+    look.metallic = material.metallic_factor;
+    look.roughness = material.roughness_factor;
+    look.ior = material.ior;
+    look.specular = material.specular_factor;
+    look.specular_color = material.specular_color_factor;
+    look.emissive = material.emissive_factor;
+    if (const PlacedTexture& both = material.metallic_roughness_texture; both.picture) {
+        const Vec3 seen = look_up(scene, hit, both);
+        look.roughness *= std::clamp(seen.y, 0.0, 1.0);
+        look.metallic *= std::clamp(seen.z, 0.0, 1.0);
+    }
+    if (material.roughness_factor > 0) look.roughness = std::max(look.roughness, kLeastRoughness);
+    if (material.emissive_texture.picture) look.emissive *= look_up(scene, hit, material.emissive_texture);
+    return look;
+}
+
+Vec3 mapped_normal(const ShadeScene& scene, const Hit& hit, const Vec3& normal,
+                   const Vec3& geometric_normal) {
+    const Material& material = material_of(scene, hit);
+    if (!material.normal_texture.picture || hit.triangle >= scene.uvs.size()) return normal;
+    const IdTriple& corner = scene.triangles->triangles[hit.triangle];
+    const std::array<Vec2, 3>& uv = scene.uvs[hit.triangle];
+    const Vec3& a = scene.triangles->points[corner[0]];
+    const Vec3 b = scene.triangles->points[corner[1]] - a, c = scene.triangles->points[corner[2]] - a;
+    const Vec2 ub = uv[1] - uv[0], uc = uv[2] - uv[0];
+    const double area = ub.x * uc.y - ub.y * uc.x;
+    if (!(area != 0)) return normal;
+    // The point's derivatives by u and by v.
+    const Vec3 along_u = (uc.y * b - ub.y * c) / area, along_v = (ub.x * c - uc.x * b) / area;
+    // The map is of the front, where the corners turn anticlockwise.
+    const double side = dot(cross(b, c), geometric_normal) < 0 ? -1 : 1;
+    const Vec3 front = side * normal;
+    const Vec3 tangent = normalize_or_zero(along_u - dot(along_u, front) * front);
+    Vec3 bitangent = cross(front, tangent);
+    if (dot(bitangent, along_v) < 0) bitangent = -bitangent;
+    const Vec3 texel = look_up(scene, hit, material.normal_texture);
+    const Vec3 mapped =
+        normalize_or_zero(material.normal_scale * (2 * texel.x - 1) * tangent +
+                          material.normal_scale * (2 * texel.y - 1) * bitangent + (2 * texel.z - 1) * front);
+    return mapped == Vec3(0) ? normal : side * mapped;
+}
+
+double occlusion_at(const ShadeScene& scene, const Hit& hit) {
+    const Material& material = material_of(scene, hit);
+    if (!material.occlusion_texture.picture) return 1;
+    const double seen = std::clamp(look_up(scene, hit, material.occlusion_texture).x, 0.0, 1.0);
+    return 1 + material.occlusion_strength * (seen - 1);
+}
+
+bool is_plain(const ShadeScene& scene, const Hit& hit) {
+    const Material& material = material_of(scene, hit);
+    return !(material.roughness_factor > 0) && !material.normal_texture.picture &&
+           !material.occlusion_texture.picture;
 }
 
 Vec3 background_radiance(const Background& background, const MipMap& map, const Vec3& direction,

@@ -94,9 +94,6 @@ TEST_CASE("what is doubtful is a warning with its place", "[scene]") {
                  "/lights: there is no light: every object whose material is not unlit is black"));
     CHECK_FALSE(warned({{"/lights", "[]"}},
                        "/lights: there is no light: every object whose material is not unlit is black"));
-    CHECK(warned({{"/materials/2/roughnessFactor", "0.3"}},
-                 "/materials/2/roughnessFactor: does nothing on an object: objects are matt, as of roughness "
-                 "1"));
 }
 
 TEST_CASE("creases come in chains or pairs with one sharpness per chain or edge", "[scene]") {

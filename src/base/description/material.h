@@ -62,7 +62,15 @@ inline void set_transform(const TextureTransform& transform, TextureSampler& sam
 
 // Materials, by glTF's names; plain data that scene writes and shade reads.
 
-/// glTF's names. On an optic either metallic_factor or transmission_factor is 1.
+/// A picture and how it lies.
+struct PlacedTexture {
+    std::shared_ptr<const Texture> picture;  // may be null
+    TextureSampler sampler;
+};
+
+/// glTF's names. On an optic either metallic_factor or transmission_factor is 1. An object of roughness 0,
+/// the default, is matt (Lambert's): a polished surface is an optic's; any other is of the metallic-roughness
+/// BRDF.
 struct Material {
     std::string name;
     Vec3 base_color_factor{1};
@@ -76,6 +84,17 @@ struct Material {
     double dispersion = 0;
     Vec3 attenuation_color{1};
     double attenuation_distance = 0;  // scene units; 0: no absorption
+
+    // Of objects alone. Pictures of numbers hold them as they are, not as colours.
+    double specular_factor = 1;  // KHR_materials_specular
+    Vec3 specular_color_factor{1};
+    Vec3 emissive_factor{0};  // radiance: KHR_materials_emissive_strength's is a factor of it
+    double normal_scale = 1;  // of the normal map's slopes
+    double occlusion_strength = 1;
+    PlacedTexture metallic_roughness_texture;  // green: roughness, blue: metallic, factors of the factors
+    PlacedTexture normal_texture;              // 2 rgb - 1 in the frame of u, v (upward) and the normal
+    PlacedTexture occlusion_texture;           // red: of ambient and environment light what arrives
+    PlacedTexture emissive_texture;            // factor of emissive_factor
 };
 
 }  // namespace trilens

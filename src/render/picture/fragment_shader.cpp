@@ -15,6 +15,8 @@ constexpr std::size_t kMostShaded = Segments::kMost;
 constexpr std::size_t kCorners = 4;
 // Of the light at the shaded point: how far that at the outermost samples may be off in the mean.
 constexpr double kWholeRoom = 0.25, kPartRoom = 0.05;
+constexpr double kPolished =
+    0.3;  // surfaces of less roughness are shaded sample by sample: highlights are small
 constexpr double kWayToEdge = 0.9;  // of the way to a triangle's edge, at most: walls may stand there
 
 /// Where a ray meets the plane of a triangle, outside of it, too; none: nowhere in front.
@@ -197,12 +199,19 @@ class FragmentContributions {
 
   private:
     void even_out(std::span<const ReachingLight> centre, std::span<const Vec3> base, std::span<Vec3> light);
-    Vec3 mean_arriving(const SpreadContribution& contribution) const;
+    ArrivedLight mean_arrived(const SpreadContribution& contribution) const;
 
     const FragmentShading& shading_;
     std::vector<SpreadContribution> waiting_;
     std::array<ShadedFragment*, kMostShaded> shaded_{};
 };
+
+/// What a surface makes of light, that it does not emit itself: of a matt one without its colour.
+Vec3 arriving(SurfaceLook look, const ArrivedLight& arrived) {
+    if (look.is_matt()) return arrived.matt;
+    look.emissive = Vec3(0);
+    return outgoing_radiance(look, arrived);
+}
 
 /// The mean over a pixel's samples of a function that is quadratic, less its value at the centre, as a share
 /// of the mean over the four samples at the corners less that.
@@ -230,30 +239,32 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
     count = 0;
     for (std::size_t i = 0; i < waiting_.size(); ++i) {
         if (!is_spread(waiting_[i])) continue;
+        const SurfaceLook look =
+            look_at(shading_.world.shading, *waiting_[i].contribution().seen.hit, base[i]);
         const std::size_t n = waiting_[i].corners().size();
-        bool uneven = false;
-        Vec3 mean(0);
-        for (const ReachingLight& at : std::span(there).subspan(count, n)) {
+        bool uneven = !look.is_matt() && look.roughness < kPolished;
+        ArrivedLight mean;
+        for (ReachingLight at : std::span(there).subspan(count, n)) {
             uneven = uneven || at.lights != centre[i].lights;
-            mean += at.arriving / double(n);
+            mean += at.arrived /= double(n);
         }
         count += n;
         const bool whole = waiting_[i].is_whole_pixel();
-        const Vec3 off = mean - centre[i].arriving;
-        if (uneven ||
-            of_worst_colour(glm::abs(off) - (whole ? kWholeRoom : kPartRoom) * centre[i].arriving) > 0) {
-            light[i] = base[i] * mean_arriving(waiting_[i]);
+        const Vec3 here = arriving(look, centre[i].arrived), off = arriving(look, mean) - here;
+        if (uneven || of_worst_colour(glm::abs(off) - (whole ? kWholeRoom : kPartRoom) * here) > 0) {
+            light[i] = outgoing_radiance(look, mean_arrived(waiting_[i]));
             ++shaded_[i]->rays_by_sample;
         } else if (whole && n == kCorners) {
             for (int k = 0; k < 3; ++k)
-                if (centre[i].arriving[k] > 0)
-                    light[i][k] *= 1 + corner_share(shading_.side) * off[k] / centre[i].arriving[k];
+                if (here[k] > 0)
+                    light[i][k] = look.emissive[k] + (light[i][k] - look.emissive[k]) *
+                                                         (1 + corner_share(shading_.side) * off[k] / here[k]);
         }
     }
 }
 
 /// The light at each sample by itself.
-Vec3 FragmentContributions::mean_arriving(const SpreadContribution& contribution) const {
+ArrivedLight FragmentContributions::mean_arrived(const SpreadContribution& contribution) const {
     std::vector<SeenThere> there;
     for (std::size_t s = 0; s < contribution.sample_count(); ++s)
         if (const std::optional<SeenThere> seen = contribution.at(contribution.place(s)))
@@ -262,9 +273,9 @@ Vec3 FragmentContributions::mean_arriving(const SpreadContribution& contribution
     for (const SeenThere& one : there) seen.push_back({&one.hit, &one.ray});
     std::vector<ReachingLight> light(seen.size());
     find_reaching_light(shading_.world.shading, seen, light);
-    Vec3 sum(0);
-    for (const ReachingLight& one : light) sum += one.arriving;
-    return sum / double(light.size());
+    ArrivedLight sum;
+    for (const ReachingLight& one : light) sum += one.arrived;
+    return sum /= double(light.size());
 }
 
 /// Adds what has come together to its fragments, in the order in which it came.

@@ -80,7 +80,14 @@ void SceneCheck::materials() const {
         require(is_finite(m.ior) && m.ior > 0, place + "/ior", "is not positive");
         require(is_finite(m.attenuation_distance) && m.attenuation_distance >= 0,
                 place + "/volume/attenuationDistance", "is negative");
+        require(
+            is_finite(m.emissive_factor) && is_finite(m.specular_color_factor) && is_finite(m.normal_scale),
+            place, "is not finite");
         texture(m.base_color_texture.get(), place + "/baseColorTexture");
+        texture(m.metallic_roughness_texture.picture.get(), place + "/metallicRoughnessTexture");
+        texture(m.normal_texture.picture.get(), place + "/normalTexture");
+        texture(m.occlusion_texture.picture.get(), place + "/occlusionTexture");
+        texture(m.emissive_texture.picture.get(), place + "/emissiveTexture");
     }
 }
 

@@ -45,14 +45,27 @@ void add(const Background& background, Digest& digest) {
     add(environment, digest);
 }
 
-void add(const Material& material, Digest& digest) {
-    const auto& [name, color, texture, sampler, unlit, metallic, roughness, transmission, ior, dispersion,
-                 attenuation, distance] = material;
-    digest.add_all(name, color, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
-                   distance);
-    add(texture, digest);
+void add(const TextureSampler& sampler, Digest& digest) {
     const auto& [wrap_s, wrap_t, at_zero, along_u, along_v] = sampler;
     digest.add_all(wrap_s, wrap_t, at_zero, along_u, along_v);
+}
+
+void add(const PlacedTexture& texture, Digest& digest) {
+    const auto& [picture, sampler] = texture;
+    add(picture, digest);
+    add(sampler, digest);
+}
+
+void add(const Material& material, Digest& digest) {
+    const auto& [name, color, texture, sampler, unlit, metallic, roughness, transmission, ior, dispersion,
+                 attenuation, distance, specular, specular_color, emissive, normal_scale, occlusion_strength,
+                 metallic_roughness_map, normal_map, occlusion_map, emissive_map] = material;
+    digest.add_all(name, color, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
+                   distance, specular, specular_color, emissive, normal_scale, occlusion_strength);
+    add(texture, digest);
+    add(sampler, digest);
+    for (const PlacedTexture* map : {&metallic_roughness_map, &normal_map, &occlusion_map, &emissive_map})
+        add(*map, digest);
 }
 
 void add(const DirectionalLight& light, Digest& digest) {

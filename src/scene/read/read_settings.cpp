@@ -155,6 +155,9 @@ const std::vector<Field<Material>>& volume_fields() {
 
 const std::vector<Field<Material>>& material_fields() {
     static const std::vector<Field<Material>> fields = [] {
+        Field<Material> strength =
+            part<Material>("emissiveStrength", ref("notNegative"), "Factor of emissiveFactor.");
+        strength.schema["default"] = 1;
         Field<Material> volume =
             part<Material>("volume", object_schema({.title = "a volume"}, volume_fields()));
         return std::vector<Field<Material>>{
@@ -164,7 +167,23 @@ const std::vector<Field<Material>>& material_fields() {
             part<Material>("baseColorTexture", ref("texture")),
             setting("unlit", &Material::unlit, yes_or_no()),
             setting("metallicFactor", &Material::metallic_factor, ref("share")),
-            setting("roughnessFactor", &Material::roughness_factor, ref("share")),
+            setting(
+                "roughnessFactor", &Material::roughness_factor, ref("share"),
+                "Of an object: 0: it is matt; else it is of glTF's metallic-roughness BRDF, which reflects "
+                "lights, not other objects. A polished surface is an optic."),
+            part<Material>("metallicRoughnessTexture", ref("texture"),
+                           "Factors: green of roughness, blue of metallic; numbers, not colours."),
+            part<Material>("normalTexture", ref("texture"),
+                           "Of an object's tangent space: +X along u, +Y along v upward; numbers."),
+            part<Material>("occlusionTexture", ref("texture"),
+                           "Red: share of ambient and environment light that arrives; numbers."),
+            setting("emissiveFactor", &Material::emissive_factor, ref("color"),
+                    "Radiance of an object; it lights nothing else."),
+            part<Material>("emissiveTexture", ref("texture"), "Factor of emissiveFactor."),
+            std::move(strength),
+            setting("specularFactor", &Material::specular_factor, ref("share"),
+                    "Of an object with a roughness: how strongly what covers its colour reflects."),
+            setting("specularColorFactor", &Material::specular_color_factor, ref("color")),
             setting("transmissionFactor", &Material::transmission_factor, ref("share")),
             setting("ior", &Material::ior, number_above(0, 10)),
             setting("dispersion", &Material::dispersion, ref("notNegative"),
@@ -188,7 +207,20 @@ Material read_material(const Node& node, Reading& reading) {
     read_fields(node, material_fields(), material);
     if (material.name == "inherit")
         node["name"].fail("'inherit' is taken: it stands for a file's own materials");
-    if (node.has("baseColorTexture")) read_texture(node["baseColorTexture"], reading, material);
+    const PlacedTexture base = read_texture(node, "baseColorTexture", reading);
+    material.base_color_texture = base.picture;
+    material.base_color_sampler = base.sampler;
+    material.emissive_texture = read_texture(node, "emissiveTexture", reading);
+    material.metallic_roughness_texture = read_number_texture(node, "metallicRoughnessTexture", reading);
+    material.normal_texture = read_number_texture(node, "normalTexture", reading);
+    material.occlusion_texture = read_number_texture(node, "occlusionTexture", reading);
+    const auto of_texture = [&](const char* key, const char* own, double& value) {
+        if (node.has(key) && node[key].json.is_object() && node[key].has(own))
+            value = node[key].json.at(own).get<double>();
+    };
+    of_texture("normalTexture", "scale", material.normal_scale);
+    of_texture("occlusionTexture", "strength", material.occlusion_strength);
+    if (node.has("emissiveStrength")) material.emissive_factor *= node["emissiveStrength"].json.get<double>();
     if (node.has("volume")) read_fields(node["volume"], volume_fields(), material);
     return material;
 }

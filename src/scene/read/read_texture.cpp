@@ -1,6 +1,8 @@
 // Textures out of checked JSON: a file's name, an object with the file and how it lies, or a pattern.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 
 #include "scene/read/reading.h"
 
@@ -47,6 +49,11 @@ const std::vector<Field<TextureTransform>>& transform_fields() {
     return fields;
 }
 
+Field<WrittenTexture> with_default(Field<WrittenTexture> field, double usual) {
+    field.schema["default"] = to_json_value(usual);
+    return field;
+}
+
 const std::vector<Field<WrittenTexture>>& texture_fields() {
     static const std::vector<Field<WrittenTexture>> fields = [] {
         const Json counts = several(2, whole_in(1, kPatternTexels));
@@ -69,6 +76,10 @@ const std::vector<Field<WrittenTexture>>& texture_fields() {
                    choice("wrapS", &TextureSampler::wrap_s, "What lies left and right of the picture.")),
             within(&WrittenTexture::sampler,
                    choice("wrapT", &TextureSampler::wrap_t, "What lies above and below it.")),
+            with_default(part<WrittenTexture>("scale", ref("number"), "normalTexture: factor of its slopes."),
+                         1),
+            with_default(
+                part<WrittenTexture>("strength", ref("share"), "occlusionTexture: how much it darkens."), 1),
             part<WrittenTexture>(
                 "transform",
                 object_schema({.title = "a texture's transform",
@@ -115,10 +126,40 @@ Json texture_schema() {
     return schema;
 }
 
-void read_texture(const Node& node, Reading& reading, Material& material) {
+namespace {
+
+/// What a picture's file holds, of the light that was made of it. Source: IEC 61966-2-1 (sRGB).
+std::shared_ptr<const Texture> as_stored(const Texture& linear) {
+    auto stored = std::make_shared<Texture>(linear);
+    for (float& value : stored->rgb) {
+        const double v = static_cast<double>(value);
+        value = static_cast<float>(v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+    }
+    return stored;
+}
+
+/// Whether files of this name hold light, and not values for a screen.
+bool holds_light(const std::string& file) {
+    std::string ending = std::filesystem::path(file).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending == ".exr" || ending == ".hdr";
+}
+
+/// What a picture's numbers mean.
+enum class Meaning { kColours, kNumbers };
+
+std::shared_ptr<const Texture> read_meant(const Node& file, Meaning meaning, Reading& reading) {
+    std::shared_ptr<const Texture> picture = read_picture(reading, file);
+    if (meaning == Meaning::kColours || holds_light(file.json.get<std::string>())) return picture;
+    return as_stored(*picture);
+}
+
+PlacedTexture read_texture(const Node& node, Meaning meaning, Reading& reading) {
+    PlacedTexture texture;
     if (node.json.is_string()) {
-        material.base_color_texture = read_picture(reading, node);
-        return;
+        texture.picture = read_meant(node, meaning, reading);
+        return texture;
     }
     WrittenTexture written;
     read_fields(node, texture_fields(), written);
@@ -126,17 +167,38 @@ void read_texture(const Node& node, Reading& reading, Material& material) {
         read_fields(node["transform"], transform_fields(), written.transform);
         set_transform(written.transform, written.sampler);
     }
-    material.base_color_sampler = written.sampler;
+    texture.sampler = written.sampler;
     if (node.has("file")) {
         for (const char* key : {"colors", "count", "line"})
             if (node.has(key)) node[key].fail(std::string("'") + key + "' is of a pattern, not of a file");
-        material.base_color_texture = read_picture(reading, node["file"]);
-        return;
+        texture.picture = read_meant(node["file"], meaning, reading);
+        return texture;
     }
     std::array<Vec3, 2> colors{Vec3(0), Vec3(1)};
     if (node.has("colors"))
         for (std::size_t k = 0; k < 2; ++k) colors[k] = to_vec3(node.json.at("colors").at(k));
-    material.base_color_texture = draw_pattern(written, colors);
+    texture.picture = draw_pattern(written, colors);
+    return texture;
+}
+
+PlacedTexture read_key(const Node& material, const char* key, Meaning meaning, Reading& reading) {
+    if (!material.has(key)) return {};
+    const Node node = material[key];
+    for (const auto& [own, of] :
+         {std::pair("scale", "normalTexture"), std::pair("strength", "occlusionTexture")})
+        if (node.json.is_object() && node.has(own) && std::string(key) != of)
+            node[own].fail(std::string("'") + own + "' is of '" + of + "'");
+    return read_texture(node, meaning, reading);
+}
+
+}  // namespace
+
+PlacedTexture read_texture(const Node& material, const char* key, Reading& reading) {
+    return read_key(material, key, Meaning::kColours, reading);
+}
+
+PlacedTexture read_number_texture(const Node& material, const char* key, Reading& reading) {
+    return read_key(material, key, Meaning::kNumbers, reading);
 }
 
 }  // namespace trilens

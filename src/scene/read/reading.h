@@ -67,8 +67,10 @@ Background read_background(const Node& scene, Reading& reading);
 void read_lights(const Node& scene, Reading& reading);
 RenderSettings read_render(const Node& scene);
 Material read_material(const Node& material, Reading& reading);
-/// Sets the material's base colour texture and how it lies.
-void read_texture(const Node& texture, Reading& reading, Material& material);
+/// A texture of a material: `key` of it, colours linear; none where it has no such key.
+PlacedTexture read_texture(const Node& material, const char* key, Reading& reading);
+/// The same of a picture of numbers: as the file holds them.
+PlacedTexture read_number_texture(const Node& material, const char* key, Reading& reading);
 Mesh read_mesh(const Node& mesh, std::size_t index, Reading& reading);
 Primitive read_primitive(const Node& primitive, const Transform& transform, const Node& mesh);
 /// The polygons of an object's primitive, in its own frame.

@@ -18,8 +18,11 @@ LightSample sample_light(const DirectionalLight& light, double intensity, const 
     const double one_minus_cosine = 2 * half_sine * half_sine;
     // A surface that faces the disk gets radiance times pi sin^2; a sample has its share of 2 pi (1 - cos).
     const double share = 2 * one_minus_cosine / (sine * sine) / static_cast<double>(count);
-    return at_infinity(cone_direction(-light.direction, one_minus_cosine, stratified_place(sample, count)),
-                       share * intensity);
+    LightSample seen =
+        at_infinity(cone_direction(-light.direction, one_minus_cosine, stratified_place(sample, count)),
+                    share * intensity);
+    seen.spread = sine / std::sqrt(static_cast<double>(count));
+    return seen;
 }
 
 }  // namespace trilens

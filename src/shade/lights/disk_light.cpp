@@ -10,8 +10,9 @@ LightSample sample_light(const DiskLight& light, double intensity, const LitPoin
     const Vec2 place = light.radius * disk_place(stratified_place(sample, count));
     const auto [u, v] = tangent_basis(light.direction);
     const double area = std::numbers::pi * light.radius * light.radius;
-    return from_flat_light(light.position + place.x * u + place.y * v, light.direction,
-                           area / static_cast<double>(count) * intensity, at);
+    return from_flat_light({light.position + place.x * u + place.y * v, light.direction, intensity,
+                            area / static_cast<double>(count)},
+                           at);
 }
 
 }  // namespace trilens

@@ -33,14 +33,17 @@ Vec2 disk_place(const Vec2& square) {
     return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-LightSample from_flat_light(const Vec3& from, const Vec3& normal, double radiance_area, const LitPoint& at) {
-    const Vec3 way = from - at.position;
+LightSample from_flat_light(const FlatPart& part, const LitPoint& at) {
+    const Vec3 way = part.position - at.position;
     const double distance2 = dot(way, way);
     if (!(distance2 > 0)) return {};
     const Vec3 toward = normalize_or_zero(way);
-    const double cosine = -dot(toward, normal);
+    const double cosine = -dot(toward, part.normal);
     if (!(cosine > 0)) return {};
-    return {.toward = toward, .target = from, .irradiance = cosine / distance2 * radiance_area};
+    return {.toward = toward,
+            .target = part.position,
+            .irradiance = cosine / distance2 * (part.area * part.radiance),
+            .spread = std::sqrt(cosine * part.area / (std::numbers::pi * distance2))};
 }
 
 Vec3 cone_direction(const Vec3& axis, double one_minus_cosine, const Vec2& square) {

@@ -17,7 +17,8 @@ struct LightSample {
     Vec3 target{0};  // where shadow rays end, world
     // On a surface that faces the sample, unhindered, of a white light; zero: nothing comes from there.
     double irradiance = 0;
-    Vec3 color{1};  // of this sample beside the light's own
+    Vec3 color{1};      // of this sample beside the light's own
+    double spread = 0;  // radians from the middle to the border of the part of the light that it stands for
 };
 
 /// A point that light comes to.
@@ -73,9 +74,14 @@ TangentBasis tangent_basis(const Vec3& normal);
 /// Source: Shirley, Chiu, A Low Distortion Map Between Disk and Square, 1997.
 Vec2 disk_place(const Vec2& square);
 
-/// A point `from` of a flat light of this normal that shines to one side: `radiance` times area and cosine
-/// over the square of the distance.
-LightSample from_flat_light(const Vec3& from, const Vec3& normal, double radiance_area, const LitPoint& at);
+/// A part of a flat light that shines to one side.
+struct FlatPart {
+    Vec3 position, normal;  // normal: unit, on the side that shines
+    double radiance = 0, area = 0;
+};
+
+/// What comes of it, taken for a point: radiance times area and cosine over the square of the distance.
+LightSample from_flat_light(const FlatPart& part, const LitPoint& at);
 
 /// A direction of the cone about `axis` (unit) whose angle from it has this cosine, solid angles in
 /// proportion to areas of the square. 1 - cosine is asked for: small cones keep their digits.

@@ -8,8 +8,9 @@ LightSample sample_light(const RectangleLight& light, double intensity, const Li
     const std::size_t count = static_cast<std::size_t>(light.samples);
     const Vec2 place = stratified_place(sample, count) - Vec2(0.5);
     const auto [width, height] = sides_of(light);
-    return from_flat_light(light.position + place.x * width + place.y * height, light.direction,
-                           light.size.x * light.size.y / static_cast<double>(count) * intensity, at);
+    return from_flat_light({light.position + place.x * width + place.y * height, light.direction, intensity,
+                            light.size.x * light.size.y / static_cast<double>(count)},
+                           at);
 }
 
 }  // namespace trilens

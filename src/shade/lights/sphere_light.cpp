@@ -22,6 +22,7 @@ LightSample sample_light(const SphereLight& light, double intensity, const LitPo
     const double depth = std::sqrt(std::max(radius2 - (distance2 - along * along), 0.0));
     seen.target = at.position + (along - depth) * seen.toward;
     seen.irradiance = 2 * std::numbers::pi * one_minus_cosine / static_cast<double>(count) * intensity;
+    seen.spread = std::sqrt(sine2 / static_cast<double>(count));
     return seen;
 }
 
