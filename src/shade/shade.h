@@ -64,7 +64,7 @@ Vec3 background_radiance(const Background& background, const MipMap& map, const 
 /// Sets the mip maps of materials and background; keeps those of pictures that stay.
 void prepare_textures(ShadeScene& scene);
 
-/// Sets the samples of environment lights.
+/// Sets the samples of environment lights; keeps those of a background that stays.
 void prepare_lights(ShadeScene& scene);
 
 /// How many samples a light of the scene has.

@@ -29,6 +29,8 @@ struct LitPoint {
 
 /// The background as directions, each with the irradiance that it stands for.
 struct EnvironmentSamples {
+    Background background;  // that they are of, and how many were asked for
+    int count = 0;
     std::vector<Vec3> toward, irradiance;  // toward: unit, world
 };
 

@@ -1,15 +1,35 @@
 // The lights of a scene, whatever their kinds.
+#include <algorithm>
+#include <utility>
+
 #include "base/util/check.h"
 #include "shade/shade.h"
 
 namespace trilens {
 
+namespace {
+
+bool is_same(const Background& a, const Background& b) {
+    return a.color == b.color && a.environment == b.environment && a.rotate_cos == b.rotate_cos &&
+           a.rotate_sin == b.rotate_sin;
+}
+
+}  // namespace
+
 void prepare_lights(ShadeScene& scene) {
+    const auto before = std::move(scene.environment_samples);
     scene.environment_samples.assign(scene.lights.size(), nullptr);
-    for (std::size_t l = 0; l < scene.lights.size(); ++l)
-        if (const auto* light = std::get_if<EnvironmentLight>(&scene.lights[l].kind))
-            scene.environment_samples[l] = std::make_shared<const EnvironmentSamples>(
-                environment_samples(scene.background, light->samples));
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+        const auto* light = std::get_if<EnvironmentLight>(&scene.lights[l].kind);
+        if (!light) continue;
+        const auto kept = std::find_if(before.begin(), before.end(), [&](const auto& one) {
+            return one && one->count == light->samples && is_same(one->background, scene.background);
+        });
+        scene.environment_samples[l] = kept != before.end()
+                                           ? *kept
+                                           : std::make_shared<const EnvironmentSamples>(
+                                                 environment_samples(scene.background, light->samples));
+    }
 }
 
 namespace {

@@ -143,7 +143,7 @@ EnvironmentSamples environment_samples(const Background& background, int count) 
             std::push_heap(regions.begin(), regions.end(), is_darker);
         }
     }
-    EnvironmentSamples samples;
+    EnvironmentSamples samples{background, count, {}, {}};
     for (const Region& region : done) cells.add(region, samples);
     for (const Region& region : regions)
         if (region.light > 0) cells.add(region, samples);
