@@ -40,9 +40,9 @@ void tell_warnings(const Scene& scene, PythonCall& call) {
 }
 
 Scene load(const std::filesystem::path& file, const py::dict& overrides, int resolution,
-           const py::object& warn) {
+           const ImportOptions& import, const py::object& warn) {
     PythonCall call(py::none(), warn);
-    const SceneRequest request{file.string(), overrides_of(overrides), resolution};
+    const SceneRequest request{file.string(), overrides_of(overrides), resolution, import};
     Scene scene = call.run([&] { return load_scene(request); });
     tell_warnings(scene, call);
     return scene;
@@ -100,13 +100,26 @@ void bind_parts(py::module_& module) {
 
 void bind_readers(py::module_& module) {
     module.def(
-        "load_scene", load, py::arg("file"), py::arg("overrides") = py::dict(), py::arg("resolution") = 0,
-        py::kw_only(), py::arg("warn") = py::none(),
-        "Reads a scene file (.json), or the scene that an image (.exr) carries.\n\n"
+        "load_scene",
+        [](const std::filesystem::path& file, const py::dict& overrides, int resolution,
+           const std::vector<std::string>& optics, const std::optional<double>& time,
+           const std::string& animation, const py::object& warn) {
+            if (time && !(std::fabs(*time) <= 1e9)) throw UsageError("a time is a finite number of seconds");
+            return load(file, overrides, resolution, {optics, time, animation}, warn);
+        },
+        py::arg("file"), py::arg("overrides") = py::dict(), py::arg("resolution") = 0, py::kw_only(),
+        py::arg("optics") = py::list(), py::arg("time") = py::none(), py::arg("animation") = "",
+        py::arg("warn") = py::none(),
+        "Reads a scene file (.json), a glTF (.gltf, .glb), or the scene that an image (.exr) carries.\n\n"
         "overrides: values by JSON pointer, {\"/film/width\": 320}, in order, before the scene is checked; "
         "numpy's\n"
         "arrays and numbers, and paths, stand for lists, numbers and texts, as in the dict of parse_scene.\n"
         "resolution: 1..1024, of every optic; 0: as the scene says.\n"
+        "optics, time, animation: of a glTF, or those that the scene imports: names of meshes, nodes and "
+        "materials\n"
+        "that are optics, as shells match them (\"Mirror*\"); seconds of its animation, None: its start; the "
+        "animation's\n"
+        "name, \"\": the first. Raises UsageError where there is no such thing.\n"
         "warn: called with each warning; None: the warnings module tells (TrilensWarning).\n"
         "Raises InputError with the file and the place of the first problem.");
     module.def(

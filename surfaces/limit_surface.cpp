@@ -8,6 +8,7 @@
 #include "surfaces/face_hulls.h"
 #include "surfaces/limit_patches.h"
 #include "surfaces/polynomial/polynomial_bounds.h"
+#include "surfaces/polygon_surface.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
@@ -226,6 +227,7 @@ class LimitSurface final : public Surface, public HasHulls {
 
 std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string& name, const Warn& warn,
                                             double memory) {
+    if (cage.scheme == SubdivisionScheme::kUnsubdivided) return make_polygon_surface(cage, name);
     return std::make_unique<LimitSurface>(check_cage(cage, name, warn), name, warn, memory);
 }
 

@@ -44,6 +44,7 @@ Sdc::SchemeType scheme_of(const CheckedCage& cage) {
         case SubdivisionScheme::kBilinear:
             return Sdc::SCHEME_BILINEAR;
         case SubdivisionScheme::kCatmullClark:
+        case SubdivisionScheme::kUnsubdivided:
             break;
     }
     return Sdc::SCHEME_CATMARK;

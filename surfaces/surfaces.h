@@ -15,7 +15,8 @@ namespace trilens {
 
 /// The limit surface of a cage (OpenSubdiv Bfr, double precision): THE door to OpenSubdiv. A surface face is
 /// one quad face of the cage, one sub-face of an n-gon under Catmull-Clark or bilinear (n of them, in corner
-/// order), or one triangle under Loop; holes have none. Front is where the face's corners run
+/// order), or one triangle under Loop; holes have none. Without a scheme (kUnsubdivided) it is the cage's triangles with
+/// their own normals: see make_polygon_surface. Front is where the face's corners run
 /// counter-clockwise.
 ///
 /// `name` is used in messages. `warn` (may be empty) is told of what is repaired or left out: repeated

@@ -142,7 +142,16 @@ class Scene:
     @property
     def animation(self) -> Optional[dict[str, Any]]: ...
 
-def load_scene(file: _File, overrides: _Overrides = {}, resolution: int = 0, *, warn: _Warn = None) -> Scene: ...
+def load_scene(
+    file: _File,
+    overrides: _Overrides = {},
+    resolution: int = 0,
+    *,
+    optics: Sequence[str] = [],
+    time: Optional[float] = None,
+    animation: str = "",
+    warn: _Warn = None,
+) -> Scene: ...
 def parse_scene(
     scene: Union[str, Mapping[str, Any]],
     folder: _File = "",

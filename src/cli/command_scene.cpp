@@ -1,9 +1,12 @@
-// trilens scene: validate, info, schema, example.
+// trilens scene: validate, info, convert, schema, example.
 #include <trilens/render.h>
 #include <trilens/scene.h>
 #include <trilens/text.h>
 
+#include <filesystem>
+
 #include "cli/commands.h"
+#include "cli/print/pictures.h"
 #include "cli/print/scene_info.h"
 #include "cli/scene_options.h"
 
@@ -28,6 +31,21 @@ Answer validate(const SceneOptions& options, Console& console) {
                   std::to_string(triangles) + " triangles";
     answer.fields["optics"] = optics;
     answer.fields["triangles"] = triangles;
+    return answer;
+}
+
+/// The scene with nothing left to import, its files named from where the output lies.
+Answer convert(const SceneOptions& options, const std::string& output, Console& console) {
+    const bool to_file = !output.empty() && !is_standard_stream(output);
+    if (to_file) check_output(output, console);
+    const Scene scene = load_scene(options, console);
+    const std::string folder =
+        to_file ? std::filesystem::absolute(output).parent_path().string() : scene.folder;
+    const std::string text = scene_document(scene, folder);
+    if (to_file) return write_output(output, text, console);
+    Answer answer;
+    answer.text = text;
+    answer.fields["scene"] = Json::parse(text);
     return answer;
 }
 
@@ -62,6 +80,16 @@ Command scene_command() {
     check.body = [options](Console& console) { return validate(*options, console); };
     Command look{.name = "info", .summary = "what a scene holds", .options = of_scene, .schema = "scene"};
     look.body = [options](Console& console) { return info(*options, console); };
+    auto output = std::make_shared<std::string>();
+    Command turn{.name = "convert",
+                 .summary = "write a glTF, or a scene with what it imports, as one scene file",
+                 .options = joined({of_scene,
+                                    {{.names = "-o,--output",
+                                      .target = output.get(),
+                                      .help = "scene file to write; without it, standard output",
+                                      .value = "OUT.json"}}}),
+                 .schema = "scene"};
+    turn.body = [options, output](Console& console) { return convert(*options, *output, console); };
     Command schema{.name = "schema", .summary = "print the JSON Schema of scene files", .schema = "scene"};
     schema.body = [](Console&) {
         return Answer{.text = scene_schema(), .fields = {{"schema_document", Json::parse(scene_schema())}}};
@@ -77,7 +105,8 @@ Command scene_command() {
     print.body = [name](Console&) { return example(*name); };
     return {.name = "scene",
             .summary = "look at scene files",
-            .commands = {std::move(check), std::move(look), std::move(schema), std::move(print)}};
+            .commands = {std::move(check), std::move(look), std::move(turn), std::move(schema),
+                         std::move(print)}};
 }
 
 }  // namespace trilens

@@ -4,6 +4,7 @@
 #include <trilens/stopwatch.h>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <iterator>
 
@@ -68,6 +69,14 @@ Resolutions resolutions_of(const std::vector<std::string>& texts) {
     return resolutions;
 }
 
+double seconds_of(const std::string& text) {
+    double seconds = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+    if (error != std::errc() || stop != text.data() + text.size() || !(std::abs(seconds) <= 1e9))
+        throw UsageError("--time takes seconds, not \"" + text + "\"");
+    return seconds;
+}
+
 /// OpenEXR's first four bytes.
 bool is_exr(const std::string& bytes) {
     return bytes.rfind("\x76\x2f\x31\x01", 0) == 0;
@@ -87,7 +96,7 @@ namespace {
 Scene read_standard_input(const SceneRequest& request) {
     const std::string text = standard_input("a scene is");
     if (is_exr(text)) throw InputError(kStandardInput, "", "is an image; name its file instead of -");
-    Scene scene = parse_scene(text, "", request.overrides, kStandardInput);
+    Scene scene = parse_scene(text, "", request.overrides, kStandardInput, request.import);
     if (request.resolution != 0) set_resolution(scene, request.resolution);
     return scene;
 }
@@ -107,7 +116,8 @@ std::vector<Option> scene_argument(SceneOptions& options) {
     return {
         {.names = "SCENE",
          .target = &options.scene,
-         .help = "scene file (JSON), an image that carries its scene, or - for standard input",
+         .help = "scene file (JSON), a glTF (.gltf, .glb), an image that carries its scene, or - for "
+                 "standard input",
          .offer = Offer::kScene,
          .is_required = true},
         {.names = "-n,--resolution",
@@ -118,28 +128,43 @@ std::vector<Option> scene_argument(SceneOptions& options) {
 }
 
 std::vector<Option> scene_overrides(SceneOptions& options) {
-    return {{.names = "--size", .target = &options.size, .help = "film size in pixels", .value = "WxH"},
-            {.names = "--spp",
-             .target = &options.spp,
-             .help = "S x S samples per pixel",
-             .value = "S",
-             .range = {1, kMaxSpp}},
-            {.names = "--filter",
-             .target = &options.filter,
-             .help = "how samples make a pixel's colour; other than box also from pixels around",
-             .choices = names_of<FilterKind>()},
-            {.names = "--camera",
-             .target = &options.camera,
-             .help = "camera by name; default: the first",
-             .value = "NAME"},
-            {.names = "--max-depth",
-             .target = &options.max_depth,
-             .help = "optic hits after the first",
-             .range = {0, kMostDepth}},
-            {.names = "--set",
-             .target = &options.set,
-             .help = "replace a value of the scene; may be given several times",
-             .value = "/json/pointer=VALUE"}};
+    return {
+        {.names = "--size", .target = &options.size, .help = "film size in pixels", .value = "WxH"},
+        {.names = "--spp",
+         .target = &options.spp,
+         .help = "S x S samples per pixel",
+         .value = "S",
+         .range = {1, kMaxSpp}},
+        {.names = "--filter",
+         .target = &options.filter,
+         .help = "how samples make a pixel's colour; other than box also from pixels around",
+         .choices = names_of<FilterKind>()},
+        {.names = "--camera",
+         .target = &options.camera,
+         .help = "camera by name; default: the first",
+         .value = "NAME"},
+        {.names = "--max-depth",
+         .target = &options.max_depth,
+         .help = "optic hits after the first",
+         .range = {0, kMostDepth}},
+        {.names = "--set",
+         .target = &options.set,
+         .help = "replace a value of the scene; may be given several times",
+         .value = "/json/pointer=VALUE"},
+        {.names = "--optic",
+         .target = &options.optics,
+         .help = "of a glTF: its meshes, nodes or materials of such a name are optics; may be given several "
+                 "times",
+         .value = "PATTERN"},
+        {.names = "--time",
+         .target = &options.time,
+         .help = "of a glTF: its meshes, cameras and lights as its animation has them then",
+         .value = "SECONDS",
+         .check = [](const std::vector<std::string>& texts) { seconds_of(texts.back()); }},
+        {.names = "--animation",
+         .target = &options.animation,
+         .help = "of a glTF: which animation; default: the first",
+         .value = "NAME"}};
 }
 
 std::vector<Option> window_options(SceneOptions& options) {
@@ -157,7 +182,12 @@ std::vector<Option> window_options(SceneOptions& options) {
 }
 
 SceneRequest scene_request(const SceneOptions& options) {
-    return {options.scene, file_overrides(options), resolutions_of(options.resolution).of_all};
+    SceneRequest request{
+        options.scene, file_overrides(options), resolutions_of(options.resolution).of_all, {}};
+    request.import.optics = options.optics;
+    if (!options.time.empty()) request.import.time = seconds_of(options.time);
+    request.import.animation = options.animation;
+    return request;
 }
 
 Scene load_scene(const SceneOptions& options, Console& console) {

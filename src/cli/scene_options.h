@@ -18,7 +18,7 @@ inline constexpr const char* kStandardInput = "standard input";
 std::string standard_input(const std::string& expected);
 
 struct SceneOptions {
-    std::string scene;                    // a scene file, an image that carries its scene, or "-"
+    std::string scene;                    // a scene file, a glTF, an image that carries its scene, or "-"
     std::string camera;                   // empty: the image's own, or the first
     std::vector<std::string> resolution;  // "16" for every optic, "ball=16" for one; else as the scene says
     std::string size;                     // "640x480"; empty: as the scene says
@@ -26,13 +26,17 @@ struct SceneOptions {
     std::string filter;                   // empty: as the scene says
     int max_depth = -1;                   // < 0: as the scene says
     std::vector<std::string> set;         // "/json/pointer=VALUE"
+    std::vector<std::string> optics;      // of a glTF: "Mirror*"
+    std::string time;                     // of a glTF: seconds; empty: its animation's start
+    std::string animation;                // of a glTF: its name; empty: the first
     std::string crop;                     // "x0,y0,x1,y1"
     std::string aov;                      // empty: the usual ones
 };
 
 /// The scene argument and its resolution.
 std::vector<Option> scene_argument(SceneOptions& options);
-/// The overrides alone: --size, --spp, --filter, --camera, --max-depth, --set.
+/// The overrides alone: --size, --spp, --filter, --camera, --max-depth, --set; --optic, --time, --animation of
+/// glTF.
 std::vector<Option> scene_overrides(SceneOptions& options);
 /// --crop and --aov.
 std::vector<Option> window_options(SceneOptions& options);

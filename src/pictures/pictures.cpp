@@ -61,6 +61,11 @@ std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std
         static_cast<std::size_t>(spec.full_width) * static_cast<std::size_t>(spec.full_height) * 3, 0);
     const std::array<int, 3> channels = colour_channels(spec);
     const bool srgb = is_srgb(spec);
+    // Opacity beside colours; what lies outside the data has none.
+    const auto of_pixel = static_cast<std::size_t>(std::max(0, spec.alpha_channel));
+    if (spec.alpha_channel >= 0)
+        texture->alpha.assign(
+            static_cast<std::size_t>(spec.full_width) * static_cast<std::size_t>(spec.full_height), 0);
 
     // The part of the display window that has data.
     const int dx = spec.x - spec.full_x, dy = spec.y - spec.full_y;
@@ -77,6 +82,8 @@ std::shared_ptr<const Texture> texture_of(const OIIO::ImageSpec& spec, const std
                                            static_cast<std::size_t>(channels[c])];
                 texture->rgb[to * 3 + c] = srgb ? linear_from_stored(value) : value;
             }
+            if (!texture->alpha.empty())
+                texture->alpha[to] = values[from * static_cast<std::size_t>(spec.nchannels) + of_pixel];
         }
     }
     return texture;

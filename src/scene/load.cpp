@@ -10,6 +10,7 @@
 #include "json/schema.h"
 #include "scene/animation/animation_keys.h"
 #include "scene/data/light_objects.h"
+#include "scene/imports/expand_imports.h"
 #include "scene/read/override.h"
 #include "scene/read/reading.h"
 
@@ -83,16 +84,23 @@ SceneSource::SceneSource(std::string named)
     : file(std::move(named)), folder(std::filesystem::path(file).parent_path().string()) {}
 
 Scene load_scene_text(const std::string& text, const SceneSource& source,
-                      std::span<const SceneOverride> overrides, const TextureReader& textures) {
+                      std::span<const SceneOverride> overrides, const TextureReader& textures,
+                      const ImportOptions& import) {
     const std::string& file = source.file;
     Json json = parse_json(text, file);
-    apply_overrides(json, overrides, file);
+    Reading reading(file, source.folder, textures);
+    // What is imported must be known before its parts can be changed.
+    std::vector<SceneOverride> of_import, others;
+    for (const SceneOverride& change : overrides)
+        (change.pointer.rfind("/import", 0) == 0 ? of_import : others).push_back(change);
+    apply_overrides(json, of_import, file);
+    expand_imports(json, import, reading);
+    apply_overrides(json, others, file);
     if (const auto found = find_problem(json, scene_schema_json()))
         fail_at(file, found->place, found->message);
 
     if (json.contains("animation")) check_animation({json, "", file});
 
-    Reading reading(file, source.folder, textures);
     const Node root{json, "", file};
     reading.scene.file = file;
     reading.scene.folder =
@@ -111,11 +119,46 @@ Scene load_scene_text(const std::string& text, const SceneSource& source,
 }
 
 Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides,
-                 const TextureReader& textures) {
+                 const TextureReader& textures, const ImportOptions& import) {
+    if (is_gltf_name(file)) {
+        const Json text{{"version", 1}, {"import", std::filesystem::path(file).filename().string()}};
+        return load_scene_text(text.dump(-1, ' ', false, Json::error_handler_t::replace), SceneSource(file),
+                               overrides, textures, import);
+    }
     const std::string text = read_required_file(file);
-    Scene scene = load_scene_text(text, SceneSource(file), overrides, textures);
+    Scene scene = load_scene_text(text, SceneSource(file), overrides, textures, import);
     scene.files.insert(scene.files.begin(), make_file_read(file, text));
     return scene;
+}
+
+namespace {
+
+/// Every "file" of the document, named from another folder.
+void move_files(Json& part, const std::filesystem::path& from, const std::filesystem::path& to) {
+    if (part.is_array())
+        for (Json& entry : part) move_files(entry, from, to);
+    if (!part.is_object()) return;
+    for (auto& [key, value] : part.items()) {
+        const bool names = (key == "file" || key.ends_with("Texture")) && value.is_string();
+        if (names) {
+            const std::filesystem::path path = value.get<std::string>();
+            if (path.is_relative())
+                value = (from / path).lexically_normal().lexically_proximate(to).generic_string();
+        } else if (!is_free_key(key)) {
+            move_files(value, from, to);
+        }
+    }
+}
+
+}  // namespace
+
+std::string scene_document(const Scene& scene, const std::string& folder) {
+    if (scene.resolved.empty())
+        throw InputError(scene_title(scene), "", "was built in memory and has no JSON that could be written");
+    Json json = resolved_json(scene);
+    const std::filesystem::path to = std::filesystem::path(folder).lexically_normal();
+    if (to != std::filesystem::path(scene.folder)) move_files(json, scene.folder, to);
+    return json_document(json);
 }
 
 void set_resolution(Scene& scene, int resolution, const std::string& optic) {

@@ -11,12 +11,13 @@
 
 namespace trilens {
 
-/// Reads, checks and resolves a scene file. `overrides` are applied to the JSON before it is checked; a
-/// pointer that names nothing is an error, but missing keys that the schema knows are added, with the objects
-/// on the way to the last. Throws InputError with the file and the place (JSON pointer, or line of an OBJ) of
-/// the first problem. What is legal but doubtful goes to Scene::warnings.
+/// Reads, checks and resolves a scene file; a glTF is the scene that imports it. `overrides` are applied to
+/// the JSON before it is checked; a pointer that names nothing is an error, but missing keys that the schema
+/// knows are added, with the objects on the way to the last. Throws InputError with the file and the place
+/// (JSON pointer, or line of an OBJ) of the first problem, and UsageError for `import` where nothing is
+/// imported. What is legal but doubtful goes to Scene::warnings.
 Scene load_scene(const std::string& file, std::span<const SceneOverride> overrides,
-                 const TextureReader& textures);
+                 const TextureReader& textures, const ImportOptions& import = {});
 
 /// Where a scene's text comes from.
 struct SceneSource {
@@ -30,7 +31,12 @@ struct SceneSource {
 
 /// The same from text in memory, as an image's header holds it: Scene::files lacks the scene file itself.
 Scene load_scene_text(const std::string& text, const SceneSource& source,
-                      std::span<const SceneOverride> overrides, const TextureReader& textures);
+                      std::span<const SceneOverride> overrides, const TextureReader& textures,
+                      const ImportOptions& import = {});
+
+/// The scene as the text of a scene file that lies in `folder` (absolute): what was imported and overridden
+/// is in it, and the files that it names are named from there. Throws InputError for a scene built in memory.
+std::string scene_document(const Scene& scene, const std::string& folder);
 
 /// Gives every optic this resolution, or with a name those of that name, in the scene and in its resolved
 /// JSON. Throws InputError unless it is in 1..1024, or where Scene::resolved is no scene's JSON, UsageError

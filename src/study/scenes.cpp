@@ -23,7 +23,8 @@ bool is_image(const std::string& file) {
     return file.size() > 4 && file.compare(file.size() - 4, 4, ".exr") == 0;
 }
 
-Scene load_scene_of_image(const std::string& file, std::span<const SceneOverride> overrides) {
+Scene load_scene_of_image(const std::string& file, std::span<const SceneOverride> overrides,
+                          const ImportOptions& import) {
     const Image image = read_exr(file);
     const auto text = [&](const char* name) {
         const auto found = image.metadata.find(name);
@@ -35,7 +36,7 @@ Scene load_scene_of_image(const std::string& file, std::span<const SceneOverride
     std::error_code none;
     const bool has_folder = !folder.empty() && std::filesystem::is_directory(folder, none);
     Scene scene = load_scene_text(json, has_folder ? SceneSource(file, folder) : SceneSource(file), overrides,
-                                  texture_reader());
+                                  texture_reader(), import);
     for (std::size_t c = 0; c < scene.cameras.size(); ++c)
         if (scene.cameras[c].name == camera) scene.own_camera = c;
     for (const std::string& changed : changed_files(scene, text("trilens:files")))
@@ -47,16 +48,18 @@ Scene load_scene_of_image(const std::string& file, std::span<const SceneOverride
 }  // namespace
 
 Scene load_scene(const SceneRequest& request) {
-    Scene scene = is_image(request.file) ? load_scene_of_image(request.file, request.overrides)
-                                         : load_scene(request.file, request.overrides, texture_reader());
+    Scene scene = is_image(request.file)
+                      ? load_scene_of_image(request.file, request.overrides, request.import)
+                      : load_scene(request.file, request.overrides, texture_reader(), request.import);
     if (request.resolution != 0) set_resolution(scene, request.resolution);
     return scene;
 }
 
 Scene parse_scene(const std::string& json, const std::string& folder,
-                  std::span<const SceneOverride> overrides, const std::string& label) {
+                  std::span<const SceneOverride> overrides, const std::string& label,
+                  const ImportOptions& import) {
     Scene scene = load_scene_text(json, SceneSource(label.empty() ? kSceneLabel : label, folder), overrides,
-                                  texture_reader());
+                                  texture_reader(), import);
     scene.file.clear();
     scene.label = label;
     return scene;

@@ -15,22 +15,24 @@ namespace trilens {
 
 /// Which scene, and what is changed in it.
 struct SceneRequest {
-    std::string file;                      // a scene file (JSON), or an image (.exr) that carries its scene
+    std::string file;  // a scene file (JSON), a glTF (.gltf, .glb), or an image (.exr) that carries its scene
     std::vector<SceneOverride> overrides;  // in order, before the scene is checked
     int resolution = 0;                    // 1..1024: of every optic; 0: as the scene says
+    ImportOptions import = {};             // of a glTF, or those that the scene imports
 };
 
 /// Reads, checks and resolves a scene with all that it names. An image's scene has the image's camera as its
 /// own; its files are looked for where the scene's were, or beside the image where that folder is gone. What
 /// is legal but doubtful is in Scene::warnings. Throws InputError with the file and the place of the first
-/// problem.
+/// problem, and UsageError for `import` where nothing is imported.
 Scene load_scene(const SceneRequest& request);
 
 /// The same from JSON text; `folder`: where relative paths start, empty for where the program runs. `label`:
 /// what messages call the scene,
 /// empty for "scene".
 Scene parse_scene(const std::string& json, const std::string& folder = "",
-                  std::span<const SceneOverride> overrides = {}, const std::string& label = "");
+                  std::span<const SceneOverride> overrides = {}, const std::string& label = "",
+                  const ImportOptions& import = {});
 
 /// The camera of that name; the scene's own where the name is empty. Throws UsageError with the nearest name.
 std::size_t find_camera(const Scene& scene, const std::string& name);

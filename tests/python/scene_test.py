@@ -105,3 +105,16 @@ def test_a_direct_image_is_where_the_camera_projects_the_point(renderer, sphere)
     assert len(direct) == 40
     assert np.allclose(direct["x"], x / w, atol=1e-9) and np.allclose(direct["y"], y / w, atol=1e-9)
     assert np.allclose(direct["t"], w, atol=1e-12)
+
+
+def test_a_gltf_is_a_scene_whose_optics_are_chosen_by_name():
+    file = SOURCE / "scenes/gltf/room.gltf"
+    with pytest.warns(trilens.TrilensWarning, match="drawn as a perfect mirror"):
+        scene = trilens.load_scene(file, {"/film/width": 64}, optics=["Right"], time=1.0)
+    roles = {mesh["name"]: mesh["role"] for mesh in scene.to_dict()["meshes"]}
+    assert roles["Right"] == roles["Mirror ball"] == roles["Glass lens"] == "optic"
+    assert roles["Floor"] == "object"
+    with pytest.raises(trilens.UsageError, match="no mesh"):
+        trilens.load_scene(file, optics=["Wrong"])
+    with pytest.raises(trilens.UsageError, match="there is no animation"):
+        trilens.load_scene(file, animation="Hope")

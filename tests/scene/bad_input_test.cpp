@@ -316,10 +316,9 @@ TEST_CASE("files that a scene names", "[scene]") {
     CHECK(error("/meshes/2", mesh("pawn.stl")) ==
           file + ": /meshes/2/file: '" + folder +
               "/pawn.stl' is of no known kind: known are .obj, .gltf and .glb");
-    CHECK(error("/meshes/1", R"({"role":"optic","material":"chrome","file":"pawn.glb"})") ==
-          file +
-              ": /meshes/1/file: a glTF file holds triangles only, and so cannot hold the cage of an optic: "
-              "give an OBJ of quads");
+    CHECK(error("/meshes/2", mesh("pawn.usdz")) ==
+          file + ": /meshes/2/file: '" + folder +
+              "/pawn.usdz' is USD, which is not read: export glTF (.glb) or OBJ instead");
 
     std::ofstream obj(folder + "/round.obj");
     for (int i = 0; i < 300; ++i) obj << "v " << i << " 0 0\n";

@@ -62,6 +62,9 @@ std::vector<Change> changes_of_looks() {
             [](Scene& s) { s.materials[0].dispersion = 1; },
             [](Scene& s) { s.materials[0].attenuation_color.x = 0; },
             [](Scene& s) { s.materials[0].attenuation_distance = 1; },
+            [](Scene& s) { s.materials[0].alpha_mode = AlphaMode::kMask; },
+            [](Scene& s) { s.materials[0].alpha_cutoff = 0.25; },
+            [](Scene& s) { s.materials[0].alpha_factor = 0.25; },
             [](Scene& s) { s.lights[0].kind = PointLight{}; },
             [](Scene& s) {
                 s.lights[0].kind = PointLight{{0, 1, 0}};
@@ -124,6 +127,7 @@ std::vector<Change> changes_of_shapes() {
             [](Scene& s) { s.meshes[0].object.uvs[0][2].y = 9; },
             [](Scene& s) { s.meshes[0].object.normals[0][2].y = 9; },
             [](Scene& s) { s.meshes[0].object.material[0] = 9; },
+            [](Scene& s) { s.meshes[0].cage.normals = {Vec3(1, 0, 0)}; },
             [](Scene& s) { s.meshes[0].primitive.reset(); },
             [](Scene& s) { s.meshes[0].primitive->type = Primitive::Type::kPlane; },
             [](Scene& s) { s.meshes[0].primitive->center.x = 1; },

@@ -2,6 +2,7 @@
 // reads.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -18,6 +19,7 @@ namespace trilens {
 struct Texture {
     int width = 0, height = 0;
     std::vector<float> rgb;
+    std::vector<float> alpha;  // 0..1, one per texel; empty: all opaque
 };
 
 /// What lies beyond a picture's edges: as glTF's samplers have it.
@@ -62,6 +64,17 @@ inline void set_transform(const TextureTransform& transform, TextureSampler& sam
 
 // Materials, by glTF's names; plain data that scene writes and shade reads.
 
+/// glTF's: what is less opaque than a cutoff is not there (kMask), or shows what lies behind in part (kBlend;
+/// drawn as kMask at one half).
+enum class AlphaMode { kOpaque, kMask, kBlend };
+
+template <>
+struct EnumNames<AlphaMode> {
+    static constexpr std::array kTable{NamedValue<AlphaMode>{AlphaMode::kOpaque, "opaque"},
+                                       NamedValue<AlphaMode>{AlphaMode::kMask, "mask"},
+                                       NamedValue<AlphaMode>{AlphaMode::kBlend, "blend"}};
+};
+
 /// A picture and how it lies.
 struct PlacedTexture {
     std::shared_ptr<const Texture> picture;  // may be null
@@ -91,10 +104,13 @@ struct Material {
     Vec3 emissive_factor{0};  // radiance: KHR_materials_emissive_strength's is a factor of it
     double normal_scale = 1;  // of the normal map's slopes
     double occlusion_strength = 1;
-    PlacedTexture metallic_roughness_texture;  // green: roughness, blue: metallic, factors of the factors
-    PlacedTexture normal_texture;              // 2 rgb - 1 in the frame of u, v (upward) and the normal
-    PlacedTexture occlusion_texture;           // red: of ambient and environment light what arrives
-    PlacedTexture emissive_texture;            // factor of emissive_factor
+    PlacedTexture metallic_roughness_texture;   // green: roughness, blue: metallic, factors of the factors
+    PlacedTexture normal_texture;               // 2 rgb - 1 in the frame of u, v (upward) and the normal
+    PlacedTexture occlusion_texture;            // red: of ambient and environment light what arrives
+    PlacedTexture emissive_texture;             // factor of emissive_factor
+    AlphaMode alpha_mode = AlphaMode::kOpaque;  // of objects, cut when they are read
+    double alpha_cutoff = 0.5;
+    double alpha_factor = 1;  // times the alpha of the base colour's picture
 };
 
 }  // namespace trilens

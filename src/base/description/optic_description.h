@@ -14,7 +14,8 @@ namespace trilens {
 
 // Subdivision cages (UsdGeomMesh's names) and analytic primitives.
 
-enum class SubdivisionScheme { kCatmullClark, kLoop, kBilinear };
+/// kUnsubdivided: its triangles as they are, with the normals of their corners interpolated.
+enum class SubdivisionScheme { kCatmullClark, kLoop, kBilinear, kUnsubdivided };
 enum class InterpolateBoundary { kNothing, kEdgeOnly, kEdgeAndCorner };
 
 template <>
@@ -22,7 +23,8 @@ struct EnumNames<SubdivisionScheme> {
     static constexpr std::array kTable{
         NamedValue<SubdivisionScheme>{SubdivisionScheme::kCatmullClark, "catmullClark"},
         NamedValue<SubdivisionScheme>{SubdivisionScheme::kLoop, "loop"},
-        NamedValue<SubdivisionScheme>{SubdivisionScheme::kBilinear, "bilinear"}};
+        NamedValue<SubdivisionScheme>{SubdivisionScheme::kBilinear, "bilinear"},
+        NamedValue<SubdivisionScheme>{SubdivisionScheme::kUnsubdivided, "none"}};
 };
 template <>
 struct EnumNames<InterpolateBoundary> {
@@ -46,6 +48,7 @@ struct Cage {
     std::vector<int> corner_indices;
     std::vector<double> corner_sharpnesses;
     std::vector<int> hole_indices;  // faces that are not drawn
+    std::vector<Vec3> normals;      // kUnsubdivided: per face corner, any length, zero: the face's own; or empty
 };
 
 /// An optic given by a formula instead of a cage; world frame.

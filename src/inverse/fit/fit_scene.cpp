@@ -61,9 +61,9 @@ SurfacePoint moved_point(const FitOptic& optic, const SurfacePoint& as_built) {
 FitSceneMaker::FitSceneMaker(const Scene& scene) : scene_(scene) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m)
         if (scene.meshes[m].role == Role::kOptic &&
-            scene.meshes[m].normals.type != NormalOverride::Type::kSmooth)
+            !has_own_normals(scene.meshes[m]))
             throw InputError(scene_title(scene), fmt::format("/meshes/{}/normals", m),
-                             "an optic with overridden normals cannot be fitted");
+                             "an optic with overridden or interpolated normals cannot be fitted");
 }
 
 FitScene FitSceneMaker::make(const Json& document, const std::vector<FitParameter>& parameters) {

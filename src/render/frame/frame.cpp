@@ -264,7 +264,7 @@ std::optional<NestedStage> make_nested_stage(const World& world, const Frame& fr
         stage.optics.push_back(
             {world.optics[i].surface.get(), &frame.optics[i].facets->grid(),
              frame.optics[i].rays == CornerRays::kFitted,
-             world.scene.meshes[world.optics[i].mesh].normals.type == NormalOverride::Type::kSmooth});
+             has_own_normals(world.scene.meshes[world.optics[i].mesh])});
     stage.camera = path_camera(*frame.camera.linear);
     stage.camera.film = Vec2(world.scene.film.width, world.scene.film.height);
     stage.eye = frame.camera.linear->eye;

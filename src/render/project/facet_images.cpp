@@ -33,7 +33,7 @@ SpecularQuery specular_query(const World& world, const Frame& frame, std::size_t
     SpecularQuery query;
     query.camera = frame.camera.linear ? *frame.camera.linear : law_of_eye(*frame.camera.model->eye());
     query.event = path == Path::kReflect ? SpecularEvent::kReflect : SpecularEvent::kRefract;
-    query.own_normals = world.scene.meshes[optic.mesh].normals.type == NormalOverride::Type::kSmooth;
+    query.own_normals = has_own_normals(world.scene.meshes[optic.mesh]);
     if (path == Path::kRefract) query.point_index = relative_ior(world, index, frame.camera_media.fixed);
     return query;
 }

@@ -51,6 +51,8 @@ class SceneCheck {
         require(texture->rgb.size() ==
                     3 * static_cast<std::size_t>(texture->width) * static_cast<std::size_t>(texture->height),
                 place, "has not three values per pixel");
+        require(texture->alpha.empty() || 3 * texture->alpha.size() == texture->rgb.size(), place,
+                "has not one alpha per pixel");
     }
     void object(const Mesh& whole, const std::string& place) const;
     void optic(const Mesh& mesh, const std::string& place) const;

@@ -71,6 +71,7 @@ struct PolygonMesh {
     std::vector<Vec3> normals;        // any length; zero: none, take the triangle's own
     std::vector<Id> face_material;    // per face an index into `materials`, or kNone; empty: none at all
     std::vector<Material> materials;  // the file's own
+    bool is_triangle_soup = false;    // a point may stand there several times, as in glTF
 };
 
 /// Moves points and normals; a mirroring transform also reverses the corners of each face after the first, so

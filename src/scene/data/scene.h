@@ -99,6 +99,12 @@ struct Mesh {
     Cage cage;
 };
 
+/// Whether the optic's normals are those that the derivatives of its surface have.
+inline bool has_own_normals(const Mesh& optic) {
+    return optic.normals.type == NormalOverride::Type::kSmooth &&
+           (optic.primitive || optic.cage.scheme != SubdivisionScheme::kUnsubdivided);
+}
+
 struct RenderSettings {
     int max_depth = 8;  // optic hits after the first
     bool direct = true, reflect = true, refract = true;

@@ -11,8 +11,8 @@ namespace {
 void add(const std::shared_ptr<const Texture>& texture, Digest& digest) {
     digest.add(texture != nullptr);
     if (!texture) return;
-    const auto& [width, height, rgb] = *texture;
-    digest.add_all(width, height, rgb);
+    const auto& [width, height, rgb, alpha] = *texture;
+    digest.add_all(width, height, rgb, alpha);
 }
 
 void add(const CameraDescription& camera, Digest& digest) {
@@ -59,9 +59,11 @@ void add(const PlacedTexture& texture, Digest& digest) {
 void add(const Material& material, Digest& digest) {
     const auto& [name, color, texture, sampler, unlit, metallic, roughness, transmission, ior, dispersion,
                  attenuation, distance, specular, specular_color, emissive, normal_scale, occlusion_strength,
-                 metallic_roughness_map, normal_map, occlusion_map, emissive_map] = material;
+                 metallic_roughness_map, normal_map, occlusion_map, emissive_map, alpha_mode, alpha_cutoff,
+                 alpha_factor] = material;
     digest.add_all(name, color, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
-                   distance, specular, specular_color, emissive, normal_scale, occlusion_strength);
+                   distance, specular, specular_color, emissive, normal_scale, occlusion_strength, alpha_mode,
+                   alpha_cutoff, alpha_factor);
     add(texture, digest);
     add(sampler, digest);
     for (const PlacedTexture* map : {&metallic_roughness_map, &normal_map, &occlusion_map, &emissive_map})
@@ -121,9 +123,9 @@ void add(const Primitive& primitive, Digest& digest) {
 
 void add(const Cage& cage, Digest& digest) {
     const auto& [points, counts, indices, scheme, boundary, crease_indices, crease_lengths, creases,
-                 corner_indices, corners, holes] = cage;
+                 corner_indices, corners, holes, normals] = cage;
     digest.add_all(points, counts, indices, scheme, boundary, crease_indices, crease_lengths, creases,
-                   corner_indices, corners, holes);
+                   corner_indices, corners, holes, normals);
 }
 
 void add(const Mesh& mesh, Digest& digest) {

@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/description/material.h"
 
@@ -18,6 +20,16 @@ struct SceneOverride {
     std::string pointer;
     std::string value;
     bool removes = false;  // takes what the pointer names away, whatever the value; later entries move up
+};
+
+/// How glTF files become scenes.
+struct ImportOptions {
+    /// Of names of meshes, nodes and materials that are optics, as shells match them: "Mirror*".
+    std::vector<std::string> optics;
+    std::optional<double> time;  // seconds of the animation; none: its start
+    std::string animation;       // its name; empty: the first
+
+    bool empty() const { return optics.empty() && !time && animation.empty(); }
 };
 
 // How the scene room gets pixels without knowing the image room.

@@ -24,7 +24,8 @@ namespace {
 bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int size, void*) {
     image->as_is = true;
-    if (bytes && size > 0) image->image.assign(bytes, bytes + size);
+    // Those in buffer views come without a check of where the buffer ends: who needs them takes them there.
+    if (image->bufferView < 0 && bytes && size > 0) image->image.assign(bytes, bytes + size);
     return true;
 }
 

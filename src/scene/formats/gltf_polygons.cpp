@@ -1,4 +1,6 @@
-// Walks the nodes of a glTF and gathers their triangles in the frame of the file.
+// Walks the nodes of a glTF and gathers their triangles in the world, posed: morph targets, then linear blend
+// skinning.
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -55,63 +57,144 @@ class Materials {
     std::map<int, std::shared_ptr<const Texture>> pictures_;
 };
 
-void append_primitive(const GltfPrimitive& primitive, const Transform& transform, Id material,
-                      PolygonMesh& mesh) {
-    const auto base = static_cast<int>(mesh.cage.points.size());
-    const Mat3 normals = normal_map(transform);
-    for (const Vec3& position : primitive.positions)
-        mesh.cage.points.push_back(map_point(transform, position));
-    for (const IdTriple& triangle : primitive.triangles) {
-        IdTriple corners = triangle;
-        if (mirrors(transform)) std::swap(corners[1], corners[2]);
-        mesh.cage.face_vertex_counts.push_back(3);
-        mesh.face_material.push_back(material);
-        for (const Id vertex : corners) {
-            mesh.cage.face_vertex_indices.push_back(base + static_cast<int>(vertex));
-            const Vec2 uv = primitive.uvs.empty() ? Vec2(0, 1) : primitive.uvs[vertex];
-            mesh.uvs.push_back({uv.x, 1 - uv.y});
-            mesh.normals.push_back(
-                primitive.normals.empty()
-                    ? Vec3(0)
-                    : normalize_or_zero(normals * normalize_or_zero(primitive.normals[vertex])));
+/// The primitive's points and normals moved by its morph targets.
+void morph(const GltfPrimitive& primitive, const std::vector<double>& weights, std::vector<Vec3>& positions,
+           std::vector<Vec3>& normals) {
+    for (std::size_t k = 0; k < primitive.targets.size() && k < weights.size(); ++k) {
+        const GltfMorphTarget& target = primitive.targets[k];
+        for (std::size_t i = 0; weights[k] != 0 && i < target.positions.size(); ++i)
+            positions[i] += weights[k] * target.positions[i];
+        for (std::size_t i = 0; weights[k] != 0 && i < target.normals.size() && i < normals.size(); ++i)
+            normals[i] += weights[k] * target.normals[i];
+    }
+}
+
+/// Linear blend skinning: per joint what carries the mesh's points into the world.
+Transform blended(const GltfPrimitive& primitive, std::size_t vertex,
+                  const std::vector<Transform>& of_joint) {
+    Transform sum;
+    sum.linear = Mat3(0);
+    double all = 0;
+    for (std::size_t k = vertex * primitive.influences; k < (vertex + 1) * primitive.influences; ++k) {
+        const double weight = primitive.joint_weights[k];
+        if (weight == 0) continue;
+        const Transform& joint = of_joint[static_cast<std::size_t>(primitive.joints[k])];
+        sum.linear += weight * joint.linear;
+        sum.translation += weight * joint.translation;
+        all += weight;
+    }
+    if (!(all > 0)) return of_joint.empty() ? Transform() : of_joint.front();
+    sum.linear /= all;
+    sum.translation /= all;
+    return sum;
+}
+
+/// Appends triangles whose points and normals are in the world.
+class Appender {
+  public:
+    Appender(const GltfModel& model, const GltfPose& pose, PolygonMesh& mesh)
+        : model_(model), pose_(pose), mesh_(mesh) {}
+
+    void append(int node, const GltfPrimitive& primitive, Id material) {
+        place_vertices(node, primitive);
+        const auto base = static_cast<int>(mesh_.cage.points.size());
+        mesh_.cage.points.insert(mesh_.cage.points.end(), positions_.begin(), positions_.end());
+        for (const IdTriple& triangle : primitive.triangles) {
+            IdTriple corners = triangle;
+            if (mirrored_) std::swap(corners[1], corners[2]);
+            mesh_.cage.face_vertex_counts.push_back(3);
+            mesh_.face_material.push_back(material);
+            for (const Id vertex : corners) {
+                mesh_.cage.face_vertex_indices.push_back(base + static_cast<int>(vertex));
+                const Vec2 uv = primitive.uvs.empty() ? Vec2(0, 1) : primitive.uvs[vertex];
+                mesh_.uvs.push_back({uv.x, 1 - uv.y});
+                mesh_.normals.push_back(normals_.empty() ? Vec3(0) : normals_[vertex]);
+            }
         }
     }
+
+  private:
+    void place_vertices(int node, const GltfPrimitive& primitive) {
+        const auto index = static_cast<std::size_t>(node);
+        positions_ = primitive.positions;
+        normals_ = primitive.normals;
+        morph(primitive, pose_.weights[index], positions_, normals_);
+        const int skin = model_.nodes[index].skin;
+        if (skin >= 0 && primitive.influences > 0)
+            return bend(model_.skins[static_cast<std::size_t>(skin)], primitive);
+        const Transform& world = pose_.world_from_node[index];
+        mirrored_ = mirrors(world);
+        const Mat3 turn = normal_map(world);
+        for (Vec3& position : positions_) position = map_point(world, position);
+        for (Vec3& normal : normals_) normal = normalize_or_zero(turn * normalize_or_zero(normal));
+    }
+
+    /// A skinned mesh stands where its joints are, wherever its node is (glTF 2.0, section 3.7.3.3).
+    void bend(const GltfSkin& skin, const GltfPrimitive& primitive) {
+        std::vector<Transform> of_joint;
+        for (std::size_t j = 0; j < skin.joints.size(); ++j)
+            of_joint.push_back(compose(pose_.world_from_node[static_cast<std::size_t>(skin.joints[j])],
+                                       skin.joint_from_mesh[j]));
+        mirrored_ = !of_joint.empty() && mirrors(of_joint.front());
+        for (std::size_t i = 0; i < positions_.size(); ++i) {
+            const Transform at = blended(primitive, i, of_joint);
+            positions_[i] = map_point(at, positions_[i]);
+            if (i < normals_.size())
+                normals_[i] = normalize_or_zero(normal_map(at) * normalize_or_zero(normals_[i]));
+        }
+    }
+
+    const GltfModel& model_;
+    const GltfPose& pose_;
+    PolygonMesh& mesh_;
+    std::vector<Vec3> positions_, normals_;
+    bool mirrored_ = false;
+};
+
+/// The default scene's nodes that have a mesh, depth first.
+std::vector<int> nodes_with_meshes(const GltfModel& model) {
+    std::vector<int> found, stack(model.roots.rbegin(), model.roots.rend());
+    while (!stack.empty()) {
+        const int node = stack.back();
+        stack.pop_back();
+        const GltfNode& here = model.nodes[static_cast<std::size_t>(node)];
+        if (here.mesh >= 0) found.push_back(node);
+        stack.insert(stack.end(), here.children.rbegin(), here.children.rend());
+    }
+    return found;
 }
 
 }  // namespace
 
-PolygonMesh polygons_of_gltf(const GltfModel& model, const std::string& file, const TextureReader* textures) {
-    struct Visit {
-        int node;
-        Transform parent;
-    };
+PolygonMesh polygons_of_gltf(const GltfModel& model, const std::string& file, const TextureReader* textures,
+                             const GltfPart& part) {
     PolygonMesh mesh;
+    mesh.is_triangle_soup = true;
     Materials materials(model, textures);
-    std::vector<char> visited(model.nodes.size(), 0);
-    std::vector<Visit> stack;
-    for (auto root = model.roots.rbegin(); root != model.roots.rend(); ++root)
-        stack.push_back({*root, Transform()});
-    while (!stack.empty()) {
-        const Visit visit = stack.back();
-        stack.pop_back();
-        const auto index = static_cast<std::size_t>(visit.node);
-        if (visited[index])
-            throw InputError(file, "/nodes/" + std::to_string(index),
-                             "is reached twice: nodes must form a tree");
-        visited[index] = 1;
-        const GltfNode& node = model.nodes[index];
-        const Transform transform = compose(visit.parent, node.parent_from_node);
-        if (node.mesh >= 0)
-            for (const GltfPrimitive& primitive : model.meshes[static_cast<std::size_t>(node.mesh)])
-                append_primitive(primitive, transform,
-                                 textures ? materials.gather(primitive.material, mesh.materials) : kNone,
-                                 mesh);
-        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-            stack.push_back({*child, transform});
+    const GltfPose pose = pose_gltf(model, part.moment);
+    Appender appender(model, pose, mesh);
+    const auto is_asked = [&](std::size_t primitive) {
+        return part.parts.empty() || std::find(part.parts.begin(), part.parts.end(),
+                                               static_cast<int>(primitive)) != part.parts.end();
+    };
+    for (const int node : part.node < 0 ? nodes_with_meshes(model) : std::vector<int>{part.node}) {
+        const int index = model.nodes[static_cast<std::size_t>(node)].mesh;
+        if (index < 0) continue;
+        const std::vector<GltfPrimitive>& all = model.meshes[static_cast<std::size_t>(index)].primitives;
+        for (std::size_t k = 0; k < all.size(); ++k)
+            if (is_asked(k))
+                appender.append(node, all[k],
+                                textures ? materials.gather(all[k].material, mesh.materials) : kNone);
     }
     if (mesh.cage.face_vertex_counts.empty())
-        throw InputError(file, "", "no triangles in the default scene of this glTF");
+        throw InputError(
+            file, part.node < 0 ? "" : "/nodes/" + std::to_string(part.node),
+            part.node < 0 ? "no triangles in the default scene of this glTF" : "has no triangles");
     return mesh;
+}
+
+PolygonMesh polygons_of_gltf(const GltfModel& model, const std::string& file, const TextureReader* textures) {
+    return polygons_of_gltf(model, file, textures, GltfPart());
 }
 
 }  // namespace trilens

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -12,48 +13,47 @@
 #include "base/util/error.h"
 #include "scene/formats/gltf.h"
 #include "scene/formats/gltf_file.h"
+#include "scene/formats/gltf_parts.h"
 
 namespace trilens {
 namespace {
 
 class Reader {
   public:
-    Reader(const tinygltf::Model& model, const std::string& file) : in_(model), file_(file) {}
+    explicit Reader(GltfSource& source) : source_(source), in_(source.model) {}
 
     GltfModel read() {
         check_extensions();
         find_buffer_files();
         read_images();
-        for (std::size_t i = 0; i < in_.materials.size(); ++i) read_material(i);
+        read_gltf_materials(source_, out_);
         for (std::size_t i = 0; i < in_.meshes.size(); ++i) read_mesh(i);
+        read_gltf_views(source_, out_);
         for (std::size_t i = 0; i < in_.nodes.size(); ++i) read_node(i);
+        find_parents();
         read_roots();
-        if (!in_.animations.empty()) warn("animations are ignored");
-        if (!in_.cameras.empty()) warn("cameras are ignored: the scene names its own");
-        if (!in_.lights.empty()) warn("lights are ignored: the scene names its own");
-        if (!in_.skins.empty()) warn("skins are ignored: meshes stand in their bind pose");
-        out_.warnings.assign(warned_.begin(), warned_.end());
-        out_.material_warnings.assign(material_warned_.begin(), material_warned_.end());
+        read_gltf_motion(source_, out_);
+        out_.warnings.assign(source_.warned.begin(), source_.warned.end());
+        out_.material_warnings.assign(source_.material_warned.begin(), source_.material_warned.end());
         return std::move(out_);
     }
 
   private:
     [[noreturn]] void fail(const std::string& place, const std::string& message) const {
-        throw InputError(file_, place, message);
+        source_.fail(place, message);
     }
-    void warn(const std::string& message) { warned_.insert(message); }
-    void warn_of_material(const std::string& message) { material_warned_.insert(message); }
-
+    void warn(const std::string& message) { source_.warn(message); }
     int checked(int index, std::size_t count, const std::string& place, const char* what) const {
-        if (index < -1 || (index >= 0 && static_cast<std::size_t>(index) >= count))
-            fail(place, std::string(what) + " " + std::to_string(index) + " is out of range: there are " +
-                            std::to_string(count));
-        return index;
+        return source_.checked(index, count, place, what);
     }
 
     void check_extensions() {
-        static const std::set<std::string> known = {"KHR_materials_unlit", "KHR_mesh_quantization",
-                                                    "KHR_texture_transform"};
+        static const std::set<std::string> known = {
+            "KHR_materials_unlit",      "KHR_mesh_quantization",
+            "KHR_texture_transform",    "KHR_lights_punctual",
+            "KHR_materials_ior",        "KHR_materials_transmission",
+            "KHR_materials_volume",     "KHR_materials_specular",
+            "KHR_materials_dispersion", "KHR_materials_emissive_strength"};
         for (const std::string& name : in_.extensionsRequired)
             if (known.count(name) == 0)
                 fail("/extensionsRequired", "the extension '" + name + "' is required but not supported");
@@ -61,15 +61,9 @@ class Reader {
             if (known.count(name) == 0) warn("the extension '" + name + "' is ignored");
     }
 
-    /// A relative URI as a path from where the program runs; empty for a data URI and for none.
-    std::string resolve(const std::string& uri) const {
-        if (uri.empty() || uri.rfind("data:", 0) == 0) return "";
-        return (std::filesystem::path(file_).parent_path() / decode_gltf_uri(uri)).string();
-    }
-
     void find_buffer_files() {
         for (const tinygltf::Buffer& buffer : in_.buffers) {
-            std::string path = resolve(buffer.uri);
+            std::string path = source_.resolve(buffer.uri);
             if (!path.empty()) out_.buffer_files.push_back(std::move(path));
         }
     }
@@ -78,105 +72,49 @@ class Reader {
         for (std::size_t i = 0; i < in_.images.size(); ++i) {
             const tinygltf::Image& image = in_.images[i];
             GltfImage result;
-            result.name = file_ + ": /images/" + std::to_string(i);
-            result.encoded = image.image;
-            result.file = resolve(image.uri);
+            const std::string place = "/images/" + std::to_string(i);
+            result.name = source_.file + ": " + place;
+            result.encoded = image.bufferView >= 0 ? view_bytes(image.bufferView, place) : image.image;
+            result.file = source_.resolve(image.uri);
+            if (!result.file.empty()) result.uri = decode_gltf_uri(image.uri);
             out_.images.push_back(std::move(result));
         }
     }
 
-    void read_material(std::size_t index) {
-        const tinygltf::Material& material = in_.materials[index];
-        const std::string place = "/materials/" + std::to_string(index);
-        const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
-        GltfMaterial result;
-        result.material.name = material.name.empty() ? "material" + std::to_string(index) : material.name;
-        if (pbr.baseColorFactor.size() < 3) fail(place, "baseColorFactor must have 4 numbers");
-        for (int k = 0; k < 3; ++k) {
-            const double value = pbr.baseColorFactor[static_cast<std::size_t>(k)];
-            if (!(value >= 0 && value <= kLargestCoordinate)) fail(place, "baseColorFactor is no colour");
-            result.material.base_color_factor[k] = value;
-        }
-        result.material.unlit = material.extensions.count("KHR_materials_unlit") > 0;
-        result.material.metallic_factor = factor(pbr.metallicFactor, place);
-        result.material.roughness_factor = factor(pbr.roughnessFactor, place);
-        if (material.alphaMode != "OPAQUE")
-            warn("alphaMode " + material.alphaMode + " is ignored: all is opaque");
-        warn_of_maps(material);
-        const int texture = checked(pbr.baseColorTexture.index, in_.textures.size(), place, "texture");
-        if (texture >= 0) {
-            result.image = checked(in_.textures[static_cast<std::size_t>(texture)].source, in_.images.size(),
-                                   "/textures/" + std::to_string(texture), "image");
-            if (result.image < 0) warn("a base colour texture without a picture is ignored");
-            result.uv_set = pbr.baseColorTexture.texCoord;
-            read_sampler(in_.textures[static_cast<std::size_t>(texture)].sampler,
-                         result.material.base_color_sampler);
-            const auto transform = pbr.baseColorTexture.extensions.find("KHR_texture_transform");
-            if (transform != pbr.baseColorTexture.extensions.end())
-                read_transform(transform->second, place, result);
-        }
-        out_.materials.push_back(std::move(result));
-    }
-
-    void read_sampler(int index, TextureSampler& sampler) {
-        if (checked(index, in_.samplers.size(), "/textures", "sampler") < 0) return;
-        const tinygltf::Sampler& given = in_.samplers[static_cast<std::size_t>(index)];
-        const auto wrap = [](int code) {
-            return code == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::kClampToEdge
-                   : code == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::kMirroredRepeat
-                                                                   : Wrap::kRepeat;
-        };
-        sampler.wrap_s = wrap(given.wrapS);
-        sampler.wrap_t = wrap(given.wrapT);
-    }
-
-    /// KHR_texture_transform.
-    void read_transform(const tinygltf::Value& given, const std::string& place, GltfMaterial& into) {
-        const auto number = [&](const tinygltf::Value& value) {
-            const double got = value.IsNumber() ? value.GetNumberAsDouble() : NAN;
-            if (!(std::fabs(got) <= kLargestCoordinate)) fail(place, "KHR_texture_transform is malformed");
-            return got;
-        };
-        const auto pair = [&](const char* key, Vec2& values) {
-            if (!given.Has(key)) return;
-            const tinygltf::Value& list = given.Get(key);
-            if (!list.IsArray() || list.ArrayLen() != 2) fail(place, "KHR_texture_transform is malformed");
-            values = {number(list.Get(0)), number(list.Get(1))};
-        };
-        TextureTransform transform;
-        pair("offset", transform.offset);
-        pair("scale", transform.scale);
-        if (given.Has("rotation")) transform.rotation = number(given.Get("rotation"));
-        if (given.Has("texCoord")) into.uv_set = static_cast<int>(number(given.Get("texCoord")));
-        set_transform(transform, into.material.base_color_sampler);
-    }
-
-    /// What a material has beside its base colour.
-    void warn_of_maps(const tinygltf::Material& material) {
-        const std::pair<const char*, int> maps[] = {
-            {"normal", material.normalTexture.index},
-            {"metallic-roughness", material.pbrMetallicRoughness.metallicRoughnessTexture.index},
-            {"occlusion", material.occlusionTexture.index},
-            {"emissive", material.emissiveTexture.index}};
-        for (const auto& [name, texture] : maps)
-            if (texture >= 0) warn_of_material(std::string(name) + " maps are ignored");
-        if (material.emissiveTexture.index < 0 &&
-            std::any_of(material.emissiveFactor.begin(), material.emissiveFactor.end(),
-                        [](double value) { return value != 0; }))
-            warn_of_material("light that materials emit is ignored");
-    }
-
-    double factor(double value, const std::string& place) const {
-        if (!(value >= 0 && value <= 1)) fail(place, "metallicFactor and roughnessFactor must lie in 0..1");
-        return value;
+    /// The library hands pictures over without looking where their buffers end.
+    std::vector<unsigned char> view_bytes(int index, const std::string& place) const {
+        const auto& view = in_.bufferViews[static_cast<std::size_t>(
+            checked(index, in_.bufferViews.size(), place, "buffer view"))];
+        if (view.buffer < 0) fail(place, "its buffer view names no buffer");
+        const auto& bytes =
+            in_.buffers[static_cast<std::size_t>(checked(view.buffer, in_.buffers.size(), place, "buffer"))]
+                .data;
+        if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset)
+            fail(place, "its buffer view reaches beyond its buffer");
+        const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
+        return {first, first + static_cast<std::ptrdiff_t>(view.byteLength)};
     }
 
     void read_mesh(std::size_t index) {
-        out_.meshes.emplace_back();
-        for (std::size_t i = 0; i < in_.meshes[index].primitives.size(); ++i)
-            read_primitive(in_.meshes[index].primitives[i],
-                           "/meshes/" + std::to_string(index) + "/primitives/" + std::to_string(i),
-                           out_.meshes.back());
+        const tinygltf::Mesh& in = in_.meshes[index];
+        const std::string place = "/meshes/" + std::to_string(index);
+        GltfMesh mesh;
+        mesh.name = in.name;
+        mesh.weights = in.weights;
+        mesh.extras = json_of_gltf(in.extras);
+        check_weights(mesh.weights, place);
+        for (std::size_t i = 0; i < in.primitives.size(); ++i) {
+            read_primitive(in.primitives[i], place + "/primitives/" + std::to_string(i), mesh.primitives);
+            if (mesh.primitives.size() > mesh.primitive_of.size())
+                mesh.primitive_of.push_back(static_cast<int>(i));
+        }
+        out_.meshes.push_back(std::move(mesh));
+    }
+
+    void check_weights(const std::vector<double>& weights, const std::string& place) const {
+        for (const double weight : weights)
+            if (!(std::abs(weight) <= kLargestCoordinate))
+                fail(place + "/weights", "a weight is beyond 1e30");
     }
 
     void read_primitive(const tinygltf::Primitive& in, const std::string& place,
@@ -188,8 +126,6 @@ class Reader {
             return warn("points and lines are skipped: only triangles are drawn");
         if (in.extensions.count("KHR_draco_mesh_compression") > 0)
             fail(place, "KHR_draco_mesh_compression is not supported");
-        if (!in.targets.empty()) warn("morph targets are ignored");
-        if (in.attributes.count("COLOR_0") > 0) warn("vertex colours are ignored");
         if (in.attributes.count("POSITION") == 0) return warn("a primitive without POSITION is skipped");
 
         GltfPrimitive result;
@@ -203,19 +139,80 @@ class Reader {
         if ((!result.normals.empty() && result.normals.size() != result.positions.size()) ||
             (!result.uvs.empty() && result.uvs.size() != result.positions.size()))
             fail(place, "its attributes differ in length");
+        read_colors(in, place, result);
+        read_influences(in, place, result);
+        for (std::size_t k = 0; k < in.targets.size(); ++k)
+            result.targets.push_back(
+                read_target(in.targets[k], result.positions.size(), place + "/targets/" + std::to_string(k)));
         result.triangles = triangles(in, mode, result.positions.size(), place);
         mesh.push_back(std::move(result));
     }
 
+    void read_colors(const tinygltf::Primitive& in, const std::string& place, GltfPrimitive& into) {
+        const auto found = in.attributes.find("COLOR_0");
+        if (found == in.attributes.end()) return;
+        const int type =
+            in_.accessors[static_cast<std::size_t>(
+                              std::max(0, checked(found->second, in_.accessors.size(), place, "accessor")))]
+                .type;
+        const int width = type == TINYGLTF_TYPE_VEC4 ? 4 : 3;
+        const std::vector<double> numbers = read_gltf_accessor(in_, found->second, width, source_.file);
+        if (numbers.size() != into.positions.size() * static_cast<std::size_t>(width))
+            fail(place, "its attributes differ in length");
+        for (std::size_t i = 0; i < numbers.size(); i += static_cast<std::size_t>(width)) {
+            const Vec4 color(numbers[i], numbers[i + 1], numbers[i + 2], width == 4 ? numbers[i + 3] : 1);
+            for (int k = 0; k < 4; ++k)
+                if (!(color[k] >= 0)) fail(place + "/attributes/COLOR_0", "a colour is negative");
+            into.colors.push_back(color);
+        }
+    }
+
+    void read_influences(const tinygltf::Primitive& in, const std::string& place, GltfPrimitive& into) {
+        std::vector<std::vector<double>> joints, weights;
+        for (int set = 0;; ++set) {
+            const auto joint = in.attributes.find("JOINTS_" + std::to_string(set)),
+                       weight = in.attributes.find("WEIGHTS_" + std::to_string(set));
+            if (joint == in.attributes.end() || weight == in.attributes.end()) break;
+            joints.push_back(read_gltf_accessor(in_, joint->second, 4, source_.file));
+            weights.push_back(read_gltf_accessor(in_, weight->second, 4, source_.file));
+            if (joints.back().size() != 4 * into.positions.size() ||
+                weights.back().size() != joints.back().size())
+                fail(place, "its attributes differ in length");
+        }
+        into.influences = 4 * joints.size();
+        for (std::size_t i = 0; i < into.positions.size(); ++i)
+            for (std::size_t set = 0; set < joints.size(); ++set)
+                for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) {
+                    if (!(joints[set][k] >= 0 && joints[set][k] <= 65535))
+                        fail(place + "/attributes", "a joint is out of range");
+                    into.joints.push_back(static_cast<int>(joints[set][k]));
+                    into.joint_weights.push_back(weights[set][k]);
+                }
+    }
+
+    GltfMorphTarget read_target(const std::map<std::string, int>& in, std::size_t count,
+                                const std::string& place) const {
+        GltfMorphTarget target;
+        const auto read = [&](const char* name, std::vector<Vec3>& into) {
+            const auto found = in.find(name);
+            if (found == in.end()) return;
+            into = vec3s(found->second);
+            if (into.size() != count) fail(place, "its attributes differ in length");
+        };
+        read("POSITION", target.positions);
+        read("NORMAL", target.normals);
+        return target;
+    }
+
     std::vector<Vec3> vec3s(int accessor) const {
-        const std::vector<double> numbers = read_gltf_accessor(in_, accessor, 3, file_);
+        const std::vector<double> numbers = read_gltf_accessor(in_, accessor, 3, source_.file);
         std::vector<Vec3> result;
         for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
             result.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
         return result;
     }
     std::vector<Vec2> vec2s(int accessor) const {
-        const std::vector<double> numbers = read_gltf_accessor(in_, accessor, 2, file_);
+        const std::vector<double> numbers = read_gltf_accessor(in_, accessor, 2, source_.file);
         std::vector<Vec2> result;
         for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
             result.emplace_back(numbers[i], numbers[i + 1]);
@@ -230,7 +227,7 @@ class Reader {
         if (in.indices < 0) {
             for (std::size_t i = 0; i < vertices; ++i) order.push_back(static_cast<Id>(i));
         } else {
-            for (const double index : read_gltf_accessor(in_, in.indices, 1, file_)) {
+            for (const double index : read_gltf_accessor(in_, in.indices, 1, source_.file)) {
                 if (!(index >= 0 && index < static_cast<double>(vertices)))
                     fail(place + "/indices", "index " + std::to_string(static_cast<long long>(index)) +
                                                  " is out of range: there are " + std::to_string(vertices) +
@@ -258,16 +255,29 @@ class Reader {
         const tinygltf::Node& node = in_.nodes[index];
         const std::string place = "/nodes/" + std::to_string(index);
         GltfNode result;
+        result.name = node.name;
         result.mesh = checked(node.mesh, in_.meshes.size(), place, "mesh");
+        result.skin = checked(node.skin, in_.skins.size(), place, "skin");
+        result.camera = checked(node.camera, in_.cameras.size(), place, "camera");
+        result.weights = node.weights;
+        check_weights(node.weights, place);
+        result.extras = json_of_gltf(node.extras);
+        const auto light = node.extensions.find("KHR_lights_punctual");
+        if (light != node.extensions.end()) {
+            const Json number = json_of_gltf(light->second);
+            if (!number.is_object() || !number.contains("light") || !number.at("light").is_number_integer())
+                fail(place + "/extensions/KHR_lights_punctual", "names no light");
+            result.light = checked(number.at("light").get<int>(), in_.lights.size(), place, "light");
+        }
         for (const int child : node.children) {
             if (child < 0) fail(place, "a child has a negative index");
             result.children.push_back(checked(child, in_.nodes.size(), place, "child"));
         }
-        result.parent_from_node = node_transform(node, place);
+        read_transform(node, place, result);
         out_.nodes.push_back(std::move(result));
     }
 
-    Transform node_transform(const tinygltf::Node& node, const std::string& place) const {
+    void read_transform(const tinygltf::Node& node, const std::string& place, GltfNode& into) const {
         const auto check = [&](const std::vector<double>& numbers, std::size_t count, const char* what) {
             if (!numbers.empty() && numbers.size() != count)
                 fail(place, std::string(what) + " must have " + std::to_string(count) + " numbers");
@@ -280,47 +290,92 @@ class Reader {
         check(node.rotation, 4, "rotation");
         check(node.scale, 3, "scale");
         if (!node.matrix.empty()) {
-            const std::optional<Transform> t =
-                make_transform(std::span<const double, 16>(node.matrix.data(), 16));
-            if (!t) fail(place, "the last row of matrix must be 0 0 0 1");
-            return *t;
+            into.matrix = make_transform(std::span<const double, 16>(node.matrix.data(), 16));
+            if (!into.matrix) fail(place, "the last row of matrix must be 0 0 0 1");
+            return;
         }
         const auto& t = node.translation;
         const auto& r = node.rotation;
         const auto& s = node.scale;
-        const Vec4 rotate = r.empty() ? Vec4(0, 0, 0, 1) : Vec4(r[0], r[1], r[2], r[3]);
-        if (rotate == Vec4(0)) fail(place, "rotation must not be zero");
-        return make_transform(t.empty() ? Vec3(0) : Vec3(t[0], t[1], t[2]), rotate,
-                              s.empty() ? Vec3(1) : Vec3(s[0], s[1], s[2]));
+        if (!t.empty()) into.translation = {t[0], t[1], t[2]};
+        if (!r.empty()) into.rotation = {r[0], r[1], r[2], r[3]};
+        if (!s.empty()) into.scale = {s[0], s[1], s[2]};
+        if (into.rotation == Vec4(0)) fail(place, "rotation must not be zero");
+    }
+
+    /// Nodes must form trees: one parent at most, and from each node up an end.
+    void find_parents() {
+        for (std::size_t i = 0; i < out_.nodes.size(); ++i)
+            for (const int child : out_.nodes[i].children) {
+                int& parent = out_.nodes[static_cast<std::size_t>(child)].parent;
+                if (parent >= 0)
+                    fail("/nodes/" + std::to_string(child), "is a child of node " + std::to_string(parent) +
+                                                                " and of node " + std::to_string(i) +
+                                                                ": nodes must form a tree");
+                parent = static_cast<int>(i);
+            }
+        // 0: not looked at, 1: on the way up from here, 2: has an end.
+        std::vector<char> state(out_.nodes.size(), 0);
+        std::vector<std::size_t> way;
+        for (std::size_t i = 0; i < out_.nodes.size(); ++i) {
+            way.clear();
+            int at = static_cast<int>(i);
+            for (; at >= 0 && state[static_cast<std::size_t>(at)] == 0;
+                 at = out_.nodes[static_cast<std::size_t>(at)].parent) {
+                state[static_cast<std::size_t>(at)] = 1;
+                way.push_back(static_cast<std::size_t>(at));
+            }
+            if (at >= 0 && state[static_cast<std::size_t>(at)] == 1)
+                fail("/nodes/" + std::to_string(at), "is its own ancestor: nodes must form a tree");
+            for (const std::size_t passed : way) state[passed] = 2;
+        }
     }
 
     /// The default scene; else the first; else the nodes that are no node's children.
     void read_roots() {
         const int scene = checked(in_.defaultScene, in_.scenes.size(), "/scene", "scene");
         if (!in_.scenes.empty()) {
+            const std::string place = "/scenes/" + std::to_string(std::max(scene, 0));
+            std::set<int> seen;
             for (const int node : in_.scenes[static_cast<std::size_t>(std::max(scene, 0))].nodes) {
-                if (node < 0) fail("/scenes", "a node has a negative index");
-                out_.roots.push_back(checked(node, in_.nodes.size(), "/scenes", "node"));
+                if (node < 0) fail(place, "a node has a negative index");
+                out_.roots.push_back(checked(node, in_.nodes.size(), place, "node"));
+                if (out_.nodes[static_cast<std::size_t>(node)].parent >= 0 || !seen.insert(node).second)
+                    fail(place, "node " + std::to_string(node) + " is reached twice: nodes must form a tree");
             }
             return;
         }
-        std::set<int> children;
-        for (const GltfNode& node : out_.nodes) children.insert(node.children.begin(), node.children.end());
         for (std::size_t i = 0; i < out_.nodes.size(); ++i)
-            if (children.count(static_cast<int>(i)) == 0) out_.roots.push_back(static_cast<int>(i));
+            if (out_.nodes[i].parent < 0) out_.roots.push_back(static_cast<int>(i));
     }
 
+    GltfSource& source_;
     const tinygltf::Model& in_;
-    const std::string& file_;
     GltfModel out_;
-    std::set<std::string> warned_, material_warned_;
 };
 
 }  // namespace
 
+void GltfSource::fail(const std::string& place, const std::string& message) const {
+    throw InputError(file, place, message);
+}
+
+int GltfSource::checked(int index, std::size_t count, const std::string& place, const char* what) const {
+    if (index < -1 || (index >= 0 && static_cast<std::size_t>(index) >= count))
+        fail(place, std::string(what) + " " + std::to_string(index) + " is out of range: there are " +
+                        std::to_string(count));
+    return index;
+}
+
+std::string GltfSource::resolve(const std::string& uri) const {
+    if (uri.empty() || uri.rfind("data:", 0) == 0) return "";
+    return (std::filesystem::path(file).parent_path() / decode_gltf_uri(uri)).string();
+}
+
 GltfModel read_gltf(const std::string& file) {
     const tinygltf::Model model = load_gltf_model(file);
-    return Reader(model, file).read();
+    GltfSource source{model, file};
+    return Reader(source).read();
 }
 
 }  // namespace trilens

@@ -6,8 +6,10 @@
 
 #include "base/math/box.h"
 #include "base/util/names.h"
+#include "scene/data/alpha_cut.h"
 #include "scene/data/cage_diagnostics.h"
 #include "scene/data/vertex_normals.h"
+#include "scene/data/weld.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -57,7 +59,12 @@ MeshFields all_mesh_fields() {
         shading_field(),
         part<Mesh>("transform", ref("transform")),
         part<Mesh>("fit", ref("fit")),
-        part<Mesh>("file", text_value(), "OBJ; for objects glTF and GLB too."),
+        part<Mesh>("file", text_value(), "OBJ, glTF or GLB."),
+        part<Mesh>("node", ref("index"),
+                   "Of a glTF: the mesh of its node of that number, in the world; without it, all nodes."),
+        part<Mesh>("parts", list_of(ref("index"), 1), "Of a node: those of its mesh's primitives alone."),
+        part<Mesh>("clip", ref("index"), "Of a glTF: its animation of that number."),
+        part<Mesh>("time", ref("number"), "Of a clip: seconds."),
         part<Mesh>("primitive", ref("primitive")),
         part<Mesh>("points", list_of(ref("vec3"), 3)),
         part<Mesh>("faceVertexCounts", list_of(whole_in(3, 255), 1)),
@@ -82,6 +89,7 @@ constexpr const char* kMeshRules = R"json({
   "dependencies": {
     "points": ["faceVertexCounts", "faceVertexIndices"], "faceVertexCounts": ["points"], "faceVertexIndices": ["points"],
     "uvIndices": ["uvs"], "creaseIndices": ["creaseSharpnesses"], "creaseSharpnesses": ["creaseIndices"],
+    "node": ["file"], "parts": ["node"], "clip": ["file"], "time": ["clip"],
     "creaseLengths": ["creaseIndices"], "cornerIndices": ["cornerSharpnesses"], "cornerSharpnesses": ["cornerIndices"]
   },
   "allOf": [
@@ -216,11 +224,17 @@ void read_optic(const Node& node, Mesh& mesh, Reading& reading) {
     }
     PolygonMesh polygons =
         node.has("file") ? read_mesh_file(node, false, reading) : read_inline_polygons(node);
+    // Triangle meshes have points once per seam, cages once.
+    if (node.has("file") && polygons.is_triangle_soup) weld_points(polygons);
     read_subdivision(node, polygons.cage);
+    if (polygons.is_triangle_soup && polygons.cage.scheme == SubdivisionScheme::kCatmullClark)
+        join_quads(polygons);
+    if (polygons.cage.scheme == SubdivisionScheme::kUnsubdivided) cut_into_triangles(polygons);
     check_scheme(node, polygons.cage);
     place_or_fail(polygons, node);
     check_far_points(node, polygons.cage);
     mesh.cage = std::move(polygons.cage);
+    if (mesh.cage.scheme == SubdivisionScheme::kUnsubdivided) mesh.cage.normals = std::move(polygons.normals);
     mesh.face_count = mesh.cage.face_vertex_counts.size();
 
     const CageDiagnostics doubts = diagnose_cage(mesh.cage);
@@ -274,6 +288,9 @@ void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     TriangulatedMesh triangulated = triangulate(polygons);
     mesh.object = std::move(triangulated.object);
     settle_materials(polygons, mesh, reading.scene);
+    const AlphaCut cut = cut_by_alpha(mesh.object, reading.scene.materials);
+    warn_count(cut.too_fine, "triangles are not cut out by their picture, which has too many texels there",
+               node.place, reading);
     warn_count(triangulated.uncovered_faces,
                "faces cross themselves: they are drawn as fans from their first corners", node.place,
                reading);

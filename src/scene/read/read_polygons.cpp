@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/util/check.h"
 #include "scene/formats/gltf.h"
 #include "scene/formats/obj.h"
 #include "scene/read/reading.h"
@@ -193,18 +194,81 @@ PolygonMesh read_obj_file(const std::string& path, bool inherit, const std::stri
     return std::move(obj.mesh);
 }
 
-PolygonMesh read_gltf_file(const std::string& path, bool inherit, const std::string& place,
-                           Reading& reading) {
-    reading.note_file(path);
-    const GltfModel model = read_gltf(path);
-    for (const std::string& buffer : model.buffer_files) reading.note_file(buffer);
-    for (const std::string& warning : model.warnings) reading.warn(place, path + ": " + warning);
+/// What of the file the mesh asks for.
+GltfPart part_of(const Node& mesh, const GltfModel& model) {
+    const auto index = [&](const char* key, std::size_t count, const char* what) {
+        if (!mesh.has(key)) return -1;
+        const int number = mesh.json.at(key).get<int>();
+        if (static_cast<std::size_t>(number) >= count)
+            mesh[key].fail(std::string(what) + " " + std::to_string(number) + " is out of range: there are " +
+                           std::to_string(count));
+        return number;
+    };
+    GltfPart part;
+    part.node = index("node", model.nodes.size(), "node");
+    part.moment.animation = index("clip", model.animations.size(), "animation");
+    part.moment.time = number_or(mesh, "time", 0);
+    if (part.node < 0) return part;
+    const int shape = model.nodes[static_cast<std::size_t>(part.node)].mesh;
+    if (shape < 0) mesh["node"].fail("node " + std::to_string(part.node) + " has no mesh");
+    if (mesh.has("parts"))
+        part.parts = read_indices(
+            mesh["parts"], model.meshes[static_cast<std::size_t>(shape)].primitives.size(), "primitives");
+    return part;
+}
+
+PolygonMesh read_gltf_file(const Node& mesh, const std::string& path, bool inherit, Reading& reading) {
+    const GltfModel& model = read_gltf_once(reading, path);
+    const std::string place = mesh["file"].place;
+    if (!mesh.has("node")) {
+        const auto ignore = [&](bool any, const char* what) {
+            if (any) reading.warn(place, path + ": " + what);
+        };
+        ignore(!model.cameras.empty(), "cameras are ignored: the scene names its own");
+        ignore(!model.lights.empty(), "lights are ignored: the scene names its own");
+        ignore(!model.animations.empty() && !mesh.has("clip"), "animations are ignored");
+    }
     if (inherit)
         for (const std::string& warning : model.material_warnings) reading.warn(place, path + ": " + warning);
-    return polygons_of_gltf(model, path, inherit ? &reading.textures : nullptr);
+    return polygons_of_gltf(model, path, inherit ? &reading.textures : nullptr, part_of(mesh, model));
 }
 
 }  // namespace
+
+const GltfModel& read_gltf_once(Reading& reading, const std::string& path) {
+    std::shared_ptr<const GltfModel>& model = reading.gltf_of_path[path];
+    if (model) return *model;
+    reading.note_file(path);
+    model = std::make_shared<const GltfModel>(read_gltf(path));
+    for (const std::string& buffer : model->buffer_files) reading.note_file(buffer);
+    for (const std::string& warning : model->warnings)
+        reading.scene.warnings.push_back(path + ": " + one_line(warning));
+    return *model;
+}
+
+std::shared_ptr<const Texture> read_gltf_picture(Reading& reading, const Node& file, const Node& image) {
+    const std::string path = reading.resolve(file.json.get<std::string>());
+    const auto number = image.json.get<std::size_t>();
+    const GltfImage* picture = nullptr;
+    try {
+        const GltfModel& model = read_gltf_once(reading, path);
+        if (number < model.images.size()) picture = &model.images[number];
+    } catch (const InputError& error) {
+        file.fail(error.what());
+    }
+    if (!picture) image.fail("the glTF has no picture of that number");
+    if (picture->file.empty() && picture->encoded.empty()) image.fail("the picture holds no data");
+    std::shared_ptr<const Texture>& texture = reading.texture_of_path[picture->name];
+    TRILENS_CHECK(reading.textures.from_memory, "a scene with pictures needs a texture reader");
+    try {
+        if (!texture)
+            texture = picture->file.empty() ? reading.textures.from_memory(picture->encoded, picture->name)
+                                            : read_picture(reading, picture->file);
+    } catch (const InputError& error) {
+        image.fail(error.what());
+    }
+    return texture;
+}
 
 PolygonMesh read_mesh_file(const Node& mesh, bool inherit, Reading& reading) {
     const Node node = mesh["file"];
@@ -213,14 +277,14 @@ PolygonMesh read_mesh_file(const Node& mesh, bool inherit, Reading& reading) {
     for (char& letter : extension)
         letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
+    if (extension.rfind(".usd", 0) == 0)
+        node.fail("'" + path + "' is USD, which is not read: export glTF (.glb) or OBJ instead");
     if (!is_gltf && extension != ".obj")
         node.fail("'" + path + "' is of no known kind: known are .obj, .gltf and .glb");
-    if (is_gltf && mesh["role"].json == "optic")
-        node.fail(
-            "a glTF file holds triangles only, and so cannot hold the cage of an optic: give an OBJ of "
-            "quads");
+    for (const char* key : {"node", "clip"})
+        if (!is_gltf && mesh.has(key)) mesh[key].fail("is of a glTF, which '" + path + "' is not");
     try {
-        return is_gltf ? read_gltf_file(path, inherit, node.place, reading)
+        return is_gltf ? read_gltf_file(mesh, path, inherit, reading)
                        : read_obj_file(path, inherit, node.place, reading);
     } catch (const InputError& error) {
         node.fail(error.what());

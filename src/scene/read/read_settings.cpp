@@ -188,7 +188,13 @@ const std::vector<Field<Material>>& material_fields() {
             setting("ior", &Material::ior, number_above(0, 10)),
             setting("dispersion", &Material::dispersion, ref("notNegative"),
                     "glTF's: 20 / Abbe number; light then parts into three colours."),
-            std::move(volume)};
+            std::move(volume),
+            choice(
+                "alphaMode", &Material::alpha_mode,
+                "object: mask: what is less opaque than 'alphaCutoff' is not there, by the alpha channel of "
+                "baseColorTexture times 'alphaFactor'; blend: drawn as a mask at 0.5."),
+            setting("alphaCutoff", &Material::alpha_cutoff, number_in(0, 2)),
+            setting("alphaFactor", &Material::alpha_factor, ref("share"))};
     }();
     return fields;
 }

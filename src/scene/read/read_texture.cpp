@@ -67,7 +67,9 @@ const std::vector<Field<WrittenTexture>>& texture_fields() {
             part<WrittenTexture>("colors", several(2, ref("color")), "The two colours of a pattern.");
         colors.schema["default"] = Json::parse("[[0, 0, 0], [1, 1, 1]]");
         return std::vector<Field<WrittenTexture>>{
-            part<WrittenTexture>("file", ref("name"), "Of a picture: 8 and 16 bits are sRGB."),
+            part<WrittenTexture>("file", ref("name"),
+                                 "Of a picture: 8 and 16 bits are sRGB; or a glTF that holds pictures."),
+            part<WrittenTexture>("image", ref("index"), "Of a glTF: its picture of that number."),
             choice("pattern", &WrittenTexture::pattern, "A picture that needs no file.").without_default(),
             std::move(colors),
             std::move(count),
@@ -155,6 +157,13 @@ std::shared_ptr<const Texture> read_meant(const Node& file, Meaning meaning, Rea
     return as_stored(*picture);
 }
 
+/// The same of a picture that a glTF holds: its files are of values for a screen.
+std::shared_ptr<const Texture> read_meant(const Node& file, const Node& image, Meaning meaning,
+                                          Reading& reading) {
+    std::shared_ptr<const Texture> picture = read_gltf_picture(reading, file, image);
+    return meaning == Meaning::kColours ? picture : as_stored(*picture);
+}
+
 PlacedTexture read_texture(const Node& node, Meaning meaning, Reading& reading) {
     PlacedTexture texture;
     if (node.json.is_string()) {
@@ -171,9 +180,11 @@ PlacedTexture read_texture(const Node& node, Meaning meaning, Reading& reading) 
     if (node.has("file")) {
         for (const char* key : {"colors", "count", "line"})
             if (node.has(key)) node[key].fail(std::string("'") + key + "' is of a pattern, not of a file");
-        texture.picture = read_meant(node["file"], meaning, reading);
+        texture.picture = node.has("image") ? read_meant(node["file"], node["image"], meaning, reading)
+                                            : read_meant(node["file"], meaning, reading);
         return texture;
     }
+    if (node.has("image")) node["image"].fail("'image' is of a glTF, not of a pattern");
     std::array<Vec3, 2> colors{Vec3(0), Vec3(1)};
     if (node.has("colors"))
         for (std::size_t k = 0; k < 2; ++k) colors[k] = to_vec3(node.json.at("colors").at(k));

@@ -16,6 +16,7 @@
 #include "scene/data/primitive_mesh.h"
 #include "scene/data/scene.h"
 #include "scene/data/scene_inputs.h"
+#include "scene/formats/gltf.h"
 
 namespace trilens {
 
@@ -32,6 +33,7 @@ struct Reading {
     TextureReader textures;     // the caller's; files that it reads are noted
     Scene scene;
     std::map<std::string, std::shared_ptr<const Texture>> texture_of_path;
+    std::map<std::string, std::shared_ptr<const GltfModel>> gltf_of_path;
     std::size_t named_materials =
         0;  // the scene file's own come first in scene.materials; those of files follow
 
@@ -55,6 +57,12 @@ std::shared_ptr<const Texture> read_picture(Reading& reading, const std::string&
 
 /// The picture that a JSON string names. Throws InputError with the string's place.
 std::shared_ptr<const Texture> read_picture(Reading& reading, const Node& path);
+
+/// Reads each glTF once; its warnings and files are noted then. Throws what read_gltf throws.
+const GltfModel& read_gltf_once(Reading& reading, const std::string& path);
+
+/// The picture that a glTF holds, by its number there. Throws InputError with the file's place.
+std::shared_ptr<const Texture> read_gltf_picture(Reading& reading, const Node& file, const Node& image);
 
 /// A direction of any length but 0, made unit.
 Vec3 read_direction(const Node& direction);

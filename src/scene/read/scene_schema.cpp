@@ -17,10 +17,12 @@ constexpr const char* kFrame = R"json({
 "title": "a scene",
 "description": "Right-handed, Y up, degrees; colours are linear Rec.709; paths are relative to the scene file; keys under 'extras' or starting with 'x-' are free.",
 "type": "object", "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} },
-"required": ["version", "cameras"],
+"required": ["version"],
+"if": { "required": ["import"] }, "else": { "title": "a scene", "required": ["cameras"] },
 "properties": {
   "$schema": { "type": "string" },
   "version": { "const": 1 },
+  "import": { "$ref": "#/definitions/import" },
   "film": { "$ref": "#/definitions/film" },
   "cameras": { "type": "array", "minItems": 1, "items": { "$ref": "#/definitions/camera" } },
   "background": { "$ref": "#/definitions/background" },
@@ -40,6 +42,30 @@ constexpr const char* kFrame = R"json({
   "vec2": { "type": "array", "minItems": 2, "maxItems": 2, "items": { "$ref": "#/definitions/number" } },
   "vec3": { "type": "array", "minItems": 3, "maxItems": 3, "items": { "$ref": "#/definitions/number" } },
   "color": { "type": "array", "minItems": 3, "maxItems": 3, "items": { "$ref": "#/definitions/notNegative" } },
+
+  "import": {
+    "title": "an import", "description": "glTF scenes that this scene takes in: a file's name, an entry, or several. Cameras, materials, meshes and lights of the scene change those of the same name key by key (null takes a key away), or are added.",
+    "type": ["string", "object", "array"], "minLength": 1, "minItems": 1, "items": { "$ref": "#/definitions/importEntry" },
+    "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} }, "required": ["file"],
+    "properties": {
+      "file": { "$ref": "#/definitions/name", "description": ".gltf or .glb." },
+      "optics": { "type": "array", "items": { "$ref": "#/definitions/name" }, "description": "Names of meshes, nodes or materials that are optics, as shells match them: Mirror*." },
+      "time": { "$ref": "#/definitions/number", "description": "Seconds of the animation; without it, its start." },
+      "animation": { "$ref": "#/definitions/name", "description": "Its name; without it, the first." }
+    }
+  },
+
+  "importEntry": {
+    "title": "an import", "description": "As an import that is no list.",
+    "type": ["string", "object"], "minLength": 1,
+    "additionalProperties": false, "patternProperties": { "^(x-|extras$)": {} }, "required": ["file"],
+    "properties": {
+      "file": { "$ref": "#/definitions/name" },
+      "optics": { "type": "array", "items": { "$ref": "#/definitions/name" } },
+      "time": { "$ref": "#/definitions/number" },
+      "animation": { "$ref": "#/definitions/name" }
+    }
+  },
 
   "lookAt": {
     "title": "a lookAt",

@@ -1,0 +1,264 @@
+#include "scene/data/alpha_cut.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace trilens {
+namespace {
+
+constexpr double kMostCells = 1 << 22;  // of one triangle
+constexpr double kBlendCutoff = 0.5;
+
+/// A place on the picture in half texels from the first texel's middle; y downward.
+using GridPlace = Vec2;
+
+int wrapped(long long index, int size, Wrap wrap) {
+    if (wrap == Wrap::kClampToEdge) return static_cast<int>(std::clamp(index, 0LL, size - 1LL));
+    const long long period = wrap == Wrap::kRepeat ? size : 2LL * size;
+    const long long in = ((index % period) + period) % period;
+    return static_cast<int>(in < size ? in : period - 1 - in);
+}
+
+/// How much more opaque the picture is than the cutoff.
+class Opacity {
+  public:
+    Opacity(const Material& material, double cutoff)
+        : texture_(*material.base_color_texture),
+          sampler_(material.base_color_sampler),
+          cutoff_(cutoff / material.alpha_factor) {}
+
+    GridPlace place(const Vec2& uv) const {
+        const Vec2 at = sampler_.place(uv);
+        return {2 * (at.x * texture_.width - 0.5), 2 * ((1 - at.y) * texture_.height - 0.5)};
+    }
+    /// At a corner of the grid of half texels.
+    double at(long long x, long long y) const {
+        const long long x0 = x >> 1, y0 = y >> 1, x1 = (x + 1) >> 1, y1 = (y + 1) >> 1;
+        return 0.25 * (texel(x0, y0) + texel(x1, y0) + texel(x0, y1) + texel(x1, y1)) - cutoff_;
+    }
+
+  private:
+    double texel(long long x, long long y) const {
+        const auto column = static_cast<std::size_t>(wrapped(x, texture_.width, sampler_.wrap_s)),
+                   row = static_cast<std::size_t>(wrapped(y, texture_.height, sampler_.wrap_t));
+        return static_cast<double>(texture_.alpha[row * static_cast<std::size_t>(texture_.width) + column]);
+    }
+
+    const Texture& texture_;
+    const TextureSampler& sampler_;
+    double cutoff_;
+};
+
+using GridPolygon = std::vector<GridPlace>;
+
+double across(const Vec2& a, const Vec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+/// A convex polygon's part on the left of the line from a to b [Sutherland and Hodgman 1974].
+GridPolygon left_of(const GridPolygon& polygon, const GridPlace& a, const GridPlace& b) {
+    GridPolygon kept;
+    const auto side = [&](const GridPlace& p) { return across(b - a, p - a); };
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const GridPlace &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+        const double at_p = side(p), at_q = side(q);
+        if (at_p >= 0) kept.push_back(p);
+        if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0))
+            kept.push_back(p + at_p / (at_p - at_q) * (q - p));
+    }
+    return kept;
+}
+
+/// The part of one cell that is opaque; convex.
+GridPolygon opaque_part(long long x, long long y, const std::array<double, 4>& values) {
+    const std::array<GridPlace, 4> corners{GridPlace(x, y), GridPlace(x + 1, y), GridPlace(x + 1, y + 1), GridPlace(x, y + 1)};
+    GridPolygon part;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t next = (k + 1) % 4;
+        if (values[k] >= 0) part.push_back(corners[k]);
+        if ((values[k] >= 0) != (values[next] >= 0)) {
+            // From the lesser corner, so that both cells of an edge have the same point.
+            const bool forward = k < 2;
+            const std::size_t from = forward ? k : next, to = forward ? next : k;
+            part.push_back(corners[from] +
+                           values[from] / (values[from] - values[to]) * (corners[to] - corners[from]));
+        }
+    }
+    return part;
+}
+
+/// The pieces of one triangle that are left.
+class TriangleCut {
+  public:
+    TriangleCut(const std::array<GridPlace, 3>& corners, const Opacity& opacity)
+        : corners_(corners), opacity_(opacity) {
+        turn_ = across(corners[1] - corners[0], corners[2] - corners[0]);
+    }
+
+    bool is_too_fine() const {
+        const Vec2 size = high() - low();
+        return !(size.x * size.y <= kMostCells);
+    }
+
+    /// Whether anything of it is cut away; pieces() has the rest.
+    bool cut() {
+        const Vec2 least = low(), most = high();
+        const auto x0 = static_cast<long long>(std::floor(least.x)),
+                   x1 = static_cast<long long>(std::ceil(most.x)),
+                   y0 = static_cast<long long>(std::floor(least.y)),
+                   y1 = static_cast<long long>(std::ceil(most.y));
+        bool any = false;
+        for (long long y = y0; y < std::max(y1, y0 + 1); ++y) {
+            long long run = x0;  // whole cells since there
+            std::array<double, 4> values{opacity_.at(x0, y), 0, 0, opacity_.at(x0, y + 1)};
+            const long long end = std::max(x1, x0 + 1);
+            for (long long x = x0; x < end; ++x) {
+                values[1] = opacity_.at(x + 1, y);
+                values[2] = opacity_.at(x + 1, y + 1);
+                const bool whole = std::all_of(values.begin(), values.end(), [](double v) { return v >= 0; });
+                if (!whole) {
+                    add_run(run, x, y);
+                    run = x + 1;
+                    if (meets(x, y)) {
+                        any = true;
+                        add(opaque_part(x, y, values));
+                    }
+                }
+                values[0] = values[1];
+                values[3] = values[2];
+            }
+            add_run(run, end, y);
+        }
+        return any;
+    }
+
+    const std::vector<GridPolygon>& pieces() const { return pieces_; }
+    /// Pieces wind as the picture does, from x to y; the triangle may lie on it the other way round.
+    bool turns() const { return turn_ < 0; }
+
+    /// Barycentric coordinates of the second and third corners.
+    Vec2 weights(const GridPlace& p) const {
+        return {across(p - corners_[0], corners_[2] - corners_[0]) / turn_,
+                across(corners_[1] - corners_[0], p - corners_[0]) / turn_};
+    }
+
+  private:
+    Vec2 low() const { return glm::min(corners_[0], glm::min(corners_[1], corners_[2])); }
+    Vec2 high() const { return glm::max(corners_[0], glm::max(corners_[1], corners_[2])); }
+
+    GridPolygon clipped(GridPolygon polygon) const {
+        for (std::size_t k = 0; k < 3 && polygon.size() > 2; ++k) {
+            const GridPlace &a = corners_[k], &b = corners_[(k + 1) % 3];
+            polygon = turn_ > 0 ? left_of(polygon, a, b) : left_of(polygon, b, a);
+        }
+        return polygon;
+    }
+    bool meets(long long x, long long y) const {
+        return clipped({GridPlace(x, y), GridPlace(x + 1, y), GridPlace(x + 1, y + 1), GridPlace(x, y + 1)}).size() > 2;
+    }
+    void add_run(long long from, long long to, long long y) {
+        if (to > from) add({GridPlace(from, y), GridPlace(to, y), GridPlace(to, y + 1), GridPlace(from, y + 1)});
+    }
+    void add(GridPolygon polygon) {
+        polygon = clipped(std::move(polygon));
+        if (polygon.size() > 2) pieces_.push_back(std::move(polygon));
+    }
+
+    std::array<GridPlace, 3> corners_;
+    const Opacity& opacity_;
+    double turn_ = 0;
+    std::vector<GridPolygon> pieces_;
+};
+
+/// The mesh that is made of another's triangles.
+class MeshCutter {
+  public:
+    MeshCutter(const ObjectMesh& from, const std::vector<Material>& materials)
+        : from_(from), materials_(materials) {
+        to_.points = from.points;
+    }
+
+    AlphaCut run(ObjectMesh& into) {
+        for (std::size_t t = 0; t < from_.triangles.size(); ++t) cut(t);
+        into = std::move(to_);
+        return done_;
+    }
+
+  private:
+    void cut(std::size_t t) {
+        const Material& material = materials_[from_.material[t]];
+        if (material.alpha_mode == AlphaMode::kOpaque) return keep(t);
+        const double cutoff = material.alpha_mode == AlphaMode::kMask ? material.alpha_cutoff : kBlendCutoff;
+        const Texture* texture = material.base_color_texture.get();
+        if (!texture || texture->alpha.empty() || from_.uvs.empty() || !(material.alpha_factor > 0)) {
+            if (material.alpha_factor >= cutoff) return keep(t);
+            ++done_.cut;
+            return;
+        }
+        const Opacity opacity(material, cutoff);
+        std::array<GridPlace, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = opacity.place(from_.uvs[t][k]);
+        if (!(std::abs(across(corners[1] - corners[0], corners[2] - corners[0])) > 1e-12)) return keep(t);
+        TriangleCut pieces(corners, opacity);
+        if (pieces.is_too_fine()) {
+            ++done_.too_fine;
+            return keep(t);
+        }
+        if (!pieces.cut()) return keep(t);
+        ++done_.cut;
+        for (const GridPolygon& piece : pieces.pieces()) add(t, piece, pieces);
+    }
+
+    void keep(std::size_t t) {
+        to_.triangles.push_back(from_.triangles[t]);
+        to_.material.push_back(from_.material[t]);
+        if (!from_.uvs.empty()) to_.uvs.push_back(from_.uvs[t]);
+        if (!from_.normals.empty()) to_.normals.push_back(from_.normals[t]);
+    }
+
+    void add(std::size_t t, const GridPolygon& piece, const TriangleCut& cut) {
+        const auto first = static_cast<Id>(to_.points.size());
+        std::vector<Vec2> uvs;
+        std::vector<Vec3> normals;
+        for (const GridPlace& place : piece) {
+            const Vec2 weights = cut.weights(place);
+            const auto mix = [&](const auto& a, const auto& b, const auto& c) {
+                return a + weights.x * (b - a) + weights.y * (c - a);
+            };
+            const IdTriple& corner = from_.triangles[t];
+            to_.points.push_back(
+                mix(from_.points[corner[0]], from_.points[corner[1]], from_.points[corner[2]]));
+            uvs.push_back(mix(from_.uvs[t][0], from_.uvs[t][1], from_.uvs[t][2]));
+            if (!from_.normals.empty())
+                normals.push_back(
+                    normalize_or_zero(mix(from_.normals[t][0], from_.normals[t][1], from_.normals[t][2])));
+        }
+        for (std::size_t k = 1; k + 1 < piece.size(); ++k) {
+            const std::size_t b = cut.turns() ? k + 1 : k, c = cut.turns() ? k : k + 1;
+            to_.triangles.push_back({first, first + static_cast<Id>(b), first + static_cast<Id>(c)});
+            to_.material.push_back(from_.material[t]);
+            to_.uvs.push_back({uvs[0], uvs[b], uvs[c]});
+            if (!from_.normals.empty()) to_.normals.push_back({normals[0], normals[b], normals[c]});
+        }
+    }
+
+    const ObjectMesh& from_;
+    const std::vector<Material>& materials_;
+    ObjectMesh to_;
+    AlphaCut done_;
+};
+
+}  // namespace
+
+AlphaCut cut_by_alpha(ObjectMesh& mesh, const std::vector<Material>& materials) {
+    const bool any = std::any_of(mesh.material.begin(), mesh.material.end(), [&](Id material) {
+        return materials[material].alpha_mode != AlphaMode::kOpaque;
+    });
+    if (!any) return {};
+    const ObjectMesh whole = std::move(mesh);
+    return MeshCutter(whole, materials).run(mesh);
+}
+
+}  // namespace trilens

@@ -1,0 +1,25 @@
+// Cut-outs: triangles cut along the line where their picture's opacity falls below the cutoff (glTF's
+// alphaMode MASK), so that every engine, shadow and reflection sees the same holes.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "scene/data/scene.h"
+
+namespace trilens {
+
+/// What was done.
+struct AlphaCut {
+    std::size_t cut = 0;       // triangles that were cut or taken away
+    std::size_t too_fine = 0;  // triangles that stand whole: their pictures repeat too often on them
+};
+
+/// Takes away what is less opaque than the cutoff of the triangles' materials. Opacity is the alpha channel
+/// of the base colour's picture, bilinear between its texels, times `alpha_factor`; its contour is followed
+/// exactly along the texels' grid and its half steps, and straight between [marching squares: Lorensen and
+/// Cline 1987, in the plane]. uvs, normals and materials go with the pieces. Materials whose alpha_mode is
+/// kOpaque are left alone; kBlend is cut as kMask at 0.5.
+AlphaCut cut_by_alpha(ObjectMesh& mesh, const std::vector<Material>& materials);
+
+}  // namespace trilens
