@@ -63,7 +63,8 @@ EngineChoice projecting_engine(const std::string& name, const ClassicArguments& 
     return engine_choice(name);
 }
 
-LayerRequest layer_request(const std::optional<Names>& layers, const std::optional<Window>& window) {
+LayerRequest layer_request(const std::optional<Names>& layers, const std::optional<Window>& window,
+                           const std::string& shading = "fragment") {
     LayerRequest request;
     if (window) {
         if (*window == Window{}) throw UsageError("0,0,0,0 is no window of the film");
@@ -73,6 +74,7 @@ LayerRequest layer_request(const std::optional<Names>& layers, const std::option
         if (layers->empty()) throw UsageError("no layers are asked for; None asks for the usual ones");
         request.layers = *layers;
     }
+    request.shading = require_named<Shading>("shading", shading);
     return request;
 }
 
@@ -191,7 +193,7 @@ void bind_pictures(RendererClass& renderer) {
                         {FacetArguments{rays, max_error, grid, seen_optics, facets}.of(
                              frame_params(self, resolution, camera)),
                          projecting_engine(engine, {curves, clip, pieces, tolerance}),
-                         layer_request(layers, window), require_named<Shading>("shading", shading)},
+                         layer_request(layers, window, shading)},
                         {"render", file, display_server, tone_arguments(exposure, tone, white, filter_shown)},
                         call);
         },
