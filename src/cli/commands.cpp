@@ -22,7 +22,7 @@ Command make_commands() {
     for (Command& command : std::vector<Command>{
              compare_command(), sweep_command(), report_command(), test_command(), project_command(),
              shoot_command(), fit_command(), design_command(), unwrap_command(), map_command(),
-             anamorph_command(), view_command(), scene_command(), info_command()})
+             caustic_command(), anamorph_command(), view_command(), scene_command(), info_command()})
         root.commands.push_back(std::move(command));
     add_examples(root, root.name);
     return root;
@@ -105,6 +105,9 @@ std::vector<Example> examples_of(const std::string& called) {
            "-o panorama.exr"},
           {"trilens map dome.json --to fisheye:2048 --proxy sphere:3 --center 0,0,0 -o warp.data",
            "a projector's warp mesh over a mirror ball into a dome"}}},
+        {"trilens caustic",
+         {{"trilens caustic scene.json --light 0 --onto floor:1024x1024 -o caustic.exr",
+           "what a light brings over mirrors and through glass to the floor, per pixel of its texture"}}},
         {"trilens anamorph",
          {{"trilens anamorph cylinder.json --picture p.png --page page --paper A4 --verify -o page.pdf",
            "a page to print at true scale, and how near the picture is seen"}}},

@@ -18,6 +18,7 @@ Command project_command();
 Command shoot_command();
 Command unwrap_command();
 Command map_command();
+Command caustic_command();
 Command anamorph_command();
 Command fit_command();
 Command design_command();

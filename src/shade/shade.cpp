@@ -63,17 +63,17 @@ Frame frame_at(const ShadeScene& scene, const Hit& hit, const Vec3& toward_surfa
 /// Whether anything stands between the surface and a sample of a light. Light that arrives from behind a
 /// flat triangle is in the triangle's own shadow; on a smooth one it may still pass over the surface that the
 /// triangle stands for.
-bool is_shadowed(const ShadeScene& scene, const Frame& frame, const LightSample& sample) {
+bool is_shadowed(const ShadeScene& scene, const Light& light, const Frame& frame, const LightSample& sample) {
     if (!frame.smooth && dot(frame.geometric_normal, sample.toward) <= 0) return true;
     Segments segment;
     segment.add(frame.shadow_start, sample.target - frame.shadow_start);
-    return scene.occluded(segment) != 0;
+    return (light.caustics ? scene.occluded_by_all(segment) : scene.occluded(segment)) != 0;
 }
 
 /// Adds the irradiance over pi of one light, or the ambient radiance.
 void add_light(const ShadeScene& scene, std::size_t index, const Frame& frame, Vec3& arriving) {
     const Light& light = scene.lights[index];
-    const bool shadows = light.shadows && scene.occluded;
+    const bool shadows = is_hindered(light) && scene.occluded;
     if (std::holds_alternative<AmbientLight>(light.kind) && !shadows) {
         arriving += light.intensity * light.color;
         return;
@@ -83,7 +83,7 @@ void add_light(const ShadeScene& scene, std::size_t index, const Frame& frame, V
         const LightSample sample = light_sample(scene, index, k, at);
         const double cosine = dot(frame.normal, sample.toward);
         if (cosine <= 0 || sample.irradiance == 0) continue;
-        if (shadows && is_shadowed(scene, frame, sample)) continue;
+        if (shadows && is_shadowed(scene, light, frame, sample)) continue;
         arriving += kInversePi * sample.irradiance * cosine * (sample.color * light.color);
     }
 }
@@ -104,7 +104,15 @@ Vec3 shade_hit(const ShadeScene& scene, const Hit& hit, const Ray& ray) {
 
     Vec3 arriving(0);
     for (std::size_t l = 0; l < scene.lights.size(); ++l) add_light(scene, l, frame, arriving);
-    return outgoing_radiance(look_at(scene, hit, base), {.matt = arriving});
+    Vec3 caustic(0);
+    if (scene.caustic)
+        for (std::size_t l = 0; l < scene.lights.size(); ++l)
+            if (scene.lights[l].caustics)
+                caustic +=
+                    kInversePi *
+                    scene.caustic(
+                        l, {frame.position, frame.geometric_normal, frame.normal, frame.shadow_start, {}});
+    return outgoing_radiance(look_at(scene, hit, base), {.matt = arriving + caustic});
 }
 
 Vec3 metal_reflectance(const Vec3& f0, double cos_incident) {

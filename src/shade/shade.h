@@ -15,6 +15,7 @@
 #include "base/raymesh/triangle_scene.h"
 #include "shade/lights/light_sample.h"
 #include "shade/metallic_roughness.h"
+#include "shade/receiver.h"
 #include "shade/texture_filter.h"
 
 namespace trilens {
@@ -40,6 +41,11 @@ struct ShadeScene {
 
     /// Which of the segments meet anything that casts a shadow; only asked for lights with shadows.
     std::function<Segments::Bits(const Segments&)> occluded;
+    // The same of lights with caustics, which glass stops, too.
+    std::function<Segments::Bits(const Segments&)> occluded_by_all;
+
+    /// Irradiance by light number `light`, one with caustics, over optics.
+    std::function<Vec3(std::size_t light, const Receiver&)> caustic;
 };
 
 /// Radiance (linear Rec.709) that leaves the hit point towards where `ray` came from. Objects are two-sided;
@@ -87,6 +93,10 @@ struct SeenAlong {
     // null: that of the point itself.
     const Vec3* base = nullptr;
     const RayDifferential* differential = nullptr;  // where textures are averaged; null: it stands for itself
+    // Sides of the parallelogram on the surface, around the hit, over which caustics are averaged; null: the
+    // point alone.
+    const std::array<Vec3, 2>* footprint = nullptr;
+    bool without_caustics = false;  // light that comes over optics is not asked for
 };
 
 /// The light at a point of a surface, as it arrives.
@@ -95,6 +105,8 @@ struct ReachingLight {
     // reach it with all, or with some, or not.
     std::uint64_t lights = 0;
     ArrivedLight arrived;  // of a plain surface only `matt`: irradiance over pi, and the ambient radiance
+    // Radiance of what comes over optics, a part of the light that shade_rays gives and no part of `arrived`.
+    Vec3 caustic{0};
 };
 
 /// What the rays show: each hit's shade (the same bits as shade_hit's where neither base nor differential is

@@ -25,12 +25,13 @@ std::optional<ShadeLight> as_lanes_see_it(const ShadeScene& scene, const Light& 
         return std::nullopt;
     }
     seen.intensity = light.intensity;
-    seen.casts_shadows = light.shadows && scene.occluded;
+    seen.casts_shadows = is_hindered(light) && scene.occluded;
     return seen;
 }
 
 /// Those of the lanes whose shadow rays meet nothing.
-ShadeBatch::Bits unhindered(const ShadeScene& scene, const ShadeBatch& batch, ShadeBatch::Bits lanes) {
+ShadeBatch::Bits unhindered(const std::function<Segments::Bits(const Segments&)>& occluded,
+                            const ShadeBatch& batch, ShadeBatch::Bits lanes) {
     Segments segments;
     std::array<std::size_t, kShadeLanes> lane_of;
     for_each_of(lanes, [&](std::size_t i) {
@@ -38,7 +39,7 @@ ShadeBatch::Bits unhindered(const ShadeScene& scene, const ShadeBatch& batch, Sh
         segments.add(batch.shadow_start.get(i), batch.way.get(i));
     });
     if (segments.count == 0) return 0;
-    for_each_of(scene.occluded(segments), [&](std::size_t s) { lanes &= ~Segments::bit(lane_of[s]); });
+    for_each_of(occluded(segments), [&](std::size_t s) { lanes &= ~Segments::bit(lane_of[s]); });
     return lanes;
 }
 
@@ -101,10 +102,12 @@ struct Shaded {
     // Lanes that the batch's sums are not enough for, with their own.
     ShadeBatch::Bits viewed = 0;
     std::array<ViewedLane, kShadeLanes> viewed_lane;
+    std::array<Vec3, kShadeLanes> caustic;  // irradiance over pi that comes over optics; then its radiance
 
     void add(const SeenAlong& seen, std::size_t index);
     void pad();
     void arrive();
+    void add_caustic(std::size_t light, ShadeBatch::Bits wanted);
     void arrive_from(std::size_t light, ShadeBatch::Bits wanted);
     void find_viewed(ShadeBatch::Bits wanted);
     Vec3 find_sample(std::size_t light, std::size_t sample);
@@ -151,6 +154,7 @@ void Shaded::arrive() {
     for (std::size_t i = 0; i < batch.count; ++i)
         if (is_lit(scene, *seen[i]->hit)) wanted |= Segments::bit(i);
     std::fill_n(lights.begin(), batch.count, std::uint64_t{0});
+    std::fill_n(caustic.begin(), batch.count, Vec3(0));
     if (wanted == 0) return;
     pad();
     find_surfaces(batch, kShadowOffset * scene.size);
@@ -161,7 +165,7 @@ void Shaded::arrive() {
 /// What one light sends to the lanes that are wanted.
 void Shaded::arrive_from(std::size_t l, ShadeBatch::Bits wanted) {
     const Light& light = scene.lights[l];
-    const bool shadows = light.shadows && scene.occluded;
+    const bool shadows = is_hindered(light) && scene.occluded;
     if (std::holds_alternative<AmbientLight>(light.kind) && !shadows) {
         add_ambient(batch, light.intensity * light.color);
         for (std::size_t k = 0; viewed && k < sample_count(scene, l); ++k) {
@@ -181,13 +185,14 @@ void Shaded::arrive_from(std::size_t l, ShadeBatch::Bits wanted) {
         else
             color = find_sample(l, k) * light.color;
         ShadeBatch::Bits lit = batch.lit & wanted;
-        if (shadows) lit = unhindered(scene, batch, lit);
+        if (shadows) lit = unhindered(light.caustics ? scene.occluded_by_all : scene.occluded, batch, lit);
         add_light(batch, color, lit);
         add_viewed(l, k, lit & viewed);
         by_any |= lit;
         by_all &= lit;
     }
     if (is_dome(light)) for_each_of(viewed, [&](std::size_t i) { add_lobe(l, i); });
+    if (light.caustics && scene.caustic) add_caustic(l, wanted);
     for_each_of(by_any, [&](std::size_t i) {
         lights[i] += number_of_light(l, by_all & Segments::bit(i) ? Reach::kAll : Reach::kPart);
     });
@@ -265,8 +270,23 @@ Vec3 Shaded::find_sample(std::size_t light, std::size_t sample) {
     for (std::size_t i = 0; i < batch.count; ++i)
         at[i] = light_sample(scene, light, sample, {batch.position.get(i), batch.normal.get(i), scene.size});
     find_sampled_light(batch, std::span(at).first(batch.count),
-                       scene.lights[light].shadows && scene.occluded);
+                       is_hindered(scene.lights[light]) && scene.occluded);
     return at[0].color;
+}
+
+/// What comes over optics.
+void Shaded::add_caustic(std::size_t light, ShadeBatch::Bits wanted) {
+    constexpr double kOverPi = 0.31830988618379067154;
+    for_each_of(wanted, [&](std::size_t i) {
+        if (seen[i]->without_caustics) return;
+        Receiver receiver;
+        receiver.point = batch.position.get(i);
+        receiver.normal = batch.geometric_normal.get(i);
+        receiver.shading_normal = batch.normal.get(i);
+        receiver.lifted = batch.shadow_start.get(i);
+        if (seen[i]->footprint) receiver.sides = *seen[i]->footprint;
+        caustic[i] += kOverPi * scene.caustic(light, receiver);
+    });
 }
 
 /// Puts the batch into the light that was asked for.
@@ -276,14 +296,22 @@ void Shaded::shade(std::span<Vec3> light) {
     for (std::size_t i = 0; i < batch.count; ++i) {
         const Hit& hit = *seen[i]->hit;
         const Vec3 base = seen[i]->base ? *seen[i]->base : base_colour(scene, *seen[i]);
-        light[answer[i]] =
-            is_lit(scene, hit) ? outgoing_radiance(look_at(scene, hit, base), arrived(i)) : base;
+        if (!is_lit(scene, hit)) {
+            light[answer[i]] = base;
+            continue;
+        }
+        SurfaceLook look = look_at(scene, hit, base);
+        light[answer[i]] = outgoing_radiance(look, arrived(i));
+        if (caustic[i] == Vec3(0)) continue;
+        look.emissive = Vec3(0);
+        caustic[i] = outgoing_radiance(look, {.matt = caustic[i]});
+        light[answer[i]] += caustic[i];
     }
 }
 
 void Shaded::find_reaching(std::span<ReachingLight> to) {
     for (std::size_t i = 0; i < batch.count; ++i)
-        if (is_lit(scene, *seen[i]->hit)) to[answer[i]] = {lights[i], arrived(i)};
+        if (is_lit(scene, *seen[i]->hit)) to[answer[i]] = {lights[i], arrived(i), caustic[i]};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "base/util/names.h"
 #include "image/image_io.h"
 #include "trilens/anamorph.h"
+#include "trilens/caustic.h"
 #include "trilens/image.h"
 #include "trilens/map.h"
 #include "trilens/unwrap.h"
@@ -57,6 +58,13 @@ WarpMesh make_mesh(const Renderer& renderer, const FilmMapRequest& request, cons
     WarpMesh mesh;
     renderer.use_world([&](const World& world) { mesh = make_warp_mesh(world, request, params, progress); });
     return mesh;
+}
+
+CausticMap make_caustic_map(const Renderer& renderer, const CausticMapRequest& request,
+                            const Progress& progress) {
+    CausticMap map;
+    renderer.use_world([&](const World& world) { map = make_caustic_map(world, request, progress); });
+    return map;
 }
 
 std::string map_format(const std::string& file) {

@@ -7,6 +7,7 @@
 #include <trilens/anamorph.h>
 #include <trilens/animation.h>
 #include <trilens/camera.h>
+#include <trilens/caustic.h>
 #include <trilens/compare.h>
 #include <trilens/design.h>
 #include <trilens/display.h>

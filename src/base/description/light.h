@@ -102,8 +102,14 @@ struct Light {
     Vec3 color{1};
     double intensity = 1;
     bool shadows = false;
+    bool caustics = false;  // its light is followed over optics; all of them stop what comes straight
     LightKind kind;
 };
+
+/// Whether things stand in the way of its light.
+inline bool is_hindered(const Light& light) {
+    return light.shadows || light.caustics;
+}
 
 inline const char* kind_name(const Light& light) {
     return std::visit([](const auto& kind) { return kind.kName; }, light.kind);

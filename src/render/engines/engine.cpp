@@ -7,12 +7,14 @@
 #include "render/engines/facet_engine.h"
 #include "render/engines/limit_engine.h"
 #include "render/frame/camera_media.h"
+#include "render/world/caustic_lights.h"
 
 namespace trilens {
 
 std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
                                     const Warn& warn) {
     prepare_shadows(world);
+    if (has_caustics(world)) warn_of_lost_light(world, caustic_lights(world), warn);
     if (engine.engine == Engine::kLimitTruth) {
         CameraRays camera = make_camera_rays(world.scene, frame.camera);
         warn_of_unsure_media(world, camera_media_of(world, camera), warn);

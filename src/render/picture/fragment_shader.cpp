@@ -61,10 +61,13 @@ class SpreadContribution {
     SpreadContribution(const FragmentShading& shading, const ShownFragment& fragment,
                        const Contribution& contribution)
         : shading_(shading), fragment_(fragment), contribution_(contribution) {
-        if (sample_count() > 1) map_ = facet_map(shading.viewer, *fragment.view, contribution.end);
+        const bool has_caustics = static_cast<bool>(shading.world.shading.caustic);
+        if (sample_count() > 1 || has_caustics)
+            map_ = facet_map(shading.viewer, *fragment.view, contribution.end);
         if (!map_.mesh) return;
-        find_corners();
+        if (sample_count() > 1) find_corners();
         find_spread();
+        if (has_caustics) find_footprint();
         if (contribution.end && contribution.end->medium != kNone) find_mean_length();
     }
 
@@ -85,8 +88,11 @@ class SpreadContribution {
     std::span<const SeenThere> corners() const { return {corners_.data(), corner_count_}; }
     /// Mean base colour over its samples, or of the background; none: that of the shaded point will do.
     std::optional<Vec3> mean_base() const;
+    /// Sides of the parallelogram on the surface that its samples stand for; null where it is not known.
+    const std::array<Vec3, 2>* footprint() const { return footprint_ ? &*footprint_ : nullptr; }
 
   private:
+    void find_footprint();
     void find_corners();
     void find_spread();
     /// Of the way through the last medium, to first order: that at the centroid of the samples.
@@ -100,6 +106,7 @@ class SpreadContribution {
     std::array<Vec2, 2> spread_{Vec2(1, 0), Vec2(0, 1)};  // its sides
     std::array<SeenThere, kCorners> corners_;
     std::size_t corner_count_ = 0;
+    std::optional<std::array<Vec3, 2>> footprint_;
 };
 
 std::optional<SeenThere> SpreadContribution::at(const Vec2& place) const {
@@ -160,6 +167,20 @@ void SpreadContribution::find_spread() {
     // The square root of that matrix: its sides' outer products add up to it.
     const double area = std::sqrt(std::max(xx * yy - xy * xy, 0.0)), scale = std::sqrt(xx + yy + 2 * area);
     spread_ = {Vec2(xx + area, xy) / scale, Vec2(xy, yy + area) / scale};
+}
+
+void SpreadContribution::find_footprint() {
+    const Hit& seen = *contribution_.seen.hit;
+    if (!seen.seen()) return;
+    std::array<Vec3, 2> sides;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Ray low = map_.at(centroid_ - 0.5 * spread_[k]), high = map_.at(centroid_ + 0.5 * spread_[k]);
+        const auto from = meet_plane(shading_.world.objects, seen.triangle, low),
+                   to = meet_plane(shading_.world.objects, seen.triangle, high);
+        if (!from || !to) return;
+        sides[k] = high.origin + to->t * high.direction - (low.origin + from->t * low.direction);
+    }
+    footprint_ = sides;
 }
 
 void SpreadContribution::find_mean_length() {
@@ -231,7 +252,10 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
     };
     for (const SpreadContribution& one : waiting_)
         if (is_spread(one))
-            for (const SeenThere& corner : one.corners()) corners[count++] = {&corner.hit, &corner.ray};
+            for (const SeenThere& corner : one.corners()) {
+                corners[count] = {&corner.hit, &corner.ray};
+                corners[count++].without_caustics = true;
+            }
     std::array<ReachingLight, kMostShaded * kCorners> there;
     find_reaching_light(shading_.world.shading, std::span(corners).first(count),
                         std::span(there).first(count));
@@ -250,6 +274,8 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
         }
         count += n;
         const bool whole = waiting_[i].is_whole_pixel();
+        const Vec3 caustic = centre[i].caustic;  // a mean over all of them already
+        if (caustic != Vec3(0)) light[i] -= caustic;
         const Vec3 here = arriving(look, centre[i].arrived), off = arriving(look, mean) - here;
         if (uneven || of_worst_colour(glm::abs(off) - (whole ? kWholeRoom : kPartRoom) * here) > 0) {
             light[i] = outgoing_radiance(look, mean_arrived(waiting_[i]));
@@ -260,6 +286,7 @@ void FragmentContributions::even_out(std::span<const ReachingLight> centre, std:
                     light[i][k] = look.emissive[k] + (light[i][k] - look.emissive[k]) *
                                                          (1 + corner_share(shading_.side) * off[k] / here[k]);
         }
+        if (caustic != Vec3(0)) light[i] += caustic;
     }
 }
 
@@ -270,7 +297,10 @@ ArrivedLight FragmentContributions::mean_arrived(const SpreadContribution& contr
         if (const std::optional<SeenThere> seen = contribution.at(contribution.place(s)))
             there.push_back(*seen);
     std::vector<SeenAlong> seen;
-    for (const SeenThere& one : there) seen.push_back({&one.hit, &one.ray});
+    for (const SeenThere& one : there) {
+        seen.push_back({&one.hit, &one.ray});
+        seen.back().without_caustics = true;
+    }
     std::vector<ReachingLight> light(seen.size());
     find_reaching_light(shading_.world.shading, seen, light);
     ArrivedLight sum;
@@ -290,6 +320,7 @@ void FragmentContributions::shade() {
         const std::optional<Vec3> mean = waiting_[i].mean_base();
         base[i] = mean ? *mean : base_colour(shading_.world.shading, seen[i]);
         seen[i].base = &base[i];
+        seen[i].footprint = waiting_[i].footprint();
     }
     shade_rays(shading_.world.shading, std::span(seen).first(count), std::span(light).first(count),
                std::span(reaching).first(count));

@@ -7,6 +7,21 @@
 namespace trilens {
 namespace {
 
+/// The sides of what a ray stands for on the plane of the triangle that it sees.
+std::array<Vec3, 2> footprint_of(const TriangleScene& scene, const SeenAlong& seen,
+                                 const RayDifferential& differential) {
+    const IdTriple& corner = scene.triangles[seen.hit->triangle];
+    const Vec3& a = scene.points[corner[0]];
+    const Vec3 normal = cross(scene.points[corner[1]] - a, scene.points[corner[2]] - a);
+    const double along = dot(normal, seen.ray->direction);
+    std::array<Vec3, 2> sides;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Vec3 moved = differential.origin[k] + seen.hit->t * differential.direction[k];
+        sides[k] = moved - dot(normal, moved) / along * seen.ray->direction;
+    }
+    return sides;
+}
+
 /// Rays of several samples, shaded together: what each adds to its sample.
 class Contributions {
   public:
@@ -28,8 +43,9 @@ class Contributions {
     std::size_t count_ = 0;
     std::array<SeenAlong, kMost> seen_;
     std::array<Contribution, kMost> contributions_;
-    std::array<RayDifferential, kMost> differential_;  // where textures are averaged
-    std::array<std::size_t, kMost> sample_;            // of colours_
+    std::array<RayDifferential, kMost> differential_;   // where textures are averaged
+    std::array<std::array<Vec3, 2>, kMost> footprint_;  // where caustics are
+    std::array<std::size_t, kMost> sample_;             // of colours_
 };
 
 void Contributions::add_sample(std::size_t index) {
@@ -38,10 +54,16 @@ void Contributions::add_sample(std::size_t index) {
     for_each_contribution(world_, views_, view, [&](const Contribution& contribution) {
         if (count_ == kMost) shade();
         seen_[count_] = contribution.seen;
-        if (differentials_ && has_texture(world_.shading, *contribution.seen.hit))
+        const Hit& hit = *contribution.seen.hit;
+        const bool textured = has_texture(world_.shading, hit), lit = world_.shading.caustic && hit.seen();
+        if (differentials_ && (textured || lit))
             if (const auto differential = differentials_->of(views_, first_ + index, contribution)) {
                 differential_[count_] = *differential;
-                seen_[count_].differential = &differential_[count_];
+                if (textured) seen_[count_].differential = &differential_[count_];
+                if (lit) {
+                    footprint_[count_] = footprint_of(world_.objects, contribution.seen, *differential);
+                    seen_[count_].footprint = &footprint_[count_];
+                }
             }
         sample_[count_] = index;
         contributions_[count_++] = contribution;

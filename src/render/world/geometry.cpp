@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "base/raymesh/surface.h"
+#include "render/world/caustic_lights.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
@@ -59,6 +60,7 @@ struct ObjectGeometry {
 struct WorldGeometry {
     std::shared_ptr<ObjectGeometry> objects = std::make_shared<ObjectGeometry>();
     Lazy<PathWorld> paths;
+    Lazy<CausticLights> caustics;
     std::vector<std::shared_ptr<OpticGeometry>> optic;
 };
 
@@ -148,7 +150,7 @@ const PathWorld& path_world(const World& world) {
 
 bool has_shadows(const World& world) {
     return std::any_of(world.scene.lights.begin(), world.scene.lights.end(),
-                       [](const Light& light) { return light.shadows; });
+                       is_hindered);
 }
 
 Segments::Bits casts_shadow(const World& world, const Segments& segments) {
@@ -159,11 +161,23 @@ Segments::Bits casts_shadow(const World& world, const Segments& segments) {
     return hidden;
 }
 
+Segments::Bits meets_anything(const World& world, const Segments& segments) {
+    Segments::Bits hidden = object_tracer(world).occluded(segments);
+    for (std::size_t i = 0; i < world.optics.size(); ++i)
+        hidden |= limit_tracer(world, i).occluded(segments, segments.all() & ~hidden);
+    return hidden;
+}
+
+const CausticLights& caustic_lights(const World& world) {
+    return world.geometry->caustics.get([&] { return make_caustic_lights(world); });
+}
+
 void prepare_shadows(const World& world) {
     if (!has_shadows(world)) return;
     object_tracer(world);
     for (std::size_t i = 0; i < world.optics.size(); ++i)
         if (world.optics[i].mirror) limit_tracer(world, i);
+    if (has_caustics(world)) caustic_lights(world);
 }
 
 std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t optic, int n) {

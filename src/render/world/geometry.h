@@ -13,6 +13,8 @@
 
 namespace trilens {
 
+struct CausticLights;
+
 /// An optic's grid at one resolution. Its facets as a scene: triangle f is facet f, its object the optic's.
 class OpticFacets {
   public:
@@ -52,6 +54,13 @@ bool has_shadows(const World& world);
 
 /// The segments that an object, or the exact surface of a mirror, meets. Glass lets the light through.
 Segments::Bits casts_shadow(const World& world, const Segments& segments);
+
+/// The segments that an object or an optic of any kind meets: where light that is followed over optics does not
+/// come straight.
+Segments::Bits meets_anything(const World& world, const Segments& segments);
+
+/// The beams of lights with caustics, made when first asked for.
+const CausticLights& caustic_lights(const World& world);
 
 /// Builds what casts_shadow asks, where the scene has shadows: before many threads do.
 void prepare_shadows(const World& world);

@@ -4,6 +4,7 @@
 
 #include "base/math/box.h"
 #include "base/util/error.h"
+#include "render/world/caustic_lights.h"
 #include "render/world/geometry.h"
 #include "scene/data/scene_digest.h"
 #include "shade/optic_weights.h"
@@ -150,6 +151,15 @@ void set_up_shading(World& world) {
         world.shading.occluded = [self = &world](const Segments& segments) {
             return casts_shadow(*self, segments);
         };
+    world.shading.occluded_by_all = {};
+    world.shading.caustic = {};
+    if (!has_caustics(world)) return;
+    world.shading.occluded_by_all = [self = &world](const Segments& segments) {
+        return meets_anything(*self, segments);
+    };
+    world.shading.caustic = [self = &world](std::size_t light, const Receiver& receiver) {
+        return irradiance(caustic_lights(*self).by_light[light], receiver);
+    };
 }
 
 std::vector<std::string> digests_of(const Scene& scene) {

@@ -111,8 +111,8 @@ void add(const EnvironmentLight& light, Digest& digest) {
 }
 
 void add(const Light& light, Digest& digest) {
-    const auto& [name, color, intensity, shadows, kind] = light;
-    digest.add_all(name, color, intensity, shadows, kind.index());
+    const auto& [name, color, intensity, shadows, caustics, kind] = light;
+    digest.add_all(name, color, intensity, shadows, caustics, kind.index());
     std::visit([&](const auto& one) { add(one, digest); }, kind);
 }
 

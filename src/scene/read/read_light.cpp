@@ -110,7 +110,11 @@ const std::vector<Field<Light>>& light_fields() {
                 "Whether objects and mirrors cast shadows in this light: objects by their triangles, mirrors "
                 "by their exact surface, at any resolution. Glass casts none: it lets the light through, "
                 "unbent and undimmed. ambient: it reaches a surface from where nothing stands (ambient "
-                "occlusion).")};
+                "occlusion)."),
+        setting("caustics", &Light::caustics, yes_or_no(),
+                "Whether its light is followed over mirrors and through glass to where it falls, as far as "
+                "maxDepth; objects, mirrors and glass then stop what comes straight, whatever 'shadows' says.")
+            .of({"directional", "point", "spot", "rectangle", "disk"})};
     return fields;
 }
 

@@ -1,0 +1,202 @@
+#include "caustics/beam_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/util/error.h"
+#include "base/util/parallel.h"
+
+namespace trilens {
+namespace {
+
+/// Paths that carry less than this share of the strongest path of all are not looked at closely: their beams
+/// are as the others need them.
+constexpr double kFaintLight = 0.03;
+
+/// Halves of a triangle whose areas differ by this share of it are too unequally bright to stand for one.
+constexpr double kUnevenHalves = 0.2;
+
+double strength_of(const Vec3& light) {
+    return light.x + light.y + light.z;
+}
+
+/// Whether every history of one that carries so much is one of the other.
+bool has_all(const std::vector<LightPath>& paths, const std::vector<LightPath>& of, double least) {
+    return std::all_of(of.begin(), of.end(), [&](const LightPath& path) {
+        return strength_of(path.light) < least || find_history(paths, path) != nullptr;
+    });
+}
+
+}  // namespace
+
+BeamGrid::BeamGrid(const LightSpace& space, const BeamSource& source, const LightWindow& window, Id first)
+    : space_(space), source_(source), window_(window), first_(first) {}
+
+LightPaths BeamGrid::paths_at(const Vec2& place) const {
+    return light_paths(space_, source_, window_.ray(place), first_);
+}
+
+/// Squares of two triangles each, whose common side is the base of both.
+void BeamGrid::start(int cells) {
+    const Id row = static_cast<Id>(cells) + 1;
+    for (Id j = 0; j < row; ++j)
+        for (Id i = 0; i < row; ++i) places_.push_back(Vec2(i, j) * (2.0 / cells) - Vec2(1));
+    for (Id j = 0; j + 1 < row; ++j)
+        for (Id i = 0; i + 1 < row; ++i) {
+            const Id a = j * row + i, b = a + 1, c = a + row + 1, d = a + row;
+            triangles_.push_back({{c, a, b}, 0});
+            triangles_.push_back({{a, c, d}, 0});
+        }
+    for (Id t = 0; t < triangles_.size(); ++t) link(t);
+}
+
+void BeamGrid::trace_new_corners() {
+    paths_.resize(places_.size());
+    parallel_for(places_.size() - traced_, 16, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = traced_ + from; i < traced_ + to; ++i) paths_[i] = paths_at(places_[i]);
+    });
+    for (std::size_t i = traced_; i < places_.size(); ++i)
+        for (const LightPath& path : paths_[i].paths)
+            brightest_ = std::max(brightest_, strength_of(path.light));
+    traced_ = places_.size();
+}
+
+Id BeamGrid::middle_of(Id a, Id b) {
+    const auto [at, is_new] = middles_.try_emplace(edge_of(a, b), static_cast<Id>(places_.size()));
+    if (is_new) places_.push_back(0.5 * (places_[a] + places_[b]));
+    return at->second;
+}
+
+void BeamGrid::link(Id triangle) {
+    const auto& corner = triangles_[triangle].corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+        auto& sides =
+            sides_.try_emplace(edge_of(corner[k], corner[(k + 1) % 3]), std::array<Id, 2>{kNone, kNone})
+                .first->second;
+        sides[sides[0] == kNone ? 0 : 1] = triangle;
+    }
+}
+
+void BeamGrid::unlink(Id triangle) {
+    const auto& corner = triangles_[triangle].corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+        auto& sides = sides_[edge_of(corner[k], corner[(k + 1) % 3])];
+        (sides[0] == triangle ? sides[0] : sides[1]) = kNone;
+    }
+}
+
+void BeamGrid::bisect(Id triangle, Id middle) {
+    unlink(triangle);
+    const Triangle parent = triangles_[triangle];
+    const auto [a, b, c] = parent.corner;
+    triangles_[triangle] = {{c, a, middle}, parent.level + 1};
+    triangles_.push_back({{b, c, middle}, parent.level + 1});
+    link(triangle);
+    link(static_cast<Id>(triangles_.size() - 1));
+}
+
+/// The one on the other side of the base is bisected with it, and before that until its base is the same.
+void BeamGrid::split(Id triangle) {
+    const Id a = triangles_[triangle].corner[0], b = triangles_[triangle].corner[1];
+    const auto other_side = [&] {
+        const auto& sides = sides_.at(edge_of(a, b));
+        return sides[0] == triangle ? sides[1] : sides[0];
+    };
+    Id other = other_side();
+    if (other != kNone) {
+        const auto& base = triangles_[other].corner;
+        if (edge_of(base[0], base[1]) != edge_of(a, b)) {
+            split(other);
+            other = other_side();
+        }
+    }
+    const Id middle = middle_of(a, b);
+    bisect(triangle, middle);
+    if (other != kNone) bisect(other, middle);
+}
+
+/// The paths of one history at a triangle's corners, and in the middle of its base.
+struct BeamGrid::Corners {
+    const LightPath &a, &b, &middle;
+    const LightPath* c;  // null: it is not there
+};
+
+/// Whether the middle's light falls too far from the middle between that of the base's ends, where it meets
+/// an object, or the triangle's halves are too unequally bright there.
+bool BeamGrid::is_uneven(const Corners& corners, const BeamGridParams& params) const {
+    const Ray& ray = corners.middle.ray;
+    if (!std::isfinite(corners.middle.object)) return false;
+    const Vec3 there = ray.origin + corners.middle.object * ray.direction;
+    // On the plane across the middle's ray, which receivers face best.
+    const auto fallen = [&](const LightPath& path) -> std::optional<Vec3> {
+        const double along = dot(path.ray.direction, ray.direction);
+        const double t = dot(there - path.ray.origin, ray.direction) / along;
+        if (!(along > 0.1) || !std::isfinite(t)) return std::nullopt;
+        return path.ray.origin + t * path.ray.direction;
+    };
+    const std::optional<Vec3> at_a = fallen(corners.a), at_b = fallen(corners.b);
+    if (!at_a || !at_b) return true;
+    // Paths that carry less may be off by more.
+    const double room = params.tolerance * space_.size * brightest_ / strength_of(corners.middle.light);
+    if (length(0.5 * (*at_a + *at_b) - there) > room) return true;
+    const std::optional<Vec3> at_c = corners.c ? fallen(*corners.c) : std::nullopt;
+    if (!at_c) return false;
+    const double first = triple(*at_a - there, *at_c - there, ray.direction),
+                 second = triple(*at_c - there, *at_b - there, ray.direction);
+    const double both = std::fabs(first) + std::fabs(second);
+    return both > room * room && std::fabs(first - second) > kUnevenHalves * both;
+}
+
+bool BeamGrid::is_too_coarse(const Triangle& triangle, const BeamGridParams& params) const {
+    const auto& [a, b, c] = triangle.corner;
+    const std::vector<LightPath>&at_a = paths(a), &at_b = paths(b),
+          &at_middle = paths(middles_.at(edge_of(a, b)));
+    const std::vector<LightPath>& at_c = paths(c);
+    const double least = kFaintLight * brightest_;
+    const auto differ = [&](const std::vector<LightPath>& one, const std::vector<LightPath>& other) {
+        return !has_all(one, other, least) || !has_all(other, one, least);
+    };
+    if (triangle.level < params.mixed_levels &&
+        (differ(at_a, at_b) || differ(at_a, at_middle) || differ(at_a, at_c)))
+        return true;
+    for (const LightPath& path : at_middle) {
+        const double light = strength_of(path.light);
+        if (light < least) continue;
+        const LightPath *on_a = find_history(at_a, path), *on_b = find_history(at_b, path);
+        if (on_a && on_b && is_uneven({*on_a, *on_b, path, find_history(at_c, path)}, params)) return true;
+    }
+    return false;
+}
+
+void BeamGrid::divide(const BeamGridParams& params, const Progress& progress) {
+    start(params.first_cells);
+    std::vector<Id> asked(triangles_.size());
+    for (Id t = 0; t < asked.size(); ++t) asked[t] = t;
+    coarse_ = 0;
+    while (!asked.empty()) {
+        if (progress.cancelled()) throw Interrupted();
+        for (const Id t : asked) middle_of(triangles_[t].corner[0], triangles_[t].corner[1]);
+        trace_new_corners();
+        std::vector<char> coarse(asked.size());
+        parallel_for(asked.size(), 256, [&](std::size_t from, std::size_t to) {
+            for (std::size_t i = from; i < to; ++i) coarse[i] = is_too_coarse(triangles_[asked[i]], params);
+        });
+        const std::size_t before = triangles_.size();
+        std::vector<Triangle> was(triangles_);
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            const Id t = asked[i];
+            if (!coarse[i] || triangles_[t].corner != was[t].corner) continue;  // done by its neighbour
+            if (triangles_[t].level >= params.most_levels || triangles_.size() >= params.most_triangles)
+                ++coarse_;
+            else
+                split(t);
+        }
+        // What came of it: halves of what was split, wherever they stand.
+        asked.clear();
+        for (Id t = 0; t < triangles_.size(); ++t)
+            if (t >= before || triangles_[t].corner != was[t].corner) asked.push_back(t);
+    }
+    trace_new_corners();
+}
+
+}  // namespace trilens

@@ -1,0 +1,86 @@
+// The window of a light divided into triangles by newest-vertex bisection until the paths at their corners
+// stand for those between them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "base/util/progress.h"
+#include "caustics/light_paths.h"
+
+namespace trilens {
+
+/// How finely.
+struct BeamGridParams {
+    int first_cells = 24;     // squares along each side of the window to begin with
+    int most_levels = 11;     // bisections of one of its triangles
+    int mixed_levels = 4;     // of one whose corners have different histories
+    double tolerance = 1e-3;  // how far light may fall from its place, as a share of the scene's size
+    std::size_t most_triangles = 100'000;
+};
+
+/// Triangles over one window; the bases of two triangles that share one are equal, so no corner lies on
+/// another's side (Mitchell, A Comparison of Adaptive Refinement Techniques for Elliptic Problems, 1989).
+class BeamGrid {
+  public:
+    struct Triangle {
+        std::array<Id, 3> corner{};  // the base runs from corner 0 to 1
+        int level = 0;
+    };
+
+    BeamGrid(const LightSpace& space, const BeamSource& source, const LightWindow& window, Id first);
+
+    /// Throws Interrupted once `progress` says so.
+    void divide(const BeamGridParams& params, const Progress& progress);
+
+    const LightWindow& window() const { return window_; }
+    const std::vector<Triangle>& triangles() const { return triangles_; }
+    const Vec2& place(Id corner) const { return places_[corner]; }
+    const std::vector<LightPath>& paths(Id corner) const { return paths_[corner].paths; }
+    const CutPaths& cut(Id corner) const { return paths_[corner].cut; }
+    std::size_t corner_count() const { return places_.size(); }
+    /// Triangles that were left too coarse, for want of levels or room.
+    std::size_t coarse_count() const { return coarse_; }
+
+    /// The paths at any place of the window.
+    LightPaths paths_at(const Vec2& place) const;
+
+  private:
+    using Edge = std::uint64_t;
+    static Edge edge_of(Id a, Id b) { return (static_cast<Edge>(std::min(a, b)) << 32) | std::max(a, b); }
+    void start(int cells);
+    void trace_new_corners();
+    Id middle_of(Id a, Id b);
+    bool is_too_coarse(const Triangle& triangle, const BeamGridParams& params) const;
+    struct Corners;
+    bool is_uneven(const Corners& corners, const BeamGridParams& params) const;
+    void link(Id triangle);
+    void unlink(Id triangle);
+    void split(Id triangle);
+    void bisect(Id triangle, Id middle);
+
+    LightSpace space_;
+    BeamSource source_;
+    LightWindow window_;
+    Id first_ = kNone;
+    std::vector<Vec2> places_;
+    std::vector<LightPaths> paths_;  // of the first traced_ corners
+    std::size_t traced_ = 0;
+    std::vector<Triangle> triangles_;
+    std::unordered_map<Edge, std::array<Id, 2>> sides_;  // triangles on both sides
+    std::unordered_map<Edge, Id> middles_;
+    double brightest_ = 0;  // path so far: the sum of its colours
+    std::size_t coarse_ = 0;
+};
+
+/// The path of that history; null: there is none.
+inline const LightPath* find_history(const std::vector<LightPath>& paths, const LightPath& like) {
+    for (const LightPath& path : paths)
+        if (path.same_history(like)) return &path;
+    return nullptr;
+}
+
+}  // namespace trilens

@@ -1,0 +1,186 @@
+#include "caustics/beam_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "caustics/footprint.h"
+
+namespace trilens {
+namespace {
+
+/// Footprints are no wider than this share of the scene.
+constexpr double kWidestFootprint = 0.02;
+/// Rays that meet an object this near to where they meet the receiver's plane come to the receiver: a share
+/// of the scene's size.
+constexpr double kSamePlace = 1e-6;
+
+/// A smooth surface's normal makes light at grazing no brighter than so.
+constexpr double kMostTurned = 10;
+
+/// What the rays at a beam's ends say about the way to a plane.
+enum class Way { kFree, kStopped, kUnknown };
+
+Way way_to(const Beams& beams, const Beam& beam, const ReceiverPlane& plane, double same_place) {
+    int free = 0, stopped = 0;
+    for (const Id e : beam.end) {
+        const BeamEnd& end = beams.ends[e];
+        const double fall = -dot(end.direction, plane.normal);
+        const double t = dot(end.origin - plane.point, plane.normal) / fall;
+        if (!(fall > 0)) return Way::kUnknown;
+        if (std::fabs(end.object - t) <= same_place / fall) ++free;
+        if (end.optic < t) ++stopped;
+    }
+    return free == 3 ? Way::kFree : stopped == 3 ? Way::kStopped : Way::kUnknown;
+}
+
+}  // namespace
+
+BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const BeamGridParams& params,
+                     const std::vector<std::vector<Vec3>>& outlines, const Progress& progress)
+    : space_(space), source_(source), tolerance_(params.tolerance) {
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        if (outlines[i].empty()) continue;
+        for (const LightWindow& window : windows_on(source, outlines[i], space.size)) {
+            BeamGrid grid(space, source, window, static_cast<Id>(i));
+            grid.divide(params, progress);
+            losses_.coarse += grid.coarse_count();
+            for (Id corner = 0; corner < grid.corner_count(); ++corner)
+                losses_.most = most_cut(losses_.most, grid.cut(corner));
+            add_beams(grid, beams_);
+        }
+        progress(static_cast<double>(i + 1) / static_cast<double>(outlines.size()));
+    }
+    tree_ = BeamTree(beams_);
+}
+
+/// Calls use(light) for what arrives by each beam: irradiance on the receiver's plane times the cosine that
+/// counts.
+template <typename Use>
+void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const {
+    const ReceiverPlane plane(receiver, kWidestFootprint * space_.size);
+    tree_.for_each_near(receiver.point, plane.reach, [&](Id index) {
+        const Beam& beam = beams_.beams[index];
+        const FallenBeams fallen = fall(beams_, beam, plane);
+        for (std::size_t i = 0; i < fallen.count; ++i) {
+            const FallenBeam& part = fallen.part[i];
+            const std::optional<FootprintPart> here = part_at_footprint(part, plane);
+            if (!here) continue;
+            Vec3 light(0), weights(0);
+            for (int k = 0; k < 3; ++k) {
+                const auto c = static_cast<std::size_t>(k);
+                light += here->weights[k] * part.share[c] * part.light[c];
+                weights += here->weights[k] * part.weights[c];
+            }
+            Vec3 origin(0), direction(0);
+            for (int k = 0; k < 3; ++k) {
+                const BeamEnd& end = beams_.ends[beam.end[static_cast<std::size_t>(k)]];
+                origin += weights[k] * end.origin, direction += weights[k] * end.direction;
+            }
+            const double cosine = -dot(receiver.shading_normal, direction);
+            if (!(cosine > 0)) continue;
+            const Way way = way_to(beams_, beam, plane, kSamePlace * space_.size);
+            const Vec3 from = receiver.lifted;
+            if (way == Way::kStopped || (way == Way::kUnknown && is_hidden(beam, from, origin))) continue;
+            const double geometric = -dot(plane.normal, direction);
+            light *= body_transmittance(*space_.optics, beams_.histories[beam.history].medium,
+                                        length(origin - receiver.point));
+            use(here->density / plane.unit_area * std::min(cosine / geometric, kMostTurned) * light);
+        }
+    });
+}
+
+/// Whether anything lies between a receiver and where a beam leaves the last optic. That optic's own surface
+/// is asked only where the beam's own rays meet it again: the beam's origin may lie a little inside of it.
+bool BeamLight::is_hidden(const Beam& beam, const Vec3& from, const Vec3& origin) const {
+    Segments way;
+    way.add(from, (1 - kSamePlace) * (origin - from));
+    if (space_.objects->occluded(way)) return true;
+    const Id last = beams_.histories[beam.history].steps.back().optic;
+    const double far = length(origin - from);
+    for (Id i = 0; i < space_.optics->optics.size(); ++i) {
+        if (i != last && space_.optics->optics[i].tracer->occluded(way, way.all())) return true;
+    }
+    int met = 0;
+    for (const Id e : beam.end) met += beams_.ends[e].optic < (1 - kSamePlace) * far;
+    return met == 3;
+}
+
+Vec3 BeamLight::irradiance(const Receiver& receiver) const {
+    Vec3 sum(0);
+    for_each_arrival(receiver, [&](const Vec3& light) { sum += light; });
+    return sum;
+}
+
+namespace {
+
+/// Exact arrivals this near to each other on the window are one.
+constexpr double kSameArrival = 1e-7;
+/// How near an exact path comes to its point, as a share of the scene's size.
+constexpr double kExact = 1e-11;
+
+bool is_known(const std::vector<ExactArrival>& known, const ExactArrival& one) {
+    for (const ExactArrival& other : known)
+        if (other.path.same_history(one.path) && length(other.place - one.place) < kSameArrival) return true;
+    return false;
+}
+
+}  // namespace
+
+/// Whether nothing stands between.
+bool BeamLight::comes(const ExactArrival& arrival, const Receiver& receiver) const {
+    const double far = length(receiver.point - arrival.path.ray.origin);
+    if (arrival.path.optic < (1 - kSamePlace) * far) return false;
+    Segments way;
+    way.add(receiver.lifted, (1 - kSamePlace) * (arrival.path.ray.origin - receiver.lifted));
+    return space_.objects->occluded(way) == 0;
+}
+
+std::vector<ExactArrival> BeamLight::exact_arrivals(const Receiver& receiver) const {
+    std::vector<ExactArrival> arrivals;
+    Receiver point = receiver;
+    point.sides = {};
+    ReceiverPlane plane(point, space_.size);
+    tree_.for_each_near(receiver.point, 2 * tolerance_ * space_.size, [&](Id index) {
+        const Beam& beam = beams_.beams[index];
+        const FallenBeams fallen = fall(beams_, beam, plane, INFINITY);
+        const BeamHistory& history = beams_.histories[beam.history];
+        LightPath like;
+        like.steps = history.steps, like.colours = history.colours, like.medium = history.medium;
+        std::array<Vec2, 3> places;
+        for (std::size_t k = 0; k < 3; ++k) places[k] = beams_.ends[beam.end[k]].place;
+        const ExactMap map{space_, source_, beams_.windows[beam.window], like};
+        for (std::size_t i = 0; i < fallen.count; ++i) {
+            std::array<Vec2, 3> corners;
+            for (std::size_t k = 0; k < 3; ++k)
+                corners[k] = fallen.part[i].weights[k].x * places[0] +
+                             fallen.part[i].weights[k].y * places[1] +
+                             fallen.part[i].weights[k].z * places[2];
+            const auto arrival = map.arrive(corners, fallen.part[i], plane, kExact * space_.size);
+            if (arrival && !is_known(arrivals, *arrival) && comes(*arrival, receiver))
+                arrivals.push_back(*arrival);
+        }
+    });
+    return arrivals;
+}
+
+Vec3 BeamLight::exact_irradiance(const Receiver& receiver) const {
+    Vec3 sum(0);
+    for (const ExactArrival& arrival : exact_arrivals(receiver)) {
+        const double cosine = -dot(receiver.shading_normal, arrival.path.ray.direction),
+                     geometric = -dot(receiver.normal, arrival.path.ray.direction);
+        if (!(cosine > 0)) continue;
+        sum += arrival.density * std::min(cosine / geometric, kMostTurned) *
+               body_transmittance(*space_.optics, arrival.path.medium,
+                                  length(receiver.point - arrival.path.ray.origin)) *
+               arrival.path.light;
+    }
+    return sum;
+}
+
+std::size_t BeamLight::path_count(const Receiver& receiver) const {
+    std::size_t count = 0;
+    for_each_arrival(receiver, [&](const Vec3&) { ++count; });
+    return count;
+}
+
+}  // namespace trilens

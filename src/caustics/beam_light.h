@@ -1,0 +1,65 @@
+// The light that beams bring to a surface: a caustic without noise.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/util/progress.h"
+#include "caustics/beam_grid.h"
+#include "caustics/beam_tree.h"
+#include "caustics/beams.h"
+#include "caustics/exact_arrivals.h"
+#include "shade/receiver.h"
+
+namespace trilens {
+
+/// What was left out of a light's beams.
+struct BeamLosses {
+    CutPaths most;           // at any ray
+    std::size_t coarse = 0;  // parts of the light's film that the tolerance would have divided further
+};
+
+/// One light's beams over all optics, ready to be asked. Thread-safe to read.
+///
+/// A beam falls on a receiver's plane as a triangle, whose corners are exact. It carries the light of its
+/// part of the film, whatever its shape: over a footprint that is the share of its area inside, so light is
+/// finite at folds, where triangles have no area, and none is lost. Inside of a triangle light changes as
+/// the wavefront's spread at its corners says.
+class BeamLight {
+  public:
+    /// `space` and what it points to must live longer. `outlines`: points on each optic's surface, by optic.
+    BeamLight(const LightSpace& space, const BeamSource& source, const BeamGridParams& params,
+              const std::vector<std::vector<Vec3>>& outlines, const Progress& progress = {});
+
+    /// Irradiance at the receiver, linear Rec.709, of all that comes over optics.
+    Vec3 irradiance(const Receiver& receiver) const;
+
+    /// Beams that hold the point and whose way is free.
+    std::size_t path_count(const Receiver& receiver) const;
+
+    /// The same by exact paths, each found by Newton's method from the beams that come near: to rounding
+    /// where there is no fold, infinite at folds. The receiver's footprint is not asked. Paths to which no
+    /// beam leads are missed.
+    Vec3 exact_irradiance(const Receiver& receiver) const;
+    std::vector<ExactArrival> exact_arrivals(const Receiver& receiver) const;
+
+    const Beams& beams() const { return beams_; }
+    const BeamLosses& losses() const { return losses_; }
+
+  private:
+    template <typename Use>
+    void for_each_arrival(const Receiver& receiver, const Use& use) const;
+    bool comes(const ExactArrival& arrival, const Receiver& receiver) const;
+    bool is_hidden(const Beam& beam, const Vec3& from, const Vec3& origin) const;
+
+    LightSpace space_;
+    BeamSource source_;
+    double tolerance_ = 0;
+    Beams beams_;
+    BeamTree tree_;
+    BeamLosses losses_;
+};
+
+}  // namespace trilens

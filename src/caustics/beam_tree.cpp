@@ -1,0 +1,92 @@
+#include "caustics/beam_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace trilens {
+namespace {
+constexpr std::uint32_t kBeamsPerLeaf = 4;
+constexpr double kLooseCone = 1e-9;
+}  // namespace
+
+struct BeamTree::Build {
+    const Beams& beams;
+    std::vector<Vec2> place;  // of each beam's middle
+};
+
+bool BeamTree::Node::holds(const Vec3& point, double reach) const {
+    if (sine > 1) return true;
+    const Vec3 way = point - center;
+    const double along = dot(way, axis);
+    const double across = std::sqrt(std::max(0.0, dot(way, way) - along * along));
+    // The ball that comes nearest: of the one at the apex behind it.
+    const double room = radius + reach;
+    if (along * cosine + across * sine < 0) return along * along + across * across <= room * room;
+    return across * cosine - along * sine <= room;
+}
+
+BeamTree::BeamTree(const Beams& beams) {
+    Build of{beams, {}};
+    for (const Beam& beam : beams.beams) {
+        Vec2 middle(0);
+        for (const Id end : beam.end) middle += beams.ends[end].place / 3.0;
+        of.place.push_back(middle);
+    }
+    order_.resize(beams.beams.size());
+    std::iota(order_.begin(), order_.end(), Id{0});
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](Id a, Id b) { return beams.beams[a].history < beams.beams[b].history; });
+    for (std::uint32_t first = 0; first < order_.size();) {
+        std::uint32_t end = first;
+        while (end < order_.size() && beams.beams[order_[end]].history == beams.beams[order_[first]].history)
+            ++end;
+        build(of, first, end);
+        first = end;
+    }
+}
+
+void BeamTree::build(const Build& of, std::uint32_t first, std::uint32_t end) {
+    const auto at = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    const auto for_each_end = [&](const auto& use) {
+        for (std::uint32_t i = first; i < end; ++i)
+            for (const Id e : of.beams.beams[order_[i]].end) use(of.beams.ends[e]);
+    };
+    Node node;
+    Vec3 axis(0), center(0);
+    for_each_end([&](const BeamEnd& ray) { axis += ray.direction, center += ray.origin; });
+    node.axis = normalize_or_zero(axis);
+    node.center = center / (3.0 * (end - first));
+    double least = 1;
+    for_each_end([&](const BeamEnd& ray) { least = std::min(least, dot(node.axis, ray.direction)); });
+    if (least > 0.01) {
+        node.cosine = least;
+        node.sine = std::min(1.0, std::sqrt(std::max(0.0, 1 - least * least)) + kLooseCone);
+        for_each_end([&](const BeamEnd& ray) {
+            const Vec3 way = ray.origin - node.center;
+            node.radius = std::max(node.radius, length(way));
+        });
+        node.radius *= 1 + kLooseCone;
+    }
+    if (end - first <= kBeamsPerLeaf) {
+        node.first = first, node.end = end;
+        node.skip = at + 1;
+        nodes_[at] = node;
+        return;
+    }
+    Vec2 low(INFINITY), high(-INFINITY);
+    for (std::uint32_t i = first; i < end; ++i)
+        low = glm::min(low, of.place[order_[i]]), high = glm::max(high, of.place[order_[i]]);
+    const int k = high.x - low.x > high.y - low.y ? 0 : 1;
+    const std::uint32_t middle = first + (end - first) / 2;
+    std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + end, [&](Id a, Id b) {
+        return of.place[a][k] != of.place[b][k] ? of.place[a][k] < of.place[b][k] : a < b;
+    });
+    build(of, first, middle);
+    build(of, middle, end);
+    node.skip = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[at] = node;
+}
+
+}  // namespace trilens

@@ -1,0 +1,284 @@
+#include "caustics/beams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "base/util/parallel.h"
+
+namespace trilens {
+namespace {
+
+constexpr int kBisections = 12;
+
+/// The last place at which a history is, on the way between two corners of which one has it.
+struct HistoryBorder {
+    Id inside = kNone, outside = kNone;
+    const LightPath* like = nullptr;
+    Vec2 place{0};
+    LightPath path;
+
+    void find(const BeamGrid& grid) {
+        Vec2 low = grid.place(inside), high = grid.place(outside);
+        place = low;
+        path = *like;
+        for (int i = 0; i < kBisections; ++i) {
+            const Vec2 middle = 0.5 * (low + high);
+            const LightPaths there = grid.paths_at(middle);
+            const LightPath* same = find_history(there.paths, *like);
+            (same ? low : high) = middle;
+            if (same) place = middle, path = *same;
+        }
+    }
+};
+
+/// A beam's part of the film times the mean of of(end) over its ends.
+template <typename Of>
+Vec3 beam_integral(const Beams& beams, const Beam& beam, const Of& of) {
+    Vec3 sum(0);
+    for (const Id end : beam.end) sum += of(beams.ends[end]);
+    return beam.measure / 3 * sum;
+}
+
+class BeamMaker {
+  public:
+    BeamMaker(const BeamGrid& grid, Beams& beams) : grid_(grid), beams_(beams) {}
+    void make();
+
+  private:
+    using Key = std::tuple<Id, Id, Id>;  // inside, outside or kNone at a corner, history
+
+    Id history_of(const LightPath& path);
+    const LightPath* path_at(Id corner, Id history) const;
+    std::vector<Id> histories_of(const BeamGrid::Triangle& triangle) const;
+    void find_borders();
+    Id end_of(Id corner, Id history);
+    Id border_end(Id inside, Id outside, Id history);
+    Id add_end(const Vec2& place, const LightPath& path);
+    void add_beam(const std::array<Id, 3>& ends, Id history);
+    void add_triangle(const BeamGrid::Triangle& triangle, Id history);
+    void set_spreads(std::size_t first_end, std::size_t first_beam);
+
+    const BeamGrid& grid_;
+    Beams& beams_;
+    std::map<std::tuple<std::vector<std::uint64_t>, int, Id>, Id> history_;
+    std::vector<std::vector<Id>> at_corner_;  // per corner and path: its history
+    std::map<Key, Id> end_;
+    std::map<Key, std::size_t> border_;
+    std::vector<HistoryBorder> borders_;
+};
+
+Id BeamMaker::history_of(const LightPath& path) {
+    std::vector<std::uint64_t> steps;
+    for (const Step& step : path.steps)
+        steps.push_back(std::uint64_t{step.optic} * 4 + static_cast<std::uint64_t>(step.event));
+    const auto [at, is_new] = history_.try_emplace({std::move(steps), path.colours, path.medium},
+                                                   static_cast<Id>(beams_.histories.size()));
+    if (is_new) beams_.histories.push_back({path.steps, path.colours, path.medium});
+    return at->second;
+}
+
+const LightPath* BeamMaker::path_at(Id corner, Id history) const {
+    const auto& ids = at_corner_[corner];
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        if (ids[i] == history) return &grid_.paths(corner)[i];
+    return nullptr;
+}
+
+std::vector<Id> BeamMaker::histories_of(const BeamGrid::Triangle& triangle) const {
+    std::vector<Id> all;
+    for (const Id corner : triangle.corner)
+        for (const Id history : at_corner_[corner])
+            if (std::find(all.begin(), all.end(), history) == all.end()) all.push_back(history);
+    return all;
+}
+
+void BeamMaker::find_borders() {
+    for (const BeamGrid::Triangle& triangle : grid_.triangles())
+        for (const Id history : histories_of(triangle))
+            for (std::size_t k = 0; k < 3; ++k) {
+                Id inside = triangle.corner[k], outside = triangle.corner[(k + 1) % 3];
+                const LightPath *one = path_at(inside, history), *other = path_at(outside, history);
+                if ((one != nullptr) == (other != nullptr)) continue;
+                if (!one) std::swap(inside, outside);
+                if (!border_.try_emplace({inside, outside, history}, borders_.size()).second) continue;
+                borders_.push_back({inside, outside, one ? one : other, {}, {}});
+            }
+    parallel_for(borders_.size(), 4, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) borders_[i].find(grid_);
+    });
+}
+
+Id BeamMaker::add_end(const Vec2& place, const LightPath& path) {
+    beams_.ends.push_back({place,
+                           path.ray.origin,
+                           path.ray.direction,
+                           path.arriving,
+                           path.light,
+                           path.optic,
+                           path.object,
+                           grid_.window().density(place),
+                           {}});
+    return static_cast<Id>(beams_.ends.size() - 1);
+}
+
+Id BeamMaker::end_of(Id corner, Id history) {
+    const auto [at, is_new] = end_.try_emplace({corner, kNone, history}, kNone);
+    if (is_new) at->second = add_end(grid_.place(corner), *path_at(corner, history));
+    return at->second;
+}
+
+Id BeamMaker::border_end(Id inside, Id outside, Id history) {
+    const auto [at, is_new] = end_.try_emplace({inside, outside, history}, kNone);
+    if (is_new) {
+        const HistoryBorder& border = borders_[border_.at({inside, outside, history})];
+        at->second = add_end(border.place, border.path);
+    }
+    return at->second;
+}
+
+void BeamMaker::add_beam(const std::array<Id, 3>& ends, Id history) {
+    const double measure = grid_.window().measure(beams_.ends[ends[0]].place, beams_.ends[ends[1]].place,
+                                                  beams_.ends[ends[2]].place);
+    if (!(measure > 0)) return;
+    const Beam beam{ends, history, measure, static_cast<Id>(beams_.windows.size() - 1)};
+    const std::vector<Step>& steps = beams_.histories[history].steps;
+    if (steps.size() == 1)
+        beams_.arriving.try_emplace({steps[0].optic, steps[0].event}, Vec3(0)).first->second +=
+            beam_integral(beams_, beam, [](const BeamEnd& end) { return end.arriving; });
+    const bool falls = std::any_of(ends.begin(), ends.end(), [&](Id e) {
+        return std::isfinite(beams_.ends[e].object) || !std::isfinite(beams_.ends[e].optic);
+    });
+    if (falls) beams_.beams.push_back(beam);
+}
+
+void BeamMaker::add_triangle(const BeamGrid::Triangle& triangle, Id history) {
+    const auto& corner = triangle.corner;
+    std::array<bool, 3> has{};
+    int count = 0;
+    for (std::size_t k = 0; k < 3; ++k) count += has[k] = path_at(corner[k], history) != nullptr;
+    if (count == 3) {
+        add_beam({end_of(corner[0], history), end_of(corner[1], history), end_of(corner[2], history)},
+                 history);
+        return;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Id a = corner[k], b = corner[(k + 1) % 3], c = corner[(k + 2) % 3];
+        if (count == 1 && has[k])
+            add_beam({end_of(a, history), border_end(a, b, history), border_end(a, c, history)}, history);
+        if (count == 2 && !has[k]) {
+            const Id at_b = end_of(b, history), at_c = end_of(c, history);
+            const Id from_b = border_end(b, a, history), from_c = border_end(c, a, history);
+            add_beam({at_b, at_c, from_c}, history);
+            add_beam({at_b, from_c, from_b}, history);
+        }
+    }
+}
+
+/// How origin and direction change with the place, per beam, and their means at the ends.
+struct BeamSlope {
+    Vec3 origin_u{0}, origin_v{0}, direction_u{0}, direction_v{0};
+    double weight = 0;
+};
+
+void BeamMaker::set_spreads(std::size_t first_end, std::size_t first_beam) {
+    std::vector<BeamSlope> slopes(beams_.ends.size() - first_end);
+    for (std::size_t i = first_beam; i < beams_.beams.size(); ++i) {
+        const auto& end = beams_.beams[i].end;
+        const BeamEnd &a = beams_.ends[end[0]], &b = beams_.ends[end[1]], &c = beams_.ends[end[2]];
+        const Vec2 ab = b.place - a.place, ac = c.place - a.place;
+        const double area = ab.x * ac.y - ab.y * ac.x;
+        if (area == 0) continue;
+        const double sign = area > 0 ? 1 : -1;  // weighted with the area, which cancels its own division
+        const auto slope = [&](const Vec3& to_b, const Vec3& to_c) {
+            return std::array<Vec3, 2>{sign * (ac.y * to_b - ab.y * to_c),
+                                       sign * (ab.x * to_c - ac.x * to_b)};
+        };
+        const auto origin = slope(b.origin - a.origin, c.origin - a.origin);
+        const auto direction = slope(b.direction - a.direction, c.direction - a.direction);
+        for (const Id e : end) {
+            BeamSlope& mean = slopes[e - first_end];
+            mean.origin_u += origin[0], mean.origin_v += origin[1];
+            mean.direction_u += direction[0], mean.direction_v += direction[1];
+            mean.weight += std::fabs(area);
+        }
+    }
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+        BeamEnd& end = beams_.ends[first_end + i];
+        const BeamSlope& s = slopes[i];
+        if (!(s.weight > 0)) continue;
+        const double per = 1 / (s.weight * s.weight);
+        end.spread = {per * triple(s.origin_u, s.origin_v, end.direction),
+                      per * (triple(s.direction_u, s.origin_v, end.direction) +
+                             triple(s.origin_u, s.direction_v, end.direction)),
+                      per * triple(s.direction_u, s.direction_v, end.direction)};
+    }
+}
+
+void BeamMaker::make() {
+    for (std::size_t i = 0; i < beams_.histories.size(); ++i) {
+        const BeamHistory& known = beams_.histories[i];
+        LightPath like;
+        like.steps = known.steps, like.colours = known.colours, like.medium = known.medium;
+        std::vector<std::uint64_t> steps;
+        for (const Step& step : known.steps)
+            steps.push_back(std::uint64_t{step.optic} * 4 + static_cast<std::uint64_t>(step.event));
+        history_.emplace(std::tuple(std::move(steps), int{known.colours}, known.medium), static_cast<Id>(i));
+    }
+    beams_.windows.push_back(grid_.window());
+    at_corner_.resize(grid_.corner_count());
+    for (Id corner = 0; corner < at_corner_.size(); ++corner)
+        for (const LightPath& path : grid_.paths(corner)) at_corner_[corner].push_back(history_of(path));
+    find_borders();
+    const std::size_t first_end = beams_.ends.size(), first_beam = beams_.beams.size();
+    for (const BeamGrid::Triangle& triangle : grid_.triangles())
+        for (const Id history : histories_of(triangle)) add_triangle(triangle, history);
+    set_spreads(first_end, first_beam);
+}
+
+}  // namespace
+
+void add_beams(const BeamGrid& grid, Beams& beams) {
+    BeamMaker(grid, beams).make();
+}
+
+std::vector<Vec3> Beams::flux_by_history() const {
+    std::vector<Vec3> flux(histories.size(), Vec3(0));
+    for (const Beam& beam : beams)
+        flux[beam.history] +=
+            beam.measure / 3 * (ends[beam.end[0]].light + ends[beam.end[1]].light + ends[beam.end[2]].light);
+    return flux;
+}
+
+/// Each optic's light arrives once: by reflection or refraction, whichever history has more of it (total
+/// reflection ends the one, and without Fresnel's equations glass has only the other).
+Vec3 Beams::flux_arriving() const {
+    std::map<Id, Vec3> by_optic;
+    for (const auto& [step, flux] : arriving) {
+        Vec3& most = by_optic.try_emplace(step.first, Vec3(0)).first->second;
+        most = glm::max(most, flux);
+    }
+    Vec3 sum(0);
+    for (const auto& [optic, flux] : by_optic) sum += flux;
+    return sum;
+}
+
+Vec3 Beams::flux_on_objects() const {
+    Vec3 sum(0);
+    for (const Beam& beam : beams)
+        sum += beam_integral(
+            *this, beam, [](const BeamEnd& end) { return std::isfinite(end.object) ? end.light : Vec3(0); });
+    return sum;
+}
+
+Vec3 Beams::flux_away() const {
+    Vec3 sum(0);
+    for (const Beam& beam : beams)
+        sum += beam_integral(*this, beam, [](const BeamEnd& end) {
+            return std::isfinite(end.object) || std::isfinite(end.optic) ? Vec3(0) : end.light;
+        });
+    return sum;
+}
+
+}  // namespace trilens

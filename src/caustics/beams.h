@@ -1,0 +1,72 @@
+// Beams: what leaves the optics through one triangle of the light's window by one history (Heckbert and
+// Hanrahan, Beam Tracing Polygonal Objects, 1984; Watt, Light-Water Interaction using Backward Beam Tracing,
+// 1990).
+#pragma once
+
+#include <array>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "caustics/beam_grid.h"
+
+namespace trilens {
+
+/// One exact ray at a beam's corner.
+struct BeamEnd {
+    Vec2 place{0};               // on the light's window
+    Vec3 origin{0};              // on the last optic
+    Vec3 direction{0};           // unit
+    Vec3 arriving{0}, light{0};  // see LightPath
+    double optic = 0, object = 0;
+    double film = 0;  // of the light's film per unit of place: LightWindow::density
+    // Area across the ray that a unit of places covers at distance t: spread[0] + t spread[1] + t^2
+    // spread[2], signed; 0 where beams fold. By the mean of the beams' slopes around the end, of second order
+    // in their size.
+    std::array<double, 3> spread{};
+
+    /// The light's film per area across the ray at distance t.
+    double concentration(double t) const {
+        return film / std::fabs(spread[0] + t * (spread[1] + t * spread[2]));
+    }
+};
+
+struct Beam {
+    std::array<Id, 3> end{};
+    Id history = kNone;
+    double measure = 0;  // of the light's film
+    Id window = 0;       // of Beams::windows
+};
+
+/// What all beams of a history have in common.
+struct BeamHistory {
+    std::vector<Step> steps;
+    Colours colours = kAllColours;
+    Id medium = kNone;
+};
+
+struct Beams {
+    std::vector<BeamEnd> ends;
+    std::vector<Beam> beams;
+    std::vector<BeamHistory> histories;
+    std::vector<LightWindow> windows;
+    // Light that comes to the first optics, by what happens there.
+    std::map<std::pair<Id, Event>, Vec3> arriving;
+
+    /// Light that leaves the last optic of each history (of `histories`): lumen, or watt, as the light's
+    /// intensity has it.
+    std::vector<Vec3> flux_by_history() const;
+    /// Light that comes to the first optics.
+    Vec3 flux_arriving() const;
+    /// Of the light of all stretches what ends on objects, before absorption on the last one, and what goes
+    /// away from the scene.
+    Vec3 flux_on_objects() const;
+    Vec3 flux_away() const;
+};
+
+/// The beams of a divided window, added to `beams`, but those all of whose rays go on to another optic and
+/// meet no object before. Triangles on which a history ends are cut where it does, which is found along their
+/// sides to a 2^-12th of them.
+void add_beams(const BeamGrid& grid, Beams& beams);
+
+}  // namespace trilens

@@ -1,0 +1,57 @@
+// Where a beam falls on a receiver's plane, and how much of that lies in a footprint.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "caustics/beams.h"
+#include "shade/receiver.h"
+
+namespace trilens {
+
+/// Coordinates of a receiver's plane in which its footprint is the square [-1/2, 1/2]^2; of a receiver
+/// without one orthonormal ones about the point.
+struct ReceiverPlane {
+    explicit ReceiverPlane(const Receiver& receiver, double largest_side);
+
+    Vec3 point{0}, normal{0};
+    Vec3 dual_s{0}, dual_t{0};
+    double unit_area = 1;  // world area of the unit square
+    double reach = 0;      // of the footprint around the point
+    bool has_footprint = false;
+
+    Vec2 at(const Vec3& place) const {
+        const Vec3 way = place - point;
+        return {dot(way, dual_s), dot(way, dual_t)};
+    }
+};
+
+/// A triangle of a beam on a plane.
+struct FallenBeam {
+    std::array<Vec2, 3> at{};              // in the plane's coordinates
+    std::array<Vec3, 3> light{};           // at its corners
+    std::array<double, 3> share{1, 1, 1};  // of the mean light, how much falls around each corner
+    std::array<Vec3, 3> weights{Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};  // of the beam's ends
+    std::array<Id, 3> tie{};  // the ends' numbers, which decide whose a point on a side is
+    double measure = 0;       // of the light's film
+};
+
+/// The triangles, at most three, that a beam makes on the side of the plane that its rays come to; fewer
+/// parts where some of its rays go away from the plane, or start behind it.
+struct FallenBeams {
+    std::array<FallenBeam, 3> part;
+    std::size_t count = 0;
+};
+/// Those that lie wholly farther from the footprint than `reach`, in its own coordinates along either, may be
+/// left out.
+FallenBeams fall(const Beams& beams, const Beam& beam, const ReceiverPlane& plane, double reach = 0);
+
+/// What of a triangle is at the footprint.
+struct FootprintPart {
+    double density = 0;  // of the light's film per unit of the plane's coordinates, times the part inside
+    Vec3 weights{0};     // of the triangle's corners, at the part's middle
+};
+std::optional<FootprintPart> part_at_footprint(const FallenBeam& fallen, const ReceiverPlane& plane);
+
+}  // namespace trilens

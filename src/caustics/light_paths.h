@@ -1,0 +1,50 @@
+// The exact paths of one ray of a light over the optics: what each of its stretches carries, and where it
+// goes.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "caustics/light_window.h"
+#include "paths/trace/follow.h"
+#include "paths/trace/path_world.h"
+
+namespace trilens {
+
+/// One stretch of a light's path, from the optic where it starts to where it would end.
+struct LightPath {
+    std::vector<Step> steps;  // meetings with optics up to its start, at least one
+    Colours colours = kAllColours;
+    Id medium = kNone;  // in whose glass it runs; kNone: air
+    Ray ray;            // unit direction, from the last optic
+    Vec3 arriving{0};   // of its colours, at the first optic
+    Vec3 light{0};      // the source's strength and all that happened to it up to the ray's start
+    double optic = std::numeric_limits<double>::infinity();  // way to the next optic
+    double object =
+        std::numeric_limits<double>::infinity();  // way to the first object, before the next optic
+
+    /// Whether both went the same way.
+    bool same_history(const LightPath& other) const {
+        return colours == other.colours && medium == other.medium && steps == other.steps;
+    }
+};
+
+/// What lights send their rays through.
+struct LightSpace {
+    const PathWorld* optics = nullptr;  // with first events of both kinds
+    const Tracer* objects = nullptr;    // that stop light
+    /// The bodies of glass that a ray starts in; unset: none.
+    std::function<Media(const Ray&)> around;
+    double size = 1;  // of the scene, world units
+};
+
+struct LightPaths {
+    std::vector<LightPath> paths;  // parents before children
+    CutPaths cut;                  // what was left out, as shares of the ray's light
+};
+
+/// All paths of the light's ray whose first optic is `first`. Opaque objects end them.
+LightPaths light_paths(const LightSpace& space, const BeamSource& source, const Ray& ray, Id first);
+
+}  // namespace trilens

@@ -1,0 +1,96 @@
+#include "inverse/maps/caustic_map.h"
+
+#include <cmath>
+
+#include "base/util/error.h"
+#include "base/util/parallel.h"
+#include "render/world/caustic_lights.h"
+#include "render/world/world.h"
+#include "shade/shade.h"
+
+namespace trilens {
+namespace {
+
+/// The light of a pixel, and its area; none where the object is not.
+struct CausticPixel {
+    bool covered = false;
+    Vec3 irradiance{0};
+    double area = 0;
+};
+
+CausticPixel pixel_at(const std::vector<std::unique_ptr<BeamLight>>& lights, const Target& target,
+                      const Vec2& pixel, bool back, double lift) {
+    const std::optional<TargetPlace> place = target.place(pixel);
+    if (!place) return {};
+    // Rows go downward, so the front's normal is dy x dx.
+    Vec3 normal = normalize_or_zero(cross(place->dy, place->dx));
+    if (back) normal = -normal;
+    Receiver receiver{place->at, normal, normal, place->at + lift * normal, {place->dx, place->dy}};
+    return {true, irradiance(lights, receiver), length(cross(place->dx, place->dy))};
+}
+
+}  // namespace
+
+CausticMap make_caustic_map(const World& world, const CausticMapRequest& request, const Progress& progress) {
+    if (request.light >= world.scene.lights.size())
+        throw UsageError("the scene has no light " + std::to_string(request.light) + " but " +
+                         std::to_string(world.scene.lights.size()) + ", counted from 0");
+    if (has_directions(request.target.kind))
+        throw UsageError("light falls onto a plane or an object, not onto directions");
+    const Target target(request.target, world.scene);
+    const PathWorld optics = optics_for_lights(world);
+    BeamGridParams params;
+    params.tolerance = request.tolerance;
+    Progress making = progress;
+    if (progress.report) making.report = [&](double done) { progress.report(0.5 * done); };
+    const std::vector<std::unique_ptr<BeamLight>> lights =
+        make_beam_lights(world, optics, request.light, params, making);
+
+    CausticMap map;
+    map.width = request.target.width, map.height = request.target.height;
+    const auto width = static_cast<std::size_t>(map.width), height = static_cast<std::size_t>(map.height);
+    map.irradiance.resize(width * height);
+    map.covered.resize(width * height);
+    std::vector<Vec3> row_flux(height, Vec3(0));
+    parallel_for(height, 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t y = from; y < to; ++y) {
+            if (progress.cancelled()) throw Interrupted();
+            for (std::size_t x = 0; x < width; ++x) {
+                const CausticPixel pixel =
+                    pixel_at(lights, target, Vec2(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5),
+                             request.back, kShadowOffset * world.shading.size);
+                map.irradiance[y * width + x] = pixel.irradiance;
+                map.covered[y * width + x] = pixel.covered;
+                row_flux[y] += pixel.area * pixel.irradiance;
+            }
+        }
+    });
+    for (const Vec3& flux : row_flux) map.flux_received += flux;
+    for (const auto& light : lights) {
+        const Beams& beams = light->beams();
+        map.flux_in += beams.flux_arriving();
+        map.flux_on_objects += beams.flux_on_objects();
+        map.flux_away += beams.flux_away();
+        map.beams += beams.beams.size();
+        map.histories += beams.histories.size();
+        map.coarse += light->losses().coarse;
+    }
+    progress(1);
+    return map;
+}
+
+Image image_of(const CausticMap& map) {
+    Image image;
+    image.width = image.data_width = map.width;
+    image.height = image.data_height = map.height;
+    for (int k = 0; k < 3; ++k) {
+        std::vector<float> values(map.irradiance.size());
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(map.irradiance[i][k]);
+        image.channels.push_back({std::string(1, "RGB"[k]), std::move(values)});
+    }
+    std::vector<float> covered(map.covered.begin(), map.covered.end());
+    image.channels.push_back({"A", std::move(covered)});
+    return image;
+}
+
+}  // namespace trilens

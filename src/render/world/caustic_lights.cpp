@@ -1,0 +1,162 @@
+#include "render/world/caustic_lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/math/box.h"
+#include "base/util/error.h"
+#include "base/util/format.h"
+#include "paths/trace/enclosing_bodies.h"
+#include "render/world/geometry.h"
+#include "shade/lights/light_sample.h"
+#include "surfaces/surfaces.h"
+
+namespace trilens {
+namespace {
+
+/// Optics' outlines come from grids of about so many facets.
+constexpr double kOutlineFacets = 4000;
+/// Less light than this share that is left out is not worth a word.
+constexpr double kSilentLoss = 0.01;
+
+std::vector<Vec3> outline_points(const Surface& surface) {
+    const double per_face =
+        kOutlineFacets / (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
+    return make_grid(surface, std::clamp(static_cast<int>(std::sqrt(per_face)), 2, 24)).points;
+}
+
+double size_of(const World& world, const std::vector<std::vector<Vec3>>& outlines) {
+    Box box;
+    for (const Vec3& point : world.objects.points) box.include(point);
+    for (const auto& outline : outlines)
+        for (const Vec3& point : outline) box.include(point);
+    return length(box.size());
+}
+
+}  // namespace
+
+namespace {
+
+/// One of a light's samples as a source of rays.
+template <typename Kind>
+BeamSource sample_source(const Light& light, const Kind& kind, std::size_t sample) {
+    const auto at = [kind, sample, intensity = light.intensity](const Vec3& place) {
+        return sample_light(kind, intensity, {.position = place}, sample);
+    };
+    BeamSource source;
+    if constexpr (std::is_same_v<Kind, DirectionalLight>) {
+        const LightSample there = at(Vec3(0));
+        source.is_parallel = true;
+        source.direction = -there.toward;
+        source.strength = [strength = there.irradiance * light.color](const Vec3&) { return strength; };
+    } else {
+        // Irradiance at distance 1, where it is the radiant intensity.
+        source.position = at(kind.position).target;
+        source.strength = [at, color = light.color, from = source.position](const Vec3& direction) {
+            return at(from + direction).irradiance * color;
+        };
+    }
+    return source;
+}
+
+}  // namespace
+
+std::vector<BeamSource> beam_sources(const Light& light) {
+    std::vector<BeamSource> sources;
+    std::visit(
+        [&](const auto& kind) {
+            using Kind = std::decay_t<decltype(kind)>;
+            std::size_t count = 0;
+            if constexpr (std::is_same_v<Kind, DirectionalLight>)
+                count = kind.angle > 0 ? static_cast<std::size_t>(kind.samples) : 1;
+            else if constexpr (std::is_same_v<Kind, PointLight> || std::is_same_v<Kind, SpotLight>)
+                count = 1;
+            else if constexpr (std::is_same_v<Kind, RectangleLight> || std::is_same_v<Kind, DiskLight>)
+                count = static_cast<std::size_t>(kind.samples);
+            if constexpr (!std::is_same_v<Kind, AmbientLight> && !std::is_same_v<Kind, EnvironmentLight> &&
+                          !std::is_same_v<Kind, SphereLight>)
+                for (std::size_t k = 0; k < count; ++k) sources.push_back(sample_source(light, kind, k));
+        },
+        light.kind);
+    return sources;
+}
+
+bool has_caustics(const World& world) {
+    return std::any_of(world.scene.lights.begin(), world.scene.lights.end(),
+                       [](const Light& light) { return light.caustics; });
+}
+
+PathWorld optics_for_lights(const World& world) {
+    PathWorld optics = path_world(world);
+    optics.reflect = optics.refract = true;
+    return optics;
+}
+
+std::vector<std::unique_ptr<BeamLight>> make_beam_lights(const World& world, const PathWorld& optics,
+                                                         std::size_t light, const BeamGridParams& params,
+                                                         const Progress& progress) {
+    const std::vector<BeamSource> sources = beam_sources(world.scene.lights[light]);
+    if (sources.empty())
+        throw UsageError("light " + std::to_string(light) + " is " + kind_name(world.scene.lights[light]) +
+                         ": only directional, point, spot, rectangle and disk lights have caustics");
+    std::vector<std::vector<Vec3>> outlines;
+    std::vector<Id> bodies;
+    for (std::size_t i = 0; i < world.optics.size(); ++i) {
+        outlines.push_back(outline_points(*world.optics[i].surface));
+        if (!world.optics[i].mirror) bodies.push_back(static_cast<Id>(i));
+    }
+    LightSpace space;
+    space.optics = &optics;
+    space.objects = &object_tracer(world);
+    space.size = size_of(world, outlines);
+    std::vector<std::unique_ptr<BeamLight>> lights;
+    for (const BeamSource& source : sources) {
+        space.around = {};
+        if (!source.is_parallel) {
+            const Media around = enclosing_bodies(optics, bodies, source.position).media;
+            space.around = [around](const Ray&) { return around; };
+        }
+        Progress part = progress;
+        if (progress.report)
+            part.report = [&](double done) {
+                progress((static_cast<double>(lights.size()) + done) / static_cast<double>(sources.size()));
+            };
+        lights.push_back(std::make_unique<BeamLight>(space, source, params, outlines, part));
+    }
+    return lights;
+}
+
+Vec3 irradiance(const std::vector<std::unique_ptr<BeamLight>>& lights, const Receiver& receiver) {
+    Vec3 sum(0);
+    for (const auto& light : lights) sum += light->irradiance(receiver);
+    return sum;
+}
+
+std::unique_ptr<CausticLights> make_caustic_lights(const World& world) {
+    auto lights = std::make_unique<CausticLights>();
+    lights->optics = optics_for_lights(world);
+    for (std::size_t l = 0; l < world.scene.lights.size(); ++l)
+        lights->by_light.push_back(world.scene.lights[l].caustics
+                                       ? make_beam_lights(world, lights->optics, l)
+                                       : std::vector<std::unique_ptr<BeamLight>>());
+    return lights;
+}
+
+void warn_of_lost_light(const World& world, const CausticLights& lights, const Warn& warn) {
+    if (!warn) return;
+    for (std::size_t l = 0; l < lights.by_light.size(); ++l) {
+        CutPaths cut;
+        for (const auto& source : lights.by_light[l]) cut = most_cut(cut, source->losses().most);
+        const double deep = of_worst_colour(cut.too_deep), lost = of_worst_colour(cut.lost);
+        const auto percent = [](double share) { return fmt::format("{:.0f} %", 100 * share); };
+        if (deep > kSilentLoss)
+            warn("light " + std::to_string(l) + ": its rays would meet optics after maxDepth " +
+                 std::to_string(world.scene.render.max_depth) + " with up to " + percent(deep) +
+                 " of their light, which stops there");
+        if (lost > kSilentLoss)
+            warn("light " + std::to_string(l) + ": up to " + percent(lost) +
+                 " of a ray's light is inside of more bodies of glass than can be told, and left out");
+    }
+}
+
+}  // namespace trilens

@@ -1,0 +1,19 @@
+// A place of a surface that receives light.
+#pragma once
+
+#include <array>
+
+#include "base/math/vec.h"
+
+namespace trilens {
+
+struct Receiver {
+    Vec3 point{0};           // world
+    Vec3 normal{0};          // of the plane there; unit, on the side that receives
+    Vec3 shading_normal{0};  // unit; whose cosine counts
+    Vec3 lifted{0};          // where shadow rays end: off the surface, on its side
+    // Sides of the parallelogram around the point over which light is averaged; zero: the point alone.
+    std::array<Vec3, 2> sides{};
+};
+
+}  // namespace trilens
