@@ -172,6 +172,53 @@ FilmMapRequest map_request(const Renderer& self, const MapArguments& given) {
     return request;
 }
 
+void bind_caustic(RendererClass& renderer) {
+    renderer.def(
+        "caustic",
+        [](const Renderer& self, const std::string& onto, int light, bool back, double tolerance,
+           const std::optional<PhotoFile>& file, const py::object& progress) {
+            CausticMapRequest request;
+            request.light = light < 0 ? self.scene().lights.size() : static_cast<std::size_t>(light);
+            request.target = parse_target(onto, self.scene());
+            request.back = back;
+            request.tolerance = tolerance;
+            PythonCall call(progress);
+            const CausticMap map = call.run([&] {
+                CausticMap made = make_caustic_map(self, request, call.progress("caustic"));
+                if (file) write_image(file->string(), image_of(made));
+                return made;
+            });
+            std::vector<double> light_there;
+            for (const Vec3& one : map.irradiance)
+                for (int k = 0; k < 3; ++k) light_there.push_back(one[k]);
+            const auto numbers = [](const Vec3& flux) { return std::array{flux.x, flux.y, flux.z}; };
+            py::dict made;
+            made["irradiance"] = array_of(std::move(light_there), {map.height, map.width, 3});
+            made["flux_in"] = numbers(map.flux_in);
+            made["flux_on_objects"] = numbers(map.flux_on_objects);
+            made["flux_away"] = numbers(map.flux_away);
+            made["flux_received"] = numbers(map.flux_received);
+            made["beams"] = map.beams;
+            made["coarse"] = map.coarse;
+            return made;
+        },
+        py::arg("onto"), py::arg("light") = 0, py::kw_only(), py::arg("back") = false,
+        py::arg("tolerance") = CausticMapRequest().tolerance, py::arg("file") = py::none(),
+        py::arg("progress") = py::none(),
+        "The light that comes over mirrors and through glass onto an object or a plane.\n\n"
+        "onto: \"NAME:WxH\", an object, or \"plane:...\", as in unwrap.\n"
+        "light: index of the scene's light, whether it has caustics or not.\n"
+        "back: the light on the other side of the surface than its front.\n"
+        "tolerance: how far light may fall from its place, as a share of the scene's size.\n"
+        "file: written too: .exr.\n"
+        "progress: as in draw.\n"
+        "Returns a dict: irradiance (height, width, 3), linear Rec.709, the mean of each pixel; flux_in, from "
+        "the light to the\noptics, flux_on_objects and flux_away, from there, and flux_received, in the map, "
+        "each three colours; beams;\ncoarse, the parts of the light that the tolerance would have divided "
+        "further.\n"
+        "Raises UsageError for a light that is none or has no rays of its own, and targets that are none.");
+}
+
 void bind_map(RendererClass& renderer) {
     renderer.def(
         "map",
@@ -337,6 +384,7 @@ void bind_anamorph(py::module_& module) {
 void bind_unwrap(RendererClass& renderer, py::module_& module) {
     bind_unwrap_itself(renderer);
     bind_map(renderer);
+    bind_caustic(renderer);
     bind_anamorph(module);
 }
 

@@ -329,6 +329,16 @@ class Renderer:
         file: Optional[_File] = None,
         progress: _Progress = None,
     ) -> dict[str, NDArray[Any]]: ...
+    def caustic(
+        self,
+        onto: str,
+        light: int = 0,
+        *,
+        back: bool = False,
+        tolerance: float = 0.001,
+        file: Optional[_File] = None,
+        progress: _Progress = None,
+    ) -> dict[str, Any]: ...
     def warp_mesh(
         self,
         to: str,

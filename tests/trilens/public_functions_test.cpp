@@ -76,6 +76,8 @@ const std::map<std::string, std::string> kElsewhere{
     {"is_only_optic", "tests/inverse: unwrap"},
     {"largest_window", "tests/inverse: anamorph"},
     {"make_anamorph", "tests/inverse: anamorph"},
+    {"image_of", "of maps that make_caustic_map made"},
+    {"make_caustic_map", "tests/laws: caustics"},
     {"make_film_map", "tests/inverse: maps"},
     {"make_map", "tests/inverse: maps"},
     {"make_mesh", "tests/inverse: maps"},
