@@ -19,7 +19,7 @@ struct BeamGridParams {
     int most_levels = 11;     // bisections of one of its triangles
     int mixed_levels = 4;     // of one whose corners have different histories
     double tolerance = 1e-3;  // how far light may fall from its place, as a share of the scene's size
-    std::size_t most_triangles = 100'000;
+    std::size_t most_triangles = 16'000;
 };
 
 /// Triangles over one window; the bases of two triangles that share one are equal, so no corner lies on
