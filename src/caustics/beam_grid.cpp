@@ -14,7 +14,7 @@ namespace {
 constexpr double kFaintLight = 0.03;
 
 /// Halves of a triangle whose areas differ by this share of it are too unequally bright to stand for one.
-constexpr double kUnevenHalves = 0.3;
+constexpr double kUnevenHalves = 0.25;
 
 double strength_of(const Vec3& light) {
     return light.x + light.y + light.z;
@@ -144,7 +144,7 @@ bool BeamGrid::is_uneven(const Corners& corners, const BeamGridParams& params) c
     const double first = triple(*at_a - there, *at_c - there, ray.direction),
                  second = triple(*at_c - there, *at_b - there, ray.direction);
     const double both = std::fabs(first) + std::fabs(second);
-    return both > 16 * room * room && std::fabs(first - second) > kUnevenHalves * both;
+    return both > room * room && std::fabs(first - second) > kUnevenHalves * both;
 }
 
 bool BeamGrid::is_too_coarse(const Triangle& triangle, const BeamGridParams& params) const {

@@ -9,7 +9,7 @@ namespace trilens {
 namespace {
 
 /// Footprints are no wider than this share of the scene.
-constexpr double kWidestFootprint = 0.02;
+constexpr double kWidestFootprint = 0.25;
 /// Rays that meet an object this near to where they meet the receiver's plane come to the receiver: a share
 /// of the scene's size.
 constexpr double kSamePlace = 1e-6;

@@ -1,4 +1,5 @@
 // Light over optics: closed forms, energy, completeness against project, and a light tracer.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -8,8 +9,8 @@
 #include "render/shoot/shoot.h"
 #include "render/world/caustic_lights.h"
 #include "render/world/world.h"
-#include "scene/load.h"
 #include "shade/shade.h"
+#include "study/scenes.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -80,7 +81,7 @@ TEST_CASE("a flat mirror's light is that of the light's image behind it", "[laws
         CHECK(lit.light().irradiance(there).y == Approx(expected).epsilon(0.02));
     }
     // Beyond the light that the mirror sends there is none.
-    CHECK(lit.light().irradiance(on_floor(0, 3.5)) == Vec3(0));
+    CHECK(lit.light().irradiance(on_floor(0, -1.9)) == Vec3(0));
     CHECK(lit.light().irradiance(on_floor(4.5, 0)) == Vec3(0));
 }
 
@@ -138,7 +139,7 @@ TEST_CASE("the light behind a glass ball is a light tracer's, within its noise",
     const auto world = lit_world(R"({"name": "ball", "role": "optic", "material": "glass", "resolution": 8,
         "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.8}})",
                                  kLamp);
-    // All of the light that goes straight through; others add a few percent, where they fall.
+    // The words that carry all but a thousandth of the light.
     constexpr int kSide = 24;
     constexpr std::size_t kRays = 200'000;
     std::vector<double> traced(kSide * kSide), squares(kSide * kSide);
@@ -154,7 +155,7 @@ TEST_CASE("the light behind a glass ball is a light tracer's, within its noise",
         rays.push_back({lamp, c * axis + s * (std::cos(phi) * u + std::sin(phi) * v)});
     }
     const double size = 12.0 / kSide;
-    for (const char* word : {"R", "TT", "TRT"}) {
+    for (const char* word : {"R", "TT", "TRT", "TRRT"}) {
         ShootRequest request;
         request.path = EventWord(word);
         for (const ShotRay& shot : shoot_rays(*world, request, rays).rays) {
@@ -172,13 +173,14 @@ TEST_CASE("the light behind a glass ball is a light tracer's, within its noise",
     request.target.object = 0;
     request.target.width = request.target.height = kSide;
     const CausticMap map = make_caustic_map(*world, request);
+    const double most = *std::max_element(traced.begin(), traced.end());
     std::size_t compared = 0, beyond = 0;
     for (std::size_t i = 0; i < traced.size(); ++i) {
         const double noise = std::sqrt(squares[i]);
         if (traced[i] < 20 * 10 * cone / kRays / (size * size)) continue;  // too few rays to know their noise
         ++compared;
         CAPTURE(i, traced[i], map.irradiance[i].y, noise);
-        beyond += std::fabs(traced[i] - map.irradiance[i].y) > 4 * noise + 0.01 * traced[i];
+        beyond += std::fabs(traced[i] - map.irradiance[i].y) > 4 * noise + 0.01 * traced[i] + 1e-3 * most;
     }
     CHECK(compared > 20);
     CHECK(beyond == 0);
@@ -237,7 +239,7 @@ TEST_CASE("a caustic has the same bytes for any number of threads", "[laws][law]
 
 TEST_CASE("a moving lamp's light behind a lens neither flickers nor is lost", "[laws][law][caustics]") {
     // Light received over light sent, as the lamp moves by small steps.
-    double before = 0;
+    std::vector<double> shares;
     for (int step = 0; step < 5; ++step) {
         const std::string x = std::to_string(0.3 + 0.004 * step);
         const auto world =
@@ -249,8 +251,10 @@ TEST_CASE("a moving lamp's light behind a lens neither flickers nor is lost", "[
         request.target.object = 0;
         request.target.width = request.target.height = 16;
         const CausticMap map = make_caustic_map(*world, request);
-        const double share = map.flux_received.y / map.flux_in.y;
-        if (step > 0) CHECK(share == Approx(before).epsilon(2e-3));
-        before = share;
+        CHECK((map.flux_on_objects.y + map.flux_away.y) / map.flux_in.y == Approx(0.997).epsilon(3e-3));
+        shares.push_back(map.flux_received.y / map.flux_in.y);
     }
+    // What the floor gets changes evenly.
+    for (std::size_t i = 2; i < shares.size(); ++i)
+        CHECK(std::fabs(shares[i] - 2 * shares[i - 1] + shares[i - 2]) < 2e-3 * shares[i]);
 }

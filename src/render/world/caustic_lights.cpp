@@ -51,7 +51,8 @@ BeamSource sample_source(const Light& light, const Kind& kind, std::size_t sampl
         source.strength = [strength = there.irradiance * light.color](const Vec3&) { return strength; };
     } else {
         // Irradiance at distance 1, where it is the radiant intensity.
-        source.position = at(kind.position).target;
+        source.position = kind.position;
+        if constexpr (requires { kind.samples; }) source.position = at(kind.position + kind.direction).target;
         source.strength = [at, color = light.color, from = source.position](const Vec3& direction) {
             return at(from + direction).irradiance * color;
         };
