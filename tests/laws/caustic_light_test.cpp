@@ -177,10 +177,12 @@ TEST_CASE("the light behind a glass ball is a light tracer's, within its noise",
     std::size_t compared = 0, beyond = 0;
     for (std::size_t i = 0; i < traced.size(); ++i) {
         const double noise = std::sqrt(squares[i]);
+        // Beams' light may fall 1e-3 of the scene's size beside its place: a few thousandths of a
+        // neighbour's.
         if (traced[i] < 20 * 10 * cone / kRays / (size * size)) continue;  // too few rays to know their noise
         ++compared;
         CAPTURE(i, traced[i], map.irradiance[i].y, noise);
-        beyond += std::fabs(traced[i] - map.irradiance[i].y) > 4 * noise + 0.01 * traced[i] + 1e-3 * most;
+        beyond += std::fabs(traced[i] - map.irradiance[i].y) > 4 * noise + 0.01 * traced[i] + 3e-3 * most;
     }
     CHECK(compared > 20);
     CHECK(beyond == 0);
