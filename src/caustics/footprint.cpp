@@ -10,7 +10,7 @@ namespace {
 constexpr double kGrazing = 1e-4;
 /// Corners' light may differ from the mean by so much; beyond it, at folds, the wavefront says nothing about
 /// a triangle.
-constexpr double kMostShare = 4;
+constexpr double kMostShare = 2;
 
 double cross2(const Vec2& a, const Vec2& b) {
     return a.x * b.y - a.y * b.x;
@@ -42,9 +42,23 @@ struct EndOnPlane {
     double fall = 0;    // of its direction
 };
 
+/// Of a beam's mean light, how much falls around an end as the wavefront's spread has it.
 double share_of(const BeamEnd& end, const EndOnPlane& on, double mean) {
-    const double here = end.concentration(on.height / on.fall) * on.fall;
-    return std::clamp(here / mean, 1 / kMostShare, kMostShare);
+    return end.concentration(on.height / on.fall) * on.fall / mean;
+}
+
+/// Away from folds the ends' own light, which neighbours share, so that it is even from beam to beam; else
+/// the beam's.
+void even_out(std::array<double, 3>& share) {
+    double sum = 0;
+    bool is_near_fold = false;
+    for (double& one : share) {
+        is_near_fold = is_near_fold || !(one > 1 / kMostShare && one < kMostShare);
+        one = std::isfinite(one) ? std::clamp(one, 1 / kMostShare, kMostShare) : kMostShare;
+        sum += one;
+    }
+    if (is_near_fold)
+        for (double& one : share) one *= 3 / sum;
 }
 
 }  // namespace
@@ -98,12 +112,11 @@ FallenBeams fall(const Beams& beams, const Beam& beam, const ReceiverPlane& plan
         part.tie = beam.end;
         const double area =
             0.5 * std::fabs(cross2(part.at[1] - part.at[0], part.at[2] - part.at[0])) * plane.unit_area;
-        double sum = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             part.light[k] = end[k]->light;
-            sum += part.share[k] = share_of(*end[k], on[k], beam.measure / area);
+            part.share[k] = share_of(*end[k], on[k], beam.measure / area);
         }
-        for (double& share : part.share) share *= 3 / sum;
+        even_out(part.share);
         fallen.count = 1;
         return fallen;
     }
