@@ -47,18 +47,14 @@ double share_of(const BeamEnd& end, const EndOnPlane& on, double mean) {
     return end.concentration(on.height / on.fall) * on.fall / mean;
 }
 
-/// Away from folds the ends' own light, which neighbours share, so that it is even from beam to beam; else
-/// the beam's.
-void even_out(std::array<double, 3>& share) {
+/// Scaled so that the beam's light stays what it is.
+void keep_light(std::array<double, 3>& share) {
     double sum = 0;
-    bool is_near_fold = false;
     for (double& one : share) {
-        is_near_fold = is_near_fold || !(one > 1 / kMostShare && one < kMostShare);
         one = std::isfinite(one) ? std::clamp(one, 1 / kMostShare, kMostShare) : kMostShare;
         sum += one;
     }
-    if (is_near_fold)
-        for (double& one : share) one *= 3 / sum;
+    for (double& one : share) one *= 3 / sum;
 }
 
 }  // namespace
@@ -116,7 +112,7 @@ FallenBeams fall(const Beams& beams, const Beam& beam, const ReceiverPlane& plan
             part.light[k] = end[k]->light;
             part.share[k] = share_of(*end[k], on[k], beam.measure / area);
         }
-        even_out(part.share);
+        keep_light(part.share);
         fallen.count = 1;
         return fallen;
     }
