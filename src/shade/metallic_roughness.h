@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "base/description/material.h"
 #include "base/math/vec.h"
 
 namespace trilens {
@@ -42,9 +43,6 @@ struct ArrivedLight {
 
 /// Radiance that leaves the point: the dielectric and the metal BRDF of appendix B, mixed by `metallic`.
 Vec3 outgoing_radiance(const SurfaceLook& look, const ArrivedLight& arrived);
-
-/// The least roughness that lights are reflected with: below it a point of light is smaller than can be seen.
-inline constexpr double kLeastRoughness = 0.03;
 
 /// A surface and the way it is looked at; unit vectors, `view` towards the viewer.
 struct ViewedSurface {

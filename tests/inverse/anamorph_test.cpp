@@ -49,7 +49,7 @@ std::string cylinder_json() {
 }
 
 std::shared_ptr<Texture> smooth_picture(int width, int height) {
-    auto picture = std::make_shared<Texture>(Texture{width, height, {}});
+    auto picture = std::make_shared<Texture>(Texture{width, height, {}, {}});
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             for (const double v :

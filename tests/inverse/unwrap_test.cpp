@@ -208,7 +208,7 @@ TEST_CASE("proxies lie where they say, and their places move as differences do",
 
 TEST_CASE("what cannot be unwrapped is told in one message", "[inverse][bad-input]") {
     const auto world = ball_under_sky(64, 64, 4, 64);
-    auto small = std::make_shared<Texture>(Texture{2, 2, std::vector<float>(12, 1.0f)});
+    auto small = std::make_shared<Texture>(Texture{2, 2, std::vector<float>(12, 1.0f), {}});
     CHECK_THROWS_WITH(unwrap(*world, to_equirect(64), {{"p.exr", small, 0}}),
                       Catch::Contains("2 x 2") && Catch::Contains("64 x 64"));
     CHECK_THROWS_AS(unwrap(*world, to_equirect(64), {}), UsageError);
@@ -231,7 +231,7 @@ TEST_CASE("what cannot be unwrapped is told in one message", "[inverse][bad-inpu
 
 TEST_CASE("the bicubic filter keeps lines straight, and a footprint is the mean of what it covers",
           "[inverse]") {
-    Texture ramp{40, 30, {}};
+    Texture ramp{40, 30, {}, {}};
     for (int y = 0; y < 30; ++y)
         for (int x = 0; x < 40; ++x)
             for (const double v : {x + 0.5, y + 0.5, 0.1 * (x + 0.5) * (y + 0.5)})

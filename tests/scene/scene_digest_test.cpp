@@ -13,7 +13,7 @@ using namespace trilens_test;
 namespace {
 
 std::shared_ptr<const Texture> texture(float value) {
-    return std::make_shared<Texture>(Texture{1, 1, {value, 0, 0}});
+    return std::make_shared<Texture>(Texture{1, 1, {value, 0, 0}, {}});
 }
 
 /// One of every kind of thing, with no list empty.
@@ -30,7 +30,7 @@ Scene full_scene() {
     Mesh mesh;
     mesh.object = {{{1, 2, 3}}, {{0, 0, 0}}, {{}}, {{}}, {0}};
     mesh.primitive = Primitive{};
-    mesh.cage = {{{1, 2, 3}}, {3}, {0, 0, 0}, {}, {}, {0}, {2}, {1.5}, {0}, {2.5}, {0}};
+    mesh.cage = {{{1, 2, 3}}, {3}, {0, 0, 0}, {}, {}, {0}, {2}, {1.5}, {0}, {2.5}, {0}, {}};
     scene.meshes = {mesh, mesh};
     Light sun;
     sun.kind = DirectionalLight{};

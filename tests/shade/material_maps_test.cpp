@@ -13,7 +13,7 @@ namespace {
 
 std::shared_ptr<const Texture> one_texel(const Vec3& value) {
     return std::make_shared<Texture>(Texture{
-        1, 1, {static_cast<float>(value.x), static_cast<float>(value.y), static_cast<float>(value.z)}});
+        1, 1, {static_cast<float>(value.x), static_cast<float>(value.y), static_cast<float>(value.z)}, {}});
 }
 
 /// A triangle in the plane z = 0 whose u runs along `u` and whose v along `v`, both in that plane.

@@ -83,5 +83,7 @@ TEST_CASE("what is no surface of triangles is refused", "[surfaces][bad-input]")
     cage = octahedron();
     cage.points[2].y = NAN;
     CHECK_THROWS_AS(make_polygon_surface(cage, "x"), InputError);
-    CHECK_THROWS_AS(make_polygon_surface(Cage{.scheme = SubdivisionScheme::kUnsubdivided}, "x"), InputError);
+    Cage empty;
+    empty.scheme = SubdivisionScheme::kUnsubdivided;
+    CHECK_THROWS_AS(make_polygon_surface(empty, "x"), InputError);
 }

@@ -81,6 +81,9 @@ struct PlacedTexture {
     TextureSampler sampler;
 };
 
+/// The least roughness that lights are reflected with: below it a point of light is smaller than can be seen.
+inline constexpr double kLeastRoughness = 0.03;
+
 /// glTF's names. On an optic either metallic_factor or transmission_factor is 1. An object of roughness 0,
 /// the default, is matt (Lambert's): a polished surface is an optic's; any other is of the metallic-roughness
 /// BRDF.

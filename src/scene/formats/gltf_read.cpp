@@ -165,6 +165,9 @@ class Reader {
                 if (!(color[k] >= 0)) fail(place + "/attributes/COLOR_0", "a colour is negative");
             into.colors.push_back(color);
         }
+        const bool is_white = std::all_of(into.colors.begin(), into.colors.end(),
+                                          [](const Vec4& color) { return color == Vec4(1); });
+        if (!is_white) warn("vertex colours (COLOR_0) are ignored");
     }
 
     void read_influences(const tinygltf::Primitive& in, const std::string& place, GltfPrimitive& into) {

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/description/material.h"
 #include "base/math/box.h"
 #include "base/util/error.h"
 #include "base/util/names.h"
@@ -162,6 +163,9 @@ class SceneWriter {
         // Those of the file have distinct names already, but not from those made here.
         const std::string name = distinct_materials_.take(key.second);
         material["name"] = name;
+        // An object's roughness of 0 is a glTF's polished surface, but a scene's matt one.
+        if (!of_optic && !material.contains("unlit"))
+            material["roughnessFactor"] = std::max(kLeastRoughness, material.value("roughnessFactor", 1.0));
         finish_material(material);
         out_.scene["materials"].push_back(std::move(material));
         return material_names_[key] = name;

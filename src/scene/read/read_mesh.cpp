@@ -271,7 +271,8 @@ void settle_materials(PolygonMesh& polygons, Mesh& mesh, Scene& scene) {
 void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     if (mesh.material != kNone) {
         const Material& material = reading.scene.materials[mesh.material];
-        if (material.metallic_factor == 1 || material.transmission_factor == 1)
+        const bool is_mirror = material.metallic_factor == 1 && material.roughness_factor == 0;
+        if (is_mirror || material.transmission_factor == 1)
             reading.warn(
                 node["material"].place,
                 "a mirror or glass on an object is drawn as a plain surface: an optic reflects and refracts");
