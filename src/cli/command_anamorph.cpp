@@ -186,7 +186,7 @@ Command anamorph_command() {
            .help = "with --verify: the film that is seen",
            .value = "FILE",
            .offer = Offer::kImage}},
-         scene_overrides(options->scene)});
+         scene_overrides_but_optic(options->scene)});
     command.body = [options](Console& console) { return run(*options, console); };
     return command;
 }

@@ -147,7 +147,7 @@ Command map_command() {
            .target = &options->t_up,
            .help = "STMaps whose t counts from the bottom, as Nuke's"}},
          direction_options(options->direction),
-         scene_overrides(options->scene)});
+         scene_overrides_but_optic(options->scene)});
     command.body = [options](Console& console) { return run(*options, console); };
     return command;
 }

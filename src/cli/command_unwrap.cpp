@@ -164,7 +164,7 @@ Command unwrap_command() {
            .target = &options->keep_weight,
            .help = "do not divide by what mirrors and glass leave of the light"}},
          direction_options(options->direction),
-         scene_overrides(options->scene)});
+         scene_overrides_but_optic(options->scene)});
     command.body = [options](Console& console) { return run(*options, console); };
     return command;
 }

@@ -167,6 +167,12 @@ std::vector<Option> scene_overrides(SceneOptions& options) {
          .value = "NAME"}};
 }
 
+std::vector<Option> scene_overrides_but_optic(SceneOptions& options) {
+    std::vector<Option> overrides = scene_overrides(options);
+    std::erase_if(overrides, [](const Option& option) { return option.names == "--optic"; });
+    return overrides;
+}
+
 std::vector<Option> window_options(SceneOptions& options) {
     return {
         {.names = "--crop",

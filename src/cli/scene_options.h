@@ -38,6 +38,8 @@ std::vector<Option> scene_argument(SceneOptions& options);
 /// The overrides alone: --size, --spp, --filter, --camera, --max-depth, --set; --optic, --time, --animation of
 /// glTF.
 std::vector<Option> scene_overrides(SceneOptions& options);
+/// The same for commands whose own --optic names one of the scene's optics.
+std::vector<Option> scene_overrides_but_optic(SceneOptions& options);
 /// --crop and --aov.
 std::vector<Option> window_options(SceneOptions& options);
 

@@ -4,7 +4,7 @@
 //     #include <trilens/caustic.h>
 //     const trilens::Renderer renderer(trilens::load_scene({"ball.json"}));
 //     trilens::CausticMapRequest request;
-//     request.target = trilens::parse_target("table:1024x1024", renderer.scene());
+//     request.target = trilens::parse_target("tiles:256x256", renderer.scene());
 //     const trilens::CausticMap map = trilens::make_caustic_map(renderer, request);
 //     trilens::write_image("caustic.exr", trilens::image_of(map));
 #pragma once

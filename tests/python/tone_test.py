@@ -66,6 +66,7 @@ def test_light_that_stays_what_it_is_takes_no_tones(bright, tmp_path):
 # Options of `trilens render` that are no arguments of Renderer.render: what does the same in Python.
 ELSEWHERE = {
     "overrides of load_scene": {"--size", "--spp", "--filter", "--set", "--max-depth"},
+    "optics, time and animation of load_scene": {"--optic", "--time", "--animation"},
     "other names": {"--crop", "--aov", "--output", "--format", "--slices", "--tessellate"},
     "Renderer.explain, Scene.at_frame, Renderer.draw_lines": {"--pixel", "--frames", "--turntable", "--wire", "--folds"},
     "the whole module": {"--help", "--version", "--threads", "--json", "--color", "--quiet", "--verbose"},

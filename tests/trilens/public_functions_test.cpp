@@ -70,6 +70,8 @@ const std::map<std::string, std::string> kElsewhere{
     {"design_scene", "of designs that design_mirror made"},
     {"design_stl", "of designs that design_mirror made"},
     {"find_mesh", "of any name"},
+    {"has_own_normals", "of any mesh"},
+    {"scene_document", "of scenes that load_scene gave"},
     {"first_cell", "of any size"},
     {"fit_html", "of results that fit_scene gave"},
     {"fit_scene", "tests/inverse: pairs and pointers that are none"},

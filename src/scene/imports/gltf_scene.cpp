@@ -196,7 +196,8 @@ class SceneWriter {
     /// Leaves what scenes know, and names its pictures as they do.
     void finish_material(Json& material) {
         const std::string name = material.at("name").get<std::string>();
-        for (const std::string& key : keys_of(material)) {
+        const Json before = material;
+        for (const auto& [key, value] : before.items()) {
             if (key == "alphaMode" && material.at(key) == "blend")
                 left_out_.note("what alphaMode BLEND shows through (it is cut out at an alpha of 0.5)", name);
             if (params_.known.material.count(key) == 0) {
@@ -208,12 +209,6 @@ class SceneWriter {
         }
     }
 
-    static std::vector<std::string> keys_of(const Json& object) {
-        std::vector<std::string> keys;
-        for (const auto& [key, value] : object.items()) keys.push_back(key);
-        return keys;
-    }
-
     Json finish_texture(Json texture, const std::string& key, const std::string& material) {
         const GltfImage& image = model_.images[texture.at("image").get<std::size_t>()];
         check_picture(image, texture.at("image").get<std::size_t>());
@@ -223,9 +218,9 @@ class SceneWriter {
             texture.erase("image");
         }
         written.update(texture);
-        for (const std::string& part : keys_of(written)) {
+        const Json before = written;
+        for (const auto& [part, value] : before.items()) {
             if (params_.known.texture.count(part) > 0) continue;
-            const Json& value = written.at(part);
             // The reader takes the set of the base colour's picture for all.
             if (part == "texCoord" ? key != "baseColorTexture" : value != Json(1.0))
                 left_out_.note(key + "/" + part, material);
