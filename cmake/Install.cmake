@@ -52,6 +52,8 @@ if(NOT TRILENS_CORE_ONLY)
     set(compressed COMMAND gzip -9nfr ${shell}/man1)
   endif()
   add_custom_command(OUTPUT ${shell}/made
+    # Anew: pages that were compressed before would be compressed again.
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${shell}/man1
     COMMAND ${CMAKE_COMMAND} -E make_directory ${shell}/man1
     COMMAND trilens_command man --all ${shell}/man1
     ${compressed}
