@@ -21,10 +21,13 @@ struct GltfBuffer {
     int add(const std::vector<double>& numbers, const std::string& type, int width, int component = 5126) {
         const std::size_t start = bytes.size();
         for (const double number : numbers) {
-            const auto real = static_cast<float>(number);
-            const auto whole = static_cast<std::uint16_t>(number);
-            component == 5126 ? bytes.append(reinterpret_cast<const char*>(&real), 4)
-                              : bytes.append(reinterpret_cast<const char*>(&whole), 2);
+            if (component == 5126) {
+                const auto real = static_cast<float>(number);
+                bytes.append(reinterpret_cast<const char*>(&real), sizeof real);
+            } else {
+                const auto whole = static_cast<std::uint16_t>(number);
+                bytes.append(reinterpret_cast<const char*>(&whole), sizeof whole);
+            }
         }
         const std::string comma = count == 0 ? "" : ",";
         views += comma + R"({"buffer":0,"byteOffset":)" + std::to_string(start) + R"(,"byteLength":)" +
