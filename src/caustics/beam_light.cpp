@@ -20,7 +20,7 @@ constexpr double kMostTurned = 10;
 /// What the rays at a beam's ends say about the way to a plane.
 enum class Way { kFree, kStopped, kUnknown };
 
-Way way_to(const Beams& beams, const Beam& beam, const ReceiverPlane& plane, double same_place) {
+Way way_to(const Beams& beams, const LightBeam& beam, const ReceiverPlane& plane, double same_place) {
     int free = 0, stopped = 0;
     for (const Id e : beam.end) {
         const BeamEnd& end = beams.ends[e];
@@ -59,7 +59,7 @@ template <typename Use>
 void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const {
     const ReceiverPlane plane(receiver, kWidestFootprint * space_.size);
     tree_.for_each_near(receiver.point, plane.reach, [&](Id index) {
-        const Beam& beam = beams_.beams[index];
+        const LightBeam& beam = beams_.beams[index];
         const FallenBeams fallen = fall(beams_, beam, plane);
         for (std::size_t i = 0; i < fallen.count; ++i) {
             const FallenBeam& part = fallen.part[i];
@@ -91,7 +91,7 @@ void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const
 
 /// Whether anything lies between a receiver and where a beam leaves the last optic. That optic's own surface
 /// is asked only where the beam's own rays meet it again: the beam's origin may lie a little inside of it.
-bool BeamLight::is_hidden(const Beam& beam, const Vec3& from, const Vec3& origin) const {
+bool BeamLight::is_hidden(const LightBeam& beam, const Vec3& from, const Vec3& origin) const {
     Segments way;
     way.add(from, (1 - kSamePlace) * (origin - from));
     if (space_.objects->occluded(way)) return true;
@@ -141,7 +141,7 @@ std::vector<ExactArrival> BeamLight::exact_arrivals(const Receiver& receiver) co
     point.sides = {};
     ReceiverPlane plane(point, space_.size);
     tree_.for_each_near(receiver.point, 2 * tolerance_ * space_.size, [&](Id index) {
-        const Beam& beam = beams_.beams[index];
+        const LightBeam& beam = beams_.beams[index];
         const FallenBeams fallen = fall(beams_, beam, plane, INFINITY);
         const BeamHistory& history = beams_.histories[beam.history];
         LightPath like;

@@ -52,7 +52,7 @@ class BeamLight {
     template <typename Use>
     void for_each_arrival(const Receiver& receiver, const Use& use) const;
     bool comes(const ExactArrival& arrival, const Receiver& receiver) const;
-    bool is_hidden(const Beam& beam, const Vec3& from, const Vec3& origin) const;
+    bool is_hidden(const LightBeam& beam, const Vec3& from, const Vec3& origin) const;
 
     LightSpace space_;
     BeamSource source_;

@@ -28,7 +28,7 @@ bool BeamTree::Node::holds(const Vec3& point, double reach) const {
 
 BeamTree::BeamTree(const Beams& beams) {
     Build of{beams, {}};
-    for (const Beam& beam : beams.beams) {
+    for (const LightBeam& beam : beams.beams) {
         Vec2 middle(0);
         for (const Id end : beam.end) middle += beams.ends[end].place / 3.0;
         of.place.push_back(middle);

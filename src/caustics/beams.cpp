@@ -35,7 +35,7 @@ struct HistoryBorder {
 
 /// A beam's part of the film times the mean of of(end) over its ends.
 template <typename Of>
-Vec3 beam_integral(const Beams& beams, const Beam& beam, const Of& of) {
+Vec3 beam_integral(const Beams& beams, const LightBeam& beam, const Of& of) {
     Vec3 sum(0);
     for (const Id end : beam.end) sum += of(beams.ends[end]);
     return beam.measure / 3 * sum;
@@ -142,7 +142,7 @@ void BeamMaker::add_beam(const std::array<Id, 3>& ends, Id history) {
     const double measure = grid_.window().measure(beams_.ends[ends[0]].place, beams_.ends[ends[1]].place,
                                                   beams_.ends[ends[2]].place);
     if (!(measure > 0)) return;
-    const Beam beam{ends, history, measure, static_cast<Id>(beams_.windows.size() - 1)};
+    const LightBeam beam{ends, history, measure, static_cast<Id>(beams_.windows.size() - 1)};
     const std::vector<Step>& steps = beams_.histories[history].steps;
     if (steps.size() == 1)
         beams_.arriving.try_emplace({steps[0].optic, steps[0].event}, Vec3(0)).first->second +=
@@ -245,7 +245,7 @@ void add_beams(const BeamGrid& grid, Beams& beams) {
 
 std::vector<Vec3> Beams::flux_by_history() const {
     std::vector<Vec3> flux(histories.size(), Vec3(0));
-    for (const Beam& beam : beams)
+    for (const LightBeam& beam : beams)
         flux[beam.history] +=
             beam.measure / 3 * (ends[beam.end[0]].light + ends[beam.end[1]].light + ends[beam.end[2]].light);
     return flux;
@@ -266,7 +266,7 @@ Vec3 Beams::flux_arriving() const {
 
 Vec3 Beams::flux_on_objects() const {
     Vec3 sum(0);
-    for (const Beam& beam : beams)
+    for (const LightBeam& beam : beams)
         sum += beam_integral(
             *this, beam, [](const BeamEnd& end) { return std::isfinite(end.object) ? end.light : Vec3(0); });
     return sum;
@@ -274,7 +274,7 @@ Vec3 Beams::flux_on_objects() const {
 
 Vec3 Beams::flux_away() const {
     Vec3 sum(0);
-    for (const Beam& beam : beams)
+    for (const LightBeam& beam : beams)
         sum += beam_integral(*this, beam, [](const BeamEnd& end) {
             return std::isfinite(end.object) || std::isfinite(end.optic) ? Vec3(0) : end.light;
         });

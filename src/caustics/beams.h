@@ -31,7 +31,7 @@ struct BeamEnd {
     }
 };
 
-struct Beam {
+struct LightBeam {
     std::array<Id, 3> end{};
     Id history = kNone;
     double measure = 0;  // of the light's film
@@ -47,7 +47,7 @@ struct BeamHistory {
 
 struct Beams {
     std::vector<BeamEnd> ends;
-    std::vector<Beam> beams;
+    std::vector<LightBeam> beams;
     std::vector<BeamHistory> histories;
     std::vector<LightWindow> windows;
     // Light that comes to the first optics, by what happens there.

@@ -83,7 +83,7 @@ ReceiverPlane::ReceiverPlane(const Receiver& receiver, double largest_side)
     dual_t = cross(normal, dual_s);
 }
 
-FallenBeams fall(const Beams& beams, const Beam& beam, const ReceiverPlane& plane, double reach) {
+FallenBeams fall(const Beams& beams, const LightBeam& beam, const ReceiverPlane& plane, double reach) {
     FallenBeams fallen;
     std::array<const BeamEnd*, 3> end;
     std::array<EndOnPlane, 3> on;

@@ -45,7 +45,7 @@ struct FallenBeams {
 };
 /// Those that lie wholly farther from the footprint than `reach`, in its own coordinates along either, may be
 /// left out.
-FallenBeams fall(const Beams& beams, const Beam& beam, const ReceiverPlane& plane, double reach = 0);
+FallenBeams fall(const Beams& beams, const LightBeam& beam, const ReceiverPlane& plane, double reach = 0);
 
 /// What of a triangle is at the footprint.
 struct FootprintPart {
