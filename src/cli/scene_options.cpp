@@ -127,50 +127,62 @@ std::vector<Option> scene_argument(SceneOptions& options) {
          .check = [](const std::vector<std::string>& texts) { resolutions_of(texts); }}};
 }
 
-std::vector<Option> scene_overrides(SceneOptions& options) {
-    return {
-        {.names = "--size", .target = &options.size, .help = "film size in pixels", .value = "WxH"},
-        {.names = "--spp",
-         .target = &options.spp,
-         .help = "S x S samples per pixel",
-         .value = "S",
-         .range = {1, kMaxSpp}},
-        {.names = "--filter",
-         .target = &options.filter,
-         .help = "how samples make a pixel's colour; other than box also from pixels around",
-         .choices = names_of<FilterKind>()},
-        {.names = "--camera",
-         .target = &options.camera,
-         .help = "camera by name; default: the first",
-         .value = "NAME"},
-        {.names = "--max-depth",
-         .target = &options.max_depth,
-         .help = "optic hits after the first",
-         .range = {0, kMostDepth}},
-        {.names = "--set",
-         .target = &options.set,
-         .help = "replace a value of the scene; may be given several times",
-         .value = "/json/pointer=VALUE"},
-        {.names = "--optic",
-         .target = &options.optics,
-         .help = "of a glTF: its meshes, nodes or materials of such a name are optics; may be given several "
+namespace {
+
+std::vector<Option> json_overrides(SceneOptions& options) {
+    return {{.names = "--size", .target = &options.size, .help = "film size in pixels", .value = "WxH"},
+            {.names = "--spp",
+             .target = &options.spp,
+             .help = "S x S samples per pixel",
+             .value = "S",
+             .range = {1, kMaxSpp}},
+            {.names = "--filter",
+             .target = &options.filter,
+             .help = "how samples make a pixel's colour; other than box also from pixels around",
+             .choices = names_of<FilterKind>()},
+            {.names = "--camera",
+             .target = &options.camera,
+             .help = "camera by name; default: the first",
+             .value = "NAME"},
+            {.names = "--max-depth",
+             .target = &options.max_depth,
+             .help = "optic hits after the first",
+             .range = {0, kMostDepth}},
+            {.names = "--set",
+             .target = &options.set,
+             .help = "replace a value of the scene; may be given several times",
+             .value = "/json/pointer=VALUE"}};
+}
+
+std::vector<Option> gltf_optics(SceneOptions& options) {
+    return {{.names = "--optic",
+             .target = &options.optics,
+             .help =
+                 "of a glTF: its meshes, nodes or materials of such a name are optics; may be given several "
                  "times",
-         .value = "PATTERN"},
-        {.names = "--time",
-         .target = &options.time,
-         .help = "of a glTF: its meshes, cameras and lights as its animation has them then",
-         .value = "SECONDS",
-         .check = [](const std::vector<std::string>& texts) { seconds_of(texts.back()); }},
-        {.names = "--animation",
-         .target = &options.animation,
-         .help = "of a glTF: which animation; default: the first",
-         .value = "NAME"}};
+             .value = "PATTERN"}};
+}
+
+std::vector<Option> gltf_moment(SceneOptions& options) {
+    return {{.names = "--time",
+             .target = &options.time,
+             .help = "of a glTF: its meshes, cameras and lights as its animation has them then",
+             .value = "SECONDS",
+             .check = [](const std::vector<std::string>& texts) { seconds_of(texts.back()); }},
+            {.names = "--animation",
+             .target = &options.animation,
+             .help = "of a glTF: which animation; default: the first",
+             .value = "NAME"}};
+}
+
+}  // namespace
+
+std::vector<Option> scene_overrides(SceneOptions& options) {
+    return joined({json_overrides(options), gltf_optics(options), gltf_moment(options)});
 }
 
 std::vector<Option> scene_overrides_but_optic(SceneOptions& options) {
-    std::vector<Option> overrides = scene_overrides(options);
-    std::erase_if(overrides, [](const Option& option) { return option.names == "--optic"; });
-    return overrides;
+    return joined({json_overrides(options), gltf_moment(options)});
 }
 
 std::vector<Option> window_options(SceneOptions& options) {
