@@ -11,14 +11,14 @@ namespace {
 
 constexpr double kLeastCosine = 1e-4;  // between view and normal: a shading normal may look away
 
-/// GGX's width: the roughness squared.
-double alpha_of(double roughness) {
-    const double r = std::max(roughness, kLeastRoughness);
-    return r * r;
-}
+// Below it a lobe is narrower than what double numbers tell from one direction.
+constexpr double kPolished = 1e-3;
 
+double power4(double x) {
+    return x * x * x * x;
+}
 double power5(double x) {
-    return x * x * x * x * x;
+    return power4(x) * x;
 }
 
 /// Source: glTF 2.0, B.3.1 (Trowbridge and Reitz).
@@ -57,7 +57,7 @@ ArrivedLight arrived_from(const ViewedSurface& surface, const Vec3& toward, cons
     const double p = power5(1 - std::clamp(dot(surface.view, half), 0.0, 1.0));
     const Vec3 matt = std::numbers::inv_pi * irradiance;
     // Half vectors turn half as far as the light does; GGX's width is a slope's.
-    const double alpha = alpha_of(surface.roughness), wider = spread / 2;
+    const double r = std::max(surface.roughness, kLeastRoughness), alpha = r * r, wider = spread / 2;
     const double alpha2 = std::min(alpha * alpha + wider * wider, 1.0);
     const double dv = distribution(alpha2, dot(surface.normal, half)) *
                       visibility(alpha2, std::max(dot(surface.normal, toward), 0.0),
@@ -66,7 +66,8 @@ ArrivedLight arrived_from(const ViewedSurface& surface, const Vec3& toward, cons
 }
 
 LobeDirection lobe_direction(const ViewedSurface& surface, std::size_t sample, std::size_t count) {
-    const double alpha = alpha_of(surface.roughness), alpha2 = alpha * alpha;
+    const bool polished = surface.roughness < kPolished;
+    const double alpha2 = polished ? 0 : power4(surface.roughness);
     const Vec2 place = stratified_place(sample, count);
     const double cos2 = (1 - place.y) / (1 + (alpha2 - 1) * place.y);
     const double cos_half = std::sqrt(cos2), sin_half = std::sqrt(std::max(1 - cos2, 0.0));
@@ -86,6 +87,7 @@ LobeDirection lobe_direction(const ViewedSurface& surface, std::size_t sample, s
     const double p = power5(1 - std::min(view_half, 1.0));
     direction.glossy = weight * (1 - p);
     direction.grazing = weight * p;
+    if (polished) return direction;
     direction.side =
         std::sqrt(4 * view_half / (static_cast<double>(count) * distribution(alpha2, cos_half) * cos_half));
     return direction;

@@ -9,7 +9,7 @@
 
 namespace trilens {
 
-/// What a surface is like at a point. Roughness 0 is matt, Lambert's: a polished surface is an optic's.
+/// What a surface is like at a point: as Material has it.
 struct SurfaceLook {
     Vec3 base{1};
     double metallic = 0, roughness = 0;
@@ -17,7 +17,10 @@ struct SurfaceLook {
     double specular = 1;     // strength of that cover's reflection, 0..1
     Vec3 specular_color{1};  // at right angles
     Vec3 emissive{0};        // radiance
-    bool is_matt() const { return !(roughness > 0); }
+    Brdf brdf = Brdf::kByRoughness;
+    bool is_matt() const {
+        return brdf == Brdf::kLambert || (brdf == Brdf::kByRoughness && !(roughness > 0));
+    }
 };
 
 /// Light at a point of a surface, sorted by how the BRDF weighs it. With E the irradiance of a direction,
@@ -47,18 +50,19 @@ Vec3 outgoing_radiance(const SurfaceLook& look, const ArrivedLight& arrived);
 /// A surface and the way it is looked at; unit vectors, `view` towards the viewer.
 struct ViewedSurface {
     Vec3 normal{0, 1, 0}, view{0, 1, 0};
-    double roughness = 1;  // > 0
+    double roughness = 1;  // 0: polished
 };
 
 /// What a direction's light adds: irradiance E (already with the cosine) from `toward`, unit. `spread`: the
 /// angle in radians from the middle to the border of what the direction stands for: the lobe is widened by
-/// it, so that the light's samples do not show as dots.
+/// it, so that the light's samples do not show as dots; a polished surface shows lamps as one of
+/// kLeastRoughness does.
 ArrivedLight arrived_from(const ViewedSurface& surface, const Vec3& toward, const Vec3& irradiance,
                           double spread = 0);
 
 /// One of `count` directions in which the surface reflects what is looked at: half vectors in proportion to
 /// the distribution. An arriving radiance L adds {0, 0, L glossy, L grazing}; the direction stands for a
-/// square of this side (radians), zero weights for none.
+/// square of this side (radians), zero weights for none. Of a polished surface all are the mirrored one.
 /// Source: Krivanek, Colbert, Real-Time Shading with Filtered Importance Sampling, 2008.
 struct LobeDirection {
     Vec3 toward{0};

@@ -100,12 +100,12 @@ SurfaceLook look_at(const ShadeScene& scene, const Hit& hit, const Vec3& base) {
     look.specular = material.specular_factor;
     look.specular_color = material.specular_color_factor;
     look.emissive = material.emissive_factor;
+    look.brdf = material.is_matt() ? Brdf::kLambert : Brdf::kMetallicRoughness;
     if (const PlacedTexture& both = material.metallic_roughness_texture; both.picture) {
         const Vec3 seen = look_up(scene, hit, both);
         look.roughness *= std::clamp(seen.y, 0.0, 1.0);
         look.metallic *= std::clamp(seen.z, 0.0, 1.0);
     }
-    if (material.roughness_factor > 0) look.roughness = std::max(look.roughness, kLeastRoughness);
     if (material.emissive_texture.picture) look.emissive *= look_up(scene, hit, material.emissive_texture);
     return look;
 }
@@ -145,8 +145,7 @@ double occlusion_at(const ShadeScene& scene, const Hit& hit) {
 
 bool is_plain(const ShadeScene& scene, const Hit& hit) {
     const Material& material = material_of(scene, hit);
-    return !(material.roughness_factor > 0) && !material.normal_texture.picture &&
-           !material.occlusion_texture.picture;
+    return material.is_matt() && !material.normal_texture.picture && !material.occlusion_texture.picture;
 }
 
 Vec3 background_radiance(const Background& background, const MipMap& map, const Vec3& direction,

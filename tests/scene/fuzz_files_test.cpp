@@ -132,7 +132,7 @@ TEST_CASE("law: broken model files load or say what is wrong in which file", "[s
         std::ofstream(folder + "/" + name, std::ios::binary) << bytes;
     };
     for (const auto& [name, bytes] : good) write(name, bytes);
-    for (const char* picture : {"/brick.png", "/brick wall.png"})
+    for (const char* picture : {"/brick.png", "/brick wall.png", "/b.png"})
         std::ofstream(folder + picture) << "a picture";
     const auto load = [&](const std::string& model, bool optic) {
         const std::string mesh =

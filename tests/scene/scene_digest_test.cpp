@@ -57,6 +57,7 @@ std::vector<Change> changes_of_looks() {
             [](Scene& s) { s.materials[0].unlit = true; },
             [](Scene& s) { s.materials[0].metallic_factor = 1; },
             [](Scene& s) { s.materials[0].roughness_factor = 1; },
+            [](Scene& s) { s.materials[0].brdf = Brdf::kLambert; },
             [](Scene& s) { s.materials[0].transmission_factor = 1; },
             [](Scene& s) { s.materials[0].ior = 1.25; },
             [](Scene& s) { s.materials[0].dispersion = 1; },

@@ -157,6 +157,44 @@ TEST_CASE("the white furnace: no surface gives back more than comes", "[shade][l
     CHECK(greatest < 2);
 }
 
+TEST_CASE("a polished surface reflects what lies in the mirrored direction, by Fresnel's term",
+          "[shade][oracle]") {
+    Draw draw(8);
+    const auto radiance = [](const Vec3& toward) {
+        return Vec3(1 + toward.x, 1 + toward.y * toward.z, 0.5 + toward.z);
+    };
+    for (int trial = 0; trial < 100; ++trial) {
+        SurfaceLook look = any_look(draw);
+        look.brdf = Brdf::kMetallicRoughness;
+        look.roughness = 0;
+        look.metallic = 1;
+        const Vec3 view = direction(draw.uniform(0.01, 1), draw.uniform(0, 6.28));
+        ArrivedLight arrived;
+        for (std::size_t k = 0; k < 16; ++k) {
+            const LobeDirection lobe = lobe_direction({kUp, view, 0}, k, 16);
+            CHECK(lobe.side == 0);
+            arrived.glossy += lobe.glossy * radiance(lobe.toward);
+            arrived.glossy_grazing += lobe.grazing * radiance(lobe.toward);
+        }
+        const Vec3 mirrored(-view.x, -view.y, view.z);
+        const Vec3 schlick = look.base + (Vec3(1) - look.base) * std::pow(1 - view.z, 5);
+        const Vec3 seen = outgoing_radiance(look, arrived) - look.emissive,
+                   truth = schlick * radiance(mirrored);
+        for (int k = 0; k < 3; ++k) CHECK(seen[k] == Approx(truth[k]).epsilon(1e-9).margin(1e-12));
+        // Roughness goes to it without a step.
+        const LobeDirection nearly = lobe_direction({kUp, view, 2e-3}, 7, 16);
+        CHECK(length(nearly.toward - mirrored) < 1e-3);
+        CHECK(16 * (nearly.glossy + nearly.grazing) == Approx(1).epsilon(2e-2));
+    }
+    SurfaceLook look;
+    CHECK(look.is_matt());
+    look.brdf = Brdf::kMetallicRoughness;
+    CHECK(!look.is_matt());
+    look.brdf = Brdf::kLambert;
+    look.roughness = 0.5;
+    CHECK(look.is_matt());
+}
+
 TEST_CASE("a lobe is widened by the part of a light that a sample stands for", "[shade]") {
     // The lobe seen over a light of 0.2 radians: one wide sample or 400 narrow ones have the same sum.
     const ViewedSurface surface{kUp, direction(0.8, 0), 0.15};

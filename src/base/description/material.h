@@ -75,18 +75,30 @@ struct EnumNames<AlphaMode> {
                                        NamedValue<AlphaMode>{AlphaMode::kBlend, "blend"}};
 };
 
+/// How an object's surface reflects light.
+enum class Brdf {
+    kByRoughness,        // Lambert's at roughness 0, else metallic-roughness
+    kLambert,            // matt
+    kMetallicRoughness,  // glTF's; at roughness 0 polished
+};
+
+template <>
+struct EnumNames<Brdf> {
+    static constexpr std::array kTable{NamedValue<Brdf>{Brdf::kByRoughness, "byRoughness"},
+                                       NamedValue<Brdf>{Brdf::kLambert, "lambert"},
+                                       NamedValue<Brdf>{Brdf::kMetallicRoughness, "metallicRoughness"}};
+};
+
 /// A picture and how it lies.
 struct PlacedTexture {
     std::shared_ptr<const Texture> picture;  // may be null
     TextureSampler sampler;
 };
 
-/// The least roughness that lights are reflected with: below it a point of light is smaller than can be seen.
+/// The least roughness that lamps are reflected with: below it a point of light is smaller than can be seen.
 inline constexpr double kLeastRoughness = 0.03;
 
-/// glTF's names. On an optic either metallic_factor or transmission_factor is 1. An object of roughness 0,
-/// the default, is matt (Lambert's): a polished surface is an optic's; any other is of the metallic-roughness
-/// BRDF.
+/// glTF's names. On an optic either metallic_factor or transmission_factor is 1.
 struct Material {
     std::string name;
     Vec3 base_color_factor{1};
@@ -102,6 +114,7 @@ struct Material {
     double attenuation_distance = 0;  // scene units; 0: no absorption
 
     // Of objects alone. Pictures of numbers hold them as they are, not as colours.
+    Brdf brdf = Brdf::kByRoughness;
     double specular_factor = 1;  // KHR_materials_specular
     Vec3 specular_color_factor{1};
     Vec3 emissive_factor{0};  // radiance: KHR_materials_emissive_strength's is a factor of it
@@ -114,6 +127,10 @@ struct Material {
     AlphaMode alpha_mode = AlphaMode::kOpaque;  // of objects, cut when they are read
     double alpha_cutoff = 0.5;
     double alpha_factor = 1;  // times the alpha of the base colour's picture
+
+    bool is_matt() const {
+        return brdf == Brdf::kLambert || (brdf == Brdf::kByRoughness && !(roughness_factor > 0));
+    }
 };
 
 }  // namespace trilens

@@ -58,12 +58,12 @@ void add(const PlacedTexture& texture, Digest& digest) {
 
 void add(const Material& material, Digest& digest) {
     const auto& [name, color, texture, sampler, unlit, metallic, roughness, transmission, ior, dispersion,
-                 attenuation, distance, specular, specular_color, emissive, normal_scale, occlusion_strength,
-                 metallic_roughness_map, normal_map, occlusion_map, emissive_map, alpha_mode, alpha_cutoff,
-                 alpha_factor] = material;
+                 attenuation, distance, brdf, specular, specular_color, emissive, normal_scale,
+                 occlusion_strength, metallic_roughness_map, normal_map, occlusion_map, emissive_map,
+                 alpha_mode, alpha_cutoff, alpha_factor] = material;
     digest.add_all(name, color, unlit, metallic, roughness, transmission, ior, dispersion, attenuation,
-                   distance, specular, specular_color, emissive, normal_scale, occlusion_strength, alpha_mode,
-                   alpha_cutoff, alpha_factor);
+                   distance, brdf, specular, specular_color, emissive, normal_scale, occlusion_strength,
+                   alpha_mode, alpha_cutoff, alpha_factor);
     add(texture, digest);
     add(sampler, digest);
     for (const PlacedTexture* map : {&metallic_roughness_map, &normal_map, &occlusion_map, &emissive_map})

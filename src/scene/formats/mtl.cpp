@@ -1,6 +1,7 @@
 // Materials of OBJ files: what is drawn of them, and the names of what is not.
 // Based on: Alias|Wavefront, MTL Material Format (the options of texture maps and their values).
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,8 +45,19 @@ class MtlReader {
         } else if (words[0] == "Kd") {
             material_->diffuse = read_colour(words);
             has_diffuse_ = true;
+        } else if (words[0] == "Ks") {
+            material_->specular = read_colour(words);
+        } else if (words[0] == "Ns") {
+            material_->exponent = read_exponent(words);
         } else if (words[0] == "map_Kd") {
-            read_map(line, words);
+            material_->texture = read_map(line, words);
+        } else if (words[0] == "map_Bump" || words[0] == "map_bump" || words[0] == "bump" ||
+                   words[0] == "norm") {
+            material_->bump_scale = 1;
+            material_->bump = read_map(line, words);
+            material_->is_normals = words[0] == "norm";
+        } else if (words[0] == "illum" && words.size() == 2 && words[1].size() == 1 && words[1] <= "2") {
+            has_highlight_ = words[1] == "2";
         } else if (!is_opaque(words)) {
             ignore(std::string(words[0]));
         }
@@ -78,8 +90,10 @@ class MtlReader {
     void finish_material() {
         if (!material_) return;
         if (!material_->texture.empty() && !has_diffuse_) material_->diffuse = Vec3(kDiffuseOfTexture);
+        if (!has_highlight_) material_->specular = Vec3(0);
         result_.materials.push_back(std::move(*material_));
         has_diffuse_ = false;
+        has_highlight_ = true;
     }
 
     /// Whether the line says that the material is opaque, as everything is.
@@ -90,32 +104,45 @@ class MtlReader {
     }
 
     Vec3 read_colour(const std::vector<std::string_view>& words) const {
+        const std::string key(words[0]);
         if (words.size() != 2 && words.size() < 4)
-            fail("'Kd' needs 3 numbers, found " + std::to_string(words.size() - 1));
+            fail("'" + key + "' needs 3 numbers, found " + std::to_string(words.size() - 1));
         Vec3 colour;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::string_view word = words[words.size() == 2 ? 1 : k + 1];
             const std::optional<double> value = parse_number(word);
             if (!value)
-                fail("the Kd of material '" + material_->name + "': '" + std::string(word) +
+                fail("the " + key + " of material '" + material_->name + "': '" + std::string(word) +
                      "' is no number");
             if (!(*value >= 0 && *value <= kLargestCoordinate))
-                fail("the Kd of material '" + material_->name + "' is no colour");
+                fail("the " + key + " of material '" + material_->name + "' is no colour");
             colour[static_cast<int>(k)] = *value;
         }
         return colour;
     }
 
-    /// Steps over the options; the rest of the line is the picture, whose name may hold spaces.
-    void read_map(std::string_view line, const std::vector<std::string_view>& words) {
+    double read_exponent(const std::vector<std::string_view>& words) const {
+        const std::optional<double> value = words.size() > 1 ? parse_number(words[1]) : std::nullopt;
+        if (!value || !(*value >= 0 && *value <= kLargestCoordinate))
+            fail("the Ns of material '" + material_->name + "' is no exponent");
+        return *value;
+    }
+
+    /// Takes -bm of a bump map and steps over other options; the rest of the line is the picture, whose name
+    /// may hold spaces.
+    std::string read_map(std::string_view line, const std::vector<std::string_view>& words) {
+        const std::string key(words[0]);
         std::size_t last = 0;  // word before the picture's name
         while (last + 1 < words.size()) {
             const std::string_view word = words[last + 1];
             const auto* option = std::find_if(std::begin(kMapOptions), std::end(kMapOptions),
                                               [&](const MapOption& known) { return known.name == word; });
             if (option == std::end(kMapOptions)) break;
-            ignore("map_Kd " + std::string(word));
-            if (last + 2 >= words.size()) fail("'" + std::string(word) + "' of map_Kd needs a value");
+            if (last + 2 >= words.size()) fail("'" + std::string(word) + "' of " + key + " needs a value");
+            if (word == "-bm" && key != "map_Kd")
+                material_->bump_scale = read_bump_scale(words[last + 2]);
+            else
+                ignore(key + " " + std::string(word));
             last += 2;
             for (std::size_t k = 1; k < option->most_values && last + 1 < words.size(); ++k)
                 if (parse_number(words[last + 1]))
@@ -123,14 +150,23 @@ class MtlReader {
                 else
                     break;
         }
-        material_->texture = rest_of_line(line, words[last]);
-        if (material_->texture.empty()) ignore("map_Kd without a picture");
+        std::string picture = rest_of_line(line, words[last]);
+        if (picture.empty()) ignore(key + " without a picture");
+        return picture;
+    }
+
+    double read_bump_scale(std::string_view word) const {
+        const std::optional<double> value = parse_number(word);
+        if (!value || !(std::fabs(*value) <= kLargestCoordinate))
+            fail("the -bm of material '" + material_->name + "': '" + std::string(word) + "' is no number");
+        return *value;
     }
 
     const std::string& file_;
     std::size_t line_ = 0;
     std::optional<MtlMaterial> material_;
     bool has_diffuse_ = false;
+    bool has_highlight_ = true;
     std::vector<Ignored> ignored_;
     MtlFile result_;
 };

@@ -164,8 +164,8 @@ class SceneWriter {
         const std::string name = distinct_materials_.take(key.second);
         material["name"] = name;
         // An object's roughness of 0 is a glTF's polished surface, but a scene's matt one.
-        if (!of_optic && !material.contains("unlit"))
-            material["roughnessFactor"] = std::max(kLeastRoughness, material.value("roughnessFactor", 1.0));
+        if (!of_optic && !material.contains("unlit") && material.value("roughnessFactor", 1.0) == 0)
+            material["brdf"] = name_of(Brdf::kMetallicRoughness);
         finish_material(material);
         out_.scene["materials"].push_back(std::move(material));
         return material_names_[key] = name;

@@ -271,7 +271,7 @@ void settle_materials(PolygonMesh& polygons, Mesh& mesh, Scene& scene) {
 void read_object(const Node& node, Mesh& mesh, Reading& reading) {
     if (mesh.material != kNone) {
         const Material& material = reading.scene.materials[mesh.material];
-        const bool is_mirror = material.metallic_factor == 1 && material.roughness_factor == 0;
+        const bool is_mirror = material.metallic_factor == 1 && material.is_matt();
         if (is_mirror || material.transmission_factor == 1)
             reading.warn(
                 node["material"].place,

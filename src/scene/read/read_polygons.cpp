@@ -149,17 +149,34 @@ std::map<std::string, MtlMaterial> read_libraries(const ObjFile& obj, const std:
     return by_name;
 }
 
+/// A picture that an MTL names. Throws InputError where it does not exist.
+std::string picture_path(const MtlMaterial& mtl, std::string path, const std::filesystem::path& folder) {
+    std::replace(path.begin(), path.end(), '\\', '/');
+    std::string resolved = (folder / path).string();
+    if (!std::filesystem::exists(resolved))
+        throw InputError(resolved, "", "the picture of material '" + mtl.name + "' does not exist");
+    return resolved;
+}
+
+/// Phong's terms in those of metallic-roughness. Source: Walter, Marschner, Li, Torrance, Microfacet Models
+/// for Refraction through Rough Surfaces, EGSR 2007: Blinn's exponent is 2 / alpha^2 - 2; alpha is roughness
+/// squared.
 Material make_material(const MtlMaterial& mtl, const std::filesystem::path& folder, Reading& reading) {
     Material material;
     material.name = mtl.name;
     material.base_color_factor = mtl.diffuse;
-    if (mtl.texture.empty()) return material;
-    std::string path = mtl.texture;
-    std::replace(path.begin(), path.end(), '\\', '/');
-    const std::string resolved = (folder / path).string();
-    if (!std::filesystem::exists(resolved))
-        throw InputError(resolved, "", "the picture of material '" + mtl.name + "' does not exist");
-    material.base_color_texture = read_picture(reading, resolved);
+    if (mtl.specular != Vec3(0)) {
+        material.brdf = Brdf::kMetallicRoughness;
+        material.roughness_factor = std::pow(2 / (mtl.exponent + 2), 0.25);
+        material.specular_color_factor = mtl.specular;
+    }
+    if (!mtl.texture.empty())
+        material.base_color_texture = read_picture(reading, picture_path(mtl, mtl.texture, folder));
+    if (!mtl.bump.empty()) {
+        std::shared_ptr<const Texture> map = read_numbers(reading, picture_path(mtl, mtl.bump, folder));
+        material.normal_texture.picture = mtl.is_normals ? map : normals_of_heights(*map, {});
+        material.normal_scale = mtl.bump_scale;
+    }
     return material;
 }
 

@@ -167,10 +167,13 @@ const std::vector<Field<Material>>& material_fields() {
             part<Material>("baseColorTexture", ref("texture")),
             setting("unlit", &Material::unlit, yes_or_no()),
             setting("metallicFactor", &Material::metallic_factor, ref("share")),
-            setting(
-                "roughnessFactor", &Material::roughness_factor, ref("share"),
-                "Of an object: 0: it is matt; else it is of glTF's metallic-roughness BRDF, which reflects "
-                "lights, not other objects. A polished surface is an optic."),
+            setting("roughnessFactor", &Material::roughness_factor, ref("share"),
+                    "Of an object: how dull its reflections of lights are; see 'brdf'."),
+            choice(
+                "brdf", &Material::brdf,
+                "object: byRoughness: lambert where roughnessFactor is 0; lambert: matt; metallicRoughness: "
+                "glTF's, which reflects lights, not other objects, and is polished at roughness 0. What "
+                "mirrors its surroundings is an optic."),
             part<Material>("metallicRoughnessTexture", ref("texture"),
                            "Factors: green of roughness, blue of metallic; numbers, not colours."),
             part<Material>("normalTexture", ref("texture"),

@@ -22,6 +22,7 @@ struct WrittenTexture {
     Pattern pattern = Pattern::kChecker;
     std::array<int, 2> count{8, 8};
     double line = 0.1;
+    bool heights = false;
 };
 
 }  // namespace
@@ -78,6 +79,8 @@ const std::vector<Field<WrittenTexture>>& texture_fields() {
                    choice("wrapS", &TextureSampler::wrap_s, "What lies left and right of the picture.")),
             within(&WrittenTexture::sampler,
                    choice("wrapT", &TextureSampler::wrap_t, "What lies above and below it.")),
+            setting("heights", &WrittenTexture::heights, yes_or_no(),
+                    "normalTexture: the picture holds heights; one of 1 is as high as a texel is wide."),
             with_default(part<WrittenTexture>("scale", ref("number"), "normalTexture: factor of its slopes."),
                          1),
             with_default(
@@ -182,6 +185,7 @@ PlacedTexture read_texture(const Node& node, Meaning meaning, Reading& reading) 
             if (node.has(key)) node[key].fail(std::string("'") + key + "' is of a pattern, not of a file");
         texture.picture = node.has("image") ? read_meant(node["file"], node["image"], meaning, reading)
                                             : read_meant(node["file"], meaning, reading);
+        if (written.heights) texture.picture = normals_of_heights(*texture.picture, texture.sampler);
         return texture;
     }
     if (node.has("image")) node["image"].fail("'image' is of a glTF, not of a pattern");
@@ -189,20 +193,49 @@ PlacedTexture read_texture(const Node& node, Meaning meaning, Reading& reading) 
     if (node.has("colors"))
         for (std::size_t k = 0; k < 2; ++k) colors[k] = to_vec3(node.json.at("colors").at(k));
     texture.picture = draw_pattern(written, colors);
+    if (written.heights) texture.picture = normals_of_heights(*texture.picture, texture.sampler);
     return texture;
 }
 
 PlacedTexture read_key(const Node& material, const char* key, Meaning meaning, Reading& reading) {
     if (!material.has(key)) return {};
     const Node node = material[key];
-    for (const auto& [own, of] :
-         {std::pair("scale", "normalTexture"), std::pair("strength", "occlusionTexture")})
+    for (const auto& [own, of] : {std::pair("scale", "normalTexture"), std::pair("heights", "normalTexture"),
+                                  std::pair("strength", "occlusionTexture")})
         if (node.json.is_object() && node.has(own) && std::string(key) != of)
             node[own].fail(std::string("'") + own + "' is of '" + of + "'");
     return read_texture(node, meaning, reading);
 }
 
 }  // namespace
+
+std::shared_ptr<const Texture> read_numbers(Reading& reading, const std::string& path) {
+    std::shared_ptr<const Texture> picture = read_picture(reading, path);
+    return holds_light(path) ? picture : as_stored(*picture);
+}
+
+std::shared_ptr<const Texture> normals_of_heights(const Texture& heights, const TextureSampler& wrap) {
+    const auto wrapped = [](int i, int size, Wrap how) {
+        if (how == Wrap::kRepeat) return (i + size) % size;
+        return std::clamp(i, 0, size - 1);  // of a mirrored picture the texel beyond the edge is that at it
+    };
+    const auto height = [&](int x, int y) {
+        const auto row = static_cast<std::size_t>(wrapped(y, heights.height, wrap.wrap_t));
+        const auto column = static_cast<std::size_t>(wrapped(x, heights.width, wrap.wrap_s));
+        const float* rgb = &heights.rgb[3 * (row * static_cast<std::size_t>(heights.width) + column)];
+        return dot(Vec3(rgb[0], rgb[1], rgb[2]), Vec3(0.2126, 0.7152, 0.0722));
+    };
+    auto normals = std::make_shared<Texture>();
+    normals->width = heights.width;
+    normals->height = heights.height;
+    for (int y = 0; y < heights.height; ++y)
+        for (int x = 0; x < heights.width; ++x) {
+            const Vec3 normal = normalize(Vec3((height(x - 1, y) - height(x + 1, y)) / 2,
+                                               (height(x, y + 1) - height(x, y - 1)) / 2, 1));
+            for (int k = 0; k < 3; ++k) normals->rgb.push_back(static_cast<float>((1 + normal[k]) / 2));
+        }
+    return normals;
+}
 
 PlacedTexture read_texture(const Node& material, const char* key, Reading& reading) {
     return read_key(material, key, Meaning::kColours, reading);

@@ -79,6 +79,11 @@ Material read_material(const Node& material, Reading& reading);
 PlacedTexture read_texture(const Node& material, const char* key, Reading& reading);
 /// The same of a picture of numbers: as the file holds them.
 PlacedTexture read_number_texture(const Node& material, const char* key, Reading& reading);
+/// The picture of a file of numbers, as the file holds them. Throws InputError(path) as read_picture.
+std::shared_ptr<const Texture> read_numbers(Reading& reading, const std::string& path);
+/// The normal map (rgb: half of 1 + the normal) of a picture of heights, its luminances: a height of 1 is as
+/// high as a texel is wide. Slopes are central differences.
+std::shared_ptr<const Texture> normals_of_heights(const Texture& heights, const TextureSampler& wrap);
 Mesh read_mesh(const Node& mesh, std::size_t index, Reading& reading);
 Primitive read_primitive(const Node& primitive, const Transform& transform, const Node& mesh);
 /// The polygons of an object's primitive, in its own frame.
