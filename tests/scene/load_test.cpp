@@ -151,3 +151,37 @@ TEST_CASE("a resolution is every optic's, or one's by its name", "[scene]") {
     CHECK_THROWS_AS(set_resolution(scene, 12, "wall"), UsageError);  // an object
     CHECK(scene.meshes[1].resolution == 12);
 }
+
+TEST_CASE("ripples and dimples as heights are normal maps that meet at their squares' borders",
+          "[scene][oracle]") {
+    const double kTurn = 2 * 3.14159265358979323846;
+    for (const std::string pattern : {"ripples", "dimples"}) {
+        const Scene scene = load_text(
+            kRoom, {{"/materials/2/normalTexture",
+                     R"({"pattern":")" + pattern + R"(","count":[4,2],"heights":true,"scale":20})"}});
+        const Material& material = scene.materials[2];
+        CHECK(material.normal_scale == 20);
+        const Texture& map = *material.normal_texture.picture;
+        REQUIRE((map.width == 1024 && map.height == 1024));
+        double worst = 0;
+        for (int y = 0; y < map.height; ++y)
+            for (int x = 0; x < map.width; ++x) {
+                const float* rgb = &map.rgb[3 * static_cast<std::size_t>(y * map.width + x)];
+                const Vec3 n = 2.0 * Vec3(rgb[0], rgb[1], rgb[2]) - Vec3(1);
+                // By hand: slopes by texel; rows run downward.
+                const double across = 4 * (x + 0.5) / 1024, down = 2 * (y + 0.5) / 1024;
+                Vec2 slope = -kTurn / 4 * Vec2(std::sin(kTurn * across), std::sin(kTurn * down));
+                if (pattern == "dimples") {
+                    const Vec2 at(2 * (across - std::floor(across)) - 1, 2 * (down - std::floor(down)) - 1);
+                    if (std::abs(length(at) - 1) < 0.02) continue;  // a bowl's rim is sharp
+                    slope = length(at) < 1 ? 4.0 * at : Vec2(0);
+                }
+                const Vec3 expected = normalize(Vec3(-slope.x * 4 / 1024, slope.y * 2 / 1024, 1));
+                worst = std::max(worst, length(n - expected));
+            }
+        INFO(pattern);
+        CHECK(worst < 1e-5);
+    }
+    CHECK(error_with("/materials/2/baseColorTexture", R"({"pattern":"ripples","heights":true})") ==
+          "room.json: /materials/2/baseColorTexture/heights: 'heights' is of 'normalTexture'");
+}

@@ -109,3 +109,23 @@ TEST_CASE("a metallic-roughness map is a factor: green of roughness, blue of met
     for (int k = 0; k < 3; ++k)
         CHECK(mapped.seen({0, 0, 1})[k] == Approx(plain.seen({0, 0, 1})[k]).epsilon(1e-6));
 }
+
+TEST_CASE("the white furnace: light from everywhere leaves matt and polished surfaces as it came",
+          "[shade][law]") {
+    Light ambient, environment;
+    environment.kind = EnvironmentLight{};
+    for (const Light& light : {ambient, environment})
+        for (const Brdf brdf : {Brdf::kLambert, Brdf::kMetallicRoughness}) {
+            MappedTriangle triangle({1, 0, 0}, {0, 1, 0}, light);
+            triangle.shading.background.color = Vec3(1);
+            prepare_lights(triangle.shading);
+            triangle.material().brdf = brdf;
+            triangle.material().metallic_factor = 1;
+            for (const Vec3& from : {Vec3(0, 0, 1), Vec3(0.6, 0, 0.8), Vec3(0.995, 0, 0.1)}) {
+                const Vec3 seen = triangle.seen(from);
+                INFO("environment " << std::holds_alternative<EnvironmentLight>(light.kind) << ", BRDF "
+                                    << name_of(brdf));
+                CHECK(seen.x == Approx(light.intensity).epsilon(brdf == Brdf::kLambert ? 0.02 : 1e-9));
+            }
+        }
+}

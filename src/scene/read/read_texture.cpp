@@ -13,7 +13,9 @@ constexpr int kPatternTexels = 1024;  // along a pattern's side, or somewhat mor
 
 /// Pictures that need no file. kChecker: squares of two colours in turn. kGrid: lines of the second colour
 /// along the borders of squares of the first. kRamp: from the first on the left to the second on the right.
-enum class Pattern { kChecker, kGrid, kRamp };
+/// kRipples: waves across and down, one a square; kDimples: a round bowl in each square. Both from the first
+/// colour, lowest, to the second, and without a step from square to square.
+enum class Pattern { kChecker, kGrid, kRamp, kRipples, kDimples };
 
 /// A texture as the scene writes it.
 struct WrittenTexture {
@@ -29,9 +31,10 @@ struct WrittenTexture {
 
 template <>
 struct EnumNames<Pattern> {
-    static constexpr std::array kTable{NamedValue<Pattern>{Pattern::kChecker, "checker"},
-                                       NamedValue<Pattern>{Pattern::kGrid, "grid"},
-                                       NamedValue<Pattern>{Pattern::kRamp, "ramp"}};
+    static constexpr std::array kTable{
+        NamedValue<Pattern>{Pattern::kChecker, "checker"}, NamedValue<Pattern>{Pattern::kGrid, "grid"},
+        NamedValue<Pattern>{Pattern::kRamp, "ramp"}, NamedValue<Pattern>{Pattern::kRipples, "ripples"},
+        NamedValue<Pattern>{Pattern::kDimples, "dimples"}};
 };
 
 namespace {
@@ -59,7 +62,7 @@ const std::vector<Field<WrittenTexture>>& texture_fields() {
     static const std::vector<Field<WrittenTexture>> fields = [] {
         const Json counts = several(2, whole_in(1, kPatternTexels));
         Field<WrittenTexture> count =
-            part<WrittenTexture>("count", counts, "Squares across and down, of a checker or a grid.");
+            part<WrittenTexture>("count", counts, "Squares across and down, of all but a ramp.");
         count.schema["default"] = {8, 8};
         count.read = [](const Json& json, WrittenTexture& into) {
             into.count = json.get<std::array<int, 2>>();
@@ -94,6 +97,14 @@ const std::vector<Field<WrittenTexture>>& texture_fields() {
     return fields;
 }
 
+/// How high a pattern of heights is at a place, 0..1; both in squares.
+double pattern_height(Pattern pattern, double across, double down) {
+    constexpr double kTurn = 2 * 3.14159265358979323846;
+    if (pattern == Pattern::kRipples) return (2 + std::cos(kTurn * across) + std::cos(kTurn * down)) / 4;
+    const double x = 2 * (across - std::floor(across)) - 1, y = 2 * (down - std::floor(down)) - 1;
+    return std::min(x * x + y * y, 1.0);
+}
+
 std::shared_ptr<const Texture> draw_pattern(const WrittenTexture& written,
                                             const std::array<Vec3, 2>& colors) {
     const auto [columns, rows] = written.count;
@@ -112,6 +123,8 @@ std::shared_ptr<const Texture> draw_pattern(const WrittenTexture& written,
                 second = u;
             else if (written.pattern == Pattern::kGrid)
                 second = on_line(across) || on_line(down);
+            else if (written.pattern != Pattern::kChecker)
+                second = pattern_height(written.pattern, across, down);
             else
                 second = (static_cast<int>(across) + static_cast<int>(down)) % 2;
             const Vec3 color = (1 - second) * colors[0] + second * colors[1];
