@@ -130,6 +130,7 @@ def main():
     parser.add_argument("--trilens", required=True)
     parser.add_argument("--headers", type=pathlib.Path, default=SOURCE / "build/release/include")
     parser.add_argument("--python", type=pathlib.Path, default=SOURCE / "build/release/python")
+    parser.add_argument("--draft", action="store_true", help="small pictures")
     parser.add_argument("out", type=pathlib.Path)
     asked = parser.parse_args()
     out = asked.out
@@ -137,7 +138,7 @@ def main():
     for file in out.rglob("*.md"):
         file.unlink()
     out.mkdir(parents=True, exist_ok=True)
-    program = Program(asked.trilens, out / "pictures")
+    program = Program(asked.trilens, out / "pictures", asked.draft)
     copy_pages(out)
     write_commands(program, out)
     write_scene_pages(program, out)

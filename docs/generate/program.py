@@ -20,20 +20,31 @@ def without_comments(text):
 
 
 class Program:
-    """The trilens that the pages tell of, and the pictures that it draws."""
+    """The trilens that the pages tell of, and the pictures that it draws; of a draft small ones, to see that they can be."""
 
-    def __init__(self, path, pictures):
-        self.path, self.pictures = path, pictures
+    def __init__(self, path, pictures, draft=False):
+        self.path, self.pictures, self.draft = path, pictures, draft
         self.drawn = 0
         pictures.mkdir(parents=True, exist_ok=True)
 
     def text(self, *words):
         return subprocess.run([self.path, *words], check=True, capture_output=True, text=True).stdout
 
+    @staticmethod
+    def small(words):
+        """The same picture with a quarter of the rows and columns and one sample a pixel."""
+        size = words[words.index("--size") + 1] if "--size" in words else "320x240"
+        quarter = "x".join(str(max(int(side) // 4, 1)) for side in size.split("x"))
+        kept = [word for i, word in enumerate(words)
+                if word not in ("--size", "--spp") and (i == 0 or words[i - 1] not in ("--size", "--spp"))]
+        return (*kept, "--size", quarter, "--spp", "1")
+
     def draw(self, name, scene, *words):
         """pictures/name.png of a scene: a file, or its text. Drawn again where scene, words or program are newer."""
         target, asked = self.pictures / f"{name}.png", self.pictures / f"{name}.asked"
         text = scene.read_text() if isinstance(scene, pathlib.Path) else scene
+        if self.draft:
+            words = self.small(words)
         wish = "\n".join([*words, text])
         library = pathlib.Path(self.path).resolve()
         if not (target.exists() and asked.exists() and asked.read_text() == wish
