@@ -10,10 +10,6 @@ namespace {
 
 /// Footprints are no wider than this share of the scene.
 constexpr double kWidestFootprint = 0.25;
-/// Rays that meet an object this near to where they meet the receiver's plane come to the receiver: a share
-/// of the scene's size.
-constexpr double kSamePlace = 1e-6;
-
 /// A smooth surface's normal makes light at grazing no brighter than so.
 constexpr double kMostTurned = 10;
 
@@ -120,19 +116,24 @@ constexpr double kExact = 1e-11;
 
 bool is_known(const std::vector<ExactArrival>& known, const ExactArrival& one) {
     for (const ExactArrival& other : known)
-        if (other.path.same_history(one.path) && length(other.place - one.place) < kSameArrival) return true;
+        if (other.single.path.same_history(one.single.path) && length(other.place - one.place) < kSameArrival)
+            return true;
     return false;
 }
 
 }  // namespace
 
-/// Whether nothing stands between.
+/// Whether nothing stands in its way.
 bool BeamLight::comes(const ExactArrival& arrival, const Receiver& receiver) const {
-    const double far = length(receiver.point - arrival.path.ray.origin);
-    if (arrival.path.optic < (1 - kSamePlace) * far) return false;
+    const SinglePath& single = arrival.single;
+    const double far = length(receiver.point - single.path.ray.origin);
     Segments way;
-    way.add(receiver.lifted, (1 - kSamePlace) * (arrival.path.ray.origin - receiver.lifted));
-    return space_.objects->occluded(way) == 0;
+    way.add(receiver.lifted, (1 - kSamePlace) * (single.path.ray.origin - receiver.lifted));
+    if (space_.objects->occluded(way)) return false;
+    const auto next =
+        next_optic(*space_.optics, {single.path.ray, single.path.steps.back().optic, single.media});
+    if (next && next->distance < (1 - kSamePlace) * far) return false;
+    return is_free(space_, arrival.from, single);
 }
 
 std::vector<ExactArrival> BeamLight::exact_arrivals(const Receiver& receiver) const {
@@ -166,13 +167,13 @@ std::vector<ExactArrival> BeamLight::exact_arrivals(const Receiver& receiver) co
 Vec3 BeamLight::exact_irradiance(const Receiver& receiver) const {
     Vec3 sum(0);
     for (const ExactArrival& arrival : exact_arrivals(receiver)) {
-        const double cosine = -dot(receiver.shading_normal, arrival.path.ray.direction),
-                     geometric = -dot(receiver.normal, arrival.path.ray.direction);
+        const double cosine = -dot(receiver.shading_normal, arrival.single.path.ray.direction),
+                     geometric = -dot(receiver.normal, arrival.single.path.ray.direction);
         if (!(cosine > 0)) continue;
         sum += arrival.density * std::min(cosine / geometric, kMostTurned) *
-               body_transmittance(*space_.optics, arrival.path.medium,
-                                  length(receiver.point - arrival.path.ray.origin)) *
-               arrival.path.light;
+               body_transmittance(*space_.optics, arrival.single.path.medium,
+                                  length(receiver.point - arrival.single.path.ray.origin)) *
+               arrival.single.path.light;
     }
     return sum;
 }

@@ -246,8 +246,7 @@ void add_beams(const BeamGrid& grid, Beams& beams) {
 std::vector<Vec3> Beams::flux_by_history() const {
     std::vector<Vec3> flux(histories.size(), Vec3(0));
     for (const LightBeam& beam : beams)
-        flux[beam.history] +=
-            beam.measure / 3 * (ends[beam.end[0]].light + ends[beam.end[1]].light + ends[beam.end[2]].light);
+        flux[beam.history] += beam_integral(*this, beam, [](const BeamEnd& end) { return end.light; });
     return flux;
 }
 

@@ -34,18 +34,16 @@ std::optional<Mat2> affine(const std::array<Vec2, 3>& places, const FallenBeam& 
 
 }  // namespace
 
-std::optional<Vec2> ExactMap::fall(const Vec2& place, const ReceiverPlane& plane, LightPath* path) const {
-    LightPaths found = light_paths(space, source, window.ray(place), like.steps.front().optic);
-    for (LightPath& one : found.paths) {
-        if (!one.same_history(like)) continue;
-        const double falls = -dot(one.ray.direction, plane.normal);
-        const double t = dot(one.ray.origin - plane.point, plane.normal) / falls;
-        if (!(falls > 0) || !(t >= 0)) return std::nullopt;
-        const Vec2 at = plane.at(one.ray.origin + t * one.ray.direction);
-        if (path) *path = std::move(one);
-        return at;
-    }
-    return std::nullopt;
+std::optional<Vec2> ExactMap::fall(const Vec2& place, const ReceiverPlane& plane, SinglePath* single) const {
+    std::optional<SinglePath> found = follow_history(space, source, window.ray(place), like);
+    if (!found) return std::nullopt;
+    const Ray& ray = found->path.ray;
+    const double falls = -dot(ray.direction, plane.normal);
+    const double t = dot(ray.origin - plane.point, plane.normal) / falls;
+    if (!(falls > 0) || !(t >= 0)) return std::nullopt;
+    const Vec2 at = plane.at(ray.origin + t * ray.direction);
+    if (single) *single = std::move(*found);
+    return at;
 }
 
 std::optional<ExactArrival> ExactMap::arrive(const std::array<Vec2, 3>& places, const FallenBeam& fallen,
@@ -58,8 +56,8 @@ std::optional<ExactArrival> ExactMap::arrive(const std::array<Vec2, 3>& places, 
     for (const Vec2& corner : places) reach = std::max(reach, length(corner - middle));
     if (length(place - middle) > kFarStart * reach) return std::nullopt;
 
-    LightPath path;
-    std::optional<Vec2> off = fall(place, plane, &path);
+    SinglePath single;
+    std::optional<Vec2> off = fall(place, plane, &single);
     for (int i = 0; i < kNewtonSteps; ++i) {
         if (!off) return std::nullopt;
         if (length(*off) < tolerance) break;
@@ -72,7 +70,7 @@ std::optional<ExactArrival> ExactMap::arrive(const std::array<Vec2, 3>& places, 
         if (length(step) > reach) step *= reach / length(step);
         std::optional<Vec2> next;
         for (int half = 0; half < 6; ++half, step *= 0.5) {
-            next = fall(place + step, plane, &path);
+            next = fall(place + step, plane, &single);
             if (next && length(*next) < 2 * length(*off)) break;
         }
         place += step;
@@ -84,7 +82,7 @@ std::optional<ExactArrival> ExactMap::arrive(const std::array<Vec2, 3>& places, 
     if (!by_place) return std::nullopt;
     const double spread = std::fabs(glm::determinant(*by_place)) * plane.unit_area;
     if (!(spread > 0)) return std::nullopt;
-    return ExactArrival{place, std::move(path), window.density(place) / spread};
+    return ExactArrival{place, window.ray(place), std::move(single), window.density(place) / spread};
 }
 
 }  // namespace trilens

@@ -11,7 +11,8 @@ namespace trilens {
 /// A path that meets a receiver's point to rounding.
 struct ExactArrival {
     Vec2 place{0};  // on the light's window
-    LightPath path;
+    Ray from;       // its ray there
+    SinglePath single;
     double density = 0;  // of the light's film per world area of the receiver's plane
 };
 
@@ -23,7 +24,8 @@ struct ExactMap {
     const LightPath& like;  // its history
 
     /// Where the light from a place falls on the plane; none where the history is not, or goes away from it.
-    std::optional<Vec2> fall(const Vec2& place, const ReceiverPlane& plane, LightPath* path = nullptr) const;
+    std::optional<Vec2> fall(const Vec2& place, const ReceiverPlane& plane,
+                             SinglePath* single = nullptr) const;
 
     /// From places near a triangle of a beam, whose affine map is the first derivative; none where Newton's
     /// method finds none. `tolerance`: on the plane, world units.

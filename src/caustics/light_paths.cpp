@@ -53,4 +53,54 @@ LightPaths light_paths(const LightSpace& space, const BeamSource& source, const 
     return found;
 }
 
+namespace {
+
+/// The way of a step that this colour takes; null: there is none.
+const Branch* branch_of(const std::vector<Branch>& ways, const Step& step, Colours colours) {
+    for (const Branch& way : ways)
+        if (way.step == step && (way.colours == kAllColours || way.colours == colours)) return &way;
+    return nullptr;
+}
+
+}  // namespace
+
+std::optional<SinglePath> follow_history(const LightSpace& space, const BeamSource& source, const Ray& ray,
+                                         const LightPath& like) {
+    const PathWorld& world = *space.optics;
+    LeavingRay leaving{ray, kNone, space.around ? space.around(ray) : Media{}};
+    SinglePath single;
+    LightPath& path = single.path;
+    path.light = source.strength(ray.direction);
+    for (const Step& step : like.steps) {
+        const std::optional<NextOptic> met = next_optic(world, leaving);
+        if (!met || met->meeting.optic != step.optic) return std::nullopt;
+        path.light *= body_transmittance(world, active_medium(world, leaving.media), met->distance);
+        if (path.steps.empty()) path.arriving = path.light;
+        const std::vector<Branch> ways = branches(world, met->meeting, leaving.media, path.colours);
+        const Branch* way = branch_of(ways, step, like.colours);
+        if (!way) return std::nullopt;
+        path.steps.push_back(step);
+        path.colours = way->colours;
+        path.light *= way->weight;
+        single.corners.push_back(met->meeting.point);
+        leaving = {{met->meeting.point, way->direction}, step.optic, way->media};
+    }
+    path.ray = leaving.ray;
+    path.medium = active_medium(world, leaving.media);
+    single.media = leaving.media;
+    if (!path.same_history(like)) return std::nullopt;
+    return single;
+}
+
+bool is_free(const LightSpace& space, const Ray& ray, const SinglePath& single) {
+    Vec3 from = ray.origin;
+    for (const Vec3& to : single.corners) {
+        Segments way;
+        way.add(to, (1 - kSamePlace) * (from - to));
+        if (space.objects->occluded(way)) return false;
+        from = to;
+    }
+    return true;
+}
+
 }  // namespace trilens

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "caustics/light_window.h"
@@ -46,5 +47,23 @@ struct LightPaths {
 
 /// All paths of the light's ray whose first optic is `first`. Opaque objects end them.
 LightPaths light_paths(const LightSpace& space, const BeamSource& source, const Ray& ray, Id first);
+
+/// One path of the light's ray, followed by itself.
+struct SinglePath {
+    LightPath path;             // `optic` and `object` are not known
+    std::vector<Vec3> corners;  // where it met optics
+    Media media;                // that its last stretch is inside of
+};
+
+/// The path that has the history of `like`, however faint; none where the ray goes another way. Objects on
+/// its way are not asked.
+std::optional<SinglePath> follow_history(const LightSpace& space, const BeamSource& source, const Ray& ray,
+                                         const LightPath& like);
+
+/// Whether no object stands on the way from the ray's origin over the optics up to the last of them.
+bool is_free(const LightSpace& space, const Ray& ray, const SinglePath& single);
+
+/// Things this near to each other are at the same place: a share of the scene's size, or of a way.
+inline constexpr double kSamePlace = 1e-6;
 
 }  // namespace trilens

@@ -260,3 +260,90 @@ TEST_CASE("a moving lamp's light behind a lens neither flickers nor is lost", "[
     for (std::size_t i = 2; i < shares.size(); ++i)
         CHECK(std::fabs(shares[i] - 2 * shares[i - 1] + shares[i - 2]) < 2e-3 * shares[i]);
 }
+
+TEST_CASE("light through a flat slab has the density of Snell's law", "[laws][law][caustics]") {
+    constexpr double kTop = 1.5, kBottom = 1, kLampHeight = 4, kIndex = 1.5;
+    const LitWorld lit(lit_world(R"({"name": "slab", "role": "optic", "material": "glass", "resolution": 4,
+        "subdivisionScheme": "bilinear",
+        "points": [[-4,1,-4],[4,1,-4],[4,1,4],[-4,1,4],[-4,1.5,-4],[4,1.5,-4],[4,1.5,4],[-4,1.5,4]],
+        "faceVertexCounts": [4,4,4,4,4,4],
+        "faceVertexIndices": [0,1,2,3, 4,7,6,5, 0,4,5,1, 1,5,6,2, 2,6,7,3, 3,7,4,0]})",
+                                 R"({"type": "point", "position": [0, 4, 0], "intensity": 10, "caustics": true})"),
+                       {.first_cells = 12});
+    std::size_t compared = 0;
+    for (const double angle : {0.1, 0.2, 0.3, 0.45, 0.6}) {
+        const double inner = std::asin(std::sin(angle) / kIndex), air = kLampHeight - (kTop - kBottom);
+        const double radius = air * std::tan(angle) + (kTop - kBottom) * std::tan(inner);
+        const double inner_by_angle = std::cos(angle) / (kIndex * std::cos(inner));
+        const double radius_by_angle = air / std::pow(std::cos(angle), 2) +
+                                       (kTop - kBottom) * inner_by_angle / std::pow(std::cos(inner), 2);
+        for (const ExactArrival& arrival :
+             lit.light().exact_arrivals(on_floor(radius * std::cos(1.0), radius * std::sin(1.0)))) {
+            if (arrival.single.path.steps.size() != 2) continue;
+            ++compared;
+            CHECK(arrival.density == Approx(std::sin(angle) / (radius * radius_by_angle)).epsilon(1e-6));
+        }
+    }
+    CHECK(compared == 5);
+}
+
+TEST_CASE("a mirror ball's light is at Alhazen's point", "[laws][law][caustics]") {
+    // The lamp stands above the ball's middle, so that all is in one plane: the point of reflection at angle
+    // a from the top has the normal between both ways.
+    const LitWorld lit(lit_world(R"({"name": "ball", "role": "optic", "material": "mirror", "resolution": 8,
+        "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.8}})",
+                                 R"({"type": "point", "position": [0, 4, 0], "intensity": 10})"));
+    const auto landing = [](double a) {
+        const Vec2 at(0.8 * std::sin(a), 1 + 0.8 * std::cos(a)), normal(std::sin(a), std::cos(a));
+        const Vec2 in = glm::normalize(at - Vec2(0, 4));
+        const Vec2 out = in - 2 * glm::dot(in, normal) * normal;
+        return at.x - at.y / out.y * out.x;
+    };
+    const auto angle_at_lamp = [](double a) {
+        return std::atan2(0.8 * std::sin(a), 3 - 0.8 * std::cos(a));
+    };
+    for (const double a : {1.0, 1.1, 1.2, 1.25}) {
+        constexpr double kStep = 1e-5;
+        const double radius = landing(a);
+        if (!(radius > 0 && radius < 5.5)) continue;
+        const double by_a = (landing(a + kStep) - landing(a - kStep)) / (2 * kStep),
+                     lamp_by_a = (angle_at_lamp(a + kStep) - angle_at_lamp(a - kStep)) / (2 * kStep);
+        const double expected = std::sin(angle_at_lamp(a)) * lamp_by_a / (radius * std::fabs(by_a));
+        const auto arrivals =
+            lit.light().exact_arrivals(on_floor(radius * std::cos(0.7), radius * std::sin(0.7)));
+        CAPTURE(a, radius);
+        REQUIRE(arrivals.size() == 1);
+        CHECK(arrivals[0].density == Approx(expected).epsilon(1e-5));
+        CHECK(length(arrivals[0].single.path.ray.origin - Vec3(0, 1, 0)) == Approx(0.8).epsilon(1e-9));
+        CHECK(arrivals[0].single.path.ray.origin.y == Approx(1 + 0.8 * std::cos(a)).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("sphere lights and backgrounds send their light to optics", "[laws][law][caustics]") {
+    const std::string ball = R"({"name": "ball", "role": "optic", "material": "mirror", "resolution": 8,
+        "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.8}})";
+    const auto arriving = [&](const std::string& light) {
+        const LitWorld lit(lit_world(ball, light), {.first_cells = 12});
+        Vec3 sum(0);
+        for (const auto& one : lit.lights) sum += one->beams().flux_arriving();
+        return sum.y;
+    };
+    constexpr double kPi = 3.14159265358979;
+    const double sine2 = 0.8 * 0.8 / 18, solid_angle = 2 * kPi * (1 - std::sqrt(1 - sine2));
+    CHECK(arriving(R"({"type": "sphere", "position": [0, 4, 3], "radius": 0.01, "intensity": 100, "samples": 48,
+        "visible": false})") == Approx(100 * kPi * 1e-4 * solid_angle).epsilon(0.02));
+    // A white sky lights a floor as Lambert has it, and its other half shines from below.
+    Light sky;
+    sky.intensity = 2;
+    sky.kind = EnvironmentLight{.samples = 32};
+    double from_above = 0, from_below = 0;
+    Background white;
+    white.color = Vec3(1);
+    for (const BeamSource& source : beam_sources(sky, white)) {
+        CHECK(source.is_parallel);
+        const double light = source.strength(source.direction).y * source.direction.y;
+        (light < 0 ? from_above : from_below) += std::fabs(light);
+    }
+    CHECK(from_above == Approx(2 * kPi).epsilon(0.01));
+    CHECK(from_below == Approx(2 * kPi).epsilon(0.01));
+}

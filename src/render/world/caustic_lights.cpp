@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/math/box.h"
 #include "base/util/error.h"
@@ -62,24 +63,74 @@ BeamSource sample_source(const Light& light, const Kind& kind, std::size_t sampl
 
 }  // namespace
 
-std::vector<BeamSource> beam_sources(const Light& light) {
+namespace {
+
+/// A part of a sphere light around a point of it, which shines outward as a flat one does: points of equal
+/// areas on a spiral. Source: Gonzalez, Measurement of Areas on a Sphere Using Fibonacci and
+/// Latitude-Longitude Lattices, 2010.
+BeamSource sphere_part(const Light& light, const SphereLight& sphere, std::size_t part) {
+    constexpr double kPi = std::numbers::pi;
+    const double golden_angle = kPi * (3 - std::sqrt(5.0));
+    const double height = 1 - (2 * static_cast<double>(part) + 1) / sphere.samples;
+    const double across = std::sqrt(1 - height * height), turn = golden_angle * static_cast<double>(part);
+    const Vec3 outward(across * std::cos(turn), height, across * std::sin(turn));
+    const double area = 4 * kPi * sphere.radius * sphere.radius / sphere.samples;
+    BeamSource source;
+    source.position = sphere.position + sphere.radius * outward;
+    source.strength = [outward, light = area * light.intensity * light.color](const Vec3& direction) {
+        return std::max(0.0, dot(outward, direction)) * light;
+    };
+    return source;
+}
+
+std::vector<BeamSource> background_sources(const Light& light, const EnvironmentSamples& samples) {
     std::vector<BeamSource> sources;
-    std::visit(
-        [&](const auto& kind) {
-            using Kind = std::decay_t<decltype(kind)>;
-            std::size_t count = 0;
-            if constexpr (std::is_same_v<Kind, DirectionalLight>)
-                count = kind.angle > 0 ? static_cast<std::size_t>(kind.samples) : 1;
-            else if constexpr (std::is_same_v<Kind, PointLight> || std::is_same_v<Kind, SpotLight>)
-                count = 1;
-            else if constexpr (std::is_same_v<Kind, RectangleLight> || std::is_same_v<Kind, DiskLight>)
-                count = static_cast<std::size_t>(kind.samples);
-            if constexpr (!std::is_same_v<Kind, AmbientLight> && !std::is_same_v<Kind, EnvironmentLight> &&
-                          !std::is_same_v<Kind, SphereLight>)
-                for (std::size_t k = 0; k < count; ++k) sources.push_back(sample_source(light, kind, k));
-        },
-        light.kind);
+    for (std::size_t i = 0; i < samples.toward.size(); ++i) {
+        BeamSource source;
+        source.is_parallel = true;
+        source.direction = -samples.toward[i];
+        source.strength = [strength = light.intensity * samples.irradiance[i] * light.color](const Vec3&) {
+            return strength;
+        };
+        sources.push_back(std::move(source));
+    }
     return sources;
+}
+
+std::vector<BeamSource> sources_of(const Light& light, const Background&, const DirectionalLight& kind) {
+    std::vector<BeamSource> sources;
+    const int count = kind.angle > 0 ? kind.samples : 1;
+    for (int k = 0; k < count; ++k)
+        sources.push_back(sample_source(light, kind, static_cast<std::size_t>(k)));
+    return sources;
+}
+template <typename Kind>
+std::vector<BeamSource> sources_of(const Light& light, const Background&, const Kind& kind) {
+    std::vector<BeamSource> sources;
+    int count = 1;
+    if constexpr (requires { kind.samples; }) count = kind.samples;
+    for (int k = 0; k < count; ++k)
+        sources.push_back(sample_source(light, kind, static_cast<std::size_t>(k)));
+    return sources;
+}
+std::vector<BeamSource> sources_of(const Light& light, const Background&, const SphereLight& kind) {
+    std::vector<BeamSource> sources;
+    for (int k = 0; k < kind.samples; ++k)
+        sources.push_back(sphere_part(light, kind, static_cast<std::size_t>(k)));
+    return sources;
+}
+std::vector<BeamSource> sources_of(const Light& light, const Background& background,
+                                   const EnvironmentLight& kind) {
+    return background_sources(light, environment_samples(background, kind.samples));
+}
+std::vector<BeamSource> sources_of(const Light&, const Background&, const AmbientLight&) {
+    return {};
+}
+
+}  // namespace
+
+std::vector<BeamSource> beam_sources(const Light& light, const Background& background) {
+    return std::visit([&](const auto& kind) { return sources_of(light, background, kind); }, light.kind);
 }
 
 bool has_caustics(const World& world) {
@@ -96,10 +147,10 @@ PathWorld optics_for_lights(const World& world) {
 std::vector<std::unique_ptr<BeamLight>> make_beam_lights(const World& world, const PathWorld& optics,
                                                          std::size_t light, const BeamGridParams& params,
                                                          const Progress& progress) {
-    const std::vector<BeamSource> sources = beam_sources(world.scene.lights[light]);
+    const std::vector<BeamSource> sources = beam_sources(world.scene.lights[light], world.scene.background);
     if (sources.empty())
         throw UsageError("light " + std::to_string(light) + " is " + kind_name(world.scene.lights[light]) +
-                         ": only directional, point, spot, rectangle and disk lights have caustics");
+                         ", which has no caustics");
     std::vector<std::vector<Vec3>> outlines;
     std::vector<Id> bodies;
     for (std::size_t i = 0; i < world.optics.size(); ++i) {

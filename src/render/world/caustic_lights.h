@@ -16,9 +16,9 @@ struct CausticLights {
     std::vector<std::vector<std::unique_ptr<BeamLight>>> by_light;  // its samples'; none: it is not followed
 };
 
-/// The light as sources whose rays start in a point or are parallel: its samples; none for other kinds than
-/// directional, point, spot, rectangle and disk.
-std::vector<BeamSource> beam_sources(const Light& light);
+/// The light as sources whose rays start in a point or are parallel: its samples, of a sphere parts of its
+/// surface; none for ambient light. `background`: what an environment's light is of.
+std::vector<BeamSource> beam_sources(const Light& light, const Background& background);
 
 /// Whether any light is followed over optics.
 bool has_caustics(const World& world);
