@@ -326,7 +326,7 @@ void bind_line_drawing(py::module_& module, RendererClass& renderer) {
             PythonCall call(py::none(), warn);
             const FrameParams frame =
                 FacetArguments{rays, std::nullopt, grid}.of(frame_params(self, resolution, camera));
-            return call.run([&] { return self.draw_lines(frame, {wire, folds, caustics}, call.warner()); });
+            return call.run([&] { return self.draw_lines(frame, {wire, folds, caustics, false}, call.warner()); });
         },
         py::arg("resolution") = 0, py::arg("camera") = py::none(), py::kw_only(), py::arg("wire") = false,
         py::arg("folds") = false, py::arg("caustics") = false, py::arg("rays") = py::none(),

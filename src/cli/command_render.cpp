@@ -118,7 +118,7 @@ Answer run_vector(const RenderOptions& options, const std::string& format, const
     frame.camera = camera;
     const bool is_obj = format == "obj";
     const LineDrawing drawing =
-        renderer.draw_lines(frame, {options.wire, options.folds || is_obj, is_obj}, console.warner());
+        renderer.draw_lines(frame, {options.wire, options.folds || is_obj, is_obj, false}, console.warner());
     Answer answer = write_output(options.output, is_obj ? drawing.obj : drawing.svg, console);
     answer.fields.update(
         drawing_fields(renderer.scene().film, {options.wire, options.folds, is_obj}, drawing));

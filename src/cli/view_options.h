@@ -11,10 +11,11 @@ namespace trilens {
 
 struct ViewOptions {
     SceneOptions scene;
-    std::string script;       // a file of steps, or "-"; empty: none
-    std::string screenshot;   // PNG of the window at the end
-    std::string window_size;  // "1280x800"
-    bool window = false;      // the script runs in a window, too
+    std::string script;          // a file of steps, or "-"; empty: none
+    std::string screenshot;      // PNG of the window at the end
+    std::string window_size;     // "1280x800"
+    std::string display_server;  // HOST:PORT; empty: none
+    bool window = false;         // the script runs in a window, too
 };
 
 /// The command, with what it does.

@@ -5,10 +5,12 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <initializer_list>
 #include <memory>
 #include <system_error>
 #include <type_traits>
@@ -19,7 +21,16 @@
 namespace trilens {
 namespace {
 
-enum Operation : std::uint8_t { kCreateImage = 4, kUpdateImage = 6 };
+enum Operation : std::uint8_t { kCreateImage = 4, kUpdateImage = 6, kVectorGraphics = 8 };
+
+/// Of VectorGraphics, each followed by its floats.
+enum VectorCommand : std::uint8_t {
+    kStrokeColour = 4,
+    kStroke = 5,
+    kBeginPath = 6,
+    kMoveTo = 10,
+    kLineTo = 11
+};
 
 constexpr int kPatience = 10;  // seconds that a viewer may take no bytes
 
@@ -152,6 +163,30 @@ DisplayMessage update_image_message(const std::string& name, const std::vector<C
     return message.finish();
 }
 
+DisplayMessage vector_graphics_message(const std::string& name, const std::vector<DisplayLine>& lines) {
+    std::int32_t commands = 0;
+    for (const DisplayLine& line : lines)
+        if (line.points.size() > 1) commands += static_cast<std::int32_t>(line.points.size()) + 3;
+    Writer message(kVectorGraphics);
+    message.put_flag(false);
+    message.put_text(name);
+    message.put_flag(false);  // instead of those before
+    message.put(commands);
+    const auto put = [&](VectorCommand command, std::initializer_list<double> numbers) {
+        message.put(static_cast<std::uint8_t>(command));
+        for (const double number : numbers) message.put(static_cast<float>(number));
+    };
+    for (const DisplayLine& line : lines) {
+        if (line.points.size() < 2) continue;
+        put(kStrokeColour, {line.colour.x, line.colour.y, line.colour.z, 1});
+        put(kBeginPath, {});
+        for (const Vec2& point : line.points)
+            put(&point == &line.points.front() ? kMoveTo : kLineTo, {point.x, point.y});
+        put(kStroke, {});
+    }
+    return message.finish();
+}
+
 DisplayServer::DisplayServer(const std::string& address, Warn warn)
     : address_(address), warn_(std::move(warn)), socket_(connect_to(address)) {}
 
@@ -181,6 +216,30 @@ bool DisplayServer::send(std::span<const std::uint8_t> bytes) {
 bool DisplayServer::show(const std::string& name, const Image& image) {
     return send(create_image_message(name, image)) &&
            send(update_image_message(name, image.channels, {0, image.data_height, image.data_width}));
+}
+
+bool DisplayServer::update(const std::string& name, const Image& image) {
+    constexpr int kRows = 64;
+    const auto width = static_cast<std::size_t>(image.data_width);
+    for (int y = 0; y < image.data_height && socket_ >= 0; y += kRows) {
+        const int rows = std::min(kRows, image.data_height - y);
+        const std::size_t first = static_cast<std::size_t>(y) * width,
+                          count = static_cast<std::size_t>(rows) * width;
+        std::vector<Channel> strip;
+        for (const Channel* channel : float_channels(image.channels)) {
+            const auto& values = channel->floats();
+            strip.push_back(
+                {channel->name,
+                 std::vector<float>(values.begin() + static_cast<std::ptrdiff_t>(first),
+                                    values.begin() + static_cast<std::ptrdiff_t>(first + count))});
+        }
+        send(update_image_message(name, strip, {y, rows, image.data_width}));
+    }
+    return socket_ >= 0;
+}
+
+bool DisplayServer::show_lines(const std::string& name, const std::vector<DisplayLine>& lines) {
+    return send(vector_graphics_message(name, lines));
 }
 
 StripSink DisplayServer::sink(const std::string& name) {

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "base/image/image.h"
+#include "base/math/vec.h"
 #include "base/util/progress.h"
 
 namespace trilens {
 
 /// The bytes of one message. Each is its own length (uint32, itself included), an operation, and what goes
 /// with it; numbers are little-endian, texts end with a zero byte. After src/Ipc.cpp of tev
-/// (https://github.com/Tom94/tev), operations CreateImage (4) and UpdateImageV3 (6).
+/// (https://github.com/Tom94/tev), operations CreateImage (4), UpdateImageV3 (6) and VectorGraphics (8).
 using DisplayMessage = std::vector<std::uint8_t>;
 
 /// Makes an empty picture of that name with the size of the layout's data window and its channels of floats,
@@ -29,6 +30,17 @@ struct DisplayRows {
 DisplayMessage update_image_message(const std::string& name, const std::vector<Channel>& channels,
                                     const DisplayRows& where);
 
+/// A polyline over a picture: pixels from its top left, colour in 0..1.
+struct DisplayLine {
+    std::vector<Vec2> points;
+    Vec3 colour{1};
+};
+
+/// Lines over the picture, instead of those that it has: operation VectorGraphics (8), for each line a
+/// colour, a path and its stroke (commands 4, 6, 10, 11 and 5 of tev's include/tev/VectorGraphics.h).
+/// Lines of fewer than two points are left out.
+DisplayMessage vector_graphics_message(const std::string& name, const std::vector<DisplayLine>& lines);
+
 /// A connection to a viewer. Channels of ids are not sent: the viewer knows floats alone.
 class DisplayServer {
   public:
@@ -42,6 +54,16 @@ class DisplayServer {
 
     /// Shows a picture that is there. Returns whether the viewer has taken it.
     bool show(const std::string& name, const Image& image);
+
+    /// Puts a picture in the place of the one of that name, which has its size and channels, in strips: the
+    /// viewer goes on showing what it shows. Returns whether the viewer has taken all of it.
+    bool update(const std::string& name, const Image& image);
+
+    /// Draws lines over the picture of that name, instead of those that it has. Returns as show does.
+    bool show_lines(const std::string& name, const std::vector<DisplayLine>& lines);
+
+    /// Whether the viewer is still there, as far as is known.
+    bool is_connected() const { return socket_ >= 0; }
 
     /// Shows a picture while it is drawn: for PictureRequest::watch. Must not outlive the server.
     StripSink sink(const std::string& name);

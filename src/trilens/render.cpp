@@ -266,6 +266,7 @@ LineDrawing Renderer::draw_lines(const FrameParams& frame, const LineChoice& cho
             lines.caustics.push_back({layer->path, layer->optic, sheet});
         lines.fold_curves.insert(lines.fold_curves.end(), layer->folds.begin(), layer->folds.end());
     }
+    lines.facet_edges = drawing->facet_edges;
     if (choice.caustics) lines.obj = drawing_obj(*drawing, *world_);
     return lines;
 }

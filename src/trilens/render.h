@@ -64,6 +64,7 @@ struct LineDrawing {
     };
     std::vector<Caustic> caustics;
     std::vector<FoldCurve> fold_curves;
+    std::vector<FacetEdge> facet_edges;  // where they were chosen
 };
 
 /// A scene with what is built from it, each part once: surfaces, trees, grids. Pictures of one renderer may

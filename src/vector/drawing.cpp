@@ -82,6 +82,24 @@ double scene_size(const TriangleScene& visible) {
     return box.empty() ? 1 : std::max(length(box.size()), 1e-300);
 }
 
+/// The edges of the optic's facets that have samples, those in front of the camera.
+void append_facet_edges(const RayMesh& outline, const std::vector<char>& seen, Id optic,
+                        std::vector<FacetEdge>& edges) {
+    std::vector<std::array<Id, 2>> corners;
+    for (std::size_t f = 0; f < seen.size(); ++f)
+        for (std::size_t k = 0; seen[f] && k < 3; ++k) {
+            const Id a = outline.facets[f][k], b = outline.facets[f][(k + 1) % 3];
+            corners.push_back({std::min(a, b), std::max(a, b)});
+        }
+    std::sort(corners.begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    for (const auto& [a, b] : corners) {
+        const Vec3 from = outline.screen[a], to = outline.screen[b];
+        if (from.z > 0 && to.z > 0)
+            edges.push_back({optic, {from.x / from.z, from.y / from.z}, {to.x / to.z, to.y / to.z}});
+    }
+}
+
 /// The node's facets of the samples whose path over this optic ends there.
 std::vector<Id> facets_at(const SampleIds& ids, Id optic, std::size_t path, Id index, const PathNode& node) {
     std::vector<Id> facet(ids.optic.size(), kNone);
@@ -165,6 +183,14 @@ std::unique_ptr<Drawing> make_drawing(const World& world, const FrameParams& par
         const auto& model = frame.camera.model;
         if (!frame.camera.linear && !(model && model->eye()))
             add_folds(frame.camera.mesh, without_optics(ids));
+    }
+    for (Id i = 0; lines.facets && i < world.optics.size(); ++i) {
+        const RayMesh& outline = viewer->paths(i).outline;
+        std::vector<char> seen(outline.facets.size(), 0);
+        for (std::size_t s = 0; s < ids.visible.size(); ++s)
+            if (ids.optic[s] == i && ids.visible[s] - first_facet[i] < seen.size())
+                seen[ids.visible[s] - first_facet[i]] = 1;
+        append_facet_edges(outline, seen, world.optics[i].mesh, drawing->facet_edges);
     }
     const DrawnEdges edges = drawn_edges(world.objects, {material, world.objects.size()});
     for (Id i = 0; i < world.optics.size(); ++i)

@@ -28,6 +28,7 @@ struct Drawing {
     LineChoice lines;
     TriangleScene visible;  // objects, then the optics' facets: what "direct" shows
     std::vector<std::unique_ptr<DrawingLayer>> layers;
+    std::vector<FacetEdge> facet_edges;
 };
 
 /// Draws what the exact engine shows over each pixel's principal paths; one layer for each history. `warn` is

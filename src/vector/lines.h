@@ -16,6 +16,14 @@ struct LineChoice {
     // The surfaces in the world where neighbouring rays meet (caustic.h); with folds. All lines are then made
     // of rays that are exact at the facets' corners (`"rays": "interpolated"`), whatever the optics ask.
     bool caustics = false;
+    bool facets = false;  // the edges of those facets of the optics that are seen
+};
+
+/// An edge of an optic's facet on the film, pixels from its top left. One that two seen facets share is there
+/// once.
+struct FacetEdge {
+    Id optic = kNone;  // object id
+    Vec2 from{0}, to{0};
 };
 
 /// A polygonal line in pixels from the film's top left; closed where it ends where it began.

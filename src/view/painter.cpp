@@ -69,6 +69,8 @@ struct Painter::Work {
     Image projected, truth;            // of the state, at the stage drawn last
     std::vector<LayerComparison> layers;
     std::vector<std::string> scene_warnings;
+    WatchStage watcher;
+    std::vector<FacetEdge> facet_edges;  // for the watcher
 
     const ViewSettings& settings() const { return order.state.settings; }
 
@@ -210,12 +212,16 @@ struct Painter::Work {
         drawn.folds = nullptr;
         LineDrawing lines;
         const Overlays& overlays = settings().overlays;
-        if (overlays.folds || overlays.caustics) {
+        const bool facets = watcher && overlays.facets;
+        facet_edges.clear();
+        if (overlays.folds || overlays.caustics || facets) {
             LineChoice choice;
             choice.folds = overlays.folds;
             choice.caustics = overlays.caustics;
+            choice.facets = facets;
             lines = renderer->draw_lines(settings().frame, choice);
         }
+        facet_edges = std::move(lines.facet_edges);
         if (overlays.folds)
             drawn.folds = std::make_shared<const std::vector<FoldCurve>>(std::move(lines.fold_curves));
         const double reach = scene_reach(*base);
@@ -260,7 +266,7 @@ struct Painter::Work {
     bool has_lines() const {
         return settings().overlays.folds || settings().pixel || settings().place || settings().pick ||
                settings().birds_eye.shown || drawn.folds || drawn.pixel_paths || drawn.place_images ||
-               drawn.birds_eye;
+               drawn.birds_eye || (watcher && (settings().overlays.facets || !facet_edges.empty()));
     }
 
     void draw_stage(const Progress& progress) {
@@ -342,7 +348,14 @@ bool Painter::draw_next(const Progress& progress) {
     work_->drawn.stage = work_->next;
     work_->next = static_cast<DrawStage>(static_cast<int>(work_->next) + 1);
     if (work_->next == DrawStage::kDone) work_->drawn.stage = DrawStage::kDone;
+    if (work_->watcher)
+        work_->watcher({work_->drawn, work_->projected, work_->truth, work_->facet_edges},
+                       work_->drawn.warnings);
     return work_->next != DrawStage::kDone;
+}
+
+void Painter::watch(WatchStage watch) {
+    work_->watcher = std::move(watch);
 }
 
 DrawStage Painter::next() const {

@@ -5,6 +5,7 @@
 #include <trilens/animation.h>
 #include <trilens/render.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -81,6 +82,17 @@ struct DrawOrder {
     SessionState state;
 };
 
+/// What a stage has drawn, for those who show it elsewhere.
+struct StagePictures {
+    const Drawn& drawn;
+    const Image& projected;                     // of as many pixels as the stage has
+    const Image& truth;                         // empty where it is not drawn
+    const std::vector<FacetEdge>& facet_edges;  // where facets are an overlay
+};
+
+/// Is told of each stage; may add to the warnings that the window shows.
+using WatchStage = std::function<void(const StagePictures&, std::vector<std::string>& warnings)>;
+
 /// Draws for one thread. Keeps the scene's surfaces and trees from state to state.
 class Painter {
   public:
@@ -94,6 +106,9 @@ class Painter {
     /// Draws the next stage; false where nothing is left to draw, or the state cannot be drawn. Throws
     /// Interrupted once `progress` says so: then nothing of that stage is in drawn().
     bool draw_next(const Progress& progress = {});
+
+    /// From now on `watch` is told of each stage that is in; empty: nobody.
+    void watch(WatchStage watch);
 
     DrawStage next() const;
     const Drawn& drawn() const;

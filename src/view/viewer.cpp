@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "view/display_stream.h"
+
 namespace trilens {
 
 using Clock = std::chrono::steady_clock;
@@ -95,6 +97,16 @@ void Viewer::look_for_changes() {
     if (seconds_between(looked_, now) < 0.5) return;
     looked_ = now;
     if (files_changed(session_)) reload_files();
+}
+
+void Viewer::show_on(const std::string& display_server) {
+    const auto stream = std::make_shared<DisplayStream>(display_server, session_.file);
+    drawing_.with_painter([&](Painter& painter) {
+        painter.watch([stream](const StagePictures& stage, std::vector<std::string>& warnings) {
+            stream->send(stage, warnings);
+        });
+    });
+    drawing_.ask(session_);
 }
 
 void Viewer::play(bool runs, bool turns) {

@@ -48,6 +48,9 @@ class Viewer {
     void look_for_changes();
     void reload_files();
 
+    /// From now on a display server shows what is drawn, too. Throws as DisplayStream does.
+    void show_on(const std::string& display_server);
+
     void play(bool runs, bool turns);
     bool is_playing() const { return playing_.runs; }
     /// Goes on with what plays: to where it is at this moment.

@@ -7,8 +7,11 @@ import os
 import pathlib
 import re
 import shutil
+import socket
+import struct
 import subprocess
 import sys
+import threading
 import zlib
 
 BUILD, FOLDER = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
@@ -100,6 +103,66 @@ def refused(scene):
     assert not (FOLDER / "none.png").exists()
 
 
+class DisplayServer(threading.Thread):
+    """Takes one connection of tev's protocol: everything, or so many bytes and then hangs up hard."""
+
+    def __init__(self, most=None):
+        super().__init__(daemon=True)
+        self.listener, self.most, self.bytes = socket.create_server(("127.0.0.1", 0)), most, b""
+        self.address = "127.0.0.1:%d" % self.listener.getsockname()[1]
+        self.start()
+
+    def run(self):
+        connection, _ = self.listener.accept()
+        self.listener.close()
+        with connection:
+            while some := connection.recv(65536 if self.most is None else self.most - len(self.bytes)):
+                self.bytes += some
+                if self.most is not None and len(self.bytes) >= self.most:
+                    connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+                    return
+
+    def messages(self):
+        """(operation, what follows the name) of each message."""
+        self.join(60)
+        found, rest = [], self.bytes
+        while rest:
+            size, operation = struct.unpack_from("<IB", rest)
+            found.append((operation, rest[6:size].split(b"\0", 1)[1]))
+            rest = rest[size:]
+        return found
+
+
+def on_a_display_server(scene):
+    """Pictures and facets go to a display server; one that goes away in the middle of a tile is a warning."""
+    (FOLDER / "facets.json").write_text('[{"show": {"facets": true}}, {"wait": "done"}]')
+    words = ["view", scene, "--script", "facets.json", "--display-server"]
+    server = DisplayServer()
+    out, _ = trilens(*words, server.address, "--json")
+    assert json.loads(out)["warnings"] == []
+    messages = server.messages()
+    operations = [operation for operation, _ in messages]
+    assert operations[:2] == [4, 6] and 8 in operations, operations
+    assert struct.unpack_from("<ii", messages[0][1]) == (96, 72)
+    lines = [body for operation, body in messages if operation == 8][-1]
+    count, = struct.unpack_from("<xi", lines)
+    # Each facet's edge: colour, path, from, to, stroke; ends on the film or a little beside it.
+    assert count % 5 == 0 and count > 500, count
+    for first in range(5, len(lines), 37):
+        assert (lines[first], lines[first + 17], lines[first + 18], lines[first + 27], lines[first + 36]) == (4, 6, 10, 11, 5)
+        ends = struct.unpack_from("<ff", lines, first + 19) + struct.unpack_from("<ff", lines, first + 28)
+        assert all(-96 < end < 192 for end in ends), ends
+    for most in (1, 40, 5000):
+        (FOLDER / "turn.json").write_text('[{"wait": "done"}, {"orbit": [9, 0], "frames": 3}, {"wait": "done"}]')
+        words[3] = "turn.json"
+        out, _ = trilens(*words, DisplayServer(most).address, "--json")
+        answer = json.loads(out)
+        assert answer["error"] == "" and answer["shown"]["stage"] == "done"
+        assert [one for one in answer["warnings"] if "went away" in one], answer["warnings"]
+    trilens(*words, "127.0.0.1:1", code=4)
+    trilens(*words, "localhost", code=2)
+
+
 def in_window(scene, steps):
     """The same script in OpenGL shows the same window as in memory, but for how edges of glyphs are rounded."""
     if not shutil.which("Xvfb"):
@@ -142,6 +205,7 @@ scene_text["film"] = {"width": 96, "height": 72}
 in_memory("small.json", "mouse.json")
 undone("small.json")
 refused("small.json")
+on_a_display_server("small.json")
 trilens("view", "small.json", "--script", "steps.json", "--screenshot", "memory-window.png", "--window-size", "480x300")
 print("in memory and in a window: mean difference %.2f of 255, %.2f %% of pixels far off" %
       (lambda found: (found[0], 100 * found[1]))(in_window("small.json", "steps.json")))

@@ -157,6 +157,12 @@ double percentile(std::vector<double> values, double percent) {
     return values[static_cast<std::size_t>((static_cast<double>(values.size()) - 1) * percent / 100)];
 }
 
+/// What the window has shown of what goes on without: a display server that went away.
+void warn_of(const Viewer& viewer, Console& console) {
+    if (const auto drawn = viewer.drawn())
+        for (const std::string& warning : drawn->warnings) console.warn(warning);
+}
+
 Answer answer_of(Viewer& viewer, const Script* script, const ViewerRun& run) {
     Answer answer;
     answer.is_report = true;
@@ -222,6 +228,7 @@ Answer run_viewer(const ViewOptions& options, Console& console) {
         const Json name = options.scene.camera;
         viewer.change("", shown_settings({{"camera", name}}, first, viewer.scene()));
     }
+    if (!options.display_server.empty()) viewer.show_on(options.display_server);
     InterfaceState state;
     state.is_scripted = is_scripted;
     ViewerRun run;
@@ -258,6 +265,7 @@ Answer run_viewer(const ViewOptions& options, Console& console) {
             viewer.drawing().wait_done(600);
             take_screenshot(options.screenshot);
         }
+        warn_of(viewer, console);
         return answer_of(viewer, &*script, run);
     }
     viewer.drawing().notify([] { GlScreen::wake(); });
@@ -269,6 +277,7 @@ Answer run_viewer(const ViewOptions& options, Console& console) {
         window_frame(*screen, viewer, state, run);
     }
     viewer.drawing().notify({});
+    warn_of(viewer, console);
     return answer_of(viewer, nullptr, run);
 }
 

@@ -1,0 +1,184 @@
+// The viewer on a display server: the bytes of lines, the pictures that arrive, a server that goes away.
+#include "view/display_stream.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <trilens/error.h>
+#include <trilens/version.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "support/test.h"
+#include "view/viewer.h"
+
+using namespace trilens;
+
+namespace {
+
+/// Takes one connection: everything, or so many bytes and then hangs up hard.
+class OneConnection {
+  public:
+    explicit OneConnection(std::size_t most = SIZE_MAX) {
+        listener_ = socket(AF_INET, SOCK_STREAM, 0);
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        REQUIRE(bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
+        REQUIRE(listen(listener_, 1) == 0);
+        socklen_t size = sizeof address;
+        getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
+        address_ = "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+        thread_ = std::thread([this, most] { take(most); });
+    }
+    ~OneConnection() { received(); }
+
+    const std::string& address() const { return address_; }
+    const std::vector<std::uint8_t>& received() {
+        if (thread_.joinable()) thread_.join();
+        return bytes_;
+    }
+
+  private:
+    void take(std::size_t most) {
+        const int connection = accept(listener_, nullptr, nullptr);
+        close(listener_);
+        std::uint8_t some[4096];
+        while (bytes_.size() < most) {
+            const ssize_t count = recv(connection, some, std::min(sizeof some, most - bytes_.size()), 0);
+            if (count <= 0) break;
+            bytes_.insert(bytes_.end(), some, some + count);
+        }
+        const linger at_once{1, 0};
+        if (bytes_.size() >= most) setsockopt(connection, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+        close(connection);
+    }
+
+    int listener_ = -1;
+    std::string address_;
+    std::vector<std::uint8_t> bytes_;
+    std::thread thread_;
+};
+
+/// The operations of a stream of messages, in order.
+std::vector<int> operations_in(const std::vector<std::uint8_t>& bytes) {
+    std::vector<int> operations;
+    for (std::size_t at = 0; at + 5 <= bytes.size();) {
+        std::uint32_t length = 0;
+        std::memcpy(&length, &bytes[at], 4);
+        REQUIRE(at + length <= bytes.size());
+        operations.push_back(bytes[at + 4]);
+        at += length;
+    }
+    return operations;
+}
+
+SceneRequest ball_request(const std::string& folder) {
+    const std::string file = folder + "/scene.json";
+    for (const SceneExample& example : scene_examples())
+        if (example.name == std::string("mirror-sphere")) std::ofstream(file) << example.json;
+    SceneRequest request{file, {}, 0};
+    request.overrides = {{"/film/width", "64"}, {"/film/height", "48"}};
+    return request;
+}
+
+ViewSettings with_facets(ViewSettings settings) {
+    settings.overlays.facets = true;
+    return settings;
+}
+
+}  // namespace
+
+TEST_CASE("lines over a picture have the bytes that tev reads", "[view][display][golden]") {
+    const DisplayLine line{{Vec2(1, 2), Vec2(-2, 0)}, Vec3(1, 0, 2)}, point{{Vec2(1, 2)}, Vec3(1)};
+    CHECK(vector_graphics_message("a", {line, point}) ==
+          DisplayMessage{50, 0, 0,    0,    8,    0, 'a', 0, 0,    5, 0, 0, 0,     // name, how many
+                         4,  0, 0,    0x80, 0x3f, 0, 0,   0, 0,    0, 0, 0, 0x40,  // colour
+                         0,  0, 0x80, 0x3f, 6,                                     // begin
+                         10, 0, 0,    0x80, 0x3f, 0, 0,   0, 0x40,                 // move to
+                         11, 0, 0,    0,    0xc0, 0, 0,   0, 0,                    // line to
+                         5});                                                      // stroke
+}
+
+TEST_CASE("a display server gets the viewer's last picture to the bit, and facets as lines on it",
+          "[view][display]") {
+    const SceneRequest request = ball_request(trilens_test::scratch_dir("view_display"));
+    OneConnection server;
+    std::vector<float> drawn_red;
+    {
+        Session session = open_session(request);
+        session.now.settings = with_facets(session.now.settings);
+        DisplayStream stream(server.address(), "ball");
+        Painter painter;
+        std::size_t edges = 0;
+        painter.watch([&](const StagePictures& stage, std::vector<std::string>& warnings) {
+            stream.send(stage, warnings);
+            drawn_red = stage.projected.find("R")->floats();
+            if (stage.drawn.stage != DrawStage::kDone) edges = stage.facet_edges.size();
+            for (const FacetEdge& edge : stage.facet_edges)
+                CHECK((edge.from.x > -64 && edge.from.x < 128 && edge.to.y > -48 && edge.to.y < 96));
+        });
+        painter.begin({1, session.file, session.folder, session.now});
+        while (painter.draw_next()) {
+        }
+        CHECK(painter.drawn().error == "");
+        CHECK(painter.drawn().warnings.empty());
+        CHECK(edges > 20);
+    }
+    const std::vector<std::uint8_t>& bytes = server.received();
+    const std::vector<int> operations = operations_in(bytes);
+    REQUIRE(operations.size() >= 3);
+    CHECK(operations[0] == 4);
+    CHECK(operations[1] == 6);
+    CHECK(operations.back() == 8);
+    std::vector<std::uint8_t> red(4 * drawn_red.size());
+    std::memcpy(red.data(), drawn_red.data(), red.size());
+    CHECK(std::search(bytes.begin(), bytes.end(), red.begin(), red.end()) != bytes.end());
+}
+
+TEST_CASE("a display server that goes away in the middle of a tile is a warning, and pictures go on",
+          "[view][display][bad-input]") {
+    const SceneRequest request = ball_request(trilens_test::scratch_dir("view_display_away"));
+    for (const std::size_t most : {1, 40, 5000}) {
+        OneConnection server(most);
+        Viewer viewer(request);
+        viewer.show_on(server.address());
+        REQUIRE(viewer.drawing().wait_done(600));
+        CHECK(server.received().size() == most);
+        // What the system still took is lost without a word; the next pictures are not.
+        for (int turn = 0; turn < 3; ++turn) {
+            viewer.move({CameraMove::Kind::kOrbit, {5, 0, 0}});
+            REQUIRE(viewer.drawing().wait_done(600));
+        }
+        const auto drawn = viewer.drawn();
+        CHECK(viewer.error() == "");
+        CHECK(drawn->stage == DrawStage::kDone);
+        REQUIRE_FALSE(drawn->warnings.empty());
+        CHECK(drawn->warnings.back().find("went away") != std::string::npos);
+    }
+    Viewer viewer(request);
+    CHECK_THROWS_AS(viewer.show_on("localhost"), UsageError);
+    CHECK_THROWS_AS(viewer.show_on("127.0.0.1:1"), OutputError);
+}
+
+TEST_CASE("a number that is none and an optic that nothing sees leave a picture", "[view][bad-input]") {
+    const SceneRequest request = ball_request(trilens_test::scratch_dir("view_bad_numbers"));
+    Viewer viewer(request);
+    REQUIRE(viewer.drawing().wait_done(600));
+    const Json before = viewer.scene();
+    viewer.set("/cameras/0/yfov", std::nan(""));
+    CHECK(viewer.error() != "");
+    CHECK(viewer.scene() == before);
+    // Behind the camera: the picture is drawn, without the optic and without an error.
+    viewer.set("/cameras/0/lookAt", {{"eye", {0, 0, 50}}, {"at", {0, 0, 90}}});
+    REQUIRE(viewer.drawing().wait_done(600));
+    CHECK(viewer.error() == "");
+    REQUIRE(viewer.drawn()->left);
+    CHECK(viewer.drawn()->left->width == 64);
+}
