@@ -27,7 +27,7 @@ py::dict settings_of(const SceneCamera& camera) {
     const py::object scene = py::module_::import("json").attr("loads")(camera.whole().resolved);
     const py::dict given = scene["cameras"][py::int_(camera.index)];
     py::dict settings;
-    for (const auto& [key, schema] : type_properties(name_of(camera.description().type)))
+    for (const auto& [key, schema] : type_properties(std::string(kind_name(camera.description()))))
         if (py::isinstance<py::dict>(schema) && schema.contains("default")) settings[key] = schema["default"];
     for (const auto& [key, value] : given) settings[key] = value;
     if (given.contains("tolerance") && !given.contains("facets")) settings.attr("pop")("facets", py::none());
@@ -41,21 +41,30 @@ py::object matrix_of(const SceneCamera& camera) {
     const CameraDescription& from = camera.description();
     const Film& film = camera.whole().film;
     double fx = 0, fy = 0, cx = 0, cy = 0;
-    if (from.type == CameraType::kPerspective) {
-        fx = fy = 0.5 * film.height / std::tan(from.yfov * std::numbers::pi / 360);
-        cx = (0.5 - from.shift.x) * film.width;
-        cy = (0.5 + from.shift.y) * film.height;
-    } else if (from.type == CameraType::kOpencv) {
-        fx = from.lens.fx, fy = from.lens.fy, cx = from.lens.cx, cy = from.lens.cy;
+    if (const auto* pinhole = std::get_if<PerspectiveCamera>(&from.kind)) {
+        fx = fy = 0.5 * film.height / std::tan(pinhole->yfov * std::numbers::pi / 360);
+        cx = (0.5 - pinhole->shift.x) * film.width;
+        cy = (0.5 + pinhole->shift.y) * film.height;
+    } else if (const auto* lens = std::get_if<OpencvLens>(&from.kind)) {
+        fx = lens->fx, fy = lens->fy, cx = lens->cx, cy = lens->cy;
     } else {
         return py::none();
     }
     return array_of<double>({fx, 0, cx, 0, fy, cy, 0, 0, 1}, {3, 3});
 }
 
+std::optional<double> yfov_of(const SceneCamera& camera) {
+    return std::visit(
+        [](const auto& kind) -> std::optional<double> {
+            if constexpr (requires { kind.yfov; }) return kind.yfov;
+            return std::nullopt;
+        },
+        camera.description().kind);
+}
+
 std::string described(const SceneCamera& camera) {
     const CameraDescription& from = camera.description();
-    std::string text = "<trilens.Camera '" + from.name + "': " + name_of(from.type);
+    std::string text = "<trilens.Camera '" + from.name + "': " + kind_name(from);
     for (const auto& [key, value] : settings_of(camera))
         if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value) ||
             py::isinstance<py::str>(value))
@@ -79,11 +88,10 @@ void bind_scene_camera(py::module_& module) {
     py::class_<SceneCamera>(module, "Camera", "A camera as the scene gives it; FilmCamera has its rays.")
         .def_property_readonly("name", [](const SceneCamera& camera) { return camera.description().name; })
         .def_property_readonly(
-            "type", [](const SceneCamera& camera) { return name_of(camera.description().type); },
+            "type", [](const SceneCamera& camera) { return std::string(kind_name(camera.description())); },
             "As in scene files: \"perspective\", \"fisheye\", \"rayMesh\", ...")
-        .def_property_readonly(
-            "yfov", [](const SceneCamera& camera) { return camera.description().yfov; },
-            "The whole vertical angle, degrees (of types that have it).")
+        .def_property_readonly("yfov", yfov_of,
+                               "The whole vertical angle, degrees; None of types that have none.")
         .def_property_readonly("eye", triple(&CameraDescription::eye), "World frame.")
         .def_property_readonly("at", triple(&CameraDescription::at), "World frame.")
         .def_property_readonly("up", triple(&CameraDescription::up), "World frame.")

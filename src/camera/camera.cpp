@@ -32,50 +32,25 @@ RayMesh fine_mesh(const ModelSource& source, const CameraModel& model) {
 }  // namespace
 
 ModelPointer make_model(const ModelSource& source) {
-    switch (source.from.type) {
-        case CameraType::kPerspective:
-        case CameraType::kOrthographic:
-        case CameraType::kOblique:
-        case CameraType::kViewVolume:
-            return make_linear_model(source);
-        case CameraType::kCylindrical:
-            return make_cylindrical(source);
-        case CameraType::kSpherical:
-            return make_spherical(source);
-        case CameraType::kFisheye:
-            return make_fisheye(source);
-        case CameraType::kOpencv:
-            return make_opencv(source);
-        case CameraType::kPushbroom:
-            return make_pushbroom(source);
-        case CameraType::kCrossedSlits:
-            return make_crossed_slits(source);
-        case CameraType::kGeneralLinear:
-            return make_general_linear(source);
-        case CameraType::kDistortion:
-            return make_distortion(source);
-        case CameraType::kMultiPerspective:
-            return make_multi_perspective(source);
-        case CameraType::kInwardSphere:
-            return make_inward_sphere(source);
-        case CameraType::kPlanarContext:
-            return make_planar_context(source);
-        case CameraType::kRayMesh:
+    return std::visit(
+        [&]<typename Kind>(const Kind& kind) -> ModelPointer {
+            if constexpr (kIsLinear<Kind>) return make_linear_model(source);
+            if constexpr (kChoosesFacets<Kind>) return make_model(kind, source);
             return nullptr;
-    }
-    return nullptr;
+        },
+        source.from.kind);
 }
 
 Camera make_camera(const CameraDescription& from, const FilmSize& film, const CameraSite& site) {
     require_film(film.width, film.height, site);
     Camera camera;
     camera.film = film;
-    if (from.type == CameraType::kRayMesh) {
-        camera.mesh = make_ray_mesh({from.points, from.directions, from.screen, from.triangles}, film.width,
-                                    film.height);
+    if (const auto* rays = std::get_if<RayMeshCamera>(&from.kind)) {
+        camera.mesh = make_ray_mesh({rays->points, rays->directions, rays->screen, rays->triangles},
+                                    film.width, film.height);
         return camera;
     }
-    if (is_linear(from.type)) {
+    if (is_linear(from)) {
         const LinearView view = make_linear_view(from, film, site);
         camera.linear = view.camera;
         camera.axis = view.camera.view_axis != Vec3(0) ? view.camera.view_axis : view.camera.view_direction;

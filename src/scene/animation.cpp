@@ -102,22 +102,37 @@ Scene load_frame(const Scene& scene, double frame, std::span<const SceneOverride
     return next;
 }
 
+namespace {
+
+/// Whether all that the camera has in the world is its lookAt.
+bool turns_with_look_at(const CameraDescription& camera) {
+    return std::visit(
+        []<typename Kind>(const Kind& kind) {
+            return kHasLookAt<Kind> && !requires {
+                kind.travel;
+            }
+            &&!requires {
+                kind.slits;
+            }
+            &&!requires {
+                kind.placed_rays;
+            }
+            &&!requires {
+                kind.views;
+            };
+        },
+        camera.kind);
+}
+
+}  // namespace
+
 std::vector<SceneOverride> turntable(const Scene& scene, std::size_t camera, int frame, int frames) {
     if (camera >= scene.cameras.size()) throw UsageError(fmt::format("there is no camera number {}", camera));
     if (frames < 1) throw UsageError(fmt::format("a turn takes at least one frame, not {}", frames));
     const CameraDescription& from = scene.cameras[camera];
-    switch (from.type) {
-        case CameraType::kRayMesh:
-        case CameraType::kViewVolume:
-        case CameraType::kPushbroom:
-        case CameraType::kCrossedSlits:
-        case CameraType::kGeneralLinear:
-        case CameraType::kMultiPerspective:
-            throw UsageError("the camera \"" + from.name + "\" (" + name_of(from.type) +
-                             ") does not turn with its lookAt alone: animate its values instead");
-        default:
-            break;
-    }
+    if (!turns_with_look_at(from))
+        throw UsageError("the camera \"" + from.name + "\" (" + kind_name(from) +
+                         ") does not turn with its lookAt alone: animate its values instead");
     const Vec3 axis = normalize_or_zero(from.up), arm = from.eye - from.at;
     if (!is_coordinate(from.eye) || !is_coordinate(from.at))
         throw UsageError("the camera \"" + from.name + "\" stands or looks where no number is");

@@ -92,7 +92,7 @@ SceneInfo make_scene_info(const Scene& scene) {
     SceneInfo info;
     for (const CameraDescription& camera : scene.cameras) {
         info.cameras.push_back(camera.name);
-        info.camera_types.push_back(name_of(camera.type));
+        info.camera_types.push_back(kind_name(camera));
     }
     for (const Mesh& mesh : scene.meshes) {
         info.meshes.push_back(make_mesh_info(mesh, scene));

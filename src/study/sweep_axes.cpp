@@ -139,7 +139,7 @@ std::vector<SceneOverride> with_camera_facets(const PointRequest& request, const
     const std::string place = "/cameras/" + std::to_string(index);
     if (!chooses_facets(camera))
         throw InputError(scene.file, place,
-                         "\"" + camera.name + "\" is " + name_of(camera.type) +
+                         "\"" + camera.name + "\" is " + kind_name(camera) +
                              ": the axis camera-facets is for cameras that choose their own");
     std::vector<SceneOverride> changes;
     if (camera.tolerance > 0) changes.push_back({place + "/tolerance", "", true});
@@ -194,10 +194,6 @@ PointRequest request_at(PointRequest request, const Coordinates& point) {
     }
     if (engine) find_entry("engine")->apply(*engine, request);
     return request;
-}
-
-bool chooses_facets(const CameraDescription& camera) {
-    return !is_linear(camera.type) && camera.type != CameraType::kRayMesh;
 }
 
 Scene load_scene(const PointRequest& request) {

@@ -37,9 +37,6 @@ AxisKind find_axis_kind(const std::string& name, const std::string& where);
 /// number that its axis needs.
 PointRequest request_at(PointRequest base, const Coordinates& point);
 
-/// Whether the axis camera-facets is for this camera.
-bool chooses_facets(const CameraDescription& camera);
-
 /// The point's scene. Throws as load_scene does; UsageError where a point would change the text of a scene in
 /// memory; InputError where no optic has the point's name, or where the camera has no facets to choose.
 Scene load_scene(const PointRequest& request);

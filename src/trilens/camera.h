@@ -1,8 +1,7 @@
 // Cameras of every kind: the exact ray of a place on the film, and where the film shows a world point.
 //
 //     trilens::CameraDescription from;
-//     from.type = trilens::CameraType::kFisheye;
-//     from.fov = 200;
+//     from.kind = trilens::FisheyeCamera{.fov = 200};
 //     const trilens::Camera camera = trilens::make_camera(from, {640, 480});
 //     const std::optional<trilens::Ray> ray = trilens::exact_ray(camera, {320.5, 240.5});
 //     for (const trilens::FilmImage& image : trilens::film_positions(camera, {0, 1, -4}))

@@ -122,8 +122,8 @@ TEST_CASE("a point along an exact ray is shown where the ray leaves the film", "
 TEST_CASE("the RayMesh comes to the exact rays with order 2", "[camera][law]") {
     for (CameraDescription from : every_camera()) {
         INFO(from.name);
-        const bool folds =
-            from.type == CameraType::kMultiPerspective || from.type == CameraType::kPlanarContext;
+        const bool folds = std::holds_alternative<MultiPerspectiveCamera>(from.kind) ||
+                           std::holds_alternative<PlanarContextCamera>(from.kind);
         for (const double t : {1.0, 4.0, 1000.0}) {
             std::array<Off, 3> off;
             for (std::size_t k = 0; k < off.size(); ++k) {
@@ -136,7 +136,8 @@ TEST_CASE("the RayMesh comes to the exact rays with order 2", "[camera][law]") {
             INFO("t " << t << ": mean " << off[0].mean << " " << off[1].mean << " " << off[2].mean
                       << ", largest " << off[0].largest << " " << off[1].largest << " " << off[2].largest);
             // Affine combinations of three rays: the mesh is exact.
-            if (from.type == CameraType::kGeneralLinear || from.type == CameraType::kPushbroom) {
+            if (std::holds_alternative<ThreeRayCamera>(from.kind) ||
+                std::holds_alternative<PushbroomCamera>(from.kind)) {
                 CHECK(off[0].largest < 1e-8);
                 continue;
             }
@@ -148,8 +149,8 @@ TEST_CASE("the RayMesh comes to the exact rays with order 2", "[camera][law]") {
 TEST_CASE("a tolerance is kept all over the film", "[camera][golden]") {
     for (CameraDescription from : every_camera()) {
         INFO(from.name);
-        const bool folds =
-            from.type == CameraType::kMultiPerspective || from.type == CameraType::kPlanarContext;
+        const bool folds = std::holds_alternative<MultiPerspectiveCamera>(from.kind) ||
+                           std::holds_alternative<PlanarContextCamera>(from.kind);
         from.tolerance = 0.25;
         const Camera camera = camera_of(from);
         for (const double far : {1.0, 30.0}) {
@@ -171,23 +172,21 @@ TEST_CASE("what panoramas and fisheyes show where, by hand", "[camera][oracle]")
         REQUIRE(images.size() == 1);
         return images[0].pixel;
     };
-    from.type = CameraType::kSpherical;
+    from.kind = SphericalCamera{};
     CHECK(length(pixel({0, 0, -2}) - Vec2(160, 120)) < 1e-9);
     CHECK(length(pixel({3, 0, 0}) - Vec2(240, 120)) < 1e-9);  // a quarter turn to the right
     CHECK(length(pixel({0, 1, -1}) - Vec2(160, 60)) < 1e-9);  // 45 degrees up
     CHECK(length(pixel({-1, 0, 1}) - Vec2(40, 120)) < 1e-9);  // 135 degrees to the left
-    from.type = CameraType::kCylindrical;
-    from.yfov = 90;
+    from.kind = CylindricalCamera{.yfov = 90};
     CHECK(length(pixel({3, 0, 0}) - Vec2(240, 120)) < 1e-9);
     CHECK(length(pixel({0, 1, -2}) - Vec2(160, 60)) < 1e-9);  // half way to the top: slope 1/2
-    from.type = CameraType::kFisheye;
-    from.fov = 180;
+    from.kind = FisheyeCamera{.fov = 180};
     CHECK(length(pixel({1, 0, -1}) - Vec2(220, 120)) < 1e-9);  // 45 of 90 degrees
-    from.mapping = FisheyeMapping::kOrthographic;
+    from.kind = FisheyeCamera{.mapping = FisheyeMapping::kOrthographic};
     CHECK(length(pixel({1, 0, -1}) - Vec2(160 + 120 / std::sqrt(2.0), 120)) < 1e-9);
-    from.mapping = FisheyeMapping::kStereographic;
+    from.kind = FisheyeCamera{.mapping = FisheyeMapping::kStereographic};
     CHECK(length(pixel({0, 1, -1}) - Vec2(160, 120 - 120 * std::tan(kPi / 8))) < 1e-9);
-    from.mapping = FisheyeMapping::kEquisolid;
+    from.kind = FisheyeCamera{.mapping = FisheyeMapping::kEquisolid};
     CHECK(length(pixel({0, -1, -1}) - Vec2(160, 120 + 120 * std::sin(kPi / 8) * std::sqrt(2.0))) < 1e-9);
     CHECK_FALSE(exact_ray(camera_of(from), {20, 120}));
     CHECK(exact_ray(camera_of(from), {41, 120}));
@@ -197,18 +196,16 @@ TEST_CASE("the seam of a panorama and the far side of an inward sphere show a po
     CameraDescription from;
     from.eye = {0, 0, 0};
     from.at = {0, 0, -1};
-    from.type = CameraType::kSpherical;
-    from.hfov = 360;
+    from.kind = SphericalCamera{.hfov = 360};
     CHECK(film_positions(camera_of(from), {0, 0.4, 2}).size() == 2);  // on the seam: both borders
-    from.hfov = 180;
+    from.kind = SphericalCamera{.hfov = 180};
     const auto behind = film_positions(camera_of(from), {0.3, 0.4, 2});
     REQUIRE(behind.size() == 1);
     CHECK((behind[0].pixel.x < 0 || behind[0].pixel.x > kFilm.width));
 
     CameraDescription around;
-    around.type = CameraType::kInwardSphere;
     around.eye = {0, 0, 5};
-    around.radius = 2;
+    around.kind = InwardSphereCamera{.radius = 2};
     const auto images = film_positions(camera_of(around), {0, 0, 0.5});
     REQUIRE(images.size() >= 2);
     CHECK(images[0].t == Approx(1.5));
@@ -219,13 +216,14 @@ TEST_CASE("the seam of a panorama and the far side of an inward sphere show a po
 TEST_CASE("crossed slits that cross are a pinhole, a pushbroom that stands still nearly one", "[camera]") {
     // Slits through one point, seen from it: where a perspective shows the same points.
     CameraDescription slits;
-    slits.type = CameraType::kCrossedSlits;
     slits.eye = {0, 0, 4};
-    slits.slits = {WorldLine{{0, 0, 4}, {0, 1, 0}}, WorldLine{{0, 0, 4 + 1e-7}, {1, 0, 0}}};
-    slits.window = {-2, 2, -1.5, 1.5};
+    slits.kind =
+        CrossedSlitsCamera{.slits = {WorldLine{{0, 0, 4}, {0, 1, 0}}, WorldLine{{0, 0, 4 + 1e-7}, {1, 0, 0}}},
+                           .window = {-2, 2, -1.5, 1.5}};
     CameraDescription pinhole;
     pinhole.eye = {0, 0, 4};
-    pinhole.yfov = 2 * std::atan(1.5 / 4) * 180 / kPi;
+    const double yfov = 2 * std::atan(1.5 / 4) * 180 / kPi;
+    pinhole.kind = PerspectiveCamera{.yfov = yfov};
     const Camera a = camera_of(slits), b = camera_of(pinhole);
     Draw draw(3);
     for (int k = 0; k < 100; ++k) {
@@ -236,8 +234,7 @@ TEST_CASE("crossed slits that cross are a pinhole, a pushbroom that stands still
         CHECK(length(in_a[0].pixel - in_b[0].pixel) < 1e-4);
     }
     CameraDescription pushbroom = pinhole;
-    pushbroom.type = CameraType::kPushbroom;
-    pushbroom.travel = {3, 0, 0};
+    pushbroom.kind = PushbroomCamera{.yfov = yfov, .travel = {3, 0, 0}};
     const auto image = film_positions(camera_of(pushbroom), {0.75, 1, 0});
     REQUIRE(image.size() == 1);
     CHECK(image[0].pixel.x == Approx(160 * 1.5));  // a quarter of the way from the middle
@@ -249,11 +246,12 @@ TEST_CASE("the bent ground: flat near the eye, rigid beyond the arc, continuous 
     CameraDescription from = every_camera().back();
     from.eye = {0, 1.5, 0};
     from.at = {0, 1.4, -1};
-    from.angle = 60;
-    from.bend = 3;
+    auto& ground = std::get<PlanarContextCamera>(from.kind);
+    ground.angle = 60;
+    ground.bend = 3;
     const Camera camera = camera_of(from);
     CameraDescription plain = from;
-    plain.type = CameraType::kPerspective;
+    plain.kind = PerspectiveCamera{.yfov = ground.yfov};
     const Camera perspective = camera_of(plain);
     // Near ground is where a perspective shows it.
     const auto near_here = film_positions(camera, {0.4, 0, -2.5});
@@ -291,12 +289,9 @@ TEST_CASE("the bent ground: flat near the eye, rigid beyond the arc, continuous 
 
 TEST_CASE("the detail is a perspective, the border sees the context's angle", "[camera]") {
     CameraDescription from;
-    from.type = CameraType::kDistortion;
     from.eye = {0, 0, 0};
     from.at = {0, 0, -1};
-    from.detail = {0.25, 0.25, 0.75, 0.75};
-    from.yfov = 20;
-    from.context_fov = 160;
+    from.kind = DistortionCamera{.yfov = 20, .detail = {0.25, 0.25, 0.75, 0.75}, .context_fov = 160};
     const Camera camera = camera_of(from);
     const double slope = std::tan(kPi / 18);
     CHECK(length(normalize(exact_ray(camera, {160, 60})->direction) - normalize(Vec3(0, slope, -1))) < 1e-12);
@@ -308,7 +303,7 @@ TEST_CASE("the detail is a perspective, the border sees the context's angle", "[
 
 TEST_CASE("between views rays pass from one to the next, without a jump", "[camera][law]") {
     for (const CameraDescription& from : every_camera()) {
-        if (from.type != CameraType::kMultiPerspective) continue;
+        if (!std::holds_alternative<MultiPerspectiveCamera>(from.kind)) continue;
         const Camera camera = camera_of(from);
         Ray last = *exact_ray(camera, {100, 60});
         for (double x = 100.01; x < 319; x += 0.01) {
@@ -320,7 +315,7 @@ TEST_CASE("between views rays pass from one to the next, without a jump", "[came
         }
         CHECK(length(last.origin - Vec3(3.5, 1.5, 2.5)) < 1e-9);
         CameraDescription hard = from;
-        hard.blend = 0;
+        std::get<MultiPerspectiveCamera>(hard.kind).blend = 0;
         const Camera cut = camera_of(hard);
         CHECK(length(exact_ray(cut, {191.999, 60})->origin - from.eye) < 1e-9);
         CHECK(length(exact_ray(cut, {192.001, 60})->origin - Vec3(3.5, 1.5, 2.5)) < 1e-9);
@@ -330,7 +325,7 @@ TEST_CASE("between views rays pass from one to the next, without a jump", "[came
 TEST_CASE("distorted and back is where it was", "[camera]") {
     Draw draw(9);
     for (const CameraDescription& from : every_camera()) {
-        if (from.type != CameraType::kOpencv) continue;
+        if (!std::holds_alternative<OpencvLens>(from.kind)) continue;
         INFO(from.name);
         const Camera camera = camera_of(from);
         for (int k = 0; k < 300; ++k) {

@@ -14,33 +14,33 @@ inline std::vector<trilens::CameraDescription> every_camera() {
     base.eye = {0.3, 1.2, 4};
     base.at = {0, 0.8, 0};
     std::vector<CameraDescription> all;
-    const auto add = [&](CameraType type, const std::string& name, auto change) {
+    const auto add = [&](const std::string& name, auto kind, auto change) {
         CameraDescription camera = base;
-        camera.type = type;
         camera.name = name;
-        change(camera);
+        change(kind);
+        camera.kind = kind;
         all.push_back(camera);
     };
-    add(CameraType::kCylindrical, "cylindrical", [](auto& c) { c.yfov = 70; });
-    add(CameraType::kSpherical, "spherical", [](auto&) {});
-    add(CameraType::kFisheye, "equidistant", [](auto& c) { c.fov = 200; });
-    add(CameraType::kFisheye, "equisolid", [](auto& c) {
+    add("cylindrical", CylindricalCamera(), [](auto& c) { c.yfov = 70; });
+    add("spherical", SphericalCamera(), [](auto&) {});
+    add("equidistant", FisheyeCamera(), [](auto& c) { c.fov = 200; });
+    add("equisolid", FisheyeCamera(), [](auto& c) {
         c.fov = 240;
         c.mapping = FisheyeMapping::kEquisolid;
     });
-    add(CameraType::kFisheye, "stereographic", [](auto& c) {
+    add("stereographic", FisheyeCamera(), [](auto& c) {
         c.fov = 220;
         c.mapping = FisheyeMapping::kStereographic;
     });
-    add(CameraType::kFisheye, "orthographic", [](auto& c) {
+    add("orthographic", FisheyeCamera(), [](auto& c) {
         c.fov = 150;
         c.mapping = FisheyeMapping::kOrthographic;
     });
-    add(CameraType::kOpencv, "opencv pinhole", [](auto& c) {
-        c.lens = {false, 210, 214, 161.3, 118.9, {-0.21, 0.06, 0.001, -0.0015, -0.008}};
+    add("opencv pinhole", OpencvLens(), [](auto& c) {
+        c = OpencvLens{false, 210, 214, 161.3, 118.9, {-0.21, 0.06, 0.001, -0.0015, -0.008}};
     });
-    add(CameraType::kOpencv, "opencv all", [](auto& c) {
-        c.lens = {
+    add("opencv all", OpencvLens(), [](auto& c) {
+        c = OpencvLens{
             false,
             230,
             224,
@@ -48,45 +48,43 @@ inline std::vector<trilens::CameraDescription> every_camera() {
             123,
             {0.11, -0.05, 0.001, -0.0015, 0.01, 0.08, -0.02, 0.004, 0.002, -0.001, 0.0015, 0.001, 0.03, -0.02}};
     });
-    add(CameraType::kOpencv, "opencv fisheye", [](auto& c) {
-        c.lens = {true, 120, 121, 160.2, 119, {0.02, -0.006, 0.001, -0.0002}};
+    add("opencv fisheye", OpencvLens(), [](auto& c) {
+        c = OpencvLens{true, 120, 121, 160.2, 119, {0.02, -0.006, 0.001, -0.0002}};
     });
-    add(CameraType::kPushbroom, "pushbroom", [](auto& c) {
+    add("pushbroom", PushbroomCamera(), [](auto& c) {
         c.yfov = 60;
         c.travel = {4, 0.3, -0.5};
     });
-    add(CameraType::kCrossedSlits, "crossedSlits", [](auto& c) {
+    add("crossedSlits", CrossedSlitsCamera(), [](auto& c) {
         c.slits[0] = {{0.2, 1.2, 4}, {0, 1, 0.1}};
         c.slits[1] = {{0, 1.4, 7}, {1, 0, 0}};
         c.window = {-2, 2, -1.5, 1.5};
     });
-    add(CameraType::kGeneralLinear, "generalLinear", [](auto& c) {
+    add("generalLinear", ThreeRayCamera(), [](auto& c) {
         c.placed_rays[0] = {{-1, 0.5, 4}, {-0.2, 0.3, -1}, {0, 0}};
         c.placed_rays[1] = {{1, 0.6, 4}, {0.5, 0.2, -1}, {1, 0.1}};
         c.placed_rays[2] = {{0.1, -0.3, 4.2}, {0, -0.5, -1}, {0.4, 1}};
     });
-    add(CameraType::kDistortion, "distortion", [](auto& c) {
+    add("distortion", DistortionCamera(), [](auto& c) {
         c.detail = {0.3, 0.3, 0.75, 0.7};
         c.yfov = 25;
         c.context_fov = 170;
     });
-    add(CameraType::kMultiPerspective, "multiPerspective", [](auto& c) {
-        CameraDescription front = c, side = c;
-        front.type = side.type = CameraType::kPerspective;
-        front.yfov = 50;
-        side.yfov = 55;
+    add("multiPerspective", MultiPerspectiveCamera(), [&](auto& c) {
+        CameraDescription front = base, side = base;
+        front.kind = PerspectiveCamera{.yfov = 50};
+        side.kind = PerspectiveCamera{.yfov = 55};
         side.eye = {3.5, 1.5, 2.5};
-        CameraDescription fish = c;
-        fish.type = CameraType::kFisheye;
-        fish.fov = 300;
+        CameraDescription fish = base;
+        fish.kind = FisheyeCamera{.fov = 300};
         c.views = {{front, {0, 0, 0.6, 1}}, {side, {0.6, 0, 1, 0.5}}, {fish, {0.6, 0.5, 1, 1}}};
         c.blend = 0.1;
     });
-    add(CameraType::kInwardSphere, "inwardSphere", [](auto& c) {
+    add("inwardSphere", InwardSphereCamera(), [](auto& c) {
         c.center = {0.1, 0.8, 0.2};
         c.radius = 3;
     });
-    add(CameraType::kPlanarContext, "planarContext", [](auto& c) {
+    add("planarContext", PlanarContextCamera(), [](auto& c) {
         c.yfov = 70;
         c.bend = 2.5;
         c.angle = 65;

@@ -180,25 +180,29 @@ TEST_CASE("the facets of every camera are of the kind that the camera is", "[cam
         const std::size_t all = camera.mesh.facets.size();
         const auto are_all = [&](GeneralLinearKind kind) {
             // At a pole two corners of a facet have one ray.
-            const std::size_t poles =
-                from.type == CameraType::kSpherical || from.type == CameraType::kInwardSphere ? 24 : 0;
+            const std::size_t poles = std::holds_alternative<SphericalCamera>(from.kind) ||
+                                              std::holds_alternative<InwardSphereCamera>(from.kind)
+                                          ? 24
+                                          : 0;
             return kinds.count(kind) + kinds.without == all && kinds.without == poles;
         };
-        if (from.type == CameraType::kPushbroom)
+        if (std::holds_alternative<PushbroomCamera>(from.kind))
             CHECK(are_all(GeneralLinearKind::kPushbroom));
-        else if (from.type == CameraType::kCrossedSlits || from.type == CameraType::kGeneralLinear)
-            CHECK(are_all(from.type == CameraType::kCrossedSlits ? GeneralLinearKind::kCrossedSlits
-                                                                 : *facet_kind(camera.mesh, 0, camera.axis)));
+        else if (std::holds_alternative<CrossedSlitsCamera>(from.kind) ||
+                 std::holds_alternative<ThreeRayCamera>(from.kind))
+            CHECK(are_all(std::holds_alternative<CrossedSlitsCamera>(from.kind)
+                              ? GeneralLinearKind::kCrossedSlits
+                              : *facet_kind(camera.mesh, 0, camera.axis)));
         else if (camera.model->eye())
             CHECK(are_all(GeneralLinearKind::kPinhole));
-        else if (from.type == CameraType::kMultiPerspective)
+        else if (std::holds_alternative<MultiPerspectiveCamera>(from.kind))
             CHECK(kinds.count(GeneralLinearKind::kPinhole) > all / 2);
     }
     CameraDescription linear;
     CHECK(facet_kinds(make_camera(linear, film)).count(GeneralLinearKind::kPinhole) == 2);
-    linear.type = CameraType::kOblique;
+    linear.kind = ObliqueCamera{};
     CHECK(facet_kinds(make_camera(linear, film)).count(GeneralLinearKind::kOrthographic) == 2);
-    linear.type = CameraType::kOrthographic;
+    linear.kind = OrthographicCamera{};
     CHECK(facet_kinds(make_camera(linear, film)).count(GeneralLinearKind::kOrthographic) == 2);
 }
 
@@ -207,18 +211,19 @@ TEST_CASE("a general linear camera of three rays of a kind has facets of that ki
     const double k = 0.7;
     const auto kind_with = [&](auto way) {
         CameraDescription from;
-        from.type = CameraType::kGeneralLinear;
+        ThreeRayCamera kind;
         from.facets = 6;
         from.eye = {0, 0, 0}, from.at = {0, 0, -1};
         const std::array<Vec2, 3> places{Vec2(-1, 1), Vec2(1, 1), Vec2(-1, -1)},
             screens{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)};
         for (std::size_t i = 0; i < 3; ++i)
-            from.placed_rays[i] = {Vec3(places[i], 0), Vec3(way(places[i]), -1), screens[i]};
+            kind.placed_rays[i] = {Vec3(places[i], 0), Vec3(way(places[i]), -1), screens[i]};
+        from.kind = kind;
         const Camera camera = make_camera(from, {40, 40});
         const FacetKinds kinds = facet_kinds(camera);
-        for (std::size_t kind = 0; kind < kGeneralLinearKindCount; ++kind)
-            if (kinds.of_kind[kind] == camera.mesh.facets.size())
-                return std::string(general_linear_kind_name(static_cast<GeneralLinearKind>(kind)));
+        for (std::size_t one = 0; one < kGeneralLinearKindCount; ++one)
+            if (kinds.of_kind[one] == camera.mesh.facets.size())
+                return std::string(general_linear_kind_name(static_cast<GeneralLinearKind>(one)));
         return std::string("mixed");
     };
     CHECK(kind_with([&](const Vec2& at) { return k * at; }) == "pinhole");

@@ -110,8 +110,7 @@ TEST_CASE("a view volume's camera shows a point where its matrix says", "[camera
     for (int round = 0; round < 100; ++round) {
         const ViewVolume volume = random_volume(draw, round % 2 == 0);
         CameraDescription from;
-        from.type = CameraType::kViewVolume;
-        from.view_volume = volume;
+        from.kind = volume;
         const Camera camera = make_camera(from, {320, 200});
         for (int k = 0; k < 20; ++k) {
             const double across = draw.uniform(0, 1), up = draw.uniform(0, 1),
@@ -135,15 +134,13 @@ TEST_CASE("a perspective with shift is the view volume with its window moved", "
     CameraDescription shifted;
     shifted.eye = {1, 2, 7};
     shifted.at = {1, 2, 0};
-    shifted.yfov = 50;
-    shifted.shift = {0.25, -0.4};
+    shifted.kind = PerspectiveCamera{.yfov = 50, .shift = {0.25, -0.4}};
     const double half = std::tan(25 * 3.14159265358979323846 / 180), aspect = 1.5;
-    CameraDescription off_axis;
-    off_axis.type = CameraType::kViewVolume;
-    off_axis.view_volume.vrp = {1, 2, 6};  // one unit before the eye
-    off_axis.view_volume.prp = {0, 0, 1};
     const double u = 0.25 * 2 * half * aspect, v = -0.4 * 2 * half;
-    off_axis.view_volume.window = {u - half * aspect, u + half * aspect, v - half, v + half};
+    CameraDescription off_axis;
+    off_axis.kind = ViewVolume{.vrp = {1, 2, 6},  // one unit before the eye
+                               .prp = {0, 0, 1},
+                               .window = {u - half * aspect, u + half * aspect, v - half, v + half}};
     const Camera a = make_camera(shifted, {300, 200}), b = make_camera(off_axis, {300, 200});
     Draw draw(13);
     for (int k = 0; k < 200; ++k) {
@@ -157,12 +154,9 @@ TEST_CASE("a perspective with shift is the view volume with its window moved", "
 
 TEST_CASE("oblique views move points by their depth", "[camera]") {
     CameraDescription from;
-    from.type = CameraType::kOblique;
     from.eye = {0, 0, 5};
     from.at = {0, 0, 0};
-    from.ymag = 2;
-    from.angle = 30;
-    from.scale = 0.5;
+    from.kind = ObliqueCamera{.ymag = 2, .angle = 30, .scale = 0.5};
     const Camera camera = make_camera(from, {400, 400});
     // 100 pixels per unit; a point at depth 2 goes right and up by 0.5 * 2 * (cos 30, sin 30).
     const auto images = film_positions(camera, {0.2, -0.1, 3});
@@ -174,12 +168,11 @@ TEST_CASE("oblique views move points by their depth", "[camera]") {
 
     // As a view volume: the prp stands where its way to the window's middle has that slope.
     CameraDescription volume;
-    volume.type = CameraType::kViewVolume;
-    volume.view_volume.vrp = from.eye;
-    volume.view_volume.prp = {0.5 * std::sqrt(3) / 2, 0.25, 1};
-    volume.view_volume.window = {-2, 2, -2, 2};
-    volume.view_volume.parallel = true;
-    volume.view_volume.front = 0;
+    volume.kind = ViewVolume{.vrp = from.eye,
+                             .prp = {0.5 * std::sqrt(3) / 2, 0.25, 1},
+                             .window = {-2, 2, -2, 2},
+                             .parallel = true,
+                             .front = 0};
     const Camera same = make_camera(volume, {400, 400});
     Draw draw(14);
     for (int k = 0; k < 100; ++k) {
@@ -241,11 +234,9 @@ TEST_CASE("homogeneous clipping keeps what lies in the volume, also of triangles
 TEST_CASE("view volumes that are none are refused by field", "[camera][bad-input]") {
     const auto refused = [](const std::string& field, auto change) {
         CameraDescription from;
-        from.type = CameraType::kViewVolume;
-        from.view_volume.prp = {0, 0, 5};
-        from.view_volume.front = 1;
-        from.view_volume.back = -1;
-        change(from.view_volume);
+        ViewVolume volume{.prp = {0, 0, 5}, .front = 1, .back = -1};
+        change(volume);
+        from.kind = volume;
         try {
             make_camera(from, {10, 10}, {"room.json", "/cameras/0"});
         } catch (const InputError& error) {

@@ -67,7 +67,9 @@ double worst_error(const FitResult& found, const Scene& truth, const std::string
     }
     for (std::size_t k = 0; k < a.cage.points.size(); ++k)
         worst = std::max(worst, length(a.cage.points[k] - b.cage.points[k]));
-    worst = std::max(worst, std::abs(truth.cameras[0].yfov - fitted.cameras[0].yfov) / 40);
+    worst = std::max(worst, std::abs(std::get<PerspectiveCamera>(truth.cameras[0].kind).yfov -
+                                     std::get<PerspectiveCamera>(fitted.cameras[0].kind).yfov) /
+                                40);
     for (std::size_t k = 0; k < truth.materials.size(); ++k)
         worst = std::max(worst, std::abs(truth.materials[k].ior - fitted.materials[k].ior));
     return worst;

@@ -44,7 +44,7 @@ std::string as_ray_mesh(int n) {
     CameraDescription from;
     from.eye = {0.5, 0.6, 4};
     from.at = {0, 0, 0};
-    from.yfov = 45;
+    from.kind = PerspectiveCamera{.yfov = 45};
     const Camera camera = make_camera(from, {kOpticsWidth, kHeight});
     std::ostringstream points, directions, screen, triangles;
     for (std::ostringstream* text : {&points, &directions, &screen}) text->precision(17);

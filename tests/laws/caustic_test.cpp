@@ -63,8 +63,7 @@ Scene inside_ball() {
     camera.name = "main";
     camera.eye = {0, 0, 1};
     camera.at = {0, 0, 0};
-    camera.yfov = 70;
-    camera.near_depth = 0.3;
+    camera.kind = PerspectiveCamera{.yfov = 70, .near_depth = 0.3};
     scene.cameras.push_back(camera);
     Material chrome;
     chrome.metallic_factor = 1;
@@ -161,10 +160,11 @@ TEST_CASE("the caustic of crossed slits are the slits; of an eye and a flat mirr
     scene.meshes[0].object.material = {0, 0};
     CameraDescription& camera = scene.cameras[0];
     camera = {};
-    camera.name = "main", camera.type = CameraType::kCrossedSlits;
+    camera.name = "main";
     camera.eye = {0, 1, 6}, camera.at = {0, 1, -3};
-    camera.slits[0] = {{0, 1, 5}, {0, 1, 0}}, camera.slits[1] = {{0, 1, 0}, {1, 0, 0}};
-    camera.window = {-3, 3, -1, 1};
+    camera.kind =
+        CrossedSlitsCamera{.slits = {WorldLine{{0, 1, 5}, {0, 1, 0}}, WorldLine{{0, 1, 0}, {1, 0, 0}}},
+                           .window = {-3, 3, -1, 1}};
     camera.facets = 16;
     const LineDrawing drawing = drawn(scene, "main", 0);
     std::size_t on_slit[2] = {0, 0};

@@ -18,7 +18,7 @@ Scene before_wall(const Primitive& optic) {
     camera.name = "main";
     camera.eye = {0.4, 0.7, 5};
     camera.at = {0, 0, 0};
-    camera.yfov = 30;
+    camera.kind = PerspectiveCamera{.yfov = 30};
     scene.cameras.push_back(camera);
     Material chrome, red;
     chrome.metallic_factor = 1;

@@ -22,7 +22,7 @@ Scene before_wall(const Primitive& optic, bool glass, double wall, const Vec3& e
     camera.name = "main";
     camera.eye = eye;
     camera.at = {0, 0, 0};
-    camera.yfov = 40;
+    camera.kind = PerspectiveCamera{.yfov = 40};
     scene.cameras.push_back(camera);
     Material bright, red;
     bright.transmission_factor = glass ? 1 : 0;

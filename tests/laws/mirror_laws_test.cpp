@@ -73,7 +73,8 @@ TEST_CASE("a flat mirror shows what a second camera behind it sees, at any resol
 TEST_CASE("project agrees with Alhazen's problem on the sphere to 1e-9 of the film", "[laws][oracle][law]") {
     const auto world = shipped_world("sphere", 8, 640, 480);
     const CameraDescription& camera = world->scene.cameras[0];
-    const LinearCamera linear = make_perspective({{camera.eye, camera.at, camera.up}, camera.yfov, 640, 480});
+    const LinearCamera linear = make_perspective(
+        {{camera.eye, camera.at, camera.up}, std::get<PerspectiveCamera>(camera.kind).yfov, 640, 480});
     std::mt19937 random(11);
     std::uniform_real_distribution<double> uniform(0, 1);
     std::vector<Vec3> points;

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "json/kinds.h"
 #include "scene/info.h"
 #include "scene_text.h"
 
@@ -21,6 +22,11 @@ CameraDescription camera_of(const std::string& camera) {
     return load_text(with_camera(camera)).cameras.at(0);
 }
 
+template <typename Kind>
+Kind kind_of(const std::string& camera) {
+    return std::get<Kind>(camera_of(camera).kind);
+}
+
 std::string refusal(const std::string& camera) {
     return error_of(with_camera(camera));
 }
@@ -37,64 +43,67 @@ TEST_CASE("cameras of the shipped scene are read with their types", "[scene]") {
     CHECK(info.camera_types[1] == "fisheye");
     CHECK(info.cameras[1] == "fisheye");
     std::size_t of_types = 0;
-    for (const std::string& type : names_of<CameraType>())
+    const std::vector<std::string> types = kind_names<CameraKind>();
+    for (const std::string& type : types)
         of_types += std::count(info.camera_types.begin(), info.camera_types.end(), type) > 0;
-    CHECK(of_types == names_of<CameraType>().size() - 2);  // but planarContext and rayMesh
-    const CameraDescription& several = scene.cameras[13];
+    CHECK(of_types == types.size() - 2);  // but planarContext and rayMesh
+    const auto& several = std::get<MultiPerspectiveCamera>(scene.cameras[13].kind);
     REQUIRE(several.views.size() == 3);
-    CHECK(several.views[1].camera.yfov == 50);
+    CHECK(std::get<PerspectiveCamera>(several.views[1].camera.kind).yfov == 50);
     CHECK(several.views[1].window == std::array<double, 4>{0.3, 0, 0.7, 1});
 }
 
 TEST_CASE("every field of a camera arrives", "[scene]") {
-    const CameraDescription shifted =
-        camera_of(R"({ "yfov": 50, "shift": [0.5, -1], "near": 0.1, "far": 9, )" + kLookAt + "}");
-    CHECK(shifted.type == CameraType::kPerspective);
+    const auto shifted = kind_of<PerspectiveCamera>(
+        R"({ "yfov": 50, "shift": [0.5, -1], "near": 0.1, "far": 9, )" + kLookAt + "}");
+    CHECK(shifted.yfov == 50);
     CHECK(shifted.shift == Vec2(0.5, -1));
     CHECK(shifted.near_depth == 0.1);
     CHECK(shifted.far_depth == 9);
-    const CameraDescription oblique =
-        camera_of(R"({ "type": "oblique", "ymag": 3, "angle": 30, "scale": 0.5, )" + kLookAt + "}");
+    const auto oblique = kind_of<ObliqueCamera>(
+        R"({ "type": "oblique", "ymag": 3, "angle": 30, "scale": 0.5, )" + kLookAt + "}");
     CHECK(oblique.ymag == 3);
     CHECK(oblique.angle == 30);
     CHECK(oblique.scale == 0.5);
-    const CameraDescription volume = camera_of(
+    const auto volume = kind_of<ViewVolume>(
         R"({ "type": "viewVolume", "vrp": [1,2,3], "vpn": [0,1,1], "vup": [1,0,0], "prp": [4,5,6],
              "window": [-1,2,-3,4], "projection": "parallel", "front": 1, "back": -2 })");
-    CHECK(volume.view_volume.vrp == Vec3(1, 2, 3));
-    CHECK(volume.view_volume.vpn == Vec3(0, 1, 1));
-    CHECK(volume.view_volume.vup == Vec3(1, 0, 0));
-    CHECK(volume.view_volume.prp == Vec3(4, 5, 6));
-    CHECK(volume.view_volume.window == std::array<double, 4>{-1, 2, -3, 4});
-    CHECK(volume.view_volume.parallel);
-    CHECK(volume.view_volume.front == 1);
-    CHECK(volume.view_volume.back == -2);
-    const CameraDescription lens = camera_of(
+    CHECK(volume.vrp == Vec3(1, 2, 3));
+    CHECK(volume.vpn == Vec3(0, 1, 1));
+    CHECK(volume.vup == Vec3(1, 0, 0));
+    CHECK(volume.prp == Vec3(4, 5, 6));
+    CHECK(volume.window == std::array<double, 4>{-1, 2, -3, 4});
+    CHECK(volume.parallel);
+    CHECK(volume.front == 1);
+    CHECK(volume.back == -2);
+    const auto lens = kind_of<OpencvLens>(
         R"({ "type": "opencv", "model": "fisheye", "fx": 1, "fy": 2, "cx": 3, "cy": 4, "distortion": [0.1, 0.2, 0.3, 0.4], )" +
         kLookAt + "}");
-    CHECK(lens.lens.fisheye);
-    CHECK(lens.lens.fy == 2);
-    CHECK(lens.lens.cy == 4);
-    CHECK(lens.lens.distortion == std::vector<double>{0.1, 0.2, 0.3, 0.4});
+    CHECK(lens.fisheye);
+    CHECK(lens.fy == 2);
+    CHECK(lens.cy == 4);
+    CHECK(lens.distortion == std::vector<double>{0.1, 0.2, 0.3, 0.4});
     const CameraDescription slits = camera_of(
         R"({ "type": "crossedSlits", "slits": [[[1,2,3],[0,1,0]],[[4,5,6],[1,0,0]]], "window": [-1,1,-2,2], "facets": 7, )" +
         kLookAt + "}");
-    CHECK(slits.slits[1].point == Vec3(4, 5, 6));
-    CHECK(slits.slits[0].direction == Vec3(0, 1, 0));
-    CHECK(slits.window == std::array<double, 4>{-1, 1, -2, 2});
+    const auto& slits_of = std::get<CrossedSlitsCamera>(slits.kind);
+    CHECK(slits_of.slits[1].point == Vec3(4, 5, 6));
+    CHECK(slits_of.slits[0].direction == Vec3(0, 1, 0));
+    CHECK(slits_of.window == std::array<double, 4>{-1, 1, -2, 2});
     CHECK(slits.facets == 7);
     const CameraDescription bent = camera_of(
         R"({ "type": "planarContext", "ground": [[1,2,3],[0,2,0]], "bend": 5, "angle": 60, "tolerance": 0.5, )" +
         kLookAt + "}");
-    CHECK(bent.ground_point == Vec3(1, 2, 3));
-    CHECK(bent.ground_normal == Vec3(0, 2, 0));
-    CHECK(bent.bend == 5);
+    const auto& ground = std::get<PlanarContextCamera>(bent.kind);
+    CHECK(ground.ground_point == Vec3(1, 2, 3));
+    CHECK(ground.ground_normal == Vec3(0, 2, 0));
+    CHECK(ground.bend == 5);
     CHECK(bent.tolerance == 0.5);
-    const CameraDescription views = camera_of(
+    const auto views = kind_of<MultiPerspectiveCamera>(
         R"({ "type": "multiPerspective", "blend": 0.2, "views": [ { "window": [0,0,1,1], "type": "fisheye", "mapping": "equisolid" } ], )" +
         kLookAt + "}");
     CHECK(views.views.at(0).camera.eye == Vec3(0, 1, 4));  // the camera's own
-    CHECK(views.views[0].camera.mapping == FisheyeMapping::kEquisolid);
+    CHECK(std::get<FisheyeCamera>(views.views[0].camera.kind).mapping == FisheyeMapping::kEquisolid);
 }
 
 TEST_CASE("camera fields that do not belong, lack or make no sense are refused with their place",

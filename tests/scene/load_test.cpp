@@ -16,10 +16,10 @@ TEST_CASE("a scene file becomes plain data", "[scene]") {
 
     REQUIRE(scene.cameras.size() == 2);
     CHECK(scene.cameras[0].eye == Vec3(0, 1, 4));
-    CHECK(scene.cameras[0].yfov == 40);
-    CHECK(scene.cameras[1].type == CameraDescription::Type::kRayMesh);
-    CHECK(scene.cameras[1].directions[2] == Vec3(0, 0, -2));
-    CHECK(scene.cameras[1].triangles[0] == IdTriple{0, 1, 2});
+    CHECK(std::get<PerspectiveCamera>(scene.cameras[0].kind).yfov == 40);
+    const auto& rays = std::get<RayMeshCamera>(scene.cameras[1].kind);
+    CHECK(rays.directions[2] == Vec3(0, 0, -2));
+    CHECK(rays.triangles[0] == IdTriple{0, 1, 2});
 
     REQUIRE(scene.materials.size() == 3);
     CHECK(scene.materials[1].attenuation_color == Vec3(1, 0.5, 1));

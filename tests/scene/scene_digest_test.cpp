@@ -20,10 +20,8 @@ std::shared_ptr<const Texture> texture(float value) {
 Scene full_scene() {
     Scene scene;
     CameraDescription camera;
-    camera.points = camera.directions = {{1, 2, 3}};
-    camera.screen = {{0, 1}};
-    camera.triangles = {{0, 0, 0}};
     scene.cameras = {camera, camera};
+    scene.cameras[1].kind = RayMeshCamera{{{1, 2, 3}}, {{1, 2, 3}}, {{0, 1}}, {{0, 0, 0}}};
     Material material;
     material.base_color_texture = texture(1);
     scene.materials = {material};
@@ -103,15 +101,18 @@ std::vector<Change> changes_of_looks() {
 std::vector<Change> changes_of_shapes() {
     return {[](Scene& s) { s.cameras[0].name = "a"; },
             [](Scene& s) { s.cameras[1].name = "a"; },
-            [](Scene& s) { s.cameras[0].type = CameraDescription::Type::kRayMesh; },
-            [](Scene& s) { s.cameras[0].yfov = 30; },
+            [](Scene& s) { s.cameras[0].kind = RayMeshCamera{}; },
+            [](Scene& s) { s.cameras[0].kind = PerspectiveCamera{.yfov = 30}; },
             [](Scene& s) { s.cameras[0].eye.x = 1; },
             [](Scene& s) { s.cameras[0].at.x = 1; },
             [](Scene& s) { s.cameras[0].up.x = 1; },
-            [](Scene& s) { s.cameras[0].points[0].x = 9; },
-            [](Scene& s) { s.cameras[0].directions[0].x = 9; },
-            [](Scene& s) { s.cameras[0].screen[0].x = 9; },
-            [](Scene& s) { s.cameras[0].triangles[0][2] = 9; },
+            [](Scene& s) { s.cameras[0].kind = SphericalCamera{}; },
+            [](Scene& s) { s.cameras[0].facets = 9; },
+            [](Scene& s) { s.cameras[0].tolerance = 9; },
+            [](Scene& s) { std::get<RayMeshCamera>(s.cameras[1].kind).points[0].x = 9; },
+            [](Scene& s) { std::get<RayMeshCamera>(s.cameras[1].kind).directions[0].x = 9; },
+            [](Scene& s) { std::get<RayMeshCamera>(s.cameras[1].kind).screen[0].x = 9; },
+            [](Scene& s) { std::get<RayMeshCamera>(s.cameras[1].kind).triangles[0][2] = 9; },
             [](Scene& s) { s.meshes[0].name = "a"; },
             [](Scene& s) { s.meshes[1].name = "a"; },
             [](Scene& s) { s.meshes[0].role = Role::kOptic; },

@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <limits>
 #include <string>
-#include <utility>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "base/math/vec.h"
@@ -14,44 +15,56 @@
 
 namespace trilens {
 
-enum class CameraType {
-    kPerspective,
-    kOrthographic,
-    kOblique,
-    kViewVolume,
-    kCylindrical,
-    kSpherical,
-    kFisheye,
-    kOpencv,
-    kPushbroom,
-    kCrossedSlits,
-    kGeneralLinear,
-    kDistortion,
-    kMultiPerspective,
-    kInwardSphere,
-    kPlanarContext,
-    kRayMesh
+// The kinds of cameras, each with its parameters. World frame, scene units, degrees; the exact rays of each
+// are made in src/camera/kinds.
+
+struct PerspectiveCamera {
+    static constexpr const char* kName = "perspective";
+    static constexpr bool kLinear = true;
+    double yfov = 40;  // the whole vertical angle
+    Vec2 shift{0};     // the window moves by this share of the film's size, x right, y up
+    double near_depth = 0, far_depth = std::numeric_limits<double>::infinity();  // along the view axis
 };
 
-template <>
-struct EnumNames<CameraType> {
-    static constexpr std::array kTable{
-        NamedValue<CameraType>{CameraType::kPerspective, "perspective"},
-        NamedValue<CameraType>{CameraType::kOrthographic, "orthographic"},
-        NamedValue<CameraType>{CameraType::kOblique, "oblique"},
-        NamedValue<CameraType>{CameraType::kViewVolume, "viewVolume"},
-        NamedValue<CameraType>{CameraType::kCylindrical, "cylindrical"},
-        NamedValue<CameraType>{CameraType::kSpherical, "spherical"},
-        NamedValue<CameraType>{CameraType::kFisheye, "fisheye"},
-        NamedValue<CameraType>{CameraType::kOpencv, "opencv"},
-        NamedValue<CameraType>{CameraType::kPushbroom, "pushbroom"},
-        NamedValue<CameraType>{CameraType::kCrossedSlits, "crossedSlits"},
-        NamedValue<CameraType>{CameraType::kGeneralLinear, "generalLinear"},
-        NamedValue<CameraType>{CameraType::kDistortion, "distortion"},
-        NamedValue<CameraType>{CameraType::kMultiPerspective, "multiPerspective"},
-        NamedValue<CameraType>{CameraType::kInwardSphere, "inwardSphere"},
-        NamedValue<CameraType>{CameraType::kPlanarContext, "planarContext"},
-        NamedValue<CameraType>{CameraType::kRayMesh, "rayMesh"}};
+struct OrthographicCamera {
+    static constexpr const char* kName = "orthographic";
+    static constexpr bool kLinear = true;
+    double ymag = 1;  // half the film's height in the world
+};
+
+struct ObliqueCamera {
+    static constexpr const char* kName = "oblique";
+    static constexpr bool kLinear = true;
+    double ymag = 1;    // half the film's height in the world
+    double angle = 45;  // of receding lines on the film
+    double scale = 1;   // their length there
+};
+
+/// The standard terms of a linear view (Foley et al., Computer Graphics, chapter 6), world frame but where
+/// said. The axes u, v and n of viewing coordinates: n along vpn, v along the part of vup across it.
+struct ViewVolume {
+    static constexpr const char* kName = "viewVolume";
+    static constexpr bool kLinear = true;
+    Vec3 vrp{0};        // the view plane goes through it
+    Vec3 vpn{0, 0, 1};  // normal of the view plane, towards the viewer; any length but 0
+    Vec3 vup{0, 1, 0};  // not along vpn
+    Vec3 prp{0, 0, 1};  // in (u, v, n): the eye, or for parallel rays: from it to the
+                        // window's middle is their direction
+    std::array<double, 4> window{-1, 1, -1, 1};  // umin, umax, vmin, vmax on the view plane; the whole film
+    bool parallel = false;
+    double front = std::numeric_limits<double>::infinity();  // n of the clipping planes; infinite: none
+    double back = -std::numeric_limits<double>::infinity();
+};
+
+struct CylindricalCamera {
+    static constexpr const char* kName = "cylindrical";
+    double yfov = 40;   // the whole vertical angle
+    double hfov = 360;  // longitudes across the film
+};
+
+struct SphericalCamera {
+    static constexpr const char* kName = "spherical";
+    double hfov = 360, vfov = 180;  // longitudes across the film, latitudes over it
 };
 
 /// How far from the film's middle a fisheye shows what lies at an angle theta from its axis: proportional to
@@ -67,97 +80,157 @@ struct EnumNames<FisheyeMapping> {
         NamedValue<FisheyeMapping>{FisheyeMapping::kOrthographic, "orthographic"}};
 };
 
-/// The standard terms of a linear view (Foley et al., Computer Graphics, chapter 6), world frame but where
-/// said. The axes u, v and n of viewing coordinates: n along vpn, v along the part of vup across it.
-struct ViewVolume {
-    Vec3 vrp{0};        // the view plane goes through it
-    Vec3 vpn{0, 0, 1};  // normal of the view plane, towards the viewer; any length but 0
-    Vec3 vup{0, 1, 0};  // not along vpn
-    Vec3 prp{0, 0, 1};  // in (u, v, n): the eye, or for parallel rays: from it to the
-                        // window's middle is their direction
-    std::array<double, 4> window{-1, 1, -1, 1};  // umin, umax, vmin, vmax on the view plane; the whole film
-    bool parallel = false;
-    double front = std::numeric_limits<double>::infinity();  // n of the clipping planes; infinite: none
-    double back = -std::numeric_limits<double>::infinity();
+struct FisheyeCamera {
+    static constexpr const char* kName = "fisheye";
+    FisheyeMapping mapping = FisheyeMapping::kEquidistant;
+    double fov = 180;  // across the film's smaller side
 };
 
 /// A calibrated camera in OpenCV's terms, but for the film's positions, which have a pixel's centre at .5.
 struct OpencvLens {
+    static constexpr const char* kName = "opencv";
     bool fisheye = false;                   // cv::fisheye's model, else the pinhole's
     double fx = 1, fy = 1, cx = 0, cy = 0;  // pixels of the film
-    std::vector<double> distortion;         // pinhole: 0, 4, 5, 8, 12 or 14 numbers; fisheye: 0 or 4
+    std::vector<double> distortion = {};    // pinhole: 0, 4, 5, 8, 12 or 14 numbers; fisheye: 0 or 4
 };
 
-/// A line in the world, or a ray with a place on the film.
+struct PushbroomCamera {
+    static constexpr const char* kName = "pushbroom";
+    double yfov = 40;  // the whole vertical angle
+    Vec3 travel{1, 0, 0};
+};
+
+/// A line in the world.
 struct WorldLine {
     Vec3 point{0}, direction{0, 0, 1};
 };
+
+struct CrossedSlitsCamera {
+    static constexpr const char* kName = "crossedSlits";
+    std::array<WorldLine, 2> slits = {};
+    std::array<double, 4> window{-1, 1, -1, 1};  // umin, umax, vmin, vmax on the plane of lookAt
+};
+
+/// A ray with a place on the film.
 struct PlacedRay {
     Vec3 point{0}, direction{0, 0, 1};
     Vec2 screen{0};  // 0..1 from the film's top left
 };
 
+/// A general linear camera (Yu and McMillan), by three of its rays.
+struct ThreeRayCamera {
+    static constexpr const char* kName = "generalLinear";
+    std::array<PlacedRay, 3> placed_rays = {};
+};
+
+/// Detail and context.
+struct DistortionCamera {
+    static constexpr const char* kName = "distortion";
+    double yfov = 40;                                      // the whole vertical angle of the detail
+    std::array<double, 4> detail{0.25, 0.25, 0.75, 0.75};  // x0, y0, x1, y1: shares of the film
+    double context_fov = 150;
+};
+
 struct WindowedCamera;
 
-/// One camera. A type reads the fields that the interface gives it; the rest is ignored.
-struct CameraDescription {
-    using Type = CameraType;
-    std::string name;
-    Type type = Type::kPerspective;
-    Vec3 eye{0, 0, 1}, at{0}, up{0, 1, 0};  // lookAt: of all but viewVolume and rayMesh
-
-    double yfov = 40;  // degrees, the whole vertical angle
-    Vec2 shift{0};     // the window moves by this share of the film's size, x right, y up
-    double near_depth = 0, far_depth = std::numeric_limits<double>::infinity();  // along the view axis
-
-    double ymag = 1;    // half the film's height in the world
-    double angle = 45;  // degrees; of receding lines on the film, or of the turned up ground
-    double scale = 1;   // length of receding lines on the film
-    ViewVolume view_volume;
-
-    double hfov = 360, vfov = 180;  // degrees
-    FisheyeMapping mapping = FisheyeMapping::kEquidistant;
-    double fov = 180;  // degrees across the film's smaller side
-    OpencvLens lens;
-
-    Vec3 travel{1, 0, 0};
-    std::array<WorldLine, 2> slits;
-    std::array<double, 4> window{-1, 1, -1, 1};  // umin, umax, vmin, vmax on the plane of lookAt
-    std::array<PlacedRay, 3> placed_rays;
-
-    std::array<double, 4> detail{0.25, 0.25, 0.75, 0.75};  // x0, y0, x1, y1: shares of the film
-    double context_fov = 150;                              // degrees
+/// Several cameras, each in its window.
+struct MultiPerspectiveCamera {
+    static constexpr const char* kName = "multiPerspective";
     std::vector<WindowedCamera> views;
     double blend = 0;  // share of the film
+
+    // Defined where a WindowedCamera is.
+    MultiPerspectiveCamera();
+    MultiPerspectiveCamera(const MultiPerspectiveCamera&);
+    MultiPerspectiveCamera(MultiPerspectiveCamera&&) noexcept;
+    MultiPerspectiveCamera& operator=(const MultiPerspectiveCamera&);
+    MultiPerspectiveCamera& operator=(MultiPerspectiveCamera&&) noexcept;
+    ~MultiPerspectiveCamera();
+};
+
+struct InwardSphereCamera {
+    static constexpr const char* kName = "inwardSphere";
+    double hfov = 360, vfov = 180;  // longitudes across the film, latitudes over it
     Vec3 center{0};
     double radius = 1;
+};
+
+struct PlanarContextCamera {
+    static constexpr const char* kName = "planarContext";
+    double yfov = 40;   // the whole vertical angle
+    double angle = 45;  // of the turned up ground
     Vec3 ground_point{0}, ground_normal{0, 1, 0};
     double bend = 1;  // distance
+};
 
-    // How fine the RayMesh of a camera that is not linear is: N x N over the film, or as many as leave no
+/// A RayMesh as it is: one entry per corner; screen in 0..1 from the film's top left.
+struct RayMeshCamera {
+    static constexpr const char* kName = "rayMesh";
+    std::vector<Vec3> points = {}, directions = {};
+    std::vector<Vec2> screen = {};
+    std::vector<IdTriple> triangles = {};
+};
+
+using CameraKind =
+    std::variant<PerspectiveCamera, OrthographicCamera, ObliqueCamera, ViewVolume, CylindricalCamera,
+                 SphericalCamera, FisheyeCamera, OpencvLens, PushbroomCamera, CrossedSlitsCamera,
+                 ThreeRayCamera, DistortionCamera, MultiPerspectiveCamera, InwardSphereCamera,
+                 PlanarContextCamera, RayMeshCamera>;
+
+/// A camera of some kind.
+struct CameraDescription {
+    std::string name = {};
+    Vec3 eye{0, 0, 1}, at{0}, up{0, 1, 0};  // lookAt, where has_look_at()
+
+    // How fine the RayMesh of a camera is that chooses_facets(): N x N over the film, or as many as leave no
     // position further off than the tolerance in pixels; where both are 0: kDefaultCameraFacets.
     int facets = 0;
     double tolerance = 0;
 
-    // kRayMesh: one entry per corner; screen in 0..1 from the film's top left.
-    std::vector<Vec3> points, directions;
-    std::vector<Vec2> screen;
-    std::vector<IdTriple> triangles;
+    CameraKind kind = {};
 };
 
 /// A camera that has a part of the film: x0, y0, x1, y1 in shares of it from the top left.
 struct WindowedCamera {
-    CameraDescription camera;
+    CameraDescription camera = {};
     std::array<double, 4> window{0, 0, 1, 1};
 };
+
+inline MultiPerspectiveCamera::MultiPerspectiveCamera() = default;
+inline MultiPerspectiveCamera::MultiPerspectiveCamera(const MultiPerspectiveCamera&) = default;
+inline MultiPerspectiveCamera::MultiPerspectiveCamera(MultiPerspectiveCamera&&) noexcept = default;
+inline MultiPerspectiveCamera& MultiPerspectiveCamera::operator=(const MultiPerspectiveCamera&) = default;
+inline MultiPerspectiveCamera& MultiPerspectiveCamera::operator=(MultiPerspectiveCamera&&) noexcept = default;
+inline MultiPerspectiveCamera::~MultiPerspectiveCamera() = default;
 
 inline constexpr int kDefaultCameraFacets = 64;
 inline constexpr int kMostCameraFacets = 1024;  // N at most
 
-/// Whether a camera of this type has rays that are not linear over the film.
-constexpr bool is_linear(CameraType type) {
-    return type == CameraType::kPerspective || type == CameraType::kOrthographic ||
-           type == CameraType::kOblique || type == CameraType::kViewVolume;
+inline const char* kind_name(const CameraDescription& camera) {
+    return std::visit([](const auto& kind) { return kind.kName; }, camera.kind);
+}
+
+template <typename Kind>
+inline constexpr bool kIsLinear = requires {
+    Kind::kLinear;
+};
+
+/// Whether lookAt places it.
+template <typename Kind>
+inline constexpr bool kHasLookAt = !std::is_same_v<Kind, ViewVolume> && !std::is_same_v<Kind, RayMeshCamera>;
+
+/// Whether its RayMesh is made of exact rays that are not linear over the film.
+template <typename Kind>
+inline constexpr bool kChoosesFacets = !kIsLinear<Kind> && !std::is_same_v<Kind, RayMeshCamera>;
+
+inline bool is_linear(const CameraDescription& camera) {
+    return std::visit([]<typename Kind>(const Kind&) { return kIsLinear<Kind>; }, camera.kind);
+}
+inline bool has_look_at(const CameraDescription& camera) {
+    return std::visit([]<typename Kind>(const Kind&) { return kHasLookAt<Kind>; }, camera.kind);
+}
+inline bool chooses_facets(const CameraDescription& camera) {
+    return std::visit([]<typename Kind>(const Kind&) { return kChoosesFacets<Kind>; }, camera.kind);
 }
 
 }  // namespace trilens

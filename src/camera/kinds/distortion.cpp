@@ -13,9 +13,8 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 class DistortionDisplay final : public CameraModel {
   public:
-    explicit DistortionDisplay(const ModelSource& source)
+    DistortionDisplay(const DistortionCamera& from, const ModelSource& source)
         : eye_(source.from.eye), axes_(source.axes()), film_(source.film), focus_(source.focus()) {
-        const CameraDescription& from = source.from;
         const auto& [x0, y0, x1, y1] = from.detail;
         if (!(0 <= x0 && x0 < x1 && x1 <= 1 && 0 <= y0 && y0 < y1 && y1 <= 1))
             source.site.reject("detail", "is no window of the film: it is x0, y0, x1, y1 in 0..1");
@@ -97,8 +96,8 @@ class DistortionDisplay final : public CameraModel {
 
 }  // namespace
 
-ModelPointer make_distortion(const ModelSource& source) {
-    return std::make_shared<DistortionDisplay>(source);
+ModelPointer make_model(const DistortionCamera& kind, const ModelSource& source) {
+    return std::make_shared<DistortionDisplay>(kind, source);
 }
 
 }  // namespace trilens

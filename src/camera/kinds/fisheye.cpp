@@ -42,14 +42,14 @@ double angle_at(FisheyeMapping mapping, double distance) {
 
 class Fisheye final : public CameraModel {
   public:
-    explicit Fisheye(const ModelSource& source)
+    Fisheye(const FisheyeCamera& kind, const ModelSource& source)
         : eye_(source.from.eye),
           axes_(source.axes()),
-          mapping_(source.from.mapping),
+          mapping_(kind.mapping),
           middle_(0.5 * source.film.width, 0.5 * source.film.height),
           circle_(0.5 * std::min(source.film.width, source.film.height)),
           focus_(source.focus()) {
-        const double fov = source.from.fov;
+        const double fov = kind.fov;
         const double most = mapping_ == FisheyeMapping::kOrthographic ? 180 : 360;
         const bool open = mapping_ == FisheyeMapping::kStereographic;
         if (!(fov > 0 && (open ? fov < most : fov <= most)))
@@ -101,8 +101,8 @@ class Fisheye final : public CameraModel {
 
 }  // namespace
 
-ModelPointer make_fisheye(const ModelSource& source) {
-    return std::make_shared<Fisheye>(source);
+ModelPointer make_model(const FisheyeCamera& kind, const ModelSource& source) {
+    return std::make_shared<Fisheye>(kind, source);
 }
 
 }  // namespace trilens

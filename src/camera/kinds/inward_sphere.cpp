@@ -13,19 +13,19 @@ constexpr double kLatitudeRadians = std::numbers::pi / 180;
 /// Branch 0 shows what lies between the sphere and its centre, branch 1 what lies beyond the centre.
 class InwardSphere final : public CameraModel {
   public:
-    explicit InwardSphere(const ModelSource& source)
-        : center_(source.from.center),
-          radius_(source.from.radius),
+    InwardSphere(const InwardSphereCamera& kind, const ModelSource& source)
+        : center_(kind.center),
+          radius_(kind.radius),
           axes_(source.axes()),
           film_(source.film),
-          hfov_(source.from.hfov * kLatitudeRadians),
-          vfov_(source.from.vfov * kLatitudeRadians) {
+          hfov_(kind.hfov * kLatitudeRadians),
+          vfov_(kind.vfov * kLatitudeRadians) {
         if (!(radius_ > 0 && std::isfinite(radius_)))
             source.site.reject("radius", "must be a positive number");
         if (!is_finite_vector(center_)) source.site.reject("center", "is not finite");
-        if (!(source.from.hfov > 0 && source.from.hfov <= 360))
+        if (!(kind.hfov > 0 && kind.hfov <= 360))
             source.site.reject("hfov", "the angle must be more than 0 and at most 360 degrees");
-        if (!(source.from.vfov > 0 && source.from.vfov <= 180))
+        if (!(kind.vfov > 0 && kind.vfov <= 180))
             source.site.reject("vfov", "the angle must be more than 0 and at most 180 degrees");
     }
     std::optional<Ray> ray(const Vec2& at) const override {
@@ -63,8 +63,8 @@ class InwardSphere final : public CameraModel {
 
 }  // namespace
 
-ModelPointer make_inward_sphere(const ModelSource& source) {
-    return std::make_shared<InwardSphere>(source);
+ModelPointer make_model(const InwardSphereCamera& kind, const ModelSource& source) {
+    return std::make_shared<InwardSphere>(kind, source);
 }
 
 }  // namespace trilens

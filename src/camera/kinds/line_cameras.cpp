@@ -13,18 +13,18 @@ constexpr double kLeastSine = 1e-9;  // angles below this are none
 
 class Pushbroom final : public CameraModel {
   public:
-    explicit Pushbroom(const ModelSource& source)
+    Pushbroom(const PushbroomCamera& kind, const ModelSource& source)
         : eye_(source.from.eye),
-          travel_(source.from.travel),
+          travel_(kind.travel),
           axes_(source.axes()),
           film_(source.film),
           focus_(source.focus()) {
-        if (!(source.from.yfov > 0 && source.from.yfov < 180))
+        if (!(kind.yfov > 0 && kind.yfov < 180))
             source.site.reject("yfov", "the angle must lie between 0 and 180 degrees");
         if (!is_finite_vector(travel_) ||
             !(std::fabs(dot(normalize_or_zero(travel_), axes_.right)) > kLeastSine))
             source.site.reject("travel", "has no part across the view: all columns see the same plane");
-        half_height_ = std::tan(0.5 * source.from.yfov * kShearRadians);
+        half_height_ = std::tan(0.5 * kind.yfov * kShearRadians);
     }
     std::optional<Ray> ray(const Vec2& at) const override {
         const double height = (1 - 2 * at.y / film_.height) * half_height_;
@@ -50,12 +50,12 @@ class Pushbroom final : public CameraModel {
 
 class CrossedSlits final : public CameraModel {
   public:
-    explicit CrossedSlits(const ModelSource& source)
-        : slits_(source.from.slits),
+    CrossedSlits(const CrossedSlitsCamera& kind, const ModelSource& source)
+        : slits_(kind.slits),
           at_(source.from.at),
           axes_(source.axes()),
           film_(source.film),
-          window_(source.from.window),
+          window_(kind.window),
           focus_(source.focus()) {
         for (std::size_t k = 0; k < 2; ++k) {
             slits_[k].direction = normalize_or_zero(slits_[k].direction);
@@ -119,11 +119,11 @@ class CrossedSlits final : public CameraModel {
 
 class GeneralLinear final : public CameraModel {
   public:
-    explicit GeneralLinear(const ModelSource& source)
+    GeneralLinear(const ThreeRayCamera& kind, const ModelSource& source)
         : eye_(source.from.eye), axes_(source.axes()), focus_(source.focus()) {
         Mat3 screen(1), origins(0), directions(0);
         for (int k = 0; k < 3; ++k) {
-            const PlacedRay& placed = source.from.placed_rays[static_cast<std::size_t>(k)];
+            const PlacedRay& placed = kind.placed_rays[static_cast<std::size_t>(k)];
             const std::string field = "rays/" + std::to_string(k);
             const Vec3 unit = normalize_or_zero(placed.direction);
             if (unit == Vec3(0) || !is_finite_vector(placed.point))
@@ -181,16 +181,16 @@ class GeneralLinear final : public CameraModel {
 
 }  // namespace
 
-ModelPointer make_pushbroom(const ModelSource& source) {
-    return std::make_shared<Pushbroom>(source);
+ModelPointer make_model(const PushbroomCamera& kind, const ModelSource& source) {
+    return std::make_shared<Pushbroom>(kind, source);
 }
 
-ModelPointer make_crossed_slits(const ModelSource& source) {
-    return std::make_shared<CrossedSlits>(source);
+ModelPointer make_model(const CrossedSlitsCamera& kind, const ModelSource& source) {
+    return std::make_shared<CrossedSlits>(kind, source);
 }
 
-ModelPointer make_general_linear(const ModelSource& source) {
-    return std::make_shared<GeneralLinear>(source);
+ModelPointer make_model(const ThreeRayCamera& kind, const ModelSource& source) {
+    return std::make_shared<GeneralLinear>(kind, source);
 }
 
 }  // namespace trilens

@@ -27,7 +27,7 @@ enum class Ramp { kNone, kWhole, kRising, kFalling };
 /// weight is a product of two linear functions. A patch is a branch.
 class MultiPerspective final : public CameraModel {
   public:
-    explicit MultiPerspective(const ModelSource& source);
+    MultiPerspective(const MultiPerspectiveCamera& kind, const ModelSource& source);
     std::optional<Ray> ray(const Vec2& at) const override { return ray_of_patch(patch_at(at), at); }
     std::size_t branch_count() const override { return patches_.size(); }
     std::optional<FilmImage> place(const Vec3& point, std::size_t patch) const override;
@@ -47,7 +47,7 @@ class MultiPerspective final : public CameraModel {
         Vec2 middle{0}, half{0};
     };
 
-    void make_views(const ModelSource& source);
+    void make_views(const std::vector<WindowedCamera>& views, const ModelSource& source);
     void make_cuts(int axis);
     void make_patches();
     Ramp ramp_at(int axis, const View& view, double at) const;
@@ -69,24 +69,25 @@ class MultiPerspective final : public CameraModel {
     std::vector<Patch> patches_;                 // rows of columns
 };
 
-MultiPerspective::MultiPerspective(const ModelSource& source) : film_(source.film), focus_(1) {
-    if (!(source.from.blend >= 0 && source.from.blend <= 1))
-        source.site.reject("blend", "is a share of the film: 0 to 1");
-    blend_ = source.from.blend * Vec2(film_.width, film_.height);
-    make_views(source);
+MultiPerspective::MultiPerspective(const MultiPerspectiveCamera& kind, const ModelSource& source)
+    : film_(source.film), focus_(1) {
+    if (!(kind.blend >= 0 && kind.blend <= 1)) source.site.reject("blend", "is a share of the film: 0 to 1");
+    blend_ = kind.blend * Vec2(film_.width, film_.height);
+    make_views(kind.views, source);
     make_patches();
 }
 
-void MultiPerspective::make_views(const ModelSource& source) {
-    if (source.from.views.empty()) source.site.reject("views", "there must be at least one");
+void MultiPerspective::make_views(const std::vector<WindowedCamera>& views, const ModelSource& source) {
+    if (views.empty()) source.site.reject("views", "there must be at least one");
     double focus = 0;
-    for (std::size_t i = 0; i < source.from.views.size(); ++i) {
-        const WindowedCamera& from = source.from.views[i];
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const WindowedCamera& from = views[i];
         const std::string field = "views/" + std::to_string(i);
         const auto& [x0, y0, x1, y1] = from.window;
         if (!(0 <= x0 && x0 < x1 && x1 <= 1 && 0 <= y0 && y0 < y1 && y1 <= 1))
             source.site.reject(field + "/window", "is no window of the film: it is x0, y0, x1, y1 in 0..1");
-        if (from.camera.type == CameraType::kRayMesh || from.camera.type == CameraType::kMultiPerspective)
+        if (std::holds_alternative<RayMeshCamera>(from.camera.kind) ||
+            std::holds_alternative<MultiPerspectiveCamera>(from.camera.kind))
             source.site.reject(field + "/type", "a view is a camera of one perspective");
         View view;
         view.low = Vec2(x0 * film_.width, y0 * film_.height);
@@ -334,8 +335,8 @@ std::optional<FilmImage> MultiPerspective::solve(const Vec3& point, std::size_t 
 
 }  // namespace
 
-ModelPointer make_multi_perspective(const ModelSource& source) {
-    return std::make_shared<MultiPerspective>(source);
+ModelPointer make_model(const MultiPerspectiveCamera& kind, const ModelSource& source) {
+    return std::make_shared<MultiPerspective>(kind, source);
 }
 
 }  // namespace trilens

@@ -157,8 +157,8 @@ constexpr int kChecked = 48;  // places along each edge of the film at which the
 
 class Opencv final : public CameraModel {
   public:
-    explicit Opencv(const ModelSource& source)
-        : eye_(source.from.eye), axes_(source.axes()), lens_(source.from.lens), focus_(source.focus()) {
+    Opencv(const OpencvLens& lens, const ModelSource& source)
+        : eye_(source.from.eye), axes_(source.axes()), lens_(lens), focus_(source.focus()) {
         check_numbers(source);
         check_film(source);
         end_ = lens_.fisheye ? opencv_fisheye_end(lens_) : 0;
@@ -228,8 +228,8 @@ class Opencv final : public CameraModel {
 
 }  // namespace
 
-ModelPointer make_opencv(const ModelSource& source) {
-    return std::make_shared<Opencv>(source);
+ModelPointer make_model(const OpencvLens& kind, const ModelSource& source) {
+    return std::make_shared<Opencv>(kind, source);
 }
 
 }  // namespace trilens

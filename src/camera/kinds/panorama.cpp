@@ -13,13 +13,13 @@ constexpr double kPanoramaRadians = std::numbers::pi / 180;
 /// What both share: longitude across the film.
 class Panorama : public CameraModel {
   public:
-    explicit Panorama(const ModelSource& source)
+    Panorama(double hfov, const ModelSource& source)
         : eye_(source.from.eye),
           axes_(source.axes()),
           film_(source.film),
-          hfov_(source.from.hfov * kPanoramaRadians),
+          hfov_(hfov * kPanoramaRadians),
           focus_(source.focus()) {
-        if (!(source.from.hfov > 0 && source.from.hfov <= 360))
+        if (!(hfov > 0 && hfov <= 360))
             source.site.reject("hfov", "the angle must be more than 0 and at most 360 degrees");
     }
     std::optional<Vec3> eye() const override { return eye_; }
@@ -40,10 +40,10 @@ class Panorama : public CameraModel {
 
 class Cylindrical final : public Panorama {
   public:
-    explicit Cylindrical(const ModelSource& source) : Panorama(source) {
-        if (!(source.from.yfov > 0 && source.from.yfov < 180))
+    Cylindrical(const CylindricalCamera& kind, const ModelSource& source) : Panorama(kind.hfov, source) {
+        if (!(kind.yfov > 0 && kind.yfov < 180))
             source.site.reject("yfov", "the angle must lie between 0 and 180 degrees");
-        half_height_ = std::tan(0.5 * source.from.yfov * kPanoramaRadians);
+        half_height_ = std::tan(0.5 * kind.yfov * kPanoramaRadians);
     }
     std::optional<Ray> ray(const Vec2& at) const override {
         const double angle = longitude(at.x), height = (1 - 2 * at.y / film_.height) * half_height_;
@@ -63,9 +63,9 @@ class Cylindrical final : public Panorama {
 
 class Spherical final : public Panorama {
   public:
-    explicit Spherical(const ModelSource& source)
-        : Panorama(source), vfov_(source.from.vfov * kPanoramaRadians) {
-        if (!(source.from.vfov > 0 && source.from.vfov <= 180))
+    Spherical(const SphericalCamera& kind, const ModelSource& source)
+        : Panorama(kind.hfov, source), vfov_(kind.vfov * kPanoramaRadians) {
+        if (!(kind.vfov > 0 && kind.vfov <= 180))
             source.site.reject("vfov", "the angle must be more than 0 and at most 180 degrees");
     }
     std::optional<Ray> ray(const Vec2& at) const override {
@@ -91,12 +91,12 @@ class Spherical final : public Panorama {
 
 }  // namespace
 
-ModelPointer make_cylindrical(const ModelSource& source) {
-    return std::make_shared<Cylindrical>(source);
+ModelPointer make_model(const CylindricalCamera& kind, const ModelSource& source) {
+    return std::make_shared<Cylindrical>(kind, source);
 }
 
-ModelPointer make_spherical(const ModelSource& source) {
-    return std::make_shared<Spherical>(source);
+ModelPointer make_model(const SphericalCamera& kind, const ModelSource& source) {
+    return std::make_shared<Spherical>(kind, source);
 }
 
 }  // namespace trilens

@@ -37,7 +37,7 @@ enum Branch : std::size_t { kFlatBranch, kTailBranch, kFirstStrip, kBranches = k
 
 class PlanarContext final : public CameraModel {
   public:
-    explicit PlanarContext(const ModelSource& source);
+    PlanarContext(const PlanarContextCamera& from, const ModelSource& source);
     std::optional<Ray> ray(const Vec2& at) const override;
     std::size_t branch_count() const override { return kBranches; }
     std::optional<FilmImage> place(const Vec3& point, std::size_t branch) const override;
@@ -99,15 +99,15 @@ class PlanarContext final : public CameraModel {
     double bend_ = 1, angle_ = 1, radius_ = 1;
 };
 
-PlanarContext::PlanarContext(const ModelSource& source)
+PlanarContext::PlanarContext(const PlanarContextCamera& from, const ModelSource& source)
     : axes_(source.axes()), film_(source.film), focus_(source.focus()) {
-    const CameraDescription& from = source.from;
+    const Vec3& eye = source.from.eye;
     if (!(from.yfov > 0 && from.yfov < 180))
         source.site.reject("yfov", "the angle must lie between 0 and 180 degrees");
     focal_ = 0.5 * film_.height / std::tan(0.5 * from.yfov * kArcRadians);
     normal_ = normalize_or_zero(from.ground_normal);
     if (normal_ == Vec3(0)) source.site.reject("ground", "its normal must not be zero");
-    const double height = dot(from.eye - from.ground_point, normal_);
+    const double height = dot(eye - from.ground_point, normal_);
     if (!(height > 0)) source.site.reject("ground", "the eye must stand above the ground");
     heading_ = normalize_or_zero(axes_.forward - dot(axes_.forward, normal_) * normal_);
     if (!(length(cross(axes_.forward, normal_)) > 1e-9))
@@ -117,7 +117,7 @@ PlanarContext::PlanarContext(const ModelSource& source)
     if (!(from.angle > 0 && from.angle <= 90))
         source.site.reject("angle", "the ground turns up by more than 0 and at most 90 degrees");
     side_ = cross(heading_, normal_);
-    foot_ = from.eye - height * normal_;
+    foot_ = eye - height * normal_;
     eye_ = {0, height};
     bend_ = from.bend;
     angle_ = from.angle * kArcRadians;
@@ -240,8 +240,8 @@ std::vector<double> PlanarContext::breaks_y() const {
 
 }  // namespace
 
-ModelPointer make_planar_context(const ModelSource& source) {
-    return std::make_shared<PlanarContext>(source);
+ModelPointer make_model(const PlanarContextCamera& kind, const ModelSource& source) {
+    return std::make_shared<PlanarContext>(kind, source);
 }
 
 }  // namespace trilens

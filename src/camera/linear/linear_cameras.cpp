@@ -238,40 +238,48 @@ LinearCamera make_view_volume(const ViewVolume& volume, const FilmSize& film, co
 
 namespace {
 
-LinearView perspective_view(const CameraDescription& from, const FilmSize& film, const CameraSite& site) {
+LinearView linear_view(const PerspectiveCamera& from, const ModelSource& source) {
+    const CameraSite& site = source.site;
     if (!(from.near_depth >= 0)) site.reject("near", "must not be negative");
     if (!(from.far_depth > from.near_depth)) site.reject("far", "must be more than near");
     if (!std::isfinite(from.shift.x) || !std::isfinite(from.shift.y)) site.reject("shift", "is not finite");
-    make_film_axes({from.eye, from.at, from.up}, site);
-    PerspectiveParams params{{from.eye, from.at, from.up}, from.yfov, film.width, film.height, from.shift};
+    source.axes();  // refuses a lookAt that gives none, by the scene's place
+    const PerspectiveParams params{source.look_at(), from.yfov, source.film.width, source.film.height,
+                                   from.shift};
     return {make_perspective(params), from.near_depth, from.far_depth};
 }
 
-LinearView parallel_view(const CameraDescription& from, const FilmSize& film, const CameraSite& site) {
+/// Oblique; without receding lines orthographic.
+LinearView linear_view(const ObliqueCamera& from, const ModelSource& source) {
+    const CameraSite& site = source.site;
     if (!(from.ymag > 0 && std::isfinite(from.ymag))) site.reject("ymag", "must be a positive number");
-    make_film_axes({from.eye, from.at, from.up}, site);
-    const bool oblique = from.type == CameraType::kOblique;
-    if (oblique && !(from.scale >= 0 && std::isfinite(from.scale)))
+    source.axes();
+    if (!(from.scale >= 0 && std::isfinite(from.scale)))
         site.reject("scale", "must be a number that is not negative");
-    return {make_oblique({{from.eye, from.at, from.up},
-                          2 * from.ymag,
-                          oblique ? from.angle : 0,
-                          oblique ? from.scale : 0,
-                          film.width,
-                          film.height})};
+    return {make_oblique(
+        {source.look_at(), 2 * from.ymag, from.angle, from.scale, source.film.width, source.film.height})};
+}
+
+LinearView linear_view(const OrthographicCamera& from, const ModelSource& source) {
+    return linear_view(ObliqueCamera{from.ymag, 0, 0}, source);
+}
+
+LinearView linear_view(const ViewVolume& volume, const ModelSource& source) {
+    const LinearCamera camera = make_view_volume(volume, source.film, source.site);
+    const DepthRange depth = depth_range(volume);
+    return {camera, depth.near_depth, depth.far_depth};
 }
 
 }  // namespace
 
 LinearView make_linear_view(const CameraDescription& from, const FilmSize& film, const CameraSite& site) {
-    if (from.type == CameraType::kPerspective) return perspective_view(from, film, site);
-    if (from.type == CameraType::kViewVolume) {
-        const LinearCamera camera = make_view_volume(from.view_volume, film, site);
-        const DepthRange depth = depth_range(from.view_volume);
-        return {camera, depth.near_depth, depth.far_depth};
-    }
-    TRILENS_CHECK(is_linear(from.type), "the camera is linear");
-    return parallel_view(from, film, site);
+    TRILENS_CHECK(is_linear(from), "the camera is linear");
+    return std::visit(
+        [&]<typename Kind>(const Kind& kind) -> LinearView {
+            if constexpr (kIsLinear<Kind>) return linear_view(kind, {from, film, site});
+            return {};
+        },
+        from.kind);
 }
 
 // A linear camera as a model: a view of a picture that has several.
@@ -281,9 +289,10 @@ namespace {
 class LinearModel final : public CameraModel {
   public:
     explicit LinearModel(const ModelSource& source)
-        : view_(make_linear_view(source.from, source.film, source.site)),
-          focus_(source.from.type == CameraType::kViewVolume ? std::fabs(source.from.view_volume.prp.z)
-                                                             : source.focus()) {}
+        : view_(make_linear_view(source.from, source.film, source.site)), focus_(source.focus()) {
+        if (const auto* volume = std::get_if<ViewVolume>(&source.from.kind))
+            focus_ = std::fabs(volume->prp.z);
+    }
     std::optional<Ray> ray(const Vec2& at) const override {
         Ray ray = film_ray(view_.camera, at);
         ray.origin += view_.near_depth * ray.direction;

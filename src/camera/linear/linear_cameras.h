@@ -100,7 +100,7 @@ struct LinearView {
     double near_depth = 0, far_depth = std::numeric_limits<double>::infinity();
 };
 
-/// A description with is_linear(type). Throws InputError with the field at fault.
+/// A description that is_linear(). Throws InputError with the field at fault.
 LinearView make_linear_view(const CameraDescription& from, const FilmSize& film, const CameraSite& site);
 
 }  // namespace trilens

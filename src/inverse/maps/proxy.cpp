@@ -44,8 +44,7 @@ Box scene_box(const World& world) {
         for (const Vec3& point : optic_facets(world, o, world.optics[o].resolution)->grid().points)
             box.include(point);
     for (const CameraDescription& camera : world.scene.cameras)
-        if (camera.type != CameraType::kRayMesh && camera.type != CameraType::kViewVolume)
-            box.include(camera.eye);
+        if (has_look_at(camera)) box.include(camera.eye);
     return box;
 }
 

@@ -21,7 +21,7 @@ CameraRays make_camera_rays(const Scene& scene, std::size_t index) {
     const CameraDescription& from = scene.cameras[index];
     const FilmSize film{static_cast<double>(scene.film.width), static_cast<double>(scene.film.height)};
     CameraRays camera = make_camera(from, film, {scene.file, "/cameras/" + std::to_string(index)});
-    if (from.type == CameraType::kRayMesh && has_optics(scene))
+    if (std::holds_alternative<RayMeshCamera>(from.kind) && has_optics(scene))
         camera.model = make_ray_mesh_model(camera.mesh, film);
     return camera;
 }

@@ -66,9 +66,14 @@ void SceneCheck::cameras() const {
     for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
         const CameraDescription& camera = scene_.cameras[i];
         const std::string place = "/cameras/" + std::to_string(i);
-        require(
-            is_finite(camera.eye) && is_finite(camera.at) && is_finite(camera.up) && is_finite(camera.yfov),
-            place, "is not finite");
+        const bool finite_angle = std::visit(
+            [](const auto& kind) {
+                if constexpr (requires { kind.yfov; }) return is_finite(kind.yfov);
+                return true;
+            },
+            camera.kind);
+        require(is_finite(camera.eye) && is_finite(camera.at) && is_finite(camera.up) && finite_angle, place,
+                "is not finite");
     }
 }
 

@@ -15,28 +15,97 @@ void add(const std::shared_ptr<const Texture>& texture, Digest& digest) {
     digest.add_all(width, height, rgb, alpha);
 }
 
-void add(const CameraDescription& camera, Digest& digest) {
-    const auto& [name, type, eye, at, up, yfov, shift, near_depth, far_depth, ymag, angle, scale, volume,
-                 hfov, vfov, mapping, fov, lens, travel, slits, window, placed_rays, detail, context_fov,
-                 views, blend, center, radius, ground_point, ground_normal, bend, facets, tolerance, points,
-                 directions, screen, triangles] = camera;
-    digest.add_all(name, type, eye, at, up, yfov, shift, near_depth, far_depth, ymag, angle, scale, hfov,
-                   vfov, mapping, fov, travel, window, detail, context_fov, blend, center, radius,
-                   ground_point, ground_normal, bend, facets, tolerance, points, directions, screen,
-                   triangles);
-    {
-        const auto& [vrp, vpn, vup, prp, of_window, parallel, front, back] = volume;
-        digest.add_all(vrp, vpn, vup, prp, of_window, parallel, front, back);
-    }
-    const auto& [fisheye, fx, fy, cx, cy, distortion] = lens;
+void add(const PerspectiveCamera& camera, Digest& digest) {
+    const auto& [yfov, shift, near_depth, far_depth] = camera;
+    digest.add_all(yfov, shift, near_depth, far_depth);
+}
+
+void add(const OrthographicCamera& camera, Digest& digest) {
+    const auto& [ymag] = camera;
+    digest.add(ymag);
+}
+
+void add(const ObliqueCamera& camera, Digest& digest) {
+    const auto& [ymag, angle, scale] = camera;
+    digest.add_all(ymag, angle, scale);
+}
+
+void add(const ViewVolume& camera, Digest& digest) {
+    const auto& [vrp, vpn, vup, prp, window, parallel, front, back] = camera;
+    digest.add_all(vrp, vpn, vup, prp, window, parallel, front, back);
+}
+
+void add(const CylindricalCamera& camera, Digest& digest) {
+    const auto& [yfov, hfov] = camera;
+    digest.add_all(yfov, hfov);
+}
+
+void add(const SphericalCamera& camera, Digest& digest) {
+    const auto& [hfov, vfov] = camera;
+    digest.add_all(hfov, vfov);
+}
+
+void add(const FisheyeCamera& camera, Digest& digest) {
+    const auto& [mapping, fov] = camera;
+    digest.add_all(mapping, fov);
+}
+
+void add(const OpencvLens& camera, Digest& digest) {
+    const auto& [fisheye, fx, fy, cx, cy, distortion] = camera;
     digest.add_all(fisheye, fx, fy, cx, cy, distortion);
+}
+
+void add(const PushbroomCamera& camera, Digest& digest) {
+    const auto& [yfov, travel] = camera;
+    digest.add_all(yfov, travel);
+}
+
+void add(const CrossedSlitsCamera& camera, Digest& digest) {
+    const auto& [slits, window] = camera;
+    digest.add(window);
     for (const auto& [point, direction] : slits) digest.add_all(point, direction);
+}
+
+void add(const ThreeRayCamera& camera, Digest& digest) {
+    const auto& [placed_rays] = camera;
     for (const auto& [point, direction, place] : placed_rays) digest.add_all(point, direction, place);
-    digest.add(views.size());
+}
+
+void add(const DistortionCamera& camera, Digest& digest) {
+    const auto& [yfov, detail, context_fov] = camera;
+    digest.add_all(yfov, detail, context_fov);
+}
+
+void add(const CameraDescription& camera, Digest& digest);
+
+void add(const MultiPerspectiveCamera& camera, Digest& digest) {
+    const auto& [views, blend] = camera;
+    digest.add_all(blend, views.size());
     for (const auto& [one, of_film] : views) {
         add(one, digest);
         digest.add(of_film);
     }
+}
+
+void add(const InwardSphereCamera& camera, Digest& digest) {
+    const auto& [hfov, vfov, center, radius] = camera;
+    digest.add_all(hfov, vfov, center, radius);
+}
+
+void add(const PlanarContextCamera& camera, Digest& digest) {
+    const auto& [yfov, angle, ground_point, ground_normal, bend] = camera;
+    digest.add_all(yfov, angle, ground_point, ground_normal, bend);
+}
+
+void add(const RayMeshCamera& camera, Digest& digest) {
+    const auto& [points, directions, screen, triangles] = camera;
+    digest.add_all(points, directions, screen, triangles);
+}
+
+void add(const CameraDescription& camera, Digest& digest) {
+    const auto& [name, eye, at, up, facets, tolerance, kind] = camera;
+    digest.add_all(name, eye, at, up, facets, tolerance, kind.index());
+    std::visit([&](const auto& one) { add(one, digest); }, kind);
 }
 
 void add(const Background& background, Digest& digest) {

@@ -1,6 +1,7 @@
 // The settings of cameras, each with the types that have it.
 #include <algorithm>
 
+#include "json/kinds.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -9,73 +10,61 @@ namespace {
 using Camera = CameraDescription;
 using CameraFields = std::vector<Field<Camera>>;
 
+/// A setting of one kind of camera, and of each kind that has the member.
+template <typename Kind>
+Field<Camera> of(Field<Kind> field, Need need = Need::kNo) {
+    return of_kind<Camera>(std::move(field), need);
+}
+
 /// Linear views: perspective with a window that may be off the axis, and parallel ones.
 CameraFields linear_fields() {
+    using Perspective = PerspectiveCamera;
     return {
-        setting("shift", &Camera::shift, several(2, number_in(-1000, 1000)),
-                "perspective: the window moves by this share of the film's width and height, x right, y up.")
-            .of({"perspective"}),
-        setting("near", &Camera::near_depth, ref("notNegative"),
-                "perspective: what lies nearer along the view axis is not seen.")
-            .of({"perspective"}),
-        setting("far", &Camera::far_depth, ref("positive"), "perspective: likewise what lies farther.")
-            .of({"perspective"})
+        of(setting(
+            "shift", &Perspective::shift, several(2, number_in(-1000, 1000)),
+            "perspective: the window moves by this share of the film's width and height, x right, y up.")),
+        of(setting("near", &Perspective::near_depth, ref("notNegative"),
+                   "perspective: what lies nearer along the view axis is not seen.")),
+        of(setting("far", &Perspective::far_depth, ref("positive"),
+                   "perspective: likewise what lies farther."))
             .without_default(),
-        setting("ymag", &Camera::ymag, ref("positive"),
-                "orthographic, oblique: half the film's height in the world.")
-            .of({"orthographic", "oblique"}),
-        setting("angle", &Camera::angle, number_in(-360, 360),
-                "oblique: of receding lines on the film, from the right towards the top; planarContext: how "
-                "far the ground turns up, at most 90.")
-            .of({"oblique", "planarContext"}),
-        setting("scale", &Camera::scale, ref("notNegative"),
-                "oblique: length of receding lines on the film, 1 cavalier, 0.5 cabinet.")
-            .of({"oblique"}),
+        of_kinds<Camera>("ymag", TRILENS_MEMBER(ymag), ref("positive"),
+                         "orthographic, oblique: half the film's height in the world."),
+        of_kinds<Camera>(
+            "angle", TRILENS_MEMBER(angle), number_in(-360, 360),
+            "oblique: of receding lines on the film, from the right towards the top; planarContext: how "
+            "far the ground turns up, at most 90."),
+        of(setting("scale", &ObliqueCamera::scale, ref("notNegative"),
+                   "oblique: length of receding lines on the film, 1 cavalier, 0.5 cabinet.")),
     };
 }
 
 /// A view by view plane, window and projection reference point (Foley et al.), and the window of crossed
 /// slits.
 CameraFields view_volume_fields() {
-    const auto volume = [](Field<ViewVolume> field) {
-        return within(&Camera::view_volume, std::move(field));
-    };
-    Field<Camera> window = part<Camera>(
-        "window", several(4, ref("number")),
-        "viewVolume, crossedSlits: umin, umax, vmin, vmax on the view plane (crossedSlits: through 'at' of "
-        "lookAt), which fill the film.");
-    window.read = [](const Json& json, Camera& camera) {
-        if (camera.type == CameraType::kViewVolume) from_json_value(json, camera.view_volume.window);
-        if (camera.type == CameraType::kCrossedSlits) from_json_value(json, camera.window);
-    };
     return {
-        volume(setting("vrp", &ViewVolume::vrp, ref("vec3"), "viewVolume: a point of the view plane."))
-            .of({"viewVolume"}),
-        volume(setting("vpn", &ViewVolume::vpn, ref("vec3"), "viewVolume: its normal, towards the viewer."))
-            .of({"viewVolume"}),
-        volume(setting("vup", &ViewVolume::vup, ref("vec3"))).of({"viewVolume"}),
-        volume(setting("prp", &ViewVolume::prp, ref("vec3"),
-                       "viewVolume: the eye in (u, v, n) from the vrp; parallel: rays go from it to the "
-                       "window's middle."))
-            .of({"viewVolume!"})
+        of(setting("vrp", &ViewVolume::vrp, ref("vec3"), "viewVolume: a point of the view plane.")),
+        of(setting("vpn", &ViewVolume::vpn, ref("vec3"), "viewVolume: its normal, towards the viewer.")),
+        of(setting("vup", &ViewVolume::vup, ref("vec3"))),
+        of(setting("prp", &ViewVolume::prp, ref("vec3"),
+                   "viewVolume: the eye in (u, v, n) from the vrp; parallel: rays go from it to the "
+                   "window's middle."),
+           Need::kYes),
+        of_kinds<Camera>("window", TRILENS_MEMBER(window), several(4, ref("number")),
+                         "viewVolume, crossedSlits: umin, umax, vmin, vmax on the view plane (crossedSlits: "
+                         "through 'at' of "
+                         "lookAt), which fill the film.",
+                         Need::kYes),
+        of(either("projection", &ViewVolume::parallel, {"perspective", "parallel"}), Need::kYes),
+        of(setting("front", &ViewVolume::front, ref("number"),
+                   "viewVolume: n of the clipping plane; without it none."))
             .without_default(),
-        std::move(window).of({"viewVolume!", "crossedSlits!"}),
-        volume(either("projection", &ViewVolume::parallel, {"perspective", "parallel"}))
-            .of({"viewVolume!"})
-            .without_default(),
-        volume(setting("front", &ViewVolume::front, ref("number"),
-                       "viewVolume: n of the clipping plane; without it none."))
-            .of({"viewVolume"})
-            .without_default(),
-        volume(setting("back", &ViewVolume::back, ref("number"), "viewVolume: likewise."))
-            .of({"viewVolume"})
-            .without_default(),
+        of(setting("back", &ViewVolume::back, ref("number"), "viewVolume: likewise.")).without_default(),
     };
 }
 
 /// Panoramas, fisheyes and calibrated lenses.
 CameraFields lens_fields() {
-    const auto lens = [](Field<OpencvLens> field) { return within(&Camera::lens, std::move(field)); };
     Field<OpencvLens> distortion = part<OpencvLens>(
         "distortion",
         {{"type", "array"}, {"maxItems", 14}, {"items", ref("number")}, {"default", Json::array()}},
@@ -85,122 +74,112 @@ CameraFields lens_fields() {
         into.distortion = json.get<std::vector<double>>();
     };
     return {
-        setting("hfov", &Camera::hfov, number_above(0, 360), "Longitudes across the film, degrees.")
-            .of({"cylindrical", "spherical", "inwardSphere"}),
-        setting("vfov", &Camera::vfov, number_above(0, 180), "Latitudes over the film, degrees.")
-            .of({"spherical", "inwardSphere"}),
-        choice("mapping", &Camera::mapping,
-               "fisheye: how the distance from the film's middle grows with the angle from the axis.")
-            .of({"fisheye"}),
-        setting("fov", &Camera::fov, number_above(0, 360),
-                "fisheye: degrees across the film's smaller side; beyond that circle there are no rays.")
-            .of({"fisheye"}),
-        lens(either("model", &OpencvLens::fisheye, {"pinhole", "fisheye"})).of({"opencv!"}).without_default(),
-        lens(setting("fx", &OpencvLens::fx, ref("positive"), "opencv: pixels of the film."))
-            .of({"opencv!"})
-            .without_default(),
-        lens(setting("fy", &OpencvLens::fy, ref("positive"))).of({"opencv!"}).without_default(),
-        lens(
-            setting("cx", &OpencvLens::cx, ref("number"),
-                    "opencv: pixels from the film's left edge, where a pixel's centre is at .5: OpenCV's own "
-                    "cx + 0.5."))
-            .of({"opencv!"})
-            .without_default(),
-        lens(setting("cy", &OpencvLens::cy, ref("number"), "opencv: likewise from the top."))
-            .of({"opencv!"})
-            .without_default(),
-        lens(std::move(distortion)).of({"opencv"}),
+        of_kinds<Camera>("hfov", TRILENS_MEMBER(hfov), number_above(0, 360),
+                         "Longitudes across the film, degrees."),
+        of_kinds<Camera>("vfov", TRILENS_MEMBER(vfov), number_above(0, 180),
+                         "Latitudes over the film, degrees."),
+        of(choice("mapping", &FisheyeCamera::mapping,
+                  "fisheye: how the distance from the film's middle grows with the angle from the axis.")),
+        of(setting("fov", &FisheyeCamera::fov, number_above(0, 360),
+                   "fisheye: degrees across the film's smaller side; beyond that circle there are no rays.")),
+        of(either("model", &OpencvLens::fisheye, {"pinhole", "fisheye"}), Need::kYes),
+        of(setting("fx", &OpencvLens::fx, ref("positive"), "opencv: pixels of the film."), Need::kYes),
+        of(setting("fy", &OpencvLens::fy, ref("positive")), Need::kYes),
+        of(setting("cx", &OpencvLens::cx, ref("number"),
+                   "opencv: pixels from the film's left edge, where a pixel's centre is at .5: OpenCV's own "
+                   "cx + 0.5."),
+           Need::kYes),
+        of(setting("cy", &OpencvLens::cy, ref("number"), "opencv: likewise from the top."), Need::kYes),
+        of(std::move(distortion)),
     };
 }
 
 /// Cameras of lines, and of three rays.
 CameraFields line_fields() {
     return {
-        setting("travel", &Camera::travel, ref("vec3"),
-                "pushbroom: the eye's way from the film's left edge to its right; lookAt's eye is in the "
-                "middle.")
-            .of({"pushbroom!"})
-            .without_default(),
-        part<Camera>("slits", several(2, several(2, ref("vec3"))),
-                     "crossedSlits: a point and a direction each; rays begin at the first.")
-            .of({"crossedSlits!"}),
-        part<Camera>("rays", several(3, ref("placedRay")),
-                     "generalLinear: all rays are affine combinations of these.")
-            .of({"generalLinear!"}),
+        of(setting("travel", &PushbroomCamera::travel, ref("vec3"),
+                   "pushbroom: the eye's way from the film's left edge to its right; lookAt's eye is in the "
+                   "middle."),
+           Need::kYes),
+        of(part<CrossedSlitsCamera>("slits", several(2, several(2, ref("vec3"))),
+                                    "crossedSlits: a point and a direction each; rays begin at the first."),
+           Need::kYes),
+        of(part<ThreeRayCamera>("rays", several(3, ref("placedRay")),
+                                "generalLinear: all rays are affine combinations of these."),
+           Need::kYes),
     };
 }
 
 /// Cameras that show one part in detail and the rest as its context, or several views in one.
 CameraFields context_fields() {
+    using Bent = PlanarContextCamera;
     Json views = list_of(ref("view"), 1);
     views["maxItems"] = 64;
     return {
-        setting("detail", &Camera::detail, several(4, ref("share")),
-                "distortion: x0, y0, x1, y1 of the film from its top left, drawn in perspective.")
-            .of({"distortion!"}),
-        setting("contextFov", &Camera::context_fov, number_above(0, 360),
-                "distortion: twice the angle from the view axis at the film's border.")
-            .of({"distortion"}),
-        part<Camera>("views", std::move(views), "multiPerspective: a view without a lookAt has the camera's.")
-            .of({"multiPerspective!"}),
-        setting("blend", &Camera::blend, ref("share"),
-                "multiPerspective: share of the film's width and height over which rays pass from one view "
-                "to the next.")
-            .of({"multiPerspective"}),
-        setting("center", &Camera::center, ref("vec3"), "inwardSphere: rays go to it, and on.")
-            .of({"inwardSphere!"})
-            .without_default(),
-        setting("radius", &Camera::radius, ref("positive"), "inwardSphere: rays begin there.")
-            .of({"inwardSphere!"})
-            .without_default(),
-        part<Camera>("ground", several(2, ref("vec3")), "planarContext: a point and the normal.")
-            .of({"planarContext!"}),
-        setting("bend", &Camera::bend, ref("positive"),
-                "planarContext: distance from which the ground turns up, over an arc as long.")
-            .of({"planarContext!"})
-            .without_default(),
+        of(setting("detail", &DistortionCamera::detail, several(4, ref("share")),
+                   "distortion: x0, y0, x1, y1 of the film from its top left, drawn in perspective."),
+           Need::kYes),
+        of(setting("contextFov", &DistortionCamera::context_fov, number_above(0, 360),
+                   "distortion: twice the angle from the view axis at the film's border.")),
+        of(part<MultiPerspectiveCamera>("views", std::move(views),
+                                        "multiPerspective: a view without a lookAt has the camera's."),
+           Need::kYes),
+        of(setting(
+            "blend", &MultiPerspectiveCamera::blend, ref("share"),
+            "multiPerspective: share of the film's width and height over which rays pass from one view "
+            "to the next.")),
+        of(setting("center", &InwardSphereCamera::center, ref("vec3"),
+                   "inwardSphere: rays go to it, and on."),
+           Need::kYes),
+        of(setting("radius", &InwardSphereCamera::radius, ref("positive"), "inwardSphere: rays begin there."),
+           Need::kYes),
+        of(part<Bent>("ground", several(2, ref("vec3")), "planarContext: a point and the normal."),
+           Need::kYes),
+        of(setting("bend", &Bent::bend, ref("positive"),
+                   "planarContext: distance from which the ground turns up, over an arc as long."),
+           Need::kYes),
     };
 }
 
 /// How fine the mesh of a camera is that is not linear, or the mesh itself.
 CameraFields fineness_fields() {
     const auto not_linear = [](Field<Camera> field) {
-        return std::move(field).of({"cylindrical", "spherical", "fisheye", "opencv", "pushbroom",
-                                    "crossedSlits", "generalLinear", "distortion", "multiPerspective",
-                                    "inwardSphere", "planarContext"});
+        field.kinds = kinds_with<CameraKind>([]<typename Kind>(const Kind&) { return kChoosesFacets<Kind>; });
+        return field;
     };
     Field<Camera> facets = setting("facets", &Camera::facets, whole_in(1, kMostCameraFacets),
                                    "N x N over the film, where a camera is not linear.");
     facets.schema["default"] = kDefaultCameraFacets;
+    const auto of_mesh = [](const char* key, Json values, const char* help) {
+        return of(part<RayMeshCamera>(key, std::move(values), help), Need::kYes);
+    };
     return {
         not_linear(std::move(facets)),
         not_linear(setting("tolerance", &Camera::tolerance, ref("positive"),
                            "Pixels: as many facets as leave no place further off; instead of facets."))
             .without_default(),
-        part<Camera>("points", list_of(ref("vec3"), 3), "rayMesh: origin of each corner's ray.")
-            .of({"rayMesh!"}),
-        part<Camera>("directions", list_of(ref("vec3"), 3), "rayMesh: one per corner, any length but 0.")
-            .of({"rayMesh!"}),
-        part<Camera>("screen", list_of(several(2, number_in(-1000, 1000)), 3),
-                     "rayMesh: one per corner, 0..1 from the film's top left; a facet may reach beyond the "
-                     "film.")
-            .of({"rayMesh!"}),
-        part<Camera>("triangles", list_of(several(3, ref("index")), 1), "rayMesh: three corners each.")
-            .of({"rayMesh!"}),
+        of_mesh("points", list_of(ref("vec3"), 3), "rayMesh: origin of each corner's ray."),
+        of_mesh("directions", list_of(ref("vec3"), 3), "rayMesh: one per corner, any length but 0."),
+        of_mesh("screen", list_of(several(2, number_in(-1000, 1000)), 3),
+                "rayMesh: one per corner, 0..1 from the film's top left; a facet may reach beyond the "
+                "film."),
+        of_mesh("triangles", list_of(several(3, ref("index")), 1), "rayMesh: three corners each."),
     };
 }
 
 CameraFields all_camera_fields() {
+    Field<Camera> type = type_field<Camera>();
+    type.schema["default"] = PerspectiveCamera::kName;
+    Field<Camera> look_at = part<Camera>("lookAt", ref("lookAt"));
+    look_at.kinds = kinds_with<CameraKind>([]<typename Kind>(const Kind&) { return kHasLookAt<Kind>; });
+    look_at.needed_by = look_at.kinds;
+    std::erase(look_at.needed_by, MultiPerspectiveCamera::kName);  // its views have their own
     CameraFields fields{
         setting("name", &Camera::name, ref("name")),
-        choice("type", &Camera::type),
-        setting("yfov", &Camera::yfov, number_between(0, 180),
-                "The whole vertical angle, degrees; distortion: of the detail.")
-            .of({"perspective", "cylindrical", "pushbroom", "distortion", "planarContext"}),
-        part<Camera>("lookAt", ref("lookAt"))
-            .of({"perspective!", "orthographic!", "oblique!", "cylindrical!", "spherical!", "fisheye!",
-                 "opencv!", "pushbroom!", "crossedSlits!", "generalLinear!", "distortion!",
-                 "multiPerspective", "inwardSphere!", "planarContext!"}),
+        std::move(type),
+        of_kinds<Camera>("yfov", TRILENS_MEMBER(yfov), number_between(0, 180),
+                         "The whole vertical angle, degrees; distortion: of the detail."),
+        std::move(look_at),
     };
     for (CameraFields (*const chapter)() :
          {linear_fields, view_volume_fields, lens_fields, line_fields, context_fields, fineness_fields})
@@ -224,7 +203,7 @@ std::vector<FieldSchema> view_fields() {
         if (field.key == "window") field = part<Camera>("window", several(4, ref("share")));
         if (field.key == "lookAt") field.needed_by.clear();
         if (field.key == "type") {
-            std::vector<std::string> names = names_of<CameraType>();
+            std::vector<std::string> names = kind_names<CameraKind>();
             drop_whole(names);
             field.schema["enum"] = names;
         }

@@ -26,7 +26,7 @@ void read_look_at(const Node& look_at, CameraDescription& camera) {
     }
 }
 
-void read_ray_mesh(const Node& node, CameraDescription& camera, Reading& reading) {
+void read_parts(const Node& node, RayMeshCamera& camera, Reading& reading) {
     const std::size_t corners = node["points"].size();
     for (const char* key : {"directions", "screen"})
         if (node[key].size() != corners)
@@ -65,27 +65,28 @@ Vec3 direction_at(const Node& node) {
     return direction;
 }
 
-void read_lines(const Node& node, CameraDescription& camera) {
-    if (node.has("slits"))
-        for (std::size_t k = 0; k < 2; ++k) {
-            const Node slit = node["slits"][k];
-            camera.slits[k] = {to_vec3(slit[std::size_t{0}].json), direction_at(slit[std::size_t{1}])};
-        }
-    if (node.has("rays"))
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Node ray = node["rays"][k];
-            camera.placed_rays[k] = {to_vec3(ray["point"].json), direction_at(ray["direction"]),
-                                     to_vec2(ray["screen"].json)};
-        }
+void read_parts(const Node& node, CrossedSlitsCamera& camera, Reading&) {
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Node slit = node["slits"][k];
+        camera.slits[k] = {to_vec3(slit[std::size_t{0}].json), direction_at(slit[std::size_t{1}])};
+    }
 }
 
-void read_ground(const Node& node, CameraDescription& camera) {
-    if (!node.has("ground")) return;
+void read_parts(const Node& node, ThreeRayCamera& camera, Reading&) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Node ray = node["rays"][k];
+        camera.placed_rays[k] = {to_vec3(ray["point"].json), direction_at(ray["direction"]),
+                                 to_vec2(ray["screen"].json)};
+    }
+}
+
+void read_parts(const Node& node, PlanarContextCamera& camera, Reading&) {
     camera.ground_point = to_vec3(node["ground"][std::size_t{0}].json);
     camera.ground_normal = direction_at(node["ground"][std::size_t{1}]);
 }
 
-void read_views(const Node& node, CameraDescription& camera, Reading& reading) {
+/// A view without a lookAt has the camera's.
+void read_parts(const Node& node, MultiPerspectiveCamera& camera, Reading& reading) {
     for (std::size_t i = 0; i < node["views"].size(); ++i) {
         const Node view = node["views"][i];
         WindowedCamera one;
@@ -93,9 +94,7 @@ void read_views(const Node& node, CameraDescription& camera, Reading& reading) {
         if (view.has("window")) from_json_value(view["window"].json, one.window);
         if (!view.has("lookAt")) {
             if (!node.has("lookAt")) view.fail("needs 'lookAt', since the camera has none");
-            one.camera.eye = camera.eye;
-            one.camera.at = camera.at;
-            one.camera.up = camera.up;
+            read_look_at(node["lookAt"], one.camera);
         }
         camera.views.push_back(std::move(one));
     }
@@ -110,10 +109,11 @@ CameraDescription read_camera(const Node& node, std::size_t index, Reading& read
     read_fields(node, camera_fields(), camera);
     if (node.has("facets") && node.has("tolerance"))
         node["tolerance"].fail("stands beside facets: only one of them may be given");
-    read_lines(node, camera);
-    read_ground(node, camera);
-    if (camera.type == CameraType::kRayMesh) read_ray_mesh(node, camera, reading);
-    if (camera.type == CameraType::kMultiPerspective) read_views(node, camera, reading);
+    std::visit(
+        [&](auto& kind) {
+            if constexpr (requires { read_parts(node, kind, reading); }) read_parts(node, kind, reading);
+        },
+        camera.kind);
     return camera;
 }
 
