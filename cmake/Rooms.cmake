@@ -13,9 +13,10 @@ target_compile_options(trilens_options INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,14>>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict>
   $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${TRILENS_SANITIZE}>>:-Wno-maybe-uninitialized>
-  $<$<BOOL:${TRILENS_SANITIZE}>:-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer>)
+  $<$<BOOL:${TRILENS_FUZZ}>:-fsanitize=fuzzer-no-link>
+  $<$<OR:$<BOOL:${TRILENS_SANITIZE}>,$<BOOL:${TRILENS_FUZZ}>>:-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer>)
 target_link_options(trilens_options INTERFACE
-  $<$<BOOL:${TRILENS_SANITIZE}>:-fsanitize=address,undefined>)
+  $<$<OR:$<BOOL:${TRILENS_SANITIZE}>,$<BOOL:${TRILENS_FUZZ}>>:-fsanitize=address,undefined>)
 
 # A room's units are compiled several together, which reads their headers once. What each calls its own (in an unnamed
 # namespace, or by #define) is therefore named once in a room; the compiler says where it is not. Apart: Highway's

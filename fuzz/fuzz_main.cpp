@@ -1,0 +1,39 @@
+// libFuzzer's entry: one program for all targets, chosen by TRILENS_FUZZ_TARGET.
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include "base/util/parallel.h"
+#include "fuzz/target.h"
+
+namespace {
+
+const trilens_fuzz::FuzzTarget* target = nullptr;
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+    const char* name = std::getenv("TRILENS_FUZZ_TARGET");
+    target = trilens_fuzz::find_target(name ? name : "");
+    if (target == nullptr) {
+        std::fprintf(stderr, "TRILENS_FUZZ_TARGET names one of:\n");
+        for (const trilens_fuzz::FuzzTarget& one : trilens_fuzz::fuzz_targets())
+            std::fprintf(stderr, "  %-10.*s %.*s\n", static_cast<int>(one.name.size()), one.name.data(),
+                         static_cast<int>(one.what.size()), one.what.data());
+        std::exit(2);
+    }
+    trilens::set_thread_count(1);  // a coverage counter that two threads raise tells nothing
+    return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    try {
+        target->run({reinterpret_cast<const char*>(data), size});
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "defect: %s\n", error.what());
+        std::abort();
+    }
+    return 0;
+}

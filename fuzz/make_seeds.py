@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+"""Writes the fuzzers' seeds, small legal inputs of each target, into fuzz/seeds: make_seeds.py [TRILENS]
+
+TRILENS: the program, of which examples are taken; build/release/trilens if it is not named. What once broke is
+added to the same folders by hand, under names that begin with "found-", and is left alone.
+"""
+import json
+import pathlib
+import random
+import struct
+import subprocess
+import sys
+import zlib
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SEEDS = ROOT / "fuzz" / "seeds"
+PROGRAM = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "build/release/trilens")
+
+CAMERA = {"name": "c", "type": "perspective", "yfov": 40, "lookAt": {"eye": [0, 0, 4], "at": [0, 0, 0]}}
+SMALL = {
+    "version": 1,
+    "film": {"width": 8, "height": 6, "spp": 2},
+    "cameras": [CAMERA],
+    "background": {"color": [0.2, 0.3, 0.5]},
+    "materials": [{"name": "chrome", "metallicFactor": 1}, {"name": "glass", "transmissionFactor": 1, "ior": 1.5}],
+    "lights": [{"type": "directional", "direction": [0, -1, 0], "shadows": True}],
+    "meshes": [
+        {"name": "ball", "role": "optic", "material": "chrome", "primitive": {"type": "sphere", "radius": 1}},
+        {"name": "floor", "role": "object", "points": [[-2, -1, -2], [2, -1, -2], [2, -1, 2], [-2, -1, 2]],
+         "faceVertexCounts": [4], "faceVertexIndices": [3, 2, 1, 0]},
+    ],
+}
+
+
+def write(target, name, data):
+    file = SEEDS / target / name
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_bytes(data.encode() if isinstance(data, str) else data)
+
+
+def text(value):
+    return json.dumps(value, separators=(",", ":"))
+
+
+def scenes():
+    write("scene", "small", text(SMALL))
+    glass = json.loads(text(SMALL))
+    glass["meshes"][0].update(material="glass", transform={"translate": [1, 0, 0], "rotate": {"euler": [0, 30, 0]}})
+    glass["render"] = {"maxDepth": 2, "maxError": 0.5, "paths": ["direct", "refract"]}
+    glass["cameras"].append({"name": "fish", "type": "fisheye", "fov": 180, "mapping": "equisolid", "lookAt": CAMERA["lookAt"]})
+    write("scene", "glass", text(glass))
+    moving = dict(SMALL, animation={"fps": 24, "tracks": [
+        {"target": "/meshes/0/primitive/radius", "keys": [{"frame": 0, "value": 1}, {"frame": 8, "value": 0.5}]},
+        {"target": "/cameras/0/yfov", "keys": [{"frame": 0, "value": 30}, {"frame": 4, "value": 60, "interpolation": "smooth"}]}]})
+    write("animation", "moving", b"\x24" + text(moving).encode())
+
+
+def tables():
+    write("points", "plain", "# points\n0 0 1\n1.5,-2,3e-2\n\n-1, 0 , 4\n")
+    write("points", "header", "x,y,z\n0,0,1\n")
+    write("pairs", "plain", "320,240,0.5,-0.5,1.5\n10.5,20.25,1,2,3\n")
+    write("pairs", "header", "x,y,X,Y,Z,sigma,camera,path,image\n3,4,0.5,0,1,0.25,c,R,0\n5,6,1,1,1,0.5,c,TT,1\n")
+    write("wish", "driver", subprocess.run([PROGRAM, "design", "--example"], check=True, capture_output=True).stdout)
+
+
+def models():
+    write("obj", "all", """# a comment
+mtllib a.mtl
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+vt 0 0
+vt 1 0.5
+vn 0 0 1
+usemtl red
+f 1/1/1 2/2/1 3/1/1 4/2/1
+f 1 2 -1 \\
+ -2
+l 1 2
+t crease 2/1/0 0 1 2.5
+t corner 1/1/0 3 4
+t hole 1/0/0 1
+t interpolateboundary 1/0/0 2
+""")
+    write("mtl", "all", "newmtl red\nNs 225\nKa 1 1 1\nKd 0.8 0.1 1e-1\nKs 0.5 0.5 0.5\nd 0.5\n\nnewmtl b\nKd 1\n"
+          "map_Kd -s 1 1 1 -clamp on brick wall.png\nmap_Bump -bm 2 b.png\n")
+    corners = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0) + struct.pack("<6H", 0, 1, 2, 2, 1, 3)
+    times = struct.pack("<2f", 0, 1) + struct.pack("<6f", 0, 0, 0, 1, 0, 0)
+    data = corners + times
+    gltf = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 2, 3]}],
+        "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_transmission"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 5}]}},
+        "nodes": [{"mesh": 0, "name": "mirror", "children": [1], "scale": [1, 2, 1]},
+                  {"mesh": 0, "rotation": [0, 0, 0, 1], "translation": [1, 2, 3]},
+                  {"camera": 0, "translation": [0, 0, 4]}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+        "materials": [{"name": "m", "pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1], "metallicFactor": 1, "roughnessFactor": 0}}],
+        "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                        "samplers": [{"input": 2, "output": 3}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+                      {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
+                      {"bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+                      {"bufferView": 3, "componentType": 5126, "count": 2, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12},
+                        {"buffer": 0, "byteOffset": 60, "byteLength": 8}, {"buffer": 0, "byteOffset": 68, "byteLength": 24}],
+        "buffers": [{"byteLength": len(data)}],
+    }
+    document = text(gltf).encode()
+    document += b" " * (-len(document) % 4)
+    write("gltf", "room.glb", b"glTF" + struct.pack("<II", 2, 28 + len(document) + len(data))
+          + struct.pack("<I", len(document)) + b"JSON" + document + struct.pack("<I", len(data)) + b"BIN\0" + data)
+    import base64
+    gltf["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    write("gltf", "room.gltf", text(gltf))
+
+
+def exr(channels, zipped):
+    """A scan-line OpenEXR of 3 x 2 pixels (Technical Introduction to OpenEXR)."""
+    def attribute(name, kind, value):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    window = struct.pack("<4i", 0, 0, 2, 1)
+    types = {"R": 2, "G": 2, "B": 2, "A": 1, "optic.object": 0}
+    listed = b"".join(name.encode() + b"\0" + struct.pack("<iiii", types[name], 0, 1, 1) for name in sorted(channels)) + b"\0"
+    header = (b"\x76\x2f\x31\x01\x02\0\0\0" + attribute("channels", "chlist", listed)
+              + attribute("compression", "compression", bytes([3 if zipped else 0]))
+              + attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
+              + attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
+              + attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0))
+              + attribute("screenWindowWidth", "float", struct.pack("<f", 1))
+              + attribute("trilens:camera", "string", b"c") + b"\0")
+    def row(y):
+        parts = {2: lambda: struct.pack("<3f", 0.1 + y, 0.5, 2), 1: lambda: struct.pack("<3e", 1, 1, 0), 0: lambda: struct.pack("<3I", 1, 2, 0xffffffff)}
+        return b"".join(parts[types[name]]() for name in sorted(channels))
+    if zipped:
+        raw = row(0) + row(1)
+        parted = raw[0::2] + raw[1::2]
+        delta = bytes([parted[0]]) + bytes((b - a + 128) & 255 for a, b in zip(parted, parted[1:]))
+        packed = zlib.compress(delta)
+        blocks = [(0, packed if len(packed) < len(raw) else raw)]
+    else:
+        blocks = [(0, row(0)), (1, row(1))]
+    at = len(header) + 8 * len(blocks)
+    table, body = b"", b""
+    for y, block in blocks:
+        table += struct.pack("<Q", at + len(body))
+        body += struct.pack("<ii", y, len(block)) + block
+    return header + table + body
+
+
+def png(bits, colour, extra=b""):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    samples = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[colour]
+    rows = b"".join(b"\0" + bytes((17 * i) & 255 for i in range((3 * samples * bits + 7) // 8)) for _ in range(2))
+    palette = chunk(b"PLTE", bytes(range(48))) if colour == 3 else b""
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 3, 2, bits, colour, 0, 0, 0)) + extra + palette
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def pictures():
+    write("exr", "plain", exr(["R", "G", "B"], False))
+    write("exr", "zip", exr(["R", "G", "B", "A", "optic.object"], True))
+    for bits, colour in ((8, 2), (8, 6), (8, 0), (16, 2), (4, 3)):
+        write("png", f"bits{bits}-colour{colour}", png(bits, colour))
+
+
+def studies():
+    write("sweep", "all", text({"over": {"resolution": ["1..8:x2"], "engine": ["exact", "facets"]}, "scene": "scene.json"}))
+    write("test", "golden", text({"against": ["golden", "truth"], "tags": ["fast"], "fail": 0.01, "max": {"rmse": 0.1}}))
+    write("test", "resolutions", text({"against": ["facets"], "resolution": [2, 4, 8], "set": {"/film/width": 16}}))
+    folder = SEEDS / "run.made"
+    scene = SEEDS / "run.json"
+    scene.write_text(text(SMALL))
+    subprocess.run([PROGRAM, "sweep", str(scene), "-n", "1", "-o", str(folder), "-q"], check=True)
+    failed = text({"id": "n0001", "error": "it failed", "exit_code": 5})
+    write("run", "one", "\n---\n".join([(folder / "manifest.json").read_text(), (folder / "plan.jsonl").read_text(), failed]))
+    subprocess.run(["rm", "-r", str(folder), str(scene)], check=True)
+
+
+def random_bytes():
+    for seed in range(12):
+        write("laws", f"random{seed:02}", random.Random(seed).randbytes(160))
+
+
+for make in (scenes, tables, models, pictures, studies, random_bytes):
+    make()

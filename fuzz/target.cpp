@@ -1,0 +1,72 @@
+// The list of fuzz targets, and where they put files.
+#include "fuzz/target.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+namespace fs = std::filesystem;
+
+namespace trilens_fuzz {
+namespace {
+
+constexpr std::array kTargets{
+    FuzzTarget{"animation", "a scene with keyframes, at a frame", scene_animation},
+    FuzzTarget{"exr", "a picture that is measured and written again", exr_file},
+    FuzzTarget{"gltf", "glTF, text or binary, as a scene", gltf_file},
+    FuzzTarget{"laws", "random scenes, drawn and held against the laws", random_scene},
+    FuzzTarget{"mtl", "materials of an OBJ", mtl_text},
+    FuzzTarget{"obj", "a cage or model", obj_text},
+    FuzzTarget{"pairs", "pairs of pixels and points", pairs_text},
+    FuzzTarget{"png", "a texture", png_file},
+    FuzzTarget{"points", "points as text", points_text},
+    FuzzTarget{"run", "a sweep's folder: manifest, plan, a run", run_folder},
+    FuzzTarget{"scene", "a scene file", scene_text},
+    FuzzTarget{"sweep", "a sweep file", sweep_file},
+    FuzzTarget{"test", "a regression test's test.json", test_file},
+    FuzzTarget{"wish", "the wish of a freeform mirror", wish_text},
+};
+
+/// Made when first asked for, and taken away when the process ends.
+struct OwnFolder {
+    OwnFolder() {
+        const fs::path root = fs::is_directory("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
+        path = (root / ("trilens-fuzz-" + std::to_string(::getpid()))).string();
+        fs::create_directories(path);
+    }
+    ~OwnFolder() {
+        std::error_code unheard;
+        fs::remove_all(path, unheard);
+    }
+    std::string path;
+};
+
+}  // namespace
+
+std::span<const FuzzTarget> fuzz_targets() {
+    return kTargets;
+}
+
+const FuzzTarget* find_target(std::string_view name) {
+    const auto found = std::ranges::find(kTargets, name, &FuzzTarget::name);
+    return found == kTargets.end() ? nullptr : &*found;
+}
+
+const std::string& fuzz_folder() {
+    static const OwnFolder folder;
+    return folder.path;
+}
+
+std::string put_file(const std::string& name, std::string_view bytes) {
+    const fs::path file = fs::path(fuzz_folder()) / name;
+    fs::create_directories(file.parent_path());
+    std::ofstream out(file, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    require(out.good(), "the fuzzer cannot write " + file.string());
+    return file.string();
+}
+
+}  // namespace trilens_fuzz

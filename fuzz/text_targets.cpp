@@ -1,0 +1,102 @@
+// Fuzz targets of what is read as text: scenes, keyframes, points, pairs, wishes, OBJ and MTL.
+#include <cmath>
+
+#include "fuzz/target.h"
+#include "scene/formats/obj.h"
+#include "trilens/animation.h"
+#include "trilens/design.h"
+#include "trilens/fit.h"
+#include "trilens/project.h"
+#include "trilens/scene.h"
+
+using namespace trilens;
+
+namespace trilens_fuzz {
+namespace {
+
+Scene parsed(std::string_view bytes) {
+    return parse_scene(std::string(bytes), fuzz_folder(), {}, "fuzzed.json");
+}
+
+/// What load_scene promises of what it returns: check_scene says so, and the scene as a document is the same
+/// scene.
+void require_whole(const Scene& scene) {
+    try {
+        check_scene(scene);
+    } catch (const Error& error) {
+        throw Defect(std::string("a scene that was read is none: ") + error.what());
+    }
+    std::string document, digest;
+    try {
+        document = scene_document(scene, fuzz_folder());
+        digest = scene_digest(parsed(document));
+    } catch (const Error& error) {
+        throw Defect(std::string("a scene's own document is refused: ") + error.what());
+    }
+    require(digest == scene_digest(scene), "a scene's own document is another scene");
+}
+
+}  // namespace
+
+Answer scene_text(std::string_view bytes) {
+    return answer([&] { require_whole(parsed(bytes)); });
+}
+
+Answer scene_animation(std::string_view bytes) {
+    if (bytes.empty()) return Answer::kRefused;
+    const double frame = static_cast<unsigned char>(bytes.front()) / 8.0 - 4;
+    return answer([&] {
+        const Scene scene = parsed(bytes.substr(1));
+        require_whole(scene_at_frame(scene, frame));
+    });
+}
+
+Answer points_text(std::string_view bytes) {
+    return answer([&] {
+        const std::vector<Vec3> points = parse_points(std::string(bytes), "fuzzed.txt");
+        require(!points.empty(), "no point, and no word of it");
+        for (const Vec3& point : points)
+            for (int axis = 0; axis < 3; ++axis)
+                require(std::abs(point[axis]) <= kLargestCoordinate, "a point beyond the largest coordinate");
+    });
+}
+
+Answer pairs_text(std::string_view bytes) {
+    return answer([&] {
+        const std::vector<Correspondence> pairs = parse_correspondences(std::string(bytes), "fuzzed.csv");
+        for (const Correspondence& pair : pairs) {
+            require(std::isfinite(pair.pixel.x + pair.pixel.y), "a pixel that is not finite");
+            require(std::isfinite(pair.point.x + pair.point.y + pair.point.z), "a point that is not finite");
+            require(pair.sigma >= 0, "a negative deviation");
+        }
+    });
+}
+
+Answer wish_text(std::string_view bytes) {
+    return answer([&] {
+        const DesignWish wish = parse_wish(std::string(bytes), "fuzzed.json", fuzz_folder());
+        check_wish(wish, "fuzzed.json");
+    });
+}
+
+Answer obj_text(std::string_view bytes) {
+    return answer([&] {
+        const ObjFile file = parse_obj(std::string(bytes), "fuzzed.obj");
+        const PolygonMesh& mesh = file.mesh;
+        std::size_t corners = 0;
+        for (const auto count : mesh.cage.face_vertex_counts) corners += static_cast<std::size_t>(count);
+        require(corners == mesh.cage.face_vertex_indices.size(), "corners of faces that are none");
+        for (const auto vertex : mesh.cage.face_vertex_indices)
+            require(static_cast<std::size_t>(vertex) < mesh.cage.points.size(), "a corner that is no point");
+    });
+}
+
+Answer mtl_text(std::string_view bytes) {
+    return answer([&] {
+        for (const MtlMaterial& material : parse_mtl(std::string(bytes), "fuzzed.mtl").materials)
+            for (int c = 0; c < 3; ++c)
+                require(material.diffuse[c] >= 0, "a colour that is none");
+    });
+}
+
+}  // namespace trilens_fuzz
