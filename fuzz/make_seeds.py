@@ -4,12 +4,14 @@
 TRILENS: the program, of which examples are taken; build/release/trilens if it is not named. What once broke is
 added to the same folders by hand, under names that begin with "found-", and is left alone.
 """
+import base64
 import json
 import pathlib
 import random
 import struct
 import subprocess
 import sys
+import tempfile
 import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -112,7 +114,6 @@ t interpolateboundary 1/0/0 2
     document += b" " * (-len(document) % 4)
     write("gltf", "room.glb", b"glTF" + struct.pack("<II", 2, 28 + len(document) + len(data))
           + struct.pack("<I", len(document)) + b"JSON" + document + struct.pack("<I", len(data)) + b"BIN\0" + data)
-    import base64
     gltf["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
     write("gltf", "room.gltf", text(gltf))
 
@@ -171,13 +172,12 @@ def studies():
     write("sweep", "all", text({"over": {"resolution": ["1..8:x2"], "engine": ["exact", "facets"]}, "scene": "scene.json"}))
     write("test", "golden", text({"against": ["golden", "truth"], "tags": ["fast"], "fail": 0.01, "max": {"rmse": 0.1}}))
     write("test", "resolutions", text({"against": ["facets"], "resolution": [2, 4, 8], "set": {"/film/width": 16}}))
-    folder = SEEDS / "run.made"
-    scene = SEEDS / "run.json"
-    scene.write_text(text(SMALL))
-    subprocess.run([PROGRAM, "sweep", str(scene), "-n", "1", "-o", str(folder), "-q"], check=True)
-    failed = text({"id": "n0001", "error": "it failed", "exit_code": 5})
-    write("run", "one", "\n---\n".join([(folder / "manifest.json").read_text(), (folder / "plan.jsonl").read_text(), failed]))
-    subprocess.run(["rm", "-r", str(folder), str(scene)], check=True)
+    with tempfile.TemporaryDirectory() as place:
+        (pathlib.Path(place) / "small.json").write_text(text(SMALL))
+        subprocess.run([PROGRAM, "sweep", "run", "small.json", "--over", "resolution=1", "-o", "made", "-q"], check=True, cwd=place)
+        failed = text({"id": "n0001", "error": "it failed", "exit_code": 5})
+        parts = [(pathlib.Path(place) / "made" / name).read_text() for name in ("manifest.json", "plan.jsonl")]
+        write("run", "one", "\n---\n".join([*parts, failed]).replace(place, "/tmp/seed"))
 
 
 def random_bytes():
