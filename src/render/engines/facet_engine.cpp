@@ -241,8 +241,8 @@ void FacetViewer::trace_each(std::span<const Id> samples, const SampleGrid& grid
     for (std::size_t i = 0; i < samples.size(); ++i)
         of_optic[views.samples[samples[i]].optic].push_back({samples[i], met[i]});
     for (std::size_t i = 0; i < of_optic.size(); ++i)
-        trace_samples({world_, static_cast<Id>(i), paths_[i].context().camera, grid}, of_optic[i], views,
-                      ends[i]);
+        trace_samples({world_, static_cast<Id>(i), paths_[i].context().camera, grid, reach()}, of_optic[i],
+                      views, ends[i]);
 }
 
 void FacetViewer::view(const SampleGrid& grid, SampleViews& views) {

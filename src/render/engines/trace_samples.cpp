@@ -11,16 +11,13 @@ namespace {
 
 constexpr std::size_t kTracedPerTask = 256;
 
-/// The camera's ray where it passes the exact surface by, at the rim of a facet: it goes straight on.
-void pass_by(const World& world, const SampleView& view, PathEnds& out) {
-    PathEnd end;
-    end.path = Path::kReflect;
-    end.first_step = out.steps.size();
-    end.step_count = 1;
-    out.steps.push_back({view.optic, Event::kReflect});
-    end.ray = {view.ray.origin + view.depth * view.ray.direction, view.depth * view.ray.direction};
-    end.hit = object_tracer(world).first_hit(end.ray);
-    out.ends.push_back(end);
+/// Where the camera's ray passes the exact surface by, at the rim of a facet: no optic, and what is behind.
+void see_past(const TraceSamplesParams& params, SampleView& view) {
+    view.optic = view.facet = kNone;
+    view.traced = false;
+    view.hit = object_tracer(params.world).first_hit(view.ray);
+    if (view.hit.seen() && view.hit.t > params.reach) view.hit = {};
+    view.depth = view.hit.seen() ? view.hit.t : SampleView().depth;
 }
 
 /// The ray of a sample that is traced: of a camera that is not linear its exact one, not its facets'.
@@ -49,14 +46,13 @@ void trace_samples(const TraceSamplesParams& params, std::span<const TracedSampl
                 view.ray = traced_ray(params.camera, params.grid.position(sample), of_facets);
                 const auto hit =
                     samples[i].met ? samples[i].met : world.optics[params.optic].tracer->first_hit(view.ray);
-                if (hit)
-                    follow_sample(params.world, {*hit, views.around_of(view)}, view,
-                                  {on_optic, own.ends, own.steps});
-                view.ray = of_facets;
                 if (!hit) {
-                    pass_by(params.world, view, own);
-                    on_optic.incidence.cosine = 0;
+                    see_past(params, view);
+                    continue;
                 }
+                follow_sample(params.world, {*hit, views.around_of(view)}, view,
+                              {on_optic, own.ends, own.steps});
+                view.ray = of_facets;
                 own.sample.resize(own.ends.size(), sample);
             }
         }

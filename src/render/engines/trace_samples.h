@@ -18,6 +18,7 @@ struct TraceSamplesParams {
     Id optic = kNone;
     const PathCamera& camera;
     const SampleGrid& grid;
+    double reach = 0;  // of the camera's rays
 };
 
 /// A sample, and where its ray meets the optic, where that is known.
@@ -28,7 +29,7 @@ struct TracedSample {
 
 /// Appends the ends of all paths over the optic of these samples of `views`, and sets there what was not
 /// followed. Where the camera is not linear their rays are its exact ones, as in the truth, not those of its
-/// facets; one that passes the exact surface by goes straight on.
+/// facets; one that passes the exact surface by shows no optic, but the object behind.
 void trace_samples(const TraceSamplesParams& params, std::span<const TracedSample> samples,
                    SampleViews& views, PathEnds& out);
 
