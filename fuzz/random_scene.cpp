@@ -94,8 +94,7 @@ std::string camera(Grammar& g) {
             text({0, 0, 4 * s}), text({0, 0, 7 * s}), -2 * s, 2 * s, -1.5 * s, 1.5 * s),
         R"("type": "perspective", "yfov": 120)"};
     const std::size_t kind = static_cast<std::size_t>(g.choose.below(16));
-    const std::string where = kind == 12 ? "" : ", " + look_at(g);
-    return fmt::format(R"({{ "name": "c", {}{} }})", kinds[kind], where);
+    return fmt::format(R"({{ "name": "c", {}, {} }})", kinds[kind], look_at(g));
 }
 
 /// A number from a list in which the corner cases stand.
@@ -110,7 +109,7 @@ std::string materials(Grammar& g, bool unlit) {
         R"({{ "name": "chrome", "metallicFactor": 1, "baseColorFactor": [{}, {}, 1] }},
     {{ "name": "glass", "transmissionFactor": 1, "ior": {}{} }},)",
         share(g), share(g), kIndices[static_cast<std::size_t>(g.choose.below(6))],
-        g.choose.chance(80) ? fmt::format(R"(, "attenuationDistance": {}, "attenuationColor": [0.9, 0.5, 0.2])",
+        g.choose.chance(80) ? fmt::format(R"(, "volume": {{ "attenuationDistance": {}, "attenuationColor": [0.9, 0.5, 0.2] }})",
                                           g.scale)
                             : "");
     for (const char* name : {"a", "b", "c"})

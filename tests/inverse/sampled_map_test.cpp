@@ -20,7 +20,7 @@ MapImage wave(const Vec2& p, double scale) {
                  scale * Vec2(-20 * std::sin(q.x) * std::sin(q.y), 10 * std::exp(0.3 * q.x)))};
 }
 
-double worst_error(const MapLattice& lattice, double scale) {
+double sampled_error(const MapLattice& lattice, double scale) {
     const SampledMap map(lattice, [&](std::span<const Vec2> places, std::span<MapImages> images) {
         for (std::size_t i = 0; i < places.size(); ++i) images[i] = {wave(places[i], scale)};
     });
@@ -46,12 +46,13 @@ double worst_error(const MapLattice& lattice, double scale) {
 
 TEST_CASE("a sampled map is within its tolerance, and its patches are of fourth order", "[inverse][law]") {
     for (const double tolerance : {1e-2, 1e-4, 1e-6})
-        CHECK(worst_error({97, 61, 8, tolerance}, 0.05) <= 1.05 * tolerance);
+        CHECK(sampled_error({97, 61, 8, tolerance}, 0.05) <= 1.05 * tolerance);
     // One level of cells, none refined: halving them divides the error by 16.
-    const double coarse = worst_error({65, 65, 16, 1e9}, 0.05), fine = worst_error({65, 65, 8, 1e9}, 0.05);
+    const double coarse = sampled_error({65, 65, 16, 1e9}, 0.05),
+                 fine = sampled_error({65, 65, 8, 1e9}, 0.05);
     CHECK(coarse / fine > 12);
     for (const auto& [width, height] : {std::pair(1, 1), {1, 9}, {9, 1}, {2, 2}, {8, 8}, {10, 3}})
-        CHECK(worst_error({width, height, 8, 1e-3}, 0.05) <= 1.05e-3);
+        CHECK(sampled_error({width, height, 8, 1e-3}, 0.05) <= 1.05e-3);
 }
 
 TEST_CASE("a sampled map keeps borders, and several images of a place apart", "[inverse]") {

@@ -27,13 +27,13 @@ Picture drawn(const World& world, Engine engine, int n, std::vector<std::string>
     return draw_picture(world, request, {}, ignore);
 }
 
-struct Shown {
+struct ShownImages {
     std::size_t paths = 0, found = 0, hidden = 0;  // of the traced pixels' paths; images there; not `visible`
 };
 
 /// Projects what the traced pixels of a lattice show, and looks for the images in those pixels.
-Shown images_of_pixels(const World& world, int step) {
-    Shown shown;
+ShownImages images_of_pixels(const World& world, int step) {
+    ShownImages shown;
     PictureRequest truth;
     truth.engine = Engine::kLimitTruth;
     for (int y = step / 2; y < world.scene.film.height; y += step)
@@ -148,7 +148,7 @@ TEST_CASE("What the truth shows in a pixel is a visible image there", "[laws][la
                               Attack{"law-10-project-visible-false-inward-sphere", 24, 0.6},
                               Attack{"law-15-project-unrefined-1px-off", 16, 0.9}}) {
         TRILENS_NEEDS_DATA(file_of(one.name));
-        const Shown shown = images_of_pixels(*data_world(one.name), one.step);
+        const ShownImages shown = images_of_pixels(*data_world(one.name), one.step);
         INFO(one.name << ": " << shown.paths << " paths, " << shown.found << " found, " << shown.hidden
                       << " hidden");
         CHECK(shown.paths > 0);

@@ -78,13 +78,13 @@ SampleViews look(const World& world, Engine engine, GridKind grid = GridKind::kS
 }
 
 /// How many samples see something else, and the median distance of what both see by that path.
-struct Difference {
+struct LayerDifference {
     std::size_t optic = 0, seen = 0, compared = 0;
     double median = 0, largest = 0;
 };
 
-Difference compare(const World& world, const SampleViews& a, const SampleViews& b, Path path) {
-    Difference difference;
+LayerDifference compare_views(const World& world, const SampleViews& a, const SampleViews& b, Path path) {
+    LayerDifference difference;
     std::vector<double> off;
     for (std::size_t s = 0; s < a.samples.size(); ++s) {
         difference.optic += a.samples[s].optic != b.samples[s].optic;
@@ -113,22 +113,24 @@ TEST_CASE("a perspective's rays as an explicit mesh show optics as the perspecti
             const SampleViews explicit_mesh = look(*mesh, Engine::kExact),
                               truth = look(*plain, Engine::kLimitTruth);
             // The truth of both cameras is the same to rounding.
-            const Difference truths = compare(*plain, look(*mesh, Engine::kLimitTruth), truth, path);
+            const LayerDifference truths =
+                compare_views(*plain, look(*mesh, Engine::kLimitTruth), truth, path);
             CHECK(truths.compared > 1000);
             CHECK(truths.optic == 0);
             CHECK(truths.seen == 0);
             CHECK(truths.largest < 1e-9);
-            const Difference off = compare(*plain, explicit_mesh, truth, path);
+            const LayerDifference off = compare_views(*plain, explicit_mesh, truth, path);
             INFO("optic " << off.optic << ", seen " << off.seen << " of " << off.compared << ", median "
                           << off.median);
             CHECK(off.optic < 60);
             CHECK(off.seen < 60);
             // As near as the perspective's own facets on the film, which lie over the ball's bounds alone.
-            const Difference own = compare(*plain, look(*plain, Engine::kExact), truth, path);
+            const LayerDifference own = compare_views(*plain, look(*plain, Engine::kExact), truth, path);
             INFO("the perspective's own: seen " << own.seen << ", median " << own.median);
             CHECK(off.median < 2 * own.median);
             // The projector and rays through the same facets.
-            const Difference traced = compare(*plain, explicit_mesh, look(*mesh, Engine::kFacetsTruth), path);
+            const LayerDifference traced =
+                compare_views(*plain, explicit_mesh, look(*mesh, Engine::kFacetsTruth), path);
             CHECK(traced.optic == 0);
             CHECK(traced.seen <= 2);
         }
@@ -139,8 +141,8 @@ TEST_CASE("through an explicit mesh the picture comes to the exact one as facets
     std::array<double, 2> median{};
     for (const bool fine : {false, true}) {
         const auto world = world_from("mesh", ball_scene(as_ray_mesh(6), "mirror", 8), fine ? 32 : 8);
-        const Difference off =
-            compare(*world, look(*world, Engine::kExact), look(*world, Engine::kLimitTruth), Path::kReflect);
+        const LayerDifference off = compare_views(*world, look(*world, Engine::kExact),
+                                                  look(*world, Engine::kLimitTruth), Path::kReflect);
         median[fine] = off.median;
     }
     INFO(median[0] << " -> " << median[1]);
@@ -177,8 +179,8 @@ TEST_CASE("a camera inside a room of mirrors: engines agree and rays end where t
         const SampleViews exact = look(*world, Engine::kExact, GridKind::kSurface),
                           facets = look(*world, Engine::kFacetsTruth, GridKind::kSurface),
                           limit = look(*world, Engine::kLimitTruth, GridKind::kSurface);
-        const Difference traced = compare(*world, exact, facets, Path::kReflect),
-                         off = compare(*world, exact, limit, Path::kReflect);
+        const LayerDifference traced = compare_views(*world, exact, facets, Path::kReflect),
+                              off = compare_views(*world, exact, limit, Path::kReflect);
         INFO("facets " << traced.seen << ", limit " << off.seen << " of " << off.compared << ", median "
                        << off.median << ", optic " << off.optic);
         CHECK(off.compared > 2000);

@@ -30,7 +30,7 @@ std::string cameras_text() {
 }
 
 /// The shipped room of cameras on a small film, with other cameras where `cameras` gives some.
-std::unique_ptr<World> room(int width, int height, int n, const std::string& cameras = "") {
+std::unique_ptr<World> camera_room(int width, int height, int n, const std::string& cameras = "") {
     std::string text = cameras_text();
     REQUIRE(!text.empty());
     const std::size_t film = text.find("\"film\":"), film_end = text.find('\n', film);
@@ -53,7 +53,7 @@ std::unique_ptr<World> room(int width, int height, int n, const std::string& cam
     return world_from("cameras", text, n);
 }
 
-SampleViews look(const World& world, std::size_t camera, const EngineChoice& engine) {
+SampleViews camera_views(const World& world, std::size_t camera, const EngineChoice& engine) {
     const Film& film = world.scene.film;
     SampleViews views;
     make_viewer(world, {camera, 0}, engine, ignore)->view({0, 0, film.width, film.height, 1}, views);
@@ -81,13 +81,13 @@ const std::vector<Id>& ids(const Image& image, const std::string& channel) {
 
 TEST_CASE("through every camera the projector, the thesis' engine and Embree see the same",
           "[laws][oracle][law]") {
-    const auto world = room(120, 90, 5);
+    const auto world = camera_room(120, 90, 5);
     REQUIRE(world->scene.cameras.size() >= 12);
     for (std::size_t c = 0; c < world->scene.cameras.size(); ++c) {
         INFO(world->scene.cameras[c].name);
-        const SampleViews exact = look(*world, c, Engine::kExact),
-                          traced = look(*world, c, Engine::kFacetsTruth),
-                          classic = look(*world, c, ClassicParams());
+        const SampleViews exact = camera_views(*world, c, Engine::kExact),
+                          traced = camera_views(*world, c, Engine::kFacetsTruth),
+                          classic = camera_views(*world, c, ClassicParams());
         std::size_t on_optic = 0, differing = 0, classic_differing = 0, without = 0;
         for (std::size_t s = 0; s < exact.samples.size(); ++s) {
             on_optic += exact.samples[s].optic != kNone;
@@ -108,16 +108,16 @@ TEST_CASE("through every camera the projector, the thesis' engine and Embree see
 
 TEST_CASE("through every camera the picture comes to the exact surface's and the exact rays'",
           "[laws][law]") {
-    const auto coarse = room(120, 90, 6), fine = room(120, 90, 24);
+    const auto coarse = camera_room(120, 90, 6), fine = camera_room(120, 90, 24);
     for (std::size_t c = 0; c < coarse->scene.cameras.size(); ++c) {
         INFO(coarse->scene.cameras[c].name);
         if (coarse->scene.cameras[c].name == "around") continue;  // sees no optic
-        const SampleViews truth = look(*fine, c, Engine::kLimitTruth);
+        const SampleViews truth = camera_views(*fine, c, Engine::kLimitTruth);
         std::array<double, 2> off{};
         std::array<std::size_t, 2> count{};
         for (const bool is_fine : {false, true}) {
             const World& world = is_fine ? *fine : *coarse;
-            const SampleViews views = look(world, c, Engine::kExact);
+            const SampleViews views = camera_views(world, c, Engine::kExact);
             std::vector<double> distances;
             std::size_t other_optic = 0, other_ray = 0;
             for (std::size_t s = 0; s < views.samples.size(); ++s) {
@@ -152,8 +152,8 @@ TEST_CASE("every example is drawn by projection as its facets' rays have it, thr
         const auto world = world_from(example.name, text, 4);
         for (std::size_t c = 0; c < world->scene.cameras.size(); ++c) {
             INFO(example.name << ", " << world->scene.cameras[c].name);
-            const SampleViews exact = look(*world, c, Engine::kExact),
-                              traced = look(*world, c, Engine::kFacetsTruth);
+            const SampleViews exact = camera_views(*world, c, Engine::kExact),
+                              traced = camera_views(*world, c, Engine::kFacetsTruth);
             std::size_t differing = 0, shown = 0;
             for (std::size_t s = 0; s < exact.samples.size(); ++s) {
                 differing += seen_by_camera(exact, s) != seen_by_camera(traced, s);
@@ -181,16 +181,16 @@ TEST_CASE("the tiles of a shifted camera join to the whole picture, every id the
     std::ostringstream yfov_of_tile;
     yfov_of_tile.precision(17);
     yfov_of_tile << tile;
-    const auto whole = room(200, 120, 8, R"({ "name": "whole", "yfov": 60, )" + look_at);
+    const auto whole = camera_room(200, 120, 8, R"({ "name": "whole", "yfov": 60, )" + look_at);
     const Image all = draw_picture(*whole, {}, {}, ignore).image;
     std::size_t compared = 0;
     for (const int row : {0, 1})
         for (const int column : {0, 1}) {
             const std::string shift =
                 std::string("[") + (column ? "0.5" : "-0.5") + ", " + (row ? "-0.5" : "0.5") + "]";
-            const auto part = room(100, 60, 8,
-                                   R"({ "name": "part", "yfov": )" + yfov_of_tile.str() + R"(, "shift": )" +
-                                       shift + ", " + look_at);
+            const auto part = camera_room(100, 60, 8,
+                                          R"({ "name": "part", "yfov": )" + yfov_of_tile.str() +
+                                              R"(, "shift": )" + shift + ", " + look_at);
             const Image one = draw_picture(*part, {}, {}, ignore).image;
             for (const std::string channel :
                  {"optic.object", "optic.facet", "reflectID.object", "reflectID.primitive"})
@@ -213,7 +213,7 @@ TEST_CASE("a panorama is what six faces of a cube show", "[laws][law]") {
                           R"(, "at": [-0.4, 1.6, 0] } })";
     const std::array<Vec3, 6> ways{Vec3(1, 0, 0),  Vec3(-1, 0, 0), Vec3(0, 1, 0),
                                    Vec3(0, -1, 0), Vec3(0, 0, 1),  Vec3(0, 0, -1)};
-    const auto panorama = room(240, 120, 6, cameras);
+    const auto panorama = camera_room(240, 120, 6, cameras);
     std::string faces;
     for (const Vec3& way : ways) {
         std::ostringstream one;
@@ -222,10 +222,10 @@ TEST_CASE("a panorama is what six faces of a cube show", "[laws][law]") {
             << ", " << 2.4 + way.z << "], \"up\": " << (way.y == 0 ? "[0, 1, 0]" : "[0, 0, 1]") << " } }";
         faces += one.str();
     }
-    const auto cube = room(400, 400, 6, faces);
+    const auto cube = camera_room(400, 400, 6, faces);
     std::vector<SampleViews> shown;
-    for (std::size_t k = 0; k < 6; ++k) shown.push_back(look(*cube, k, Engine::kExact));
-    const SampleViews views = look(*panorama, 0, Engine::kExact);
+    for (std::size_t k = 0; k < 6; ++k) shown.push_back(camera_views(*cube, k, Engine::kExact));
+    const SampleViews views = camera_views(*panorama, 0, Engine::kExact);
     std::size_t compared = 0, same = 0;
     for (const SampleView& view : views.samples) {
         // The middle of a cube's pixel may lie on the other side of an edge: take those whose four neighbours
@@ -252,7 +252,7 @@ TEST_CASE("a panorama is what six faces of a cube show", "[laws][law]") {
 }
 
 TEST_CASE("what project names, the exact rays see, through every camera", "[laws][law]") {
-    const auto world = room(160, 120, 8);
+    const auto world = camera_room(160, 120, 8);
     const std::vector<Vec3> points{
         {-1.55, 0.9, 1.2}, {1.65, 0.8, 0.5}, {-2.9, 2, 1}, {0.4, 3.9, 1}, {2.9, 1, 3}};
     std::size_t reflected = 0, refined = 0;
@@ -287,11 +287,11 @@ TEST_CASE("what project names, the exact rays see, through every camera", "[laws
 }
 
 TEST_CASE("what a picture shows in a mirror, project finds there, through every camera", "[laws][law]") {
-    const auto world = room(160, 120, 16);
+    const auto world = camera_room(160, 120, 16);
     REQUIRE(world->scene.render.max_depth > 0);
     std::size_t asked = 0;
     for (std::size_t c = 0; c < world->scene.cameras.size(); ++c) {
-        const SampleViews shown = look(*world, c, Engine::kExact);
+        const SampleViews shown = camera_views(*world, c, Engine::kExact);
         // Well inside what the mirror shows: every 23rd sample whose neighbours see the same triangle in it.
         std::vector<Vec3> points;
         std::vector<Vec2> pixels;
@@ -334,7 +334,7 @@ TEST_CASE("what a picture shows in a mirror, project finds there, through every 
 }
 
 TEST_CASE("beyond a fisheye's circle there is nothing: no ray, alpha 0, black", "[laws][law]") {
-    const auto world = room(160, 120, 6);
+    const auto world = camera_room(160, 120, 6);
     const std::size_t fisheye = camera_named(*world, "fisheye");
     for (const Engine engine : {Engine::kExact, Engine::kLimitTruth}) {
         PictureRequest request;
@@ -362,11 +362,11 @@ TEST_CASE("beyond a fisheye's circle there is nothing: no ray, alpha 0, black", 
 TEST_CASE("clipping planes: nothing nearer than near, nothing farther than far, Z counts from the eye",
           "[laws][law]") {
     const std::string look_at = R"("lookAt": { "eye": [0.6, 1.8, 4.7], "at": [-0.1, 1, 0] } })";
-    const auto open = room(160, 120, 8, R"({ "name": "open", "yfov": 60, )" + look_at);
+    const auto open = camera_room(160, 120, 8, R"({ "name": "open", "yfov": 60, )" + look_at);
     const auto clipped =
-        room(160, 120, 8, R"({ "name": "clipped", "yfov": 60, "near": 4.2, "far": 6, )" + look_at);
+        camera_room(160, 120, 8, R"({ "name": "clipped", "yfov": 60, "near": 4.2, "far": 6, )" + look_at);
     for (const Engine engine : {Engine::kExact, Engine::kFacetsTruth, Engine::kLimitTruth}) {
-        const SampleViews all = look(*open, 0, engine), some = look(*clipped, 0, engine);
+        const SampleViews all = camera_views(*open, 0, engine), some = camera_views(*clipped, 0, engine);
         std::size_t same = 0, gone = 0, uncovered = 0;
         for (std::size_t s = 0; s < all.samples.size(); ++s) {
             const SampleView &a = all.samples[s], &b = some.samples[s];

@@ -13,7 +13,7 @@ using namespace trilens_test;
 
 namespace {
 
-SampleViews look(const World& world, const EngineChoice& engine) {
+SampleViews classic_views(const World& world, const EngineChoice& engine) {
     const Film& film = world.scene.film;
     const SampleGrid grid{0, 0, film.width, film.height, 1};
     SampleViews views;
@@ -28,7 +28,7 @@ struct ClassicDifference {
 };
 
 /// The triangles that the sample shows directly, reflected and refracted.
-std::array<Id, 3> seen(const SampleViews& views, const SampleView& view) {
+std::array<Id, 3> seen_ids(const SampleViews& views, const SampleView& view) {
     return {view.hit.triangle, views.hit(view, Path::kReflect).triangle,
             views.hit(view, Path::kRefract).triangle};
 }
@@ -36,7 +36,7 @@ std::array<Id, 3> seen(const SampleViews& views, const SampleView& view) {
 void add(ClassicDifference& sum, const SampleViews& exact, const SampleViews& classic) {
     for (std::size_t p = 0; p < exact.samples.size(); ++p) {
         const SampleView &a = exact.samples[p], &b = classic.samples[p];
-        const std::array<Id, 3> before = seen(exact, a), after = seen(classic, b);
+        const std::array<Id, 3> before = seen_ids(exact, a), after = seen_ids(classic, b);
         REQUIRE(a.optic == b.optic);
         REQUIRE(a.facet == b.facet);
         bool lost = false;
@@ -64,7 +64,7 @@ ClassicDifference difference(int n, const ClassicParams& params, int width, int 
             note_skip("tessellation on scene " + name, "too many triangles to tessellate in a test");
             continue;
         }
-        add(sum, look(*world, Engine::kExact), look(*world, params));
+        add(sum, classic_views(*world, Engine::kExact), classic_views(*world, params));
     }
     REQUIRE(sum.pixels > 0);
     return sum;
@@ -105,10 +105,10 @@ TEST_CASE("a mirror in a closed room shows the room in every pixel", "[laws][cla
     std::size_t open = 0;
     for (const int n : {1, 2, 5, 16}) {
         const auto world = shipped_world("closed", n, 200, 150);
-        const SampleViews exact = look(*world, Engine::kExact);
+        const SampleViews exact = classic_views(*world, Engine::kExact);
         const auto uncovered = [&](Curves curves, Clip clip, int k) {
             ClassicDifference d;
-            add(d, exact, look(*world, ClassicParams{curves, clip, k}));
+            add(d, exact, classic_views(*world, ClassicParams{curves, clip, k}));
             return d.uncovered;
         };
         INFO("n " << n);
@@ -129,9 +129,9 @@ TEST_CASE("the classic engine shows the same with any number of threads", "[laws
     const auto world = shipped_world("torus", 4, 120, 90);
     for (const ClassicParams& params : {ClassicParams{}, ClassicParams{Curves::kSlices, Clip::kScreen, 3}}) {
         set_thread_count(1);
-        const SampleViews one = look(*world, params);
+        const SampleViews one = classic_views(*world, params);
         set_thread_count(2);
-        const SampleViews two = look(*world, params);
+        const SampleViews two = classic_views(*world, params);
         set_thread_count(0);
         const auto same = [](const Hit& a, const Hit& b) {
             return a.triangle == b.triangle && a.t == b.t && a.barycentric == b.barycentric;

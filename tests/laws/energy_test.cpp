@@ -17,14 +17,14 @@ constexpr double kFloat = 1e-6;  // pixels are floats
 const std::string kBeside = R"("film":{"width":96,"height":72},"background":{"color":[1,1,1]},"version":1,)";
 
 /// A ball that lies half across the film's middle.
-const std::string kBall =
+const std::string kGlassBallScene =
     "{" + kBeside +
     R"("cameras":[{"name":"main","yfov":66.9,"lookAt":{"eye":[3.0347,1,2.2893],"at":[2.0231,1,1.5262],"up":[0,1,0]}}],
     "materials":[{"name":"glass","transmissionFactor":1,"ior":1.351}],
     "meshes":[{"name":"ball","role":"optic","material":"glass","primitive":{"type":"sphere","center":[0,0,0],"radius":1}}],
     "render":{"maxDepth":32}})";
 
-std::string box(const std::string& material, const std::string& creases) {
+std::string glass_box(const std::string& material, const std::string& creases) {
     return R"("materials":[{"name":"glass","transmissionFactor":1,)" + material +
            R"(}],"meshes":[{"name":"box","role":"optic","material":"glass","points":[[-0.75,-0.75,-0.75],[-0.75,-0.75,0.75],
     [-0.75,0.75,-0.75],[-0.75,0.75,0.75],[0.75,-0.75,-0.75],[0.75,-0.75,0.75],[0.75,0.75,-0.75],[0.75,0.75,0.75]],
@@ -39,8 +39,8 @@ const std::string kInBox = "{" + kBeside +
     {"point":[0.4322,0.4383,0.0393],"direction":[1.1473,0.6876,1.4775],"screen":[0,0]},
     {"point":[-0.4988,0.4383,-0.3257],"direction":[-0.94,0.5605,0.6683],"screen":[1,0]},
     {"point":[-0.0477,-0.1604,-0.1065],"direction":[-0.1192,-0.8187,1.0876],"screen":[0.5,1]}]}],)" +
-                           box(R"("ior":1.8)",
-                               R"(,"creaseIndices":[1,3],"creaseLengths":[2],"creaseSharpnesses":[10],
+                           glass_box(R"("ior":1.8)",
+                                     R"(,"creaseIndices":[1,3],"creaseLengths":[2],"creaseSharpnesses":[10],
     "cornerIndices":[3,4,1],"cornerSharpnesses":[10,10,2.2])") +
                            R"(,"render":{"maxDepth":16}})";
 
@@ -48,7 +48,8 @@ const std::string kInBox = "{" + kBeside +
 const std::string kColours =
     "{" + kBeside +
     R"("cameras":[{"name":"main","yfov":30,"lookAt":{"eye":[1.1,1.9,3.5],"at":[0,0,0],"up":[0,1,0]}}],)" +
-    box(R"("ior":2.2,"dispersion":2)", R"(,"subdivisionScheme":"bilinear")") + R"(,"render":{"maxDepth":2}})";
+    glass_box(R"("ior":2.2,"dispersion":2)", R"(,"subdivisionScheme":"bilinear")") +
+    R"(,"render":{"maxDepth":2}})";
 
 void ignore(const std::string&) {}
 
@@ -79,7 +80,7 @@ LayerStatistics check_energy(const std::string& name, const std::string& scene, 
 TEST_CASE("in a white room every pixel is white, but for what the picture says is left out", "[laws][law]") {
     for (const int n : {1, 2, 8, 32})
         for (const Engine engine : {Engine::kExact, Engine::kFacetsTruth, Engine::kLimitTruth}) {
-            check_energy("ball", kBall, n, engine);
+            check_energy("ball", kGlassBallScene, n, engine);
             check_energy("in a box", kInBox, n, engine);
         }
 }

@@ -11,7 +11,7 @@ using namespace trilens_test;
 
 namespace {
 
-Scene before_wall(const Primitive& optic) {
+Scene optic_before_wall(const Primitive& optic) {
     Scene scene;
     scene.film = {64, 48, 1};
     CameraDescription camera;
@@ -57,13 +57,13 @@ TEST_CASE("a flat mirror is a pinhole, a ball one of two slits: rays of one eye 
     Primitive flat;
     flat.type = Primitive::Type::kPlane;
     flat.axis = {0, 0, 1};
-    const auto of_flat = kinds_over_film(before_wall(flat));
+    const auto of_flat = kinds_over_film(optic_before_wall(flat));
     REQUIRE(of_flat.size() == 1);
     CHECK(of_flat.at("pinhole") > 50);
 
     // By Malus' and Dupin's theorem the rays have two real foci everywhere: in the limit no facet is
     // bilinear.
-    auto of_ball = kinds_over_film(before_wall(Primitive{}));
+    auto of_ball = kinds_over_film(optic_before_wall(Primitive{}));
     CHECK(of_ball["crossedSlits"] > 50);
     CHECK(of_ball["bilinear"] * 20 < of_ball["crossedSlits"]);
     CHECK(of_ball["pinhole"] == 0);
@@ -72,7 +72,7 @@ TEST_CASE("a flat mirror is a pinhole, a ball one of two slits: rays of one eye 
 TEST_CASE("the exact rays of the limit truth belong to no facet", "[laws][law]") {
     PictureRequest truth;
     truth.engine = Engine::kLimitTruth;
-    const PixelExplanation pixel = Renderer(before_wall(Primitive{})).explain(truth, 32, 24);
+    const PixelExplanation pixel = Renderer(optic_before_wall(Primitive{})).explain(truth, 32, 24);
     CHECK(pixel.camera_facet == kNone);
     CHECK_FALSE(pixel.camera_kind);
     REQUIRE(pixel.ends.size() == 1);

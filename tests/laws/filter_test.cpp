@@ -21,7 +21,7 @@ std::string film_text(int width, int height, int spp, const std::string& filter)
 }
 
 /// Three unlit triangles beside a mirror of colour 1; without the mirror where `mirrored` is false.
-std::string room(const std::string& film, const std::string& camera, bool mirrored) {
+std::string film_room(const std::string& film, const std::string& camera, bool mirrored) {
     return R"({ "version": 1, )" + film + R"(, "cameras": [)" + camera + R"(],
       "background": { "color": [0.2, 0.4, 0.7] },
       "materials": [ { "name": "m", "metallicFactor": 1 }, { "name": "a", "baseColorFactor": [0.9, 0.2, 0.1], "unlit": true },
@@ -90,10 +90,10 @@ TEST_CASE("a constant picture stays constant through every filter", "[laws][law]
 TEST_CASE("a filtered picture is the weighted mean of a picture with a pixel for every sample",
           "[laws][law]") {
     constexpr int kWidth = 40, kHeight = 30, kSide = 3;
-    const Image fine = picture(room(film_text(kWidth * kSide, kHeight * kSide, 1, "box"), kEye, true));
+    const Image fine = picture(film_room(film_text(kWidth * kSide, kHeight * kSide, 1, "box"), kEye, true));
     for (const std::string filter : kFilters) {
         INFO(filter);
-        const Image image = picture(room(film_text(kWidth, kHeight, kSide, filter), kEye, true));
+        const Image image = picture(film_room(film_text(kWidth, kHeight, kSide, filter), kEye, true));
         double worst = 0, least = 1, most = 0;
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x)
@@ -123,7 +123,8 @@ TEST_CASE("filtered, a flat mirror shows what a second camera behind it sees", "
     for (const std::string filter : kFilters) {
         INFO(filter);
         const std::string film = film_text(kWidth, kHeight, 2, filter);
-        const Image mirrored = picture(room(film, kEye, true)), direct = picture(room(film, behind, false));
+        const Image mirrored = picture(film_room(film, kEye, true)),
+                    direct = picture(film_room(film, behind, false));
         int differing = 0, covered = 0;
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) {
@@ -144,7 +145,7 @@ TEST_CASE("a filtered crop is a part of the filtered whole, and the truth is fil
     for (const std::string filter : kFilters)
         for (const int spp : {1, 2}) {
             INFO(filter << " " << spp);
-            const std::string json = room(film_text(50, 40, spp, filter), kEye, true);
+            const std::string json = film_room(film_text(50, 40, spp, filter), kEye, true);
             const Image whole = picture(json), crop = picture(json, Engine::kExact, {13, 7, 31, 40, {}}),
                         traced = picture(json, Engine::kFacetsTruth);
             std::size_t differing = 0;

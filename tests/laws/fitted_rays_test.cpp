@@ -66,7 +66,8 @@ PathBuilder all_paths(const World& world, const Frame& frame, std::size_t optic)
     return paths;
 }
 
-Picture draw(const World& world, const FrameParams& frame, Engine engine, const LayerRequest& window = {}) {
+Picture draw_frame(const World& world, const FrameParams& frame, Engine engine,
+                   const LayerRequest& window = {}) {
     PictureRequest request;
     request.frame = frame;
     request.engine = engine;
@@ -76,7 +77,7 @@ Picture draw(const World& world, const FrameParams& frame, Engine engine, const 
 
 /// Mean displacement of the layer against the exact surface, pixels.
 double mean_error(const World& world, const FrameParams& frame, const Image& truth, const char* layer) {
-    const auto found = measure_displacement(truth, draw(world, frame, Engine::kExact).image, layer);
+    const auto found = measure_displacement(truth, draw_frame(world, frame, Engine::kExact).image, layer);
     REQUIRE(found);
     REQUIRE(found->summary);
     return found->summary->mean;
@@ -143,7 +144,7 @@ TEST_CASE("fitting leaves the rays of flat mirrors as they are, one after the ot
 
 TEST_CASE("fitted rays show a ball's mirror image nearer to its place, with order 2", "[laws][law]") {
     const auto world = room_with(kFittedBall, 0, 8);
-    const Image truth = draw(*world, {}, Engine::kLimitTruth).image;
+    const Image truth = draw_frame(*world, {}, Engine::kLimitTruth).image;
     double before = 0;
     for (const int n : {8, 16, 32}) {
         FrameParams frame = with(CornerRays::kInterpolated);
@@ -159,7 +160,7 @@ TEST_CASE("fitted rays show a ball's mirror image nearer to its place, with orde
 
 TEST_CASE("fitted rays show what is behind a glass ball nearer to its place", "[laws][law]") {
     const auto world = room_with(kFittedGlassBall, 4, 8);
-    const Image truth = draw(*world, {}, Engine::kLimitTruth).image;
+    const Image truth = draw_frame(*world, {}, Engine::kLimitTruth).image;
     FrameParams frame = with(CornerRays::kInterpolated);
     frame.resolution = 16;
     const double interpolated = mean_error(*world, frame, truth, "refract");
@@ -173,11 +174,11 @@ TEST_CASE("fitted pictures do not depend on crops or threads", "[laws][law]") {
         LayerRequest window;
         window.layers = layer_names();
         set_thread_count(1);
-        const Image whole = draw(*world, with(CornerRays::kFitted), Engine::kExact, window).image;
+        const Image whole = draw_frame(*world, with(CornerRays::kFitted), Engine::kExact, window).image;
         set_thread_count(4);
-        CHECK(same_in(whole, draw(*world, with(CornerRays::kFitted), Engine::kExact, window).image));
+        CHECK(same_in(whole, draw_frame(*world, with(CornerRays::kFitted), Engine::kExact, window).image));
         window.x0 = 80, window.y0 = 55, window.x1 = 120, window.y1 = 90;
-        CHECK(same_in(whole, draw(*world, with(CornerRays::kFitted), Engine::kExact, window).image));
+        CHECK(same_in(whole, draw_frame(*world, with(CornerRays::kFitted), Engine::kExact, window).image));
         set_thread_count(0);
     }
 }
@@ -193,7 +194,7 @@ TEST_CASE("fitted rays ask for no facets that nobody sees, nor for those below a
     const auto facets = [&](const World& shown, CornerRays rays, int n) {
         FrameParams frame = with(rays);
         frame.resolution = n;
-        return draw(shown, frame, Engine::kExact).statistics.projected_facets;
+        return draw_frame(shown, frame, Engine::kExact).statistics.projected_facets;
     };
     const auto fitted = facets(*world, CornerRays::kFitted, 24);
     CHECK(fitted < 1.3 * facets(*world, CornerRays::kInterpolated, 24));
@@ -202,9 +203,9 @@ TEST_CASE("fitted rays ask for no facets that nobody sees, nor for those below a
 
     LayerRequest window;
     window.layers = layer_names();
-    const Image whole = draw(*world, with(CornerRays::kFitted), Engine::kExact, window).image;
+    const Image whole = draw_frame(*world, with(CornerRays::kFitted), Engine::kExact, window).image;
     window.x0 = 100, window.y0 = 40, window.x1 = 150, window.y1 = 110;
-    CHECK(same_in(whole, draw(*world, with(CornerRays::kFitted), Engine::kExact, window).image));
+    CHECK(same_in(whole, draw_frame(*world, with(CornerRays::kFitted), Engine::kExact, window).image));
 }
 
 TEST_CASE("facets divided for an error keep it, whatever they began with", "[laws][law]") {
@@ -215,12 +216,12 @@ TEST_CASE("facets divided for an error keep it, whatever they began with", "[law
     };
     for (const Case& one : {Case{kFittedBall, 0, "reflect"}, Case{kFittedGlassBall, 4, "refract"}}) {
         const auto world = room_with(one.optic, one.max_depth, 4);
-        const Image truth = draw(*world, {}, Engine::kLimitTruth).image;
+        const Image truth = draw_frame(*world, {}, Engine::kLimitTruth).image;
         for (const CornerRays rays : {CornerRays::kInterpolated, CornerRays::kFitted}) {
             FrameParams frame = with(rays);
-            const Picture plain = draw(*world, frame, Engine::kExact);
+            const Picture plain = draw_frame(*world, frame, Engine::kExact);
             frame.max_error = 0.5;
-            const Picture divided = draw(*world, frame, Engine::kExact);
+            const Picture divided = draw_frame(*world, frame, Engine::kExact);
             const auto before = measure_displacement(truth, plain.image, one.layer);
             const auto after = measure_displacement(truth, divided.image, one.layer);
             REQUIRE((before && before->summary && after && after->summary));
@@ -241,9 +242,9 @@ TEST_CASE("an error asked for does not depend on crops or threads", "[laws][law]
     LayerRequest window;
     window.layers = layer_names();
     set_thread_count(1);
-    const Image whole = draw(*world, frame, Engine::kExact, window).image;
+    const Image whole = draw_frame(*world, frame, Engine::kExact, window).image;
     set_thread_count(4);
     window.x0 = 80, window.y0 = 55, window.x1 = 120, window.y1 = 90;
-    CHECK(same_in(whole, draw(*world, frame, Engine::kExact, window).image));
+    CHECK(same_in(whole, draw_frame(*world, frame, Engine::kExact, window).image));
     set_thread_count(0);
 }

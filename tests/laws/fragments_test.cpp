@@ -18,7 +18,8 @@ namespace {
 const std::vector<std::string> kScenes = {"sphere", "saddle", "paths/crystal-ball",
                                           "paths/glass-before-mirror"};
 
-std::unique_ptr<World> world_of(const std::string& scene, int spp, FilterKind filter = FilterKind::kBox) {
+std::unique_ptr<World> fragment_world(const std::string& scene, int spp,
+                                      FilterKind filter = FilterKind::kBox) {
     std::unique_ptr<World> world = shipped_world(scene, 8, 64, 48);
     world->scene.film.spp = spp;
     world->scene.film.filter = filter;
@@ -57,7 +58,7 @@ Picture drawn(const World& world, Shading shading) {
 TEST_CASE("a sample's key is that of what its view shows", "[laws][law][fragments]") {
     for (const std::string& scene : kScenes) {
         CAPTURE(scene);
-        const auto world = world_of(scene, 3);
+        const auto world = fragment_world(scene, 3);
         const std::unique_ptr<Viewer> viewer = make_viewer(*world, {}, Engine::kExact, ignore);
         const SampleGrid grid{3, 2, 60, 47, 3, SampleOrder::kLattice};
         std::vector<FragmentKey> keys(grid.size());
@@ -76,7 +77,7 @@ TEST_CASE("a sample's key is that of what its view shows", "[laws][law][fragment
 
 TEST_CASE("samples in rows of the lattice, and chosen ones of them, see what they see pixel by pixel",
           "[laws][law][fragments]") {
-    const auto world = world_of("sphere", 3);
+    const auto world = fragment_world("sphere", 3);
     const std::unique_ptr<Viewer> viewer = make_viewer(*world, {}, Engine::kExact, ignore);
     const SampleGrid pixels{3, 2, 60, 47, 3}, rows{3, 2, 60, 47, 3, SampleOrder::kLattice};
     SampleGrid chosen = rows;
@@ -138,7 +139,7 @@ TEST_CASE("shading by fragments: coverage and flat colours to rounding, others n
 
     for (const std::string& scene : kScenes) {
         CAPTURE(scene);
-        const auto lit = world_of(scene, 4);
+        const auto lit = fragment_world(scene, 4);
         const Difference off =
             beauty_difference(drawn(*lit, Shading::kFragment).image, drawn(*lit, Shading::kSample).image);
         // With textures the fragments are the better answer: 16 samples of a texture are not its mean.
@@ -149,7 +150,7 @@ TEST_CASE("shading by fragments: coverage and flat colours to rounding, others n
 }
 
 TEST_CASE("the channel of fragments adds up to their number", "[laws][law][fragments]") {
-    const auto world = world_of("sphere", 3);
+    const auto world = fragment_world("sphere", 3);
     PictureRequest request;
     request.layers.layers = {"stat"};
     const auto sum_of = [&](const Picture& picture) {
@@ -171,7 +172,7 @@ TEST_CASE("a filter of what is shown: no pixel beyond the screen's range by brig
           "[laws][law][fragments]") {
     for (const FilterKind filter : {FilterKind::kBox, FilterKind::kMitchell}) {
         CAPTURE(static_cast<int>(filter));
-        const auto world = world_of("sphere", 3, filter);
+        const auto world = fragment_world("sphere", 3, filter);
         PictureRequest request;
         const Image light = draw_picture(*world, request, {}, ignore, nullptr).image;
         request.layers.shown = [](const Vec3& v) { return v; };
@@ -196,7 +197,7 @@ TEST_CASE("shading by fragments: the same picture in any window and by any filte
           "[laws][law][fragments]") {
     for (const FilterKind filter : {FilterKind::kBox, FilterKind::kMitchell, FilterKind::kGaussian}) {
         CAPTURE(static_cast<int>(filter));
-        const auto world = world_of("sphere", 3, filter);
+        const auto world = fragment_world("sphere", 3, filter);
         PictureRequest whole, part;
         part.layers.x0 = 17, part.layers.y0 = 9, part.layers.x1 = 45, part.layers.y1 = 31;
         const Image all = draw_picture(*world, whole, {}, ignore, nullptr).image,

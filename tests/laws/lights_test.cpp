@@ -18,7 +18,7 @@ using namespace trilens_test;
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kWidth = 20, kHeight = 15;
+constexpr int kLitWidth = 20, kLitHeight = 15;
 constexpr double kRoughness = 0.5;
 
 /// A floor with a wall that hides part of a lamp and of the sky; `samples` of each light.
@@ -100,10 +100,10 @@ std::vector<Vec3> reference() {
     std::vector<Vec3> picture;
     const Vec3 eye(0, 3, 5), ahead = normalize(-eye), right(1, 0, 0), up = cross(right, ahead);
     const double half = std::tan(20 * kPi / 180);
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
-            const double dx = (2 * (x + 0.5) / kWidth - 1) * half * kWidth / kHeight,
-                         dy = (1 - 2 * (y + 0.5) / kHeight) * half;
+    for (int y = 0; y < kLitHeight; ++y)
+        for (int x = 0; x < kLitWidth; ++x) {
+            const double dx = (2 * (x + 0.5) / kLitWidth - 1) * half * kLitWidth / kLitHeight,
+                         dy = (1 - 2 * (y + 0.5) / kLitHeight) * half;
             picture.push_back(path_traced({eye, normalize(ahead + dx * right + dy * up)}, 20000, draw));
         }
     return picture;

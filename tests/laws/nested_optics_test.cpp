@@ -32,7 +32,7 @@ std::string room() {
     return text;
 }
 
-std::string scene_of(int film, const std::string& camera, const std::string& meshes) {
+std::string nested_scene(int film, const std::string& camera, const std::string& meshes) {
     return R"({"version":1,"film":{"width":)" + std::to_string(film) + R"(,"height":)" +
            std::to_string(film) + R"(},"cameras":[{"yfov":40,"lookAt":)" + camera +
            R"(}],"materials":[{"name":"grey"},{"name":"chrome","metallicFactor":1},{"name":"glass","transmissionFactor":1}],"meshes":[)" +
@@ -43,7 +43,7 @@ std::string scene_of(int film, const std::string& camera, const std::string& mes
 std::unique_ptr<World> two_balls(int n, int film) {
     return world_from(
         "two balls",
-        scene_of(
+        nested_scene(
             film, R"({"eye":[0.7,0.9,4.4],"at":[0.05,0,0]})",
             R"({"name":"a","role":"optic","material":"chrome","primitive":{"type":"sphere","center":[-0.75,0.1,0],"radius":0.8}},
                 {"name":"b","role":"optic","material":"chrome","primitive":{"type":"sphere","center":[1,-0.2,0.3],"radius":0.65}})" +
@@ -185,8 +185,8 @@ std::string with_material(std::string text, const std::string& material) {
 void check_flat_layer(const std::string& material, int n) {
     const std::string look = R"({"eye":[-2.2,1.1,5],"at":[-0.5,0.1,-1]})",
                       ball = with_material(kBall, material);
-    const auto both = world_from("both", scene_of(240, look, ball + kPlane + kThings), n);
-    const auto alone = world_from("alone", scene_of(240, look, ball + kThings), n);
+    const auto both = world_from("both", nested_scene(240, look, ball + kPlane + kThings), n);
+    const auto alone = world_from("alone", nested_scene(240, look, ball + kThings), n);
     const SampleViews in_mirror = views_of(*both, layered(true), Engine::kExact);
     const CameraRays camera =
         mirrored_camera(make_camera_rays(alone->scene, 0), both->optics[1].surface->eval(0, Vec2(0.5)));
@@ -282,7 +282,7 @@ TEST_CASE("projector and Embree see the same layers", "[laws][layers][oracle][la
     }
     const std::string look = R"({"eye":[-2.2,1.1,5],"at":[-0.5,0.1,-1]})";
     const auto glass =
-        world_from("glass", scene_of(240, look, with_material(kBall, "glass") + kPlane + kThings), 8);
+        world_from("glass", nested_scene(240, look, with_material(kBall, "glass") + kPlane + kThings), 8);
     const Agreement a = compare_engines(*glass);
     INFO(a.first_off_edge);
     CHECK(a.off_edge == 0);
@@ -298,10 +298,11 @@ TEST_CASE("a scene says whether optics seen in an optic are layers", "[laws][lay
         text.replace(text.find('%'), 1, name);
         return text.replace(text.find('%'), 1, center);
     };
-    const auto divided = world_from("divided",
-                                    scene_of(200, R"({"eye":[0.7,0.9,4.4],"at":[0.05,0,0]})",
-                                             at("a", "-0.75,0.1,0") + "," + at("b", "1,-0.2,0.3") + room()),
-                                    8);
+    const auto divided =
+        world_from("divided",
+                   nested_scene(200, R"({"eye":[0.7,0.9,4.4],"at":[0.05,0,0]})",
+                                at("a", "-0.75,0.1,0") + "," + at("b", "1,-0.2,0.3") + room()),
+                   8);
     PictureRequest request;
     request.layers.layers = layer_names();
     const Picture as_said = draw_picture(*divided, request, {}, ignore);

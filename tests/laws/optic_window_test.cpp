@@ -26,7 +26,7 @@ bool same_bits(const Hit& a, const Hit& b) {
            std::memcmp(&a.barycentric, &b.barycentric, sizeof a.barycentric) == 0;
 }
 
-Frame frame_of(const World& world) {
+Frame window_frame(const World& world) {
     return make_frame(world, FrameParams(), [](const std::string&) {});
 }
 
@@ -53,7 +53,7 @@ TEST_CASE("an optic's window holds all samples that meet its facets, with the sa
         CAPTURE(name);
         const auto world = shipped_world(name, kFacets, kWindowWidth, kHeight);
         if (!world) continue;
-        const Frame frame = frame_of(*world);
+        const Frame frame = window_frame(*world);
         for (const int side : {1, 2}) {
             const SampleGrid whole{0, 0, kWindowWidth, kHeight, side}, inner{7, 11, 71, 43, side};
             for (const FramedOptic& optic : frame.optics) {
@@ -80,7 +80,7 @@ TEST_CASE("an optic's window holds all samples that meet its facets, with the sa
 
 TEST_CASE("an optic's window is about as large as the optic looks, or all of the film", "[laws][law]") {
     const auto window_of = [](const World& world) {
-        const Frame frame = frame_of(world);
+        const Frame frame = window_frame(world);
         return optic_window(frame.optics.at(0), frame.camera);
     };
     // A pixel is 0.0404 wide at the ball, whose middle lies 12.4 pixels to the left of the film's.

@@ -19,7 +19,7 @@ namespace {
 constexpr int kOrderWidth = 320, kHeight = 240;
 constexpr std::size_t kLevels = 3;  // n, 2 n, 4 n
 
-Image draw(const World& world, Engine engine) {
+Image draw_layer(const World& world, Engine engine) {
     PictureRequest request;
     request.engine = engine;
     request.layers.layers = {"optic", "reflect", "refract", "stat"};
@@ -76,8 +76,8 @@ void check_orders(const std::vector<OrderCase>& cases) {
         for (std::size_t i = 0; i < kLevels; ++i) {
             const auto world = shipped_world(one.scene, one.n << i, kOrderWidth, kHeight, &missing);
             if (!world) break;
-            images[i] = draw(*world, Engine::kExact);
-            if (i == 0) truth = draw(*world, Engine::kLimitTruth);
+            images[i] = draw_layer(*world, Engine::kExact);
+            if (i == 0) truth = draw_layer(*world, Engine::kLimitTruth);
         }
         if (!missing.empty()) {
             WARN(one.scene << " is left out: " << missing);

@@ -10,7 +10,7 @@ using namespace trilens;
 
 namespace {
 
-Mesh ball(const std::string& name, const Vec3& centre, double radius, Id material) {
+Mesh ball_mesh(const std::string& name, const Vec3& centre, double radius, Id material) {
     Mesh mesh;
     mesh.name = name;
     mesh.role = Role::kOptic;
@@ -41,8 +41,8 @@ Scene two_balls() {
     room.object.points = {{-6, -1, -5}, {6, -1, -5}, {6, -1, 6}, {-6, -1, 6}, {6, 5, -5}, {-6, 5, -5}};
     room.object.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 1, 4}, {0, 4, 5}};
     room.object.material = {2, 2, 2, 2};
-    scene.meshes = {ball("mirror", {-0.85, -0.1, -0.6}, 0.8, 0), ball("glass", {0.7, -0.3, 0.5}, 0.7, 1),
-                    room};
+    scene.meshes = {ball_mesh("mirror", {-0.85, -0.1, -0.6}, 0.8, 0),
+                    ball_mesh("glass", {0.7, -0.3, 0.5}, 0.7, 1), room};
     return scene;
 }
 

@@ -247,7 +247,7 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
 /// Of 16 bits; more than a pixel's hundredth is no edge.
 constexpr double kSameColour = 2e-5, kEdge = 1e-2;
 
-void check(const Stage& stage, const std::string& name, double same) {
+void check_stage(const Stage& stage, const std::string& name, double same) {
     const Against a = compare_with_pov(stage, name, same, kEdge);
     INFO(a.first);
     CHECK(a.off_edge == 0);
@@ -266,22 +266,22 @@ const Ball kLeft{{-0.9, 0.2, -0.2}, 0.8}, kRight{{0.95, -0.1, 0.3}, 0.75};
 
 TEST_CASE("POV-Ray sees the same squares through a glass ball", "[laws][povray][oracle][law]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
-    check({{kGlassBall}, povray_room()}, "glass ball", kSameColour);
+    check_stage({{kGlassBall}, povray_room()}, "glass ball", kSameColour);
 }
 
 TEST_CASE("POV-Ray sees the same squares in two mirror balls", "[laws][povray][oracle][law]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
-    check({{kLeft, kRight}, povray_room()}, "two mirrors", kSameColour);
+    check_stage({{kLeft, kRight}, povray_room()}, "two mirrors", kSameColour);
 }
 
 TEST_CASE("POV-Ray sees the same squares through glass in glass", "[laws][povray][oracle][law]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
     Stage stage{{kGlassBall, {{0.15, 0.2, 0.1}, 0.55, 1.2, 1}}, povray_room()};
-    check(stage, "water in glass", kSameColour);
+    check_stage(stage, "water in glass", kSameColour);
     stage.balls[1].ior = 1;  // a bubble
-    check(stage, "bubble in glass", kSameColour);
+    check_stage(stage, "bubble in glass", kSameColour);
     stage.balls.push_back({{0.2, 0.25, 0.15}, 0.3, 1.8, 2});
-    check(stage, "three nested", kSameColour);
+    check_stage(stage, "three nested", kSameColour);
 }
 
 TEST_CASE("POV-Ray sees the same squares from inside of glass, past other glass and a mirror",
@@ -291,15 +291,15 @@ TEST_CASE("POV-Ray sees the same squares from inside of glass, past other glass 
                 povray_room()};
     stage.eye = {0.2, 0.4, 1.4};
     stage.yfov = 70;
-    check(stage, "eye in glass", kSameColour);
+    check_stage(stage, "eye in glass", kSameColour);
     stage.balls.erase(stage.balls.begin() + 1);  // POV-Ray's Fresnel knows glass beside air alone
     stage.fresnel = true;
-    check(stage, "eye in glass with Fresnel", 1e-3);
+    check_stage(stage, "eye in glass with Fresnel", 1e-3);
 }
 
 TEST_CASE("POV-Ray weighs reflection and transmission of a glass ball alike", "[laws][povray][oracle][law]") {
     if (povray_missing()) TRILENS_SKIP("needs povray");
     Stage stage{{kGlassBall}, povray_room()};
     stage.fresnel = true;
-    check(stage, "glass ball with Fresnel", 1e-3);
+    check_stage(stage, "glass ball with Fresnel", 1e-3);
 }

@@ -45,8 +45,8 @@ Scene in_room(double far, const Primitive& primitive, bool glass) {
     return scene;
 }
 
-std::vector<Id> seen(const Renderer& renderer, const EngineChoice& engine, const std::string& layer,
-                     FrameParams frame = {}) {
+std::vector<Id> layer_ids(const Renderer& renderer, const EngineChoice& engine, const std::string& layer,
+                          FrameParams frame = {}) {
     PictureRequest request;
     request.engine = engine;
     request.frame = frame;
@@ -83,11 +83,11 @@ TEST_CASE("facets on the film show what rays along them meet, and come to the ex
     for (const bool glass : {false, true}) {
         const Renderer renderer(in_room(4, Primitive{}, glass));
         const std::string layer = glass ? "refract" : "reflect";
-        const std::vector<Id> truth = seen(renderer, Engine::kLimitTruth, layer);
+        const std::vector<Id> truth = layer_ids(renderer, Engine::kLimitTruth, layer);
         std::vector<std::size_t> wrong;
         for (const int n : {4, 8, 16, 32}) {
-            const std::vector<Id> drawn = seen(renderer, Engine::kExact, layer, on_film(n));
-            CHECK(different(drawn, seen(renderer, Engine::kFacetsTruth, layer, on_film(n))) == 0);
+            const std::vector<Id> drawn = layer_ids(renderer, Engine::kExact, layer, on_film(n));
+            CHECK(different(drawn, layer_ids(renderer, Engine::kFacetsTruth, layer, on_film(n))) == 0);
             wrong.push_back(different(drawn, truth));
         }
         INFO(layer << ": " << wrong[0] << ", " << wrong[1] << ", " << wrong[2] << ", " << wrong[3]);
@@ -101,8 +101,8 @@ TEST_CASE("an environment map is right where everything is far away, and wrong n
     FrameParams same_rays;
     same_rays.rays = CornerRays::kInterpolated;
     const auto wrong = [&](const Renderer& renderer) {
-        return different(seen(renderer, Engine::kEnvironment, "reflect"),
-                         seen(renderer, Engine::kExact, "reflect", same_rays));
+        return different(layer_ids(renderer, Engine::kEnvironment, "reflect"),
+                         layer_ids(renderer, Engine::kExact, "reflect", same_rays));
     };
     CHECK(wrong(far) == 0);
     CHECK(wrong(near) > 50);
@@ -111,8 +111,8 @@ TEST_CASE("an environment map is right where everything is far away, and wrong n
 TEST_CASE("flat facets are right for a flat mirror and wrong for a ball", "[laws][law]") {
     const Renderer flat(in_room(4, plate(), false)), round(in_room(4, Primitive{}, false));
     const auto wrong = [&](const Renderer& renderer) {
-        return different(seen(renderer, Engine::kPlanar, "reflect"),
-                         seen(renderer, Engine::kExact, "reflect"));
+        return different(layer_ids(renderer, Engine::kPlanar, "reflect"),
+                         layer_ids(renderer, Engine::kExact, "reflect"));
     };
     CHECK(wrong(flat) == 0);
     CHECK(wrong(round) > 100);

@@ -94,15 +94,15 @@ Counts count_silent(const Image& image, Truths& truths, const std::string& layer
 }
 
 /// A scene, and the resolution that makes facets small.
-struct Case {
+struct SilentCase {
     const char* scene;
     int n = 32;
     int larger = 1;  // times, the film
     std::optional<CornerRays> rays = {};
 };
 
-void check_silent(const std::vector<Case>& cases) {
-    for (const Case& one : cases) {
+void check_silent(const std::vector<SilentCase>& cases) {
+    for (const SilentCase& one : cases) {
         std::string missing;
         const auto world =
             shipped_world(one.scene, one.n, one.larger * kWidth, one.larger * kHeight, &missing);

@@ -27,7 +27,7 @@ std::string box(const std::string& name, const std::string& material, const Vec3
 }
 
 /// `meshes` in a room, seen from `eye` towards `at`.
-std::string room(const std::string& meshes, const std::string& eye, const std::string& at) {
+std::string touching_room(const std::string& meshes, const std::string& eye, const std::string& at) {
     return R"({"version":1,"film":{"width":96,"height":72},"cameras":[{"name":"main","yfov":70,"lookAt":{"eye":)" +
            eye + R"(,"at":)" + at +
            R"(,"up":[0,1,0]}}],"materials":[{"name":"water","transmissionFactor":1,"ior":1.33},{"name":"glass","transmissionFactor":1,"ior":1.5},
@@ -54,7 +54,8 @@ TEST_CASE("from water through the glass that it fills there is no air between, w
     const std::string water = box("water", "water", {-1, -1, -third}, {1, 1, third});
     const std::string pane = box("pane", "glass", {-1, -1, -third - 0.1}, {1, 1, -third});
     for (const std::string& meshes : {water + "," + pane, pane + "," + water}) {
-        const auto world = world_from("aquarium", room(meshes, "[0.03,0.02,0.11]", "[0.5,0.06,-0.4]"), 4);
+        const auto world =
+            world_from("aquarium", touching_room(meshes, "[0.03,0.02,0.11]", "[0.5,0.06,-0.4]"), 4);
         check_engines(*world);
         for (const Engine engine : {Engine::kLimitTruth, Engine::kExact}) {
             SampleViews views;
@@ -93,9 +94,10 @@ TEST_CASE("a ball that lies on a slab, and glass on a mirror that is seen beside
     const std::string slab = box("slab", "glass", {-1, -0.5, -1}, {1, 0, 1});
     const std::string ball =
         R"({"name":"ball","role":"optic","material":"water","primitive":{"type":"sphere","center":[0,0.4,0],"radius":0.4}})";
-    check_engines(*world_from("on_slab", room(slab + "," + ball, "[0.6,0.9,2]", "[0,0.1,0]"), 6));
+    check_engines(*world_from("on_slab", touching_room(slab + "," + ball, "[0.6,0.9,2]", "[0,0.1,0]"), 6));
     const std::string mirror = box("mirror", "mirror", {-1.5, -0.7, -1.5}, {1.5, -0.5, 1.5});
-    check_engines(*world_from("on_mirror", room(mirror + "," + slab, "[0.6,0.9,2]", "[0,-0.3,0]"), 6));
+    check_engines(
+        *world_from("on_mirror", touching_room(mirror + "," + slab, "[0.6,0.9,2]", "[0,-0.3,0]"), 6));
 }
 
 TEST_CASE("a body in a body with one side in common is met there once", "[laws][law]") {
@@ -104,7 +106,7 @@ TEST_CASE("a body in a body with one side in common is met there once", "[laws][
     std::string inner = box("inner", "water", {-0.5, -0.5, 0}, {0.5, 0.5, 1});
     inner.insert(1, R"("priority":1,)");
     for (const std::string& meshes : {outer + "," + inner, inner + "," + outer}) {
-        const auto world = world_from("common_side", room(meshes, "[0.1,0.2,3]", "[0,0,0]"), 2);
+        const auto world = world_from("common_side", touching_room(meshes, "[0.1,0.2,3]", "[0,0,0]"), 2);
         check_engines(*world);
         SampleViews views;
         make_viewer(*world, {}, Engine::kLimitTruth, ignore)->view({0, 0, 96, 72, 1}, views);

@@ -30,7 +30,7 @@ Image with_optic(Image image, Id optic) {
 
 using EnvironmentWarp = std::function<Vec2(double x, double y)>;
 
-Displacement measure(const Field& field, const EnvironmentWarp& warp) {
+Displacement measure_sky(const Field& field, const EnvironmentWarp& warp) {
     const Image reference = with_optic(image_of(kEnvironmentWidth, kHeight, field), 5);
     const Image test = with_optic(image_of(kEnvironmentWidth, kHeight,
                                            [&](double x, double y) {
@@ -78,7 +78,7 @@ TEST_CASE("a field of directions that is moved, turned or scaled gives its shift
         int which = 0;
         for (const EnvironmentWarp& warp : {moved, turned, scaled}) {
             INFO("shift " << size << " warp " << which++);
-            const Displacement found = measure(sky, warp);
+            const Displacement found = measure_sky(sky, warp);
             // Directions of length 1, 1 / 60 per pixel: their rounding is 1e-5 pixels.
             const Errors errors = errors_of(found, warp);
             CHECK(errors.inside < 3e-4);
@@ -132,7 +132,7 @@ TEST_CASE("the environment and an object never answer for one another", "[measur
     const Field both = [&](double x, double y) { return x + 0.3 * y < 50 ? ball(x, y) : sky(x, y); };
     for (const double by : {0.01, 0.6}) {
         const EnvironmentWarp warp = [=](double x, double y) { return Vec2(x + by, y); };
-        const Displacement moved = measure(both, warp);
+        const Displacement moved = measure_sky(both, warp);
         // At the border either side is continued by as much as it moved.
         CHECK(errors_of(moved, warp).inside < 0.02 * by + 1e-3);
         CHECK(moved.lost == 0);

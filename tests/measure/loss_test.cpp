@@ -13,13 +13,13 @@ using trilens_test::Seen;
 
 namespace {
 
-Seen plane(double x, double y) {
+Seen loss_plane(double x, double y) {
     return {1, 0, Vec3(0.05 * x, 0.05 * y, 0)};
 }
 
 /// The plane where the column is at most `last`.
 Image plane_until(double last, double by = 0) {
-    return image_of(80, 50, [=](double x, double y) { return x < last ? plane(x + by, y) : Seen{}; });
+    return image_of(80, 50, [=](double x, double y) { return x < last ? loss_plane(x + by, y) : Seen{}; });
 }
 
 }  // namespace

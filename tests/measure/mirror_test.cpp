@@ -15,7 +15,7 @@ using trilens_test::Seen;
 
 namespace {
 
-constexpr int kWidth = 33, kHeight = 27;
+constexpr int kMirrorWidth = 33, kMirrorHeight = 27;
 
 /// A picture of coloured noise at any brightness, with pieces of objects that are seen at smooth places; `by`
 /// moves them.
@@ -24,7 +24,7 @@ Image random_picture(std::mt19937& random, double by) {
         return std::uniform_real_distribution<double>(-size, size)(random);
     };
     const double bend = number(0.02), amount = std::pow(10, number(2));
-    Image image = image_of(kWidth, kHeight, [&](double x, double y) {
+    Image image = image_of(kMirrorWidth, kMirrorHeight, [&](double x, double y) {
         if (random() % 9 == 0) return Seen{};
         const double u = x + by;
         return Seen{static_cast<Id>(u > 12), static_cast<Id>(y > 9), Vec3(0.1 * u, 0.1 * y, bend * u * y)};

@@ -30,7 +30,7 @@ struct Quadratic {
     PartSamples<T> samples() const { return {corner, middle, at(Vec3(1.0 / 3))}; }
 };
 
-Vec3 random_weights(Random& random) {
+Vec3 beam_weights(Random& random) {
     const double a = random.uniform(0, 1), b = random.uniform(0, 1);
     return a + b <= 1 ? Vec3(a, b, 1 - a - b) : Vec3(1 - a, 1 - b, a + b - 1);
 }
@@ -87,7 +87,7 @@ TEST_CASE("The hull of a quadratic over a facet holds all of its values, and lit
         const Interval hull = hull_of(q.samples());
         double low = kEverywhere, high = -kEverywhere;
         for (int j = 0; j < 200; ++j) {
-            const double value = q.at(random_weights(random));
+            const double value = q.at(beam_weights(random));
             low = std::min(low, value), high = std::max(high, value);
         }
         CHECK(hull.low <= low + 1e-12);
@@ -107,7 +107,7 @@ TEST_CASE("A beam may touch whatever one of its rays meets", "[paths][law]") {
         if (!beam) continue;
         ++beams;
         for (int j = 0; j < 50; ++j) {
-            const Ray ray = rays.at(random_weights(random));
+            const Ray ray = rays.at(beam_weights(random));
             const double t = std::pow(10.0, random.uniform(-3, 2));
             const Vec3 place = ray.origin + t * ray.direction;
             const double size = width * std::pow(10.0, random.uniform(-6, 0));

@@ -14,7 +14,7 @@ using namespace trilens_test;
 
 namespace {
 
-PathCamera camera_at(const Vec3& eye) {
+PathCamera eye_at(const Vec3& eye) {
     PathCamera camera;
     camera.film = Vec2(10000);
     camera.screen = [=](const Vec3& p) {
@@ -86,7 +86,7 @@ FullProbes full_probes(const ProbeContext& context, const FacetPart& part) {
 TEST_CASE("a probe's principal paths are the same whether others are followed or not", "[paths]") {
     Stage stage;
     put_up_stage(stage);
-    const ProbeContext context{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};
+    const ProbeContext context{&stage.world, 0, &stage.surface(0), eye_at({0.1, 0.2, 6})};
     Random random(71);
     std::size_t seen = 0, fainter = 0, refused = 0;
     std::optional<PathProbe> last;
@@ -123,7 +123,7 @@ TEST_CASE("a probe's principal paths are the same whether others are followed or
 TEST_CASE("parts are projected where all paths agree, and traced only where they do not", "[paths][oracle]") {
     Stage stage;
     put_up_stage(stage);
-    const ProbeContext context{&stage.world, 0, &stage.surface(0), camera_at({0.1, 0.2, 6})};
+    const ProbeContext context{&stage.world, 0, &stage.surface(0), eye_at({0.1, 0.2, 6})};
     const SurfaceGrid grid = make_grid(stage.surface(0), 4);
     DivideParams params;
     params.least_area = 8;

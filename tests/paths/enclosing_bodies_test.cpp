@@ -30,7 +30,7 @@ std::vector<Id> listed(const Media& media) {
 }
 
 /// Where the path that is refracted everywhere goes, as the angle from -z towards -x; NaN: there is none.
-double turned(const Stage& stage, const Ray& ray, std::size_t steps) {
+double ray_turned(const Stage& stage, const Ray& ray, std::size_t steps) {
     const Media around = enclosing_bodies(stage.world, all(stage), ray.origin).media;
     const auto first = next_optic(stage.world, {ray});
     REQUIRE(first.has_value());
@@ -59,7 +59,7 @@ TEST_CASE("from inside of a ball of glass a ray passes a ball of water as Bougue
         const Ray between{{h, 0, 0.8}, {0, 0, -1}};
         CHECK(listed(enclosing_bodies(stage.world, all(stage), between.origin).media) ==
               std::vector<Id>{glass});
-        CHECK(turned(stage, between, 3) ==
+        CHECK(ray_turned(stage, between, 3) ==
               Approx(2 * turn_at(c, kInner, kGlass, kWater) + turn_at(c, 1, 1, kGlass)).margin(1e-9));
 
         // In the water: half the way.
@@ -68,7 +68,7 @@ TEST_CASE("from inside of a ball of glass a ray passes a ball of water as Bougue
         CHECK(listed(both) == std::vector<Id>{glass, water});
         CHECK(listed(bodies_along(stage.world, all(stage), within)) == listed(both));
         const double inner = kWater * h;
-        CHECK(turned(stage, within, 2) ==
+        CHECK(ray_turned(stage, within, 2) ==
               Approx(turn_at(inner, kInner, kGlass, kWater) + turn_at(inner, 1, 1, kGlass)).margin(1e-9));
     }
 }

@@ -27,7 +27,7 @@ Kind kind_of(const std::string& camera) {
     return std::get<Kind>(camera_of(camera).kind);
 }
 
-std::string refusal(const std::string& camera) {
+std::string camera_refusal(const std::string& camera) {
     return error_of(with_camera(camera));
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("every field of a camera arrives", "[scene]") {
 TEST_CASE("camera fields that do not belong, lack or make no sense are refused with their place",
           "[scene][bad-input]") {
     const auto check = [](const std::string& camera, const std::string& message) {
-        const std::string found = refusal(camera);
+        const std::string found = camera_refusal(camera);
         INFO(camera);
         CHECK(found == "room.json: /cameras/0" + message);
     };

@@ -21,7 +21,7 @@ Scene lit_by(const std::string& lights, std::span<const SceneOverride> overrides
     return load_scene_text(text, SceneSource("room.json"), overrides, {});
 }
 
-std::string refusal(const std::string& light) {
+std::string light_refusal(const std::string& light) {
     try {
         lit_by("[" + light + "]");
     } catch (const InputError& error) {
@@ -74,21 +74,21 @@ TEST_CASE("every kind of light is read with all of its fields", "[scene]") {
 
 TEST_CASE("lights without an area, or with fields of others, are refused by name", "[scene][bad-input]") {
     const std::string disk = R"("type": "disk", "position": [0, 3, 0], "direction": [0, -1, 0])";
-    CHECK(refusal("{" + disk + R"(, "radius": 0})") ==
+    CHECK(light_refusal("{" + disk + R"(, "radius": 0})") ==
           "room.json: /lights/0/radius: 0 is out of range: must be greater than 0");
-    CHECK(refusal("{" + disk + R"(, "samples": 0})") ==
+    CHECK(light_refusal("{" + disk + R"(, "samples": 0})") ==
           "room.json: /lights/0/samples: 0 is out of range: must be at least 1");
-    CHECK(refusal("{" + disk + R"(, "size": [1, 1]})") ==
+    CHECK(light_refusal("{" + disk + R"(, "size": [1, 1]})") ==
           "room.json: /lights/0/size: 'size' is no key of a disk light");
-    CHECK(
-        refusal(R"({"type": "rectangle", "position": [0, 3, 0], "direction": [0, -1, 0], "size": [1, 0]})") ==
-        "room.json: /lights/0/size/1: 0 is out of range: must be greater than 0");
-    CHECK(refusal(R"({"type": "rectangle", "position": [0, 3, 0], "direction": [0, 0, 0]})") ==
+    CHECK(light_refusal(
+              R"({"type": "rectangle", "position": [0, 3, 0], "direction": [0, -1, 0], "size": [1, 0]})") ==
+          "room.json: /lights/0/size/1: 0 is out of range: must be greater than 0");
+    CHECK(light_refusal(R"({"type": "rectangle", "position": [0, 3, 0], "direction": [0, 0, 0]})") ==
           "room.json: /lights/0/direction: a direction must not be zero");
-    CHECK(refusal(
+    CHECK(light_refusal(
               R"({"type": "spot", "position": [0, 3, 0], "direction": [0, -1, 0], "innerConeAngle": 50})") ==
           "room.json: /lights/0/innerConeAngle: the inner cone must be within the outer one");
-    CHECK(refusal(R"({"type": "sphere"})") == "room.json: /lights/0: a sphere light needs 'position'");
+    CHECK(light_refusal(R"({"type": "sphere"})") == "room.json: /lights/0: a sphere light needs 'position'");
 }
 
 TEST_CASE("an animated light takes its object along", "[scene]") {

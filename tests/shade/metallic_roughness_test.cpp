@@ -14,7 +14,7 @@ using trilens_test::Draw;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kBrdfPi = std::numbers::pi;
 const Vec3 kUp{0, 0, 1};
 
 Vec3 direction(double cosine, double around) {
@@ -26,7 +26,7 @@ Vec3 direction(double cosine, double around) {
 Vec3 written_brdf(const SurfaceLook& look, const Vec3& view, const Vec3& light) {
     const double alpha = look.roughness * look.roughness, a2 = alpha * alpha;
     const Vec3 half = normalize(view + light);
-    const double d = a2 / (kPi * std::pow(half.z * half.z * (a2 - 1) + 1, 2));
+    const double d = a2 / (kBrdfPi * std::pow(half.z * half.z * (a2 - 1) + 1, 2));
     const auto g1 = [&](double cosine) {
         return 2 * cosine / (cosine + std::sqrt(a2 + (1 - a2) * cosine * cosine));
     };
@@ -35,8 +35,8 @@ Vec3 written_brdf(const SurfaceLook& look, const Vec3& view, const Vec3& light) 
     const double r = (1 - look.ior) / (1 + look.ior);
     const Vec3 f0 = glm::min(r * r * look.specular_color, Vec3(1));
     const Vec3 fr = f0 + (Vec3(1) - f0) * schlick;
-    const Vec3 dielectric =
-        (1 - look.specular * std::max({fr.x, fr.y, fr.z})) * look.base / kPi + look.specular * fr * specular;
+    const Vec3 dielectric = (1 - look.specular * std::max({fr.x, fr.y, fr.z})) * look.base / kBrdfPi +
+                            look.specular * fr * specular;
     const Vec3 metal = specular * (look.base + (Vec3(1) - look.base) * schlick);
     return glm::mix(dielectric, metal, look.metallic);
 }
@@ -58,8 +58,8 @@ Vec3 over_hemisphere(const std::function<Vec3(const Vec3&)>& of, int rings = 400
     Vec3 sum(0);
     for (int i = 0; i < rings; ++i)
         for (int j = 0; j < sectors; ++j)
-            sum += of(direction((i + 0.5) / rings, 2 * kPi * (j + 0.5) / sectors));
-    return 2 * kPi / (rings * sectors) * sum;
+            sum += of(direction((i + 0.5) / rings, 2 * kBrdfPi * (j + 0.5) / sectors));
+    return 2 * kBrdfPi / (rings * sectors) * sum;
 }
 
 /// What a surface reflects of a radiance by its lobe and, for the matt part, by directions.
@@ -206,7 +206,8 @@ TEST_CASE("a lobe is widened by the part of a light that a sample stands for", "
         for (int j = 0; j < side; ++j) {
             const Vec3 off = 0.2 * (2.0 * i / (side - 1) - 1) * u + 0.2 * (2.0 * j / (side - 1) - 1) * v;
             if (length(off) > 0.2) continue;
-            sum += arrived_from(surface, normalize(mirror + off), Vec3(1)).glossy.x / (side * side * kPi / 4);
+            sum += arrived_from(surface, normalize(mirror + off), Vec3(1)).glossy.x /
+                   (side * side * kBrdfPi / 4);
         }
     wide = arrived_from(surface, mirror, Vec3(1), 0.2).glossy.x;
     CHECK(wide == Approx(sum).epsilon(0.35));

@@ -9,7 +9,7 @@ using namespace trilens;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kGlobePi = 3.14159265358979323846;
 
 /// A triangle mesh with corner normals, lit by one light whose shadow rays are answered triangle by triangle.
 struct Body {
@@ -40,7 +40,7 @@ void add_ellipsoid(Body& body, const Vec3& axes, int columns, int rows) {
     std::vector<Vec3> normals;
     for (int j = 0; j <= rows; ++j) {
         for (int i = 0; i < columns; ++i) {
-            const double polar = kPi * j / rows, longitude = 2 * kPi * i / columns;
+            const double polar = kGlobePi * j / rows, longitude = 2 * kGlobePi * i / columns;
             const Vec3 unit(std::sin(polar) * std::cos(longitude), std::sin(polar) * std::sin(longitude),
                             std::cos(polar));
             out.points.push_back(axes * unit);
@@ -141,7 +141,7 @@ TEST_CASE("a round body's own shadow begins where its smooth normals turn from t
                 continue;
             }
             INFO("trial " << trial << ", cosine " << cosine << ", at the triangle " << dot(flat, toward));
-            CHECK(seen == Approx(cosine / kPi).epsilon(1e-12));
+            CHECK(seen == Approx(cosine / kGlobePi).epsilon(1e-12));
             ++lit;
             behind_triangle += dot(flat, toward) <= 0;
         }
@@ -199,7 +199,7 @@ TEST_CASE("a triangle without corner normals starts its shadow rays as it always
         };
         const double seen = shade_hit(body.shading, hit, ray).x;
         CHECK(asked == (dot(flat, toward) > 0 ? 1 : 0));
-        CHECK(seen == Approx(std::max(0.0, dot(flat, toward)) / kPi).epsilon(1e-12));
+        CHECK(seen == Approx(std::max(0.0, dot(flat, toward)) / kGlobePi).epsilon(1e-12));
     }
 }
 

@@ -59,7 +59,7 @@ Cage cone(int n) {
     return make_cage(points, faces);
 }
 
-std::string refusal(const Cage& cage, double memory) {
+std::string dense_refusal(const Cage& cage, double memory) {
     try {
         make_limit_surface(cage, "dense", {}, memory);
     } catch (const InputError& error) {
@@ -115,22 +115,22 @@ TEST_CASE("A cage of 20,480 triangles is evaluated everywhere in less than 500 M
 }
 
 TEST_CASE("What would not fit is refused with the estimate and what to do", "[surfaces][bad-input]") {
-    const std::string dense = refusal(bumpy_sphere(4), 200e6);
+    const std::string dense = dense_refusal(bumpy_sphere(4), 200e6);
     CAPTURE(dense);
     CHECK(dense.rfind("dense: the limit surface of 5120 faces needs about 0.56", 0) == 0);
     CHECK(dense.find(" GiB of memory, and there are 0.186 GiB; use a cage of fewer faces") !=
           std::string::npos);
-    CHECK(refusal(bumpy_sphere(4), 700e6).empty());
+    CHECK(dense_refusal(bumpy_sphere(4), 700e6).empty());
 
-    const std::string fan = refusal(cone(4000), 4e9);
+    const std::string fan = dense_refusal(cone(4000), 4e9);
     CAPTURE(fan);
     CHECK(fan.rfind("dense: the limit surface around a vertex of 4000 faces needs about 5.", 0) == 0);
     CHECK(fan.find("; split that vertex") != std::string::npos);
-    CHECK(refusal(cone(60), 700e6).empty());
+    CHECK(dense_refusal(cone(60), 700e6).empty());
 
     Cage linear = cone(4000);  // has no patches to refine
     linear.scheme = SubdivisionScheme::kBilinear;
-    CHECK(refusal(linear, 1e9).empty());
+    CHECK(dense_refusal(linear, 1e9).empty());
 }
 
 TEST_CASE("What is not refused holds no more than the memory that it was given", "[surfaces][bad-input]") {
@@ -138,10 +138,10 @@ TEST_CASE("What is not refused holds no more than the memory that it was given",
         CAPTURE(name);
         // The least memory that is accepted is the estimate.
         double low = 1, high = 1e9;
-        REQUIRE(refusal(cage, high).empty());
+        REQUIRE(dense_refusal(cage, high).empty());
         while (high > 1.05 * low) {
             const double middle = std::sqrt(low * high);
-            (refusal(cage, middle).empty() ? high : low) = middle;
+            (dense_refusal(cage, middle).empty() ? high : low) = middle;
         }
         const auto surface = make_limit_surface(cage, name, {}, high);
         for (Id face = 0; face < surface->face_count(); ++face)

@@ -97,7 +97,7 @@ std::vector<int> normals_per_point(const SurfaceGrid& grid) {
     return count;
 }
 
-double spread(const SurfaceGrid& grid) {
+double grid_spread(const SurfaceGrid& grid) {
     Vec3 low = grid.points[0], high = grid.points[0];
     for (const Vec3& p : grid.points) low = glm::min(low, p), high = glm::max(high, p);
     return length(high - low);
@@ -175,7 +175,7 @@ TEST_CASE("Corners lie on the surface where their (u, v) says, whichever face is
                 worst = std::max(
                     worst, length(surface->eval(grid.facet_face[f], grid.facet_uv[f][k]).position - point));
             }
-        CHECK(worst < 1e-9 * spread(grid));
+        CHECK(worst < 1e-9 * grid_spread(grid));
     }
 }
 

@@ -12,7 +12,7 @@ using namespace trilens;
 namespace {
 
 /// An octahedron whose normals are those of the sphere around it.
-Cage octahedron() {
+Cage polygon_octahedron() {
     Cage cage;
     cage.scheme = SubdivisionScheme::kUnsubdivided;
     cage.points = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
@@ -33,7 +33,7 @@ Cage octahedron() {
 
 TEST_CASE("a surface that is not subdivided lies on its triangles and has their corners' normals",
           "[surfaces]") {
-    const Cage cage = octahedron();
+    const Cage cage = polygon_octahedron();
     const auto surface = make_limit_surface(cage, "octahedron", {});
     REQUIRE(surface->face_count() == 8);
     std::mt19937_64 random(5);
@@ -63,7 +63,7 @@ TEST_CASE("a surface that is not subdivided lies on its triangles and has their 
 
 TEST_CASE("normals that point inward are turned to the front; without any they are the triangles' own",
           "[surfaces]") {
-    Cage cage = octahedron();
+    Cage cage = polygon_octahedron();
     for (Vec3& normal : cage.normals) normal = -normal;
     CHECK(length(make_polygon_surface(cage, "")->eval(0, {0, 0}).normal - Vec3(1, 0, 0)) < 1e-15);
     cage.normals.clear();
@@ -71,16 +71,16 @@ TEST_CASE("normals that point inward are turned to the front; without any they a
 }
 
 TEST_CASE("what is no surface of triangles is refused", "[surfaces][bad-input]") {
-    Cage cage = octahedron();
+    Cage cage = polygon_octahedron();
     cage.normals.pop_back();
     CHECK_THROWS_AS(make_polygon_surface(cage, "x"), InputError);
-    cage = octahedron();
+    cage = polygon_octahedron();
     cage.face_vertex_indices[4] = 6;
     CHECK_THROWS_AS(make_polygon_surface(cage, "x"), InputError);
-    cage = octahedron();
+    cage = polygon_octahedron();
     cage.face_vertex_counts[0] = 4;
     CHECK_THROWS_AS(make_polygon_surface(cage, "x"), InputError);
-    cage = octahedron();
+    cage = polygon_octahedron();
     cage.points[2].y = NAN;
     CHECK_THROWS_AS(make_polygon_surface(cage, "x"), InputError);
     Cage empty;
