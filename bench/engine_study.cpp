@@ -10,7 +10,6 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "base/util/progress.h"
 #include "render/engines/engine.h"
 #include "report/plot.h"
 #include "trilens/render.h"

@@ -15,7 +15,7 @@
 
 #include "image/image_io.h"
 #include "measure/displacement/displacement.h"
-#include "measure/field/folds.h"
+#include "measure/field/position_field.h"
 #include "render/picture/picture.h"
 #include "render/world/world.h"
 #include "scene/load.h"

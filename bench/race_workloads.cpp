@@ -16,7 +16,7 @@
 #include "base/util/parallel.h"
 #include "bench/race/race.h"
 #include "intersect/tracer.h"
-#include "projector/draw_options.h"
+#include "projector/projector.h"
 #include "workloads.h"
 
 namespace {

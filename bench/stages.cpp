@@ -9,10 +9,10 @@
 
 #include "base/raymesh/rasterize.h"
 #include "camera/linear/linear_cameras.h"
-#include "image/exr_chunk.h"
+#include "image/exr_file.h"
 #include "intersect/tracer.h"
 #include "projector/projector.h"
-#include "projector/scene/prepared_data.h"
+#include "projector/scene/bvh.h"
 #include "projector/tiles/sample_tiles.h"
 #include "specular/specular_search.h"
 #include "surfaces/surfaces.h"

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"

@@ -5,7 +5,6 @@
 #include <span>
 
 #include "base/math/vec.h"
-#include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/surface.h"
 

@@ -8,7 +8,7 @@
 #include "base/description/optic_description.h"
 #include "base/math/box.h"
 #include "base/raymesh/surface.h"
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "surfaces/memory_budget.h"
 
 namespace trilens {

@@ -6,15 +6,14 @@
 #include <bit>
 #include <cmath>
 
-#include "base/raymesh/check_data.h"
+#include "base/raymesh/sample_grid.h"
 #include "base/util/check.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 #include "bench/race/packet_tracer.h"
 #include "bench/race/scene_race.h"
-#include "projector/draw_options.h"
 #include "projector/projector.h"
-#include "projector/scene/prepared_data.h"
+#include "projector/scene/bvh.h"
 #include "projector/tiles/sample_tiles.h"
 
 namespace trilens_bench {

@@ -9,7 +9,7 @@
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"
-#include "base/util/progress.h"
+#include "base/util/error.h"
 
 namespace trilens_bench {
 

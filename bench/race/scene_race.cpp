@@ -5,14 +5,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/raymesh/check_data.h"
 #include "base/raymesh/rasterize.h"
+#include "base/raymesh/sample_grid.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "base/util/parallel.h"
 #include "bench/race/race.h"
 #include "intersect/tracer.h"
-#include "render/engines/facet_engine.h"
+#include "render/engines/engine.h"
 #include "render/frame/frame.h"
 #include "render/picture/sample_colour.h"
 #include "render/world/world.h"

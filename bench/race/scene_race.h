@@ -9,9 +9,8 @@
 
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "bench/race/race.h"
-#include "bench/race/scene_race.h"
 #include "render/frame/request.h"
 #include "scene/data/scene.h"
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "trilinear/shapes.h"
+#include "trilinear/outline.h"
 
 namespace trilens {
 

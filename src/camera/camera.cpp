@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/raymesh/check_data.h"
 #include "base/raymesh/rasterize.h"
+#include "base/raymesh/sample_grid.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "camera/linear/linear_cameras.h"

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "base/description/camera_description.h"
-#include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
 #include "camera/model/camera_model.h"
 #include "camera/model/general_linear.h"

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "caustics/light_paths.h"
 
 namespace trilens {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "caustics/beam_grid.h"
 #include "caustics/beam_tree.h"
 #include "caustics/beams.h"

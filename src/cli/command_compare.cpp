@@ -14,9 +14,9 @@
 #include <optional>
 #include <utility>
 
-#include "cli/print/comparison.h"
+#include "cli/print/print.h"
+#include "terminal/command.h"
 #include "terminal/libraries.h"
-#include "terminal/option.h"
 
 namespace trilens {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 
 #include "cli/commands.h"
-#include "cli/print/pictures.h"
+#include "cli/print/print.h"
+#include "terminal/command.h"
 #include "terminal/libraries.h"
-#include "terminal/option.h"
 
 namespace trilens {
 namespace {

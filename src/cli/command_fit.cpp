@@ -8,9 +8,8 @@
 #include <filesystem>
 
 #include "cli/commands.h"
-#include "cli/print/fits.h"
-#include "cli/print/pictures.h"
-#include "cli/scene_options.h"
+#include "cli/options.h"
+#include "cli/print/print.h"
 #include "terminal/libraries.h"
 
 namespace trilens {

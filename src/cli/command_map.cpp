@@ -6,9 +6,8 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/print/pictures.h"
-#include "cli/scene_options.h"
-#include "cli/target_options.h"
+#include "cli/options.h"
+#include "cli/print/print.h"
 #include "terminal/libraries.h"
 
 namespace trilens {

@@ -8,9 +8,8 @@
 #include <set>
 
 #include "cli/commands.h"
-#include "cli/print/pictures.h"
-#include "cli/print/projections.h"
-#include "cli/render_options.h"
+#include "cli/options.h"
+#include "cli/print/print.h"
 #include "terminal/libraries.h"
 
 namespace trilens {

@@ -6,9 +6,8 @@
 #include <filesystem>
 
 #include "cli/commands.h"
-#include "cli/print/pictures.h"
-#include "cli/print/scene_info.h"
-#include "cli/scene_options.h"
+#include "cli/options.h"
+#include "cli/print/print.h"
 
 namespace trilens {
 namespace {

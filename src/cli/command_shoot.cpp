@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "cli/commands.h"
-#include "cli/print/shots.h"
-#include "cli/scene_options.h"
+#include "cli/options.h"
+#include "cli/print/print.h"
 #include "terminal/libraries.h"
 
 namespace trilens {

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "cli/commands.h"
-#include "cli/print/sweeps.h"
-#include "cli/sweep_options.h"
+#include "cli/options.h"
+#include "cli/print/print.h"
 
 namespace trilens {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/print/comparison.h"
+#include "cli/print/print.h"
 #include "terminal/libraries.h"
 
 namespace trilens {

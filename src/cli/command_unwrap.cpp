@@ -9,9 +9,8 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/print/pictures.h"
-#include "cli/scene_options.h"
-#include "cli/target_options.h"
+#include "cli/options.h"
+#include "cli/print/print.h"
 #include "terminal/libraries.h"
 
 namespace trilens {

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "cli/print/scene_info.h"
+#include "cli/print/print.h"
 
 namespace trilens {
 namespace {

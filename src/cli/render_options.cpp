@@ -1,4 +1,4 @@
-#include "cli/render_options.h"
+#include "cli/options.h"
 
 #include <trilens/animation.h>
 #include <algorithm>

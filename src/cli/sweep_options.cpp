@@ -1,4 +1,4 @@
-#include "cli/sweep_options.h"
+#include "cli/options.h"
 
 #include <algorithm>
 #include <filesystem>

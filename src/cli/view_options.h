@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "cli/scene_options.h"
+#include "cli/options.h"
 #include "terminal/command.h"
 
 namespace trilens {

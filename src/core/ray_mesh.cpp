@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "base/raymesh/check_data.h"
 #include "base/raymesh/rasterize.h"
+#include "base/raymesh/sample_grid.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "projector/projector.h"

@@ -3,8 +3,6 @@
 
 #include <vector>
 
-#include "base/raymesh/check_data.h"
-#include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/surface.h"
@@ -17,7 +15,7 @@ namespace trilens {
 /// What the camera sees in a mirror whose surface is this grid (Vallance 2005, chapter 7): the grid's corners
 /// with mirrored rays; facet f is facet f of the grid. Throws InputError where the grid's arrays do not fit
 /// together, or numbers of the grid or the camera are not finite or beyond kLargestNumber
-/// (base/raymesh/check_data.h).
+/// (base/raymesh/sample_grid.h).
 RayMesh make_mirror_mesh(const SurfaceGrid& grid, const LinearCamera& camera);
 
 /// What it sees through one interface, `ior` being the refractive index behind the grid's front over that

@@ -8,7 +8,7 @@
 
 #include "base/image/image.h"
 #include "base/math/vec.h"
-#include "base/util/progress.h"
+#include "base/util/error.h"
 
 namespace trilens {
 

@@ -1,4 +1,4 @@
-#include "image/exr_chunk.h"
+#include "image/exr_file.h"
 
 #include <OpenEXR/openexr.h>
 

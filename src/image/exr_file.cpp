@@ -27,9 +27,7 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "image/exr_chunk.h"
 #include "image/image_io.h"
-#include "image/picture_library.h"
 
 namespace trilens {
 namespace {

@@ -1,4 +1,4 @@
-#include "image/exr_strips.h"
+#include "image/exr_file.h"
 
 #include <OpenEXR/openexr.h>
 
@@ -15,9 +15,7 @@
 #include "base/util/check.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "image/exr_chunk.h"
 #include "image/image_io.h"
-#include "image/picture_library.h"
 
 namespace trilens {
 namespace {

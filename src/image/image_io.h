@@ -1,4 +1,5 @@
-// Files of pictures: THE door to OpenEXR; other pictures go through a library that is loaded when one is met.
+// The library of all other pictures, loaded when the first such picture is met: OpenImageIO brings hundreds
+// of libraries with it, and most commands need none of them.
 #pragma once
 
 #include <memory>
@@ -11,6 +12,29 @@
 #include "base/image/image.h"
 
 namespace trilens {
+
+/// What the library can do; contracts as in image_io.h. It is built with this program, from src/pictures.
+struct PictureLibrary {
+    const char* version = nullptr;  // of trilens: another one's is refused
+    std::shared_ptr<const Texture> (*read)(const std::string& file) = nullptr;
+    std::shared_ptr<const Texture> (*decode)(std::span<const unsigned char> encoded,
+                                             const std::string& name) = nullptr;
+    void (*set_threads)(int threads) = nullptr;
+};
+
+/// The library, loaded where it is not yet: it lies beside the file of machine code that this function is in,
+/// or where the system's loader looks. Null where it is missing, cannot be loaded or belongs to another
+/// version; then `reason` says so.
+const PictureLibrary* picture_library(std::string& reason);
+
+/// The thread count of the library, now or once it is loaded; 0 means all.
+void set_picture_threads(int threads);
+
+/// A library's report as part of an Error's message: one line without a full stop; "unknown reason" where it
+/// is empty.
+std::string library_reason(const std::string& report);
+
+// Files of pictures: THE door to OpenEXR; other pictures go through a library that is loaded when one is met.
 
 /// Writes one part, scan lines, zip, float32 and uint32 channels in their native types to the last bit (NaN
 /// and infinity too); beside its name, then renamed. The file's bytes depend on the image alone: DateTime is
@@ -58,3 +82,6 @@ void set_image_threads(int threads);
 std::string image_library_version();
 
 }  // namespace trilens
+
+/// The library's only symbol.
+extern "C" const trilens::PictureLibrary* trilens_picture_library();

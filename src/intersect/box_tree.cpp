@@ -10,7 +10,6 @@
 
 #include "base/util/check.h"
 #include "intersect/box_tree_data.h"
-#include "intersect/local_segments.h"
 
 namespace trilens {
 namespace {

@@ -12,9 +12,8 @@
 #include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "intersect/box_tree.h"
-#include "intersect/local_segments.h"
-#include "intersect/surface_newton.h"
-#include "intersect/triangle_hit.h"
+#include "intersect/patch_tree.h"
+#include "intersect/tracer.h"
 
 namespace trilens {
 namespace {

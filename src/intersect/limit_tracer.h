@@ -14,7 +14,7 @@
 namespace trilens {
 
 /// Embree's tree over the facets of a fine grid finds where a ray may meet the surface; Newton's method in
-/// double finds where it does (surface_newton.h). A facet's box is widened by how far the surface strays from
+/// double finds where it does (patch_tree.h). A facet's box is widened by how far the surface strays from
 /// the facet, so rays that miss the fine grid and graze the true silhouette are found too. Surfaces that have
 /// a closed form are asked directly. Hits do not depend on the instruction set or on threads. Thread-safe to
 /// read.

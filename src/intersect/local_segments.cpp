@@ -1,6 +1,5 @@
-#include "intersect/local_segments.h"
-
 #include "intersect/box_tree.h"
+
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "intersect/local_segments.cpp"

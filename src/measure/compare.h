@@ -9,6 +9,7 @@
 
 #include "base/image/image.h"
 #include "base/util/ids.h"
+#include "measure/displacement/displacement.h"
 
 namespace trilens {
 
@@ -106,5 +107,107 @@ Comparison compare(const Image& reference, const Image& test, const CompareOptio
 /// flip_map has it. Throws InputError where the images cannot be compared, or the layer has no R, G and B.
 std::vector<float> layer_flip(const Image& reference, const Image& test, const std::string& layer,
                               FlipReference* kept = nullptr);
+
+// What two pictures show through their optics, layer by layer: the same things, and in the same places?
+
+/// Counts of pixels. Each mismatching pixel is in exactly one of the three.
+struct SeenMismatch {
+    std::size_t pixels = 0;              // at least one of the images sees something
+    std::size_t coverage_mismatch = 0;   // one sees something, the other nothing (4294967295)
+    std::size_t object_mismatch = 0;     // both see something, but different objects
+    std::size_t primitive_mismatch = 0;  // both see the same object, but different triangles of it
+};
+
+/// Compares the objects and triangles that `layer` shows ("reflect", "refract"; for "optic", which has no
+/// triangles, only objects). `mask_object` as in CompareOptions. Nothing where the images have no such layer.
+/// Throws InputError where they cannot be compared.
+std::optional<SeenMismatch> compare_seen(const Image& reference, const Image& test, const std::string& layer,
+                                         std::optional<Id> mask_object = std::nullopt);
+
+/// One layer of both images.
+struct LayerComparison {
+    std::string layer;  // "reflect", "refract", "direct"
+    std::optional<SeenMismatch> seen;
+    std::optional<Displacement> displacement;
+};
+
+/// The layers that the reference has. Throws InputError where the images cannot be compared.
+std::vector<LayerComparison> compare_layers(const Image& reference, const Image& test,
+                                            const DisplacementOptions& options = {});
+
+/// Adds the shifts of every layer that shows something to the difference of the same two images (add_shift,
+/// and its errors).
+void add_shifts(const std::vector<LayerComparison>& layers, Image& difference);
+
+/// Sums over the layers.
+SeenMismatch total_seen(const std::vector<LayerComparison>& layers);
+
+/// The displacement of the layer `asked`, where it was measured; else that of all layers that show something,
+/// together: statistics over the found pixels of all, counts added up, without places by pixel. Unset numbers
+/// where none does.
+Displacement total_displacement(const std::vector<LayerComparison>& layers, const std::string& asked);
+
+// The difference of two images as an image to look at.
+
+struct DifferenceOptions {
+    std::string layer;              // "": the beauty; as in CompareOptions
+    std::optional<Id> mask_object;  // as in CompareOptions
+};
+
+/// An image with the window of the two and float channels
+///   R G B        test - reference of the layer's R, G, B; zero outside the mask
+///   abs.R G B    its magnitude
+///   mask.M       1 where the pixel is compared, else 0
+///   flip.Y       the error of flip.h, 0 (none to be seen) to 1; zero outside the mask
+/// Throws InputError where compare() would.
+/// `flip`: the errors of layer_flip for the same images and layer, where they are known; InputError where
+/// they are not as many as pixels.
+Image make_difference(const Image& reference, const Image& test, const DifferenceOptions& options = {},
+                      std::vector<float> flip = {});
+
+/// Adds what `layer` ("reflect", "refract") shows, moved, to the difference of the same two images:
+///   LAYER.shift.X Y    Displacement::shift_x, shift_y, in pixels
+///   LAYER.shift.M      1 found, -1 lost, -2 unmeasured, 0 nothing seen
+/// Throws InputError for a displacement of images of another size.
+void add_shift(const std::string& layer, const Displacement& displacement, Image& difference);
+
+// Limits on any number that a comparison gives, by the number's name.
+//
+//     #include <trilens/image.h>
+//     const trilens::Image truth = trilens::read_image("truth.exr"), image = trilens::read_image("mine.exr");
+//     const std::vector<trilens::NamedMetric> metrics =
+//         trilens::named_metrics(trilens::compare(truth, image), trilens::compare_layers(truth, image));
+//     for (const std::string& sentence : trilens::broken_limits({{"displacement_p95", 0.5}}, metrics))
+//         std::puts(sentence.c_str());
+
+/// One number of a comparison.
+struct NamedMetric {
+    std::string name;             // "rmse", "displacement_p95", "lost_percent"
+    std::optional<double> value;  // none: nothing was measured
+    bool is_likeness = false;     // more is better: ssim, psnr_db, coverage
+};
+
+/// Every number that may be limited, in a fixed order. Of the beauty (or the layer that was compared) the
+/// kColourMetrics (flip as rgb_flip), then fail, warn, hard. Of what is seen, summed over
+/// the layers, object_mismatch, primitive_mismatch and coverage_mismatch, and each as percent of the pixels
+/// that see something. Of the displacement, the worst of the layers, displacement_mean, _p50, _p95, _p99,
+/// _max and _mean_off_folds in pixels; summed over the layers lost, unmeasured, beyond_radius and missing;
+/// lost_percent and unmeasured_percent of the test's pixels that see something; and the least coverage. Then what is seen and displaced of each
+/// layer alone: reflect.object_mismatch, refract.displacement_p95.
+std::vector<NamedMetric> named_metrics(const Comparison& comparison,
+                                       const std::vector<LayerComparison>& layers);
+
+/// Their names.
+std::vector<std::string> metric_names();
+
+struct MetricLimit {
+    std::string metric;
+    double value = 0;  // the largest that is allowed; of a likeness the least
+};
+
+/// One sentence for each limit that is exceeded, or whose number was not measured: a limit on nothing does
+/// not hold. Throws UsageError, with the nearest name, for metrics that do not exist.
+std::vector<std::string> broken_limits(const std::vector<MetricLimit>& limits,
+                                       const std::vector<NamedMetric>& metrics);
 
 }  // namespace trilens

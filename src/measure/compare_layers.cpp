@@ -1,10 +1,9 @@
-#include "measure/compare_layers.h"
+#include "measure/compare.h"
 
 #include <cmath>
 #include <utility>
 
 #include "measure/common/comparable.h"
-#include "measure/difference.h"
 
 namespace trilens {
 

@@ -1,4 +1,4 @@
-#include "measure/limits.h"
+#include "measure/compare.h"
 
 #include <algorithm>
 #include <utility>

@@ -15,7 +15,7 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/version.h"
-#include "image/picture_library.h"
+#include "image/image_io.h"
 #include "image/tone.h"
 
 namespace trilens {

@@ -6,10 +6,10 @@
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
-#include "projector/draw_options.h"
 #include "projector/kernel/state.h"
+#include "projector/projector.h"
 #include "projector/scalar/scalar_engine.h"
-#include "projector/scene/prepared_data.h"
+#include "projector/scene/bvh.h"
 
 namespace trilens {
 namespace {

@@ -1,12 +1,15 @@
 // Draws a scene through a RayMesh: the exact engine.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"
+#include "projector/kernel/kernel.h"
 #include "projector/scene/prepared_scene.h"
+#include "projector/tiles/sample_tiles.h"
 
 namespace trilens {
 
@@ -23,5 +26,21 @@ void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& o
 /// decisions, but not where on the triangle. Takes less time and memory.
 void find_visible(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
                   const SampleGrid& grid, std::span<Visible> visible);
+
+// Switches of the exact engine that tests and benchmarks turn; none changes a bit of what it draws.
+
+struct DrawOptions {
+    bool vectors = true;  // false: one ray at a time, in double
+    bool cull = true;     // false: every ray is offered every triangle, slowly
+    KernelOptions kernel{};
+    std::optional<TileParams> tiles{};  // none: tile_params() of the scene
+};
+
+void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+          std::span<Hit> hits, const DrawOptions& options);
+
+/// Of `options` the vector engine's.
+void find_visible(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                  const SampleGrid& grid, std::span<Visible> visible, const DrawOptions& options);
 
 }  // namespace trilens

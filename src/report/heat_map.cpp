@@ -1,10 +1,9 @@
-#include "report/heat_map.h"
+#include "report/plot.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "report/plot_style.h"
 #include "report/text.h"
 
 namespace trilens {

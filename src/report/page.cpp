@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "base/files/files.h"
-#include "report/plot_style.h"
+#include "report/plot.h"
 #include "report/text.h"
 
 namespace trilens {

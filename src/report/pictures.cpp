@@ -1,5 +1,5 @@
 // Pictures of images for reports: what is shown, how far two differ, how far things moved.
-#include "report/pictures.h"
+#include "report/page.h"
 
 #include <algorithm>
 #include <array>

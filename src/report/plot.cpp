@@ -10,7 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "report/plot_style.h"
 #include "report/text.h"
 
 namespace trilens {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "report/plot_style.h"
+#include "report/plot.h"
 #include "report/text.h"
 
 namespace trilens {

@@ -1,4 +1,4 @@
-#include "report/plot_style.h"
+#include "report/plot.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "report/plot_style.h"
+#include "report/plot.h"
 #include "report/text.h"
 
 namespace trilens {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "base/raymesh/check_data.h"
+#include "base/raymesh/sample_grid.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "json/schema.h"

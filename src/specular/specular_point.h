@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/raymesh/linear_camera.h"
+#include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/surface.h"
 
 namespace trilens {

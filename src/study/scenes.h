@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "scene/data/scene.h"
 #include "scene/data/scene_inputs.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "suite/suite.h"
 
 namespace trilens {

@@ -1,4 +1,4 @@
-#include "study/sweep_axes.h"
+#include "study/sweep.h"
 
 #include <cmath>
 #include <filesystem>

@@ -9,7 +9,6 @@
 
 #include "base/description/digest.h"
 #include "base/util/error.h"
-#include "base/util/progress.h"
 #include "scene/data/scene_digest.h"
 
 namespace trilens {

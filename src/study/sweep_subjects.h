@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "study/checked_world.h"
-#include "study/sweep_axes.h"
+#include "study/sweep.h"
 #include "sweep/store/results.h"
 
 namespace trilens {

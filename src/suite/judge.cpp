@@ -1,4 +1,4 @@
-#include "suite/judge.h"
+#include "suite/run_test.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "measure/common/statistics.h"
-#include "measure/compare_layers.h"
+#include "measure/compare.h"
 
 namespace trilens {
 namespace {

@@ -1,4 +1,4 @@
-#include "suite/render_test.h"
+#include "suite/suite.h"
 
 #include <algorithm>
 #include <cmath>

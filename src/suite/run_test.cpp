@@ -10,9 +10,7 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "base/util/progress.h"
 #include "image/image_io.h"
-#include "suite/judge.h"
 #include "suite/suite_page.h"
 
 namespace trilens {

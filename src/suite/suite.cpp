@@ -18,9 +18,7 @@
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "base/util/parallel.h"
-#include "base/util/progress.h"
 #include "report/text.h"
-#include "suite/render_test.h"
 #include "suite/run_test.h"
 #include "suite/suite_page.h"
 

@@ -7,11 +7,10 @@
 
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "measure/compare_layers.h"
-#include "measure/difference.h"
+#include "measure/compare.h"
 #include "report/page.h"
 #include "report/text.h"
-#include "suite/judge.h"
+#include "suite/run_test.h"
 
 namespace trilens {
 namespace {

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "suite/judge.h"
 #include "suite/run_test.h"
 
 namespace trilens {

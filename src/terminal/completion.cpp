@@ -3,8 +3,7 @@
 
 #include <map>
 
-#include "terminal/manual.h"
-#include "terminal/option.h"
+#include "terminal/command.h"
 
 namespace trilens {
 namespace {

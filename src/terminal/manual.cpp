@@ -1,14 +1,10 @@
 // Manual pages in roff, with the macros of man(7).
-#include "terminal/manual.h"
+#include "terminal/command.h"
 
 #include <trilens/files.h>
 #include <trilens/version.h>
 
 #include <algorithm>
-
-#include "terminal/command.h"
-#include "terminal/option.h"
-#include "terminal/parse.h"
 
 namespace trilens {
 namespace {

@@ -1,4 +1,4 @@
-#include "terminal/option.h"
+#include "terminal/command.h"
 
 #include <trilens/text.h>
 #include <algorithm>

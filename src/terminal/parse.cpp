@@ -1,9 +1,7 @@
-#include "terminal/parse.h"
+#include "terminal/command.h"
 
 #include <trilens/text.h>
 #include <CLI/CLI.hpp>
-
-#include "terminal/option.h"
 
 namespace trilens {
 namespace {

@@ -10,8 +10,6 @@
 #include <new>
 
 #include "terminal/command.h"
-#include "terminal/option.h"
-#include "terminal/parse.h"
 
 namespace trilens {
 

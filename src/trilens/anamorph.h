@@ -12,7 +12,6 @@
 #include <string>
 
 #include "inverse/anamorph/anamorph.h"
-#include "inverse/anamorph/page_files.h"
 #include "trilens/render.h"
 #include "trilens/unwrap.h"
 

@@ -14,7 +14,4 @@
 #include "measure/common/comparable.h"
 #include "measure/common/statistics.h"
 #include "measure/compare.h"
-#include "measure/compare_layers.h"
-#include "measure/difference.h"
-#include "measure/limits.h"
 #include "study/compare_inputs.h"

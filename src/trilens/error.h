@@ -14,4 +14,3 @@
 #pragma once
 
 #include "base/util/error.h"
-#include "base/util/progress.h"

@@ -12,5 +12,4 @@
 #pragma once
 
 #include "inverse/fit/fit.h"
-#include "inverse/fit/fit_page.h"
 #include "trilens/scene.h"

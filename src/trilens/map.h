@@ -10,8 +10,6 @@
 #include <string>
 
 #include "inverse/maps/film_map.h"
-#include "inverse/maps/map_files.h"
-#include "inverse/maps/warp_mesh.h"
 #include "trilens/render.h"
 
 namespace trilens {

@@ -8,7 +8,7 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "image/exr_strips.h"
+#include "image/exr_file.h"
 #include "render/frame/frame.h"
 #include "render/picture/picture.h"
 #include "render/project/point_projector.h"

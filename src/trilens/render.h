@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "render/frame/request.h"
 #include "render/picture/explain.h"
 #include "render/project/project.h"

@@ -4,4 +4,4 @@
 //     std::printf("%g s\n", watch.seconds());
 #pragma once
 
-#include "base/util/progress.h"
+#include "base/util/error.h"

@@ -14,7 +14,7 @@
 
 #include "base/description/optic_description.h"
 #include "base/raymesh/surface.h"
-#include "base/util/progress.h"
+#include "base/util/error.h"
 
 namespace trilens {
 

@@ -1,5 +1,5 @@
 // Pieces of outlines closed along a facet's border, and polygons cut at it (Vallance 2005, section 5.1).
-#include "trilinear/clip.h"
+#include "trilinear/outline.h"
 
 #include <algorithm>
 #include <cmath>

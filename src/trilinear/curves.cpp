@@ -1,4 +1,4 @@
-#include "trilinear/curves.h"
+#include "trilinear/outline.h"
 
 #include <algorithm>
 #include <cmath>

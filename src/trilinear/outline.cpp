@@ -4,10 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trilinear/clip.h"
-#include "trilinear/curves.h"
-#include "trilinear/shapes.h"
-
 namespace trilens {
 namespace {
 

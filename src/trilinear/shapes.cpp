@@ -1,5 +1,5 @@
 // The shapes of a scene triangle in a facet (Vallance 2005, chapter 4): sort, merge, join.
-#include "trilinear/shapes.h"
+#include "trilinear/outline.h"
 
 #include <algorithm>
 #include <cmath>

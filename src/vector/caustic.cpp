@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/raymesh/check_data.h"
+#include "base/raymesh/sample_grid.h"
 #include "base/util/error.h"
 #include "camera/model/general_linear.h"
 

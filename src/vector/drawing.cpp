@@ -10,8 +10,8 @@
 #include "base/raymesh/surface.h"
 #include "base/util/format.h"
 #include "projector/projector.h"
-#include "render/engines/facet_engine.h"
-#include "render/world/geometry.h"
+#include "render/engines/engine.h"
+#include "render/world/world.h"
 
 namespace trilens {
 namespace {

@@ -1,5 +1,5 @@
 // Marching squares over samples, each crossing refined on the facets' own rays.
-#include "vector/fold_curves.h"
+#include "vector/caustic.h"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "base/raymesh/check_data.h"
+#include "base/raymesh/sample_grid.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "vector/caustic.h"
 
 namespace trilens {
 namespace {

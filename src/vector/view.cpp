@@ -1,4 +1,4 @@
-#include "vector/view.h"
+#include "vector/drawing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +12,7 @@
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/util/parallel.h"
-#include "trilinear/clip.h"
-#include "trilinear/curves.h"
 #include "trilinear/outline.h"
-#include "trilinear/shapes.h"
 #include "vector/caustic.h"
 
 namespace trilens {

@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "support/test.h"
 
 using namespace trilens;

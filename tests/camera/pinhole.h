@@ -1,7 +1,7 @@
 // A plain pinhole for tests of rays.
 #pragma once
 
-#include "base/raymesh/linear_camera.h"
+#include "base/raymesh/ray_mesh.h"
 
 namespace trilens_test {
 

@@ -16,7 +16,7 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "image/exr_strips.h"
+#include "image/exr_file.h"
 #include "image/image_io.h"
 #include "support/test.h"
 

@@ -7,7 +7,6 @@
 
 #include "base/util/error.h"
 #include "image/image_io.h"
-#include "image/picture_library.h"
 #include "support/test.h"
 
 using namespace trilens;

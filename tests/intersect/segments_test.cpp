@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "intersect/box_tree.h"
 #include "intersect/limit_tracer.h"
-#include "intersect/local_segments.h"
 #include "intersect/tracer.h"
 #include "random_scene.h"
 #include "support/test.h"

@@ -1,5 +1,5 @@
 // The rejection by edges' lines against the distance itself, in long double, of any triangle.
-#include "intersect/triangle_hit.h"
+#include "intersect/tracer.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,6 @@
 #include "ball_worlds.h"
 #include "base/util/error.h"
 #include "inverse/anamorph/anamorph.h"
-#include "inverse/anamorph/page_files.h"
 #include "support/draw.h"
 #include "support/test.h"
 

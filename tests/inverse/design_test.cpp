@@ -6,9 +6,8 @@
 
 #include "base/util/error.h"
 #include "camera/camera.h"
-#include "inverse/design/best_sphere.h"
 #include "inverse/design/design.h"
-#include "inverse/design/reflection_rows.h"
+#include "inverse/design/mirror_fit.h"
 #include "support/test.h"
 #include "trilens/render.h"
 #include "trilens/scene.h"

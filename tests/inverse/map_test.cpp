@@ -5,8 +5,6 @@
 #include "ball_worlds.h"
 #include "base/util/error.h"
 #include "inverse/maps/film_map.h"
-#include "inverse/maps/map_files.h"
-#include "inverse/maps/warp_mesh.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -2,7 +2,6 @@
 #include <atomic>
 #include <cmath>
 
-#include "inverse/maps/resolution.h"
 #include "inverse/maps/sampled_map.h"
 #include "inverse/maps/target.h"
 #include "support/draw.h"

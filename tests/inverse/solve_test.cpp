@@ -5,10 +5,7 @@
 #include <vector>
 
 #include "base/math/vec.h"
-#include "inverse/solve/cholesky.h"
-#include "inverse/solve/levenberg_marquardt.h"
-#include "inverse/solve/singular_values.h"
-#include "inverse/solve/uncertainty.h"
+#include "inverse/solve/least_squares.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/engines/facet_engine.h"
+#include "render/engines/engine.h"
 
 using namespace trilens;
 

@@ -12,7 +12,7 @@
 #include "render/frame/camera_rays.h"
 #include "render/picture/picture.h"
 #include "render/project/project.h"
-#include "render/world/geometry.h"
+#include "render/world/world.h"
 #include "scene/examples/examples.h"
 #include "support/closed_forms.h"
 #include "support/test.h"

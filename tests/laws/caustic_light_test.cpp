@@ -7,7 +7,6 @@
 #include "inverse/maps/caustic_map.h"
 #include "render/project/project.h"
 #include "render/shoot/shoot.h"
-#include "render/world/caustic_lights.h"
 #include "render/world/world.h"
 #include "shade/shade.h"
 #include "study/scenes.h"

@@ -1,5 +1,5 @@
 // The bins of a grid's facets against a look at every facet.
-#include "render/frame/facet_lookup.h"
+#include "render/frame/frame.h"
 
 #include <algorithm>
 #include <random>

@@ -4,7 +4,7 @@
 
 #include "laws/worlds.h"
 #include "render/engines/engine.h"
-#include "render/frame/camera_media.h"
+#include "render/frame/camera_rays.h"
 #include "render/picture/sample_colour.h"
 #include "render/project/project.h"
 #include "scene/load.h"

@@ -7,11 +7,11 @@
 #include "base/util/parallel.h"
 #include "laws/agreement.h"
 #include "laws/worlds.h"
-#include "paths/trace/history_image.h"
-#include "render/engines/facet_engine.h"
+#include "paths/trace/follow.h"
+#include "render/engines/engine.h"
 #include "render/picture/picture.h"
 #include "render/project/path_images.h"
-#include "render/world/geometry.h"
+#include "render/world/world.h"
 #include "support/test.h"
 
 using namespace trilens;

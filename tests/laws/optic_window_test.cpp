@@ -1,5 +1,5 @@
 // Optics are drawn where on the film they can be seen and nowhere else: nothing of them is lost.
-#include "render/frame/optic_window.h"
+#include "render/frame/frame.h"
 
 #include <cstring>
 

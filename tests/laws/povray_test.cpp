@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "laws/worlds.h"
-#include "render/engines/limit_engine.h"
+#include "render/engines/engine.h"
 #include "render/picture/sample_colour.h"
 #include "support/test.h"
 

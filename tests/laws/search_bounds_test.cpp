@@ -4,7 +4,7 @@
 #include "image/image_io.h"
 #include "laws/worlds.h"
 #include "render/frame/camera_rays.h"
-#include "render/project/facet_images.h"
+#include "render/project/path_images.h"
 #include "render/project/project.h"
 #include "scene/load.h"
 #include "specular/batch_search.h"

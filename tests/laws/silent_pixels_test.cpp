@@ -7,7 +7,7 @@
 
 #include "laws/worlds.h"
 #include "measure/displacement/displacement.h"
-#include "measure/field/folds.h"
+#include "measure/field/position_field.h"
 #include "render/picture/picture.h"
 #include "support/test.h"
 

@@ -7,7 +7,7 @@
 #include "laws/worlds.h"
 #include "render/engines/engine.h"
 #include "render/picture/picture.h"
-#include "render/picture/ray_differentials.h"
+#include "render/picture/sample_colour.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "measure/displacement/search_prior.h"
+#include "measure/displacement/image_query.h"
 #include "measure/field/patch.h"
 #include "measure/synthetic.h"
 #include "support/test.h"

@@ -1,6 +1,6 @@
 // Folds are found where a field turns over and nowhere else; off them a mean displacement falls with the
 // error's order.
-#include "measure/field/folds.h"
+#include "measure/field/position_field.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "measure/displacement/search_prior.h"
+#include "measure/displacement/image_query.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
 

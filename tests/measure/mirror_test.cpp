@@ -4,8 +4,6 @@
 #include <random>
 
 #include "measure/compare.h"
-#include "measure/compare_layers.h"
-#include "measure/limits.h"
 #include "measure/synthetic.h"
 #include "support/test.h"
 

@@ -1,7 +1,7 @@
 // Layers of what is seen are read by their newer names, then by their older ones.
 #include "base/util/error.h"
 #include "measure/common/comparable.h"
-#include "measure/compare_layers.h"
+#include "measure/compare.h"
 #include "measure/displacement/displacement.h"
 #include "measure/synthetic.h"
 #include "support/test.h"

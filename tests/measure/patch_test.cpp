@@ -7,7 +7,6 @@
 #include <limits>
 #include <random>
 
-#include "measure/field/patch_batch.h"
 #include "support/test.h"
 
 using namespace trilens;

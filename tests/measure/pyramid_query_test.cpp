@@ -1,5 +1,5 @@
 // The way down the pyramid for many points against a look at every cell.
-#include "measure/field/pyramid_query.h"
+#include "measure/field/field_pyramid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Pieces one pixel wide: measured along the axis they have, else unmeasured; never another image of the
 // point.
-#include "measure/displacement/search_prior.h"
+#include "measure/displacement/image_query.h"
 
 #include <cmath>
 #include <random>

@@ -1,12 +1,11 @@
 // What is seen, and the difference to look at.
-#include "measure/compare_layers.h"
+#include "measure/compare.h"
 
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "image/image_io.h"
-#include "measure/difference.h"
 #include "measure/pictures.h"
 #include "measure/synthetic.h"
 #include "support/test.h"

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "intersect/random_scene.h"
-#include "paths/facets/beam.h"
+#include "paths/facets/one_history.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "intersect/random_scene.h"
-#include "paths/probe/same_histories.h"
+#include "paths/probe/path_probe.h"
 #include "paths/stage.h"
 #include "support/test.h"
 

@@ -1,9 +1,9 @@
 // Rays that start inside of bodies: which bodies those are, and where the rays go, against concentric
 // spheres.
-#include "paths/trace/enclosing_bodies.h"
 #include "intersect/random_scene.h"
 #include "paths/bodies.h"
 #include "paths/stage.h"
+#include "paths/trace/path_world.h"
 #include "support/test.h"
 
 using namespace trilens;

@@ -1,5 +1,5 @@
 // The L2 projection against dense least squares, and what it must leave alone.
-#include "paths/facets/fit_linear.h"
+#include "paths/facets/fit_nodes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // The facet over a place of the film: the nearest of those that overlap there, found as a search through all
 // of them finds it.
-#include "paths/nested/nested_cover.h"
+#include "paths/nested/nested_optics.h"
 
 #include "intersect/random_scene.h"
 #include "support/test.h"

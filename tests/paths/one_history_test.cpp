@@ -3,7 +3,7 @@
 
 #include "intersect/random_scene.h"
 #include "paths/facets/divide_facet.h"
-#include "paths/probe/same_histories.h"
+#include "paths/probe/path_probe.h"
 #include "paths/stage.h"
 #include "support/test.h"
 

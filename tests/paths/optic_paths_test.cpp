@@ -1,6 +1,6 @@
 // The RayMeshes of an optic's paths: parts that cover a facet once, rays that are those of the exact paths,
 // and flat mirrors that stay exact.
-#include "paths/facets/path_builder.h"
+#include "paths/facets/optic_paths.h"
 
 #include <algorithm>
 #include <map>

@@ -1,5 +1,5 @@
 // When probing facets is worth it: the plan against played chances, and what it decides at its ends.
-#include "paths/facets/probe_plan.h"
+#include "paths/facets/optic_paths.h"
 
 #include <algorithm>
 #include <array>

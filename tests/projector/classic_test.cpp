@@ -1,13 +1,12 @@
 // Laws of the classic engine: the exact engine's picture within its tolerance, no gaps, no order of work.
-#include "projector/classic/classic.h"
 #include "base/raymesh/rasterize.h"
+#include "projector/classic/classic.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/util/parallel.h"
 #include "film_mesh.h"
-#include "projector/classic/classic_fill.h"
 #include "projector/projector.h"
 #include "random_cases.h"
 #include "support/test.h"

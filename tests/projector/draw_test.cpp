@@ -5,7 +5,6 @@
 #include "base/raymesh/rasterize.h"
 #include "base/util/parallel.h"
 #include "film_mesh.h"
-#include "projector/draw_options.h"
 #include "projector/projector.h"
 #include "random_cases.h"
 #include "support/test.h"

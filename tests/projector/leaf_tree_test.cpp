@@ -1,10 +1,9 @@
 // The wide tree: every triangle in one leaf, inside every box above it; a leaf's floats are its corners.
-#include "projector/scene/leaf_tree.h"
+#include "projector/scene/bvh.h"
 
 #include <memory>
 
 #include "base/util/parallel.h"
-#include "projector/scene/prepared_data.h"
 #include "random_cases.h"
 #include "support/test.h"
 

@@ -4,10 +4,9 @@
 
 #include "base/raymesh/rasterize.h"
 #include "engines_compared.h"
-#include "projector/draw_options.h"
 #include "projector/kernel/kernel.h"
 #include "projector/projector.h"
-#include "projector/scene/prepared_data.h"
+#include "projector/scene/bvh.h"
 #include "random_cases.h"
 #include "support/test.h"
 

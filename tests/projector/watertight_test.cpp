@@ -4,7 +4,6 @@
 #include "base/raymesh/rasterize.h"
 #include "base/util/parallel.h"
 #include "brute_force.h"
-#include "projector/draw_options.h"
 #include "projector/projector.h"
 #include "random_cases.h"
 #include "support/test.h"

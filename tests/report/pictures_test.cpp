@@ -1,5 +1,5 @@
 // What the small pictures show, read back through the image room's own decoder.
-#include "report/pictures.h"
+#include "report/page.h"
 
 #include <algorithm>
 #include <cmath>

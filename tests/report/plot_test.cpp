@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "report/plot_style.h"
 #include "report/xml.h"
 #include "support/test.h"
 

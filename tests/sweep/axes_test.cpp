@@ -16,8 +16,7 @@
 #include "report/xml.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/report/fit_runs.h"
-#include "sweep/report/sweep_plots.h"
+#include "sweep/report/sweep_report.h"
 #include "sweep/run/sweep.h"
 #include "sweep/store/machine.h"
 

@@ -12,7 +12,6 @@
 #include "sweep/fake_scene.h"
 #include "sweep/plan/plan.h"
 #include "sweep/run/farm_scripts.h"
-#include "sweep/run/merge.h"
 #include "sweep/run/sweep.h"
 
 using namespace trilens;

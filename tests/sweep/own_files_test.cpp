@@ -1,5 +1,5 @@
 // A sweep's folder may hold the files of others: they stay, whatever the sweep does.
-#include "sweep/store/sweep_ownership.h"
+#include "sweep/store/sweep_folder.h"
 
 #include <filesystem>
 #include <string>
@@ -12,7 +12,6 @@
 #include "sweep/fake_scene.h"
 #include "sweep/report/sweep_pictures.h"
 #include "sweep/run/sweep.h"
-#include "sweep/store/sweep_folder.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;

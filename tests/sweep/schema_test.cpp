@@ -6,7 +6,7 @@
 #include "support/test.h"
 #include "sweep/fake_scene.h"
 #include "sweep/run/sweep.h"
-#include "sweep/store/summary_schema.h"
+#include "sweep/store/results.h"
 
 #if __has_include(<valijson/validator.hpp>)
 #include <nlohmann/json.hpp>

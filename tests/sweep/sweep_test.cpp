@@ -16,12 +16,12 @@
 #include "base/util/error.h"
 #include "image/image_io.h"
 #include "json/json.h"
-#include "report/pictures.h"
+#include "report/page.h"
 #include "report/text.h"
 #include "report/xml.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
-#include "sweep/report/fit_runs.h"
+#include "sweep/report/sweep_report.h"
 
 using namespace trilens;
 using trilens_test::FakeSweep;

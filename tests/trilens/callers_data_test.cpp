@@ -8,7 +8,6 @@
 #include "trilens/odd_images.h"
 #include "trilens/trilens.h"
 #include "vector/caustic.h"
-#include "vector/fold_curves.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -6,7 +6,6 @@
 
 #include "random_facets.h"
 #include "support/test.h"
-#include "trilinear/curves.h"
 #include "trilinear/outline.h"
 
 using namespace trilens;

@@ -1,13 +1,12 @@
 // Laws of conic arcs: on the conic, along the edge's true image, joined, bounded; the same for both users of
 // an edge.
-#include "trilinear/curves.h"
+#include "trilinear/outline.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "random_facets.h"
 #include "support/test.h"
-#include "trilinear/shapes.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -7,7 +7,7 @@
 
 #include "random_facets.h"
 #include "support/test.h"
-#include "trilinear/curves.h"
+#include "trilinear/outline.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -10,7 +10,6 @@
 
 #include "random_facets.h"
 #include "support/test.h"
-#include "trilinear/shapes.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -1,5 +1,5 @@
 // Laws of shapes: the census of table 4.1, the joining rule against the sides themselves, shared vertices.
-#include "trilinear/shapes.h"
+#include "trilinear/outline.h"
 
 #include <algorithm>
 #include <map>

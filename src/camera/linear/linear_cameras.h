@@ -6,7 +6,6 @@
 #include <span>
 
 #include "base/description/camera_description.h"
-#include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
 #include "camera/model/camera_model.h"
 

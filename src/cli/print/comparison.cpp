@@ -1,7 +1,6 @@
 // What a comparison prints, and its JSON.
-#include "cli/print/comparison.h"
+#include "cli/print/print.h"
 
-#include "cli/print/projections.h"
 #include "terminal/libraries.h"
 
 namespace trilens {

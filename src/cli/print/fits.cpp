@@ -1,10 +1,9 @@
-#include "cli/print/fits.h"
+#include "cli/print/print.h"
 
 #include <trilens/text.h>
 
 #include <cmath>
 
-#include "cli/print/projections.h"
 #include "terminal/libraries.h"
 
 namespace trilens {

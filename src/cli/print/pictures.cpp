@@ -1,4 +1,4 @@
-#include "cli/print/pictures.h"
+#include "cli/print/print.h"
 
 #include <trilens/files.h>
 #include <trilens/stopwatch.h>

@@ -1,4 +1,4 @@
-#include "cli/print/scene_info.h"
+#include "cli/print/print.h"
 
 #include <trilens/camera.h>
 #include <trilens/version.h>

@@ -1,8 +1,7 @@
-#include "cli/print/sweeps.h"
+#include "cli/print/print.h"
 
 #include <cmath>
 
-#include "cli/print/projections.h"
 #include "terminal/libraries.h"
 
 namespace trilens {

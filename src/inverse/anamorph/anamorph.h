@@ -1,5 +1,4 @@
-// Mirror anamorphosis: the page on which a picture must be printed so that the camera sees it undistorted in
-// the mirror that stands on it (Niceron, La perspective curieuse, 1638), for any mirror, at true scale.
+// Paper sizes (ISO 216 and ANSI), lengths and units as people write them.
 #pragma once
 
 #include <array>
@@ -11,12 +10,28 @@
 #include "base/description/material.h"
 #include "base/image/image.h"
 #include "base/math/vec.h"
-#include "base/util/progress.h"
-#include "inverse/anamorph/paper.h"
+#include "base/util/error.h"
 #include "inverse/maps/target.h"
 #include "render/frame/request.h"
 
 namespace trilens {
+
+struct PaperSize {
+    double width = 210, height = 297;  // millimetres
+};
+
+/// "A0" to "A6", "letter", "legal", "tabloid", or "WxH" in millimetres; upright. Throws UsageError with the
+/// names.
+PaperSize parse_paper(const std::string& text);
+
+/// Metres: "mm", "cm", "dm", "m", "km", "in" or "ft". Throws UsageError with the names.
+double parse_unit(const std::string& text);
+
+/// Millimetres of "2mm", "0.5cm", "1in" or a bare number of millimetres, at least 0. Throws UsageError.
+double parse_length(const std::string& text);
+
+// Mirror anamorphosis: the page on which a picture must be printed so that the camera sees it undistorted in
+// the mirror that stands on it (Niceron, La perspective curieuse, 1638), for any mirror, at true scale.
 
 struct World;
 
@@ -85,5 +100,18 @@ AnamorphCheck verify_anamorph(const World& world, const AnamorphRequest& request
 /// none where there is none. `covered`: columns x rows cells that make up the film, rows from the top.
 std::optional<PictureWindow> largest_window(const std::vector<unsigned char>& covered, int columns, int rows,
                                             const Vec2& film, double aspect);
+
+// Pages at true scale: PDF (ISO 32000-1, the picture deflated without loss), SVG in millimetres, PNG with its
+// dots per metre.
+
+/// One page whose MediaBox is the paper's size to 0.01 point, with the mirrors' outlines and a line of 100 mm
+/// (of 50 where the page is smaller) to check the print by. No printer driver may scale it.
+std::vector<unsigned char> pdf_of(const AnamorphPage& page);
+
+/// The same as SVG, the picture as PNG inside.
+std::string svg_of(const AnamorphPage& page);
+
+/// The picture alone, 8 bits sRGB, with pHYs.
+std::vector<unsigned char> png_of(const AnamorphPage& page);
 
 }  // namespace trilens

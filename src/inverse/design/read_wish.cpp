@@ -3,7 +3,7 @@
 
 #include "base/util/error.h"
 #include "image/image_io.h"
-#include "inverse/design/wish.h"
+#include "inverse/design/design.h"
 #include "json/fields.h"
 #include "json/json.h"
 #include "json/schema.h"

@@ -1,4 +1,4 @@
-#include "inverse/design/wish.h"
+#include "inverse/design/design.h"
 
 #include <algorithm>
 #include <cmath>

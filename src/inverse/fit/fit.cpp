@@ -8,7 +8,7 @@
 #include "base/util/format.h"
 #include "base/util/names.h"
 #include "inverse/fit/fit_problem.h"
-#include "inverse/solve/uncertainty.h"
+#include "inverse/solve/least_squares.h"
 #include "render/project/project.h"
 #include "render/world/world.h"
 #include "scene/read/override.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/math/vec.h"
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "scene/data/scene.h"
 #include "scene/data/scene_inputs.h"
 
@@ -106,5 +106,18 @@ struct FitResult {
 /// and paths that there are not; ComputationError where every pair is lost.
 FitResult fit_scene(const Scene& scene, std::span<const Correspondence> pairs, const FitRequest& request,
                     const Progress& progress = {});
+
+// A fit as one self-contained HTML page: parameters, correlations, and residuals over the film.
+
+/// The residuals of all pairs as arrows over the film (an SVG document): from the pixel, `longer` times as
+/// long as they are; outliers in another colour, lost pairs as crosses.
+struct FitArrows {
+    std::string svg;
+    double longer = 1;
+};
+FitArrows residual_arrows(const Scene& scene, std::span<const Correspondence> pairs, const FitResult& result);
+
+/// The page. `title`: of the scene.
+std::string fit_html(const Scene& scene, std::span<const Correspondence> pairs, const FitResult& result);
 
 }  // namespace trilens

@@ -1,4 +1,4 @@
-#include "inverse/fit/fit_page.h"
+#include "inverse/fit/fit.h"
 
 #include <algorithm>
 #include <cmath>

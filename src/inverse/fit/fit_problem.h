@@ -1,16 +1,200 @@
-// The least squares problem of a fit: residuals and Jacobians of all pairs, along rays or by exact images.
+// Numbers of a scene named by JSON pointers, as unknowns of a fit.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
+#include <set>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "base/math/vec.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/surface.h"
+#include "camera/camera.h"
+#include "intersect/limit_tracer.h"
 #include "inverse/fit/fit.h"
-#include "inverse/fit/fit_scene.h"
-#include "inverse/fit/path_derivatives.h"
-#include "inverse/solve/levenberg_marquardt.h"
+#include "inverse/solve/least_squares.h"
+#include "json/json.h"
+#include "scene/data/polygons.h"
+#include "scene/data/scene.h"
 
 namespace trilens {
+
+/// The parts of a scene whose numbers a picture's geometry depends on.
+enum class ScenePart { kCamera, kMesh, kMaterial };
+
+/// One unknown: a number of the scene's JSON, or a turn of a mesh about a world axis.
+struct FitParameter {
+    std::string name;  // its pointer; of a turn with the axis: "/meshes/0/transform/rotate/x"
+    ScenePart part = ScenePart::kMesh;
+    std::size_t index = 0;  // of the part in its array
+    std::string inside;     // JSON pointer inside of the part
+    bool is_turn = false;   // of a quaternion: about `axis`, degrees, counted from where the fit begins
+    Vec3 axis{0};
+    double scale = 1;  // a large step, in the parameter's unit
+};
+
+/// The unknowns that pointers name, each once: a number, an array of numbers (all of its entries), or a
+/// mesh's quaternion `transform/rotate` (three turns about the world's axes). Entries of arrays are named by
+/// place or by name; a key that is missing in `document` but has a default in the schema is added to it.
+/// `extent`: the scene's size, a large step of lengths. Throws InputError with the pointer where it names no
+/// number, or none of a camera, an optic or a material.
+std::vector<FitParameter> find_parameters(Json& document, std::span<const std::string> pointers,
+                                          const std::string& file, double extent);
+
+/// The part's JSON in the document.
+Json& part_of(Json& document, const FitParameter& parameter);
+const Json& part_of(const Json& document, const FitParameter& parameter);
+
+/// Moves the parameter by `amount` of its unit; `part`: the JSON that it stands in.
+void move_parameter(Json& part, const FitParameter& parameter, double amount);
+
+/// Its number; of a turn the component of the rotation vector from `start` to `document`, degrees.
+double parameter_value(const Json& document, const FitParameter& parameter, const Json& start);
+
+/// What a null vector moves, in words: "turning /meshes/0 about the axis (0, 1, 0)", "/meshes/0/primitive/
+/// radius with /cameras/0/yfov".
+std::string describe_motion(std::span<const FitParameter> parameters, std::span<const double> motion);
+
+// The part of a scene that images of points depend on, made anew where a fit's parameters move it.
+
+/// An optic: a surface as it was built, moved since by an affine map, under which limit surfaces stay limit
+/// surfaces, so that nothing is built again.
+struct FitOptic {
+    Id mesh = kNone;
+    bool mirror = true;  // else glass
+    int priority = 0;
+    double ior = 1;
+    std::shared_ptr<const Surface> surface;     // as built
+    std::shared_ptr<const LimitTracer> tracer;  // of it; null where only its parameters are asked for
+    Transform built;                            // the mesh's transform when it was built
+    Transform moved, unmoved;                   // from there to where it is now, and back
+    bool is_moved = false;
+};
+
+/// Cameras of the scene, and its optics.
+struct FitScene {
+    std::vector<Camera> cameras;
+    std::vector<FitOptic> optics;
+};
+
+/// Position and derivatives as the moved surface has them, of those as built.
+SurfacePoint moved_point(const FitOptic& optic, const SurfacePoint& as_built);
+
+/// Makes the scene's parts of its JSON. Keeps a reference to the scene.
+class FitSceneMaker {
+  public:
+    /// Throws InputError where an optic has overridden normals, whose images are no stationary paths.
+    explicit FitSceneMaker(const Scene& scene);
+
+    /// Whole, with tracers. `parameters`: those that will move: meshes whose transform alone moves are built
+    /// once.
+    FitScene make(const Json& document, const std::vector<FitParameter>& parameters);
+
+    /// Puts the part that the parameter stands in, as `part` has it, into a scene made before. Throws
+    /// InputError where it is none. `with_tracer`: for rays; else for derivatives.
+    void set_part(FitScene& scene, const FitParameter& parameter, const Json& part, bool with_tracer) const;
+
+  private:
+    Camera camera_of(const Json& json, std::size_t index) const;
+    void set_mesh(FitScene& scene, std::size_t index, const Json& json, bool with_tracer) const;
+    void build(FitOptic& optic, const Mesh& mesh, bool with_tracer) const;
+    std::string file() const { return scene_title(scene_); }
+
+    const Scene& scene_;
+    std::set<std::size_t> moves_only_;  // meshes of which only the transform changes
+    std::set<std::size_t> moved_materials_;
+};
+
+// What a path of light does at each optic that it meets, as letters: R reflected, T transmitted, ? either.
+
+/// "R", "TT", "R?T"; "D": direct, over no optic; empty: whatever it is that carries most light.
+using PathWord = std::string;
+
+/// Throws UsageError for other letters, and for D among others.
+void check_path_word(const PathWord& word);
+
+// The path of the camera's ray through a film place, over the exact optics of a fit.
+
+/// One meeting with an optic.
+struct OpticEvent {
+    std::size_t optic = 0;  // of FitScene::optics
+    Id face = kNone;
+    Vec2 uv{0};
+    SurfacePoint as_built;  // of the optic's surface as built, with second derivatives
+    SurfacePoint point;     // world
+    bool reflects = true;
+    Id before = kNone, after = kNone;  // optics whose glass the light runs in; kNone: air
+};
+
+/// A path from the camera: its events, and the ray that leaves the last of them.
+struct ShotPath {
+    Ray view;  // the camera's ray, unit direction
+    std::vector<OpticEvent> events;
+    Ray last;  // unit direction
+    /// Per number of events k: the ray after k of them, and how far it goes to the next event.
+    std::vector<Ray> after;
+    std::vector<double> reach;
+};
+
+/// The refractive index of the glass of an optic; 1 of air.
+double index_of(const FitScene& scene, Id medium);
+
+/// The path of the ray through `pixel` that the word describes; with an empty word the one that mirrors
+/// reflect and glass transmits, or reflects totally, to its end. The camera stands in air. None where the
+/// camera has no ray there, or where the ray does not meet what the word says.
+std::optional<ShotPath> shoot_path(const FitScene& scene, const Camera& camera, const Vec2& pixel,
+                                   const PathWord& word);
+
+/// Keeps the first `count` events.
+void cut_path(ShotPath& path, std::size_t count);
+
+/// Where the last ray passes nearest to a point: in front of where it starts.
+Vec3 nearest_on_last(const ShotPath& path, const Vec3& point);
+
+/// Of the numbers of events after which the light runs in air, or of all, the one whose ray passes nearest
+/// to the point before it meets the next optic.
+std::size_t events_towards(const ShotPath& path, const Vec3& point);
+
+// How the image of a point moves with the point and with a scene's parameters: the implicit function theorem
+// on Fermat's stationary path.
+
+/// A scene with one parameter moved back and forth by `step` of its unit; surfaces keep their parameters.
+struct ParameterDifference {
+    FitScene minus, plus;
+    double step = 1;
+    bool moves_camera = false;  // some camera
+};
+
+/// Of the image of a point on a path's last ray.
+struct PathDerivatives {
+    std::array<Vec3, 2> by_point{};                   // of x and of y, pixels per scene unit
+    std::vector<std::array<double, 2>> by_parameter;  // pixels per unit of each parameter
+};
+
+/// A place on the film and the camera that it is of.
+struct ShownPlace {
+    std::size_t camera = 0;
+    Vec2 pixel{0};
+};
+
+/// Of the image at `place`, whose path to `point` goes over the events. None at a caustic, where the image
+/// moves infinitely fast, and where the camera does not show the first event.
+///
+/// Events P_i(u_i) between the eye P_0 and the point; n_i the index between P_i and P_i+1, e_i the unit
+/// direction, H_i = n_i / l_i (1 - e_i e_i^T). The path is stationary: F_i = (dP_i/du)^T (n_i-1 e_i-1 -
+/// n_i e_i) = 0, with symmetric block tridiagonal Hessian A = dF/du; so du/dtheta = -A^-1 dF/dtheta, at fixed
+/// u. Only the first event's u moves the image, so two solutions with A serve any number of parameters.
+std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const ShownPlace& place,
+                                                std::span<const OpticEvent> events, const Vec3& point,
+                                                std::span<const ParameterDifference> parameters);
+
+/// Where the camera shows a world point, nearest to `near`; none where it does not.
+std::optional<Vec2> pixel_of_point(const Camera& camera, const Vec3& point, const Vec2& near);
+
+// The least squares problem of a fit: residuals and Jacobians of all pairs, along rays or by exact images.
 
 /// What a pair's residual is: along the ray of its pixel, (dx/dX) (X - Y) with Y the ray's place nearest to
 /// the point X (Sampson's, its metric held until the next linearisation); or by the image of X.

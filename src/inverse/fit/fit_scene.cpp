@@ -1,4 +1,4 @@
-#include "inverse/fit/fit_scene.h"
+#include "inverse/fit/fit_problem.h"
 
 #include <algorithm>
 #include <cmath>

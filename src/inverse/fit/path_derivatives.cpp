@@ -1,4 +1,4 @@
-#include "inverse/fit/path_derivatives.h"
+#include "inverse/fit/fit_problem.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "inverse/fit/shot_path.h"
+#include "inverse/fit/fit_problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,6 @@
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "render/world/caustic_lights.h"
 #include "render/world/world.h"
 #include "shade/shade.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/image/image.h"
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "inverse/maps/target.h"
 
 namespace trilens {

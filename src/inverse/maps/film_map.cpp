@@ -6,9 +6,9 @@
 #include "base/util/parallel.h"
 #include "inverse/maps/film_images.h"
 #include "inverse/maps/film_targets.h"
-#include "inverse/maps/resolution.h"
+#include "inverse/maps/sampled_map.h"
 #include "render/frame/frame.h"
-#include "render/world/geometry.h"
+#include "render/world/world.h"
 
 namespace trilens {
 namespace {

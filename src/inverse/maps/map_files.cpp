@@ -1,4 +1,4 @@
-#include "inverse/maps/map_files.h"
+#include "inverse/maps/film_map.h"
 
 #include <bit>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include "base/util/parallel.h"
 #include "intersect/tracer.h"
 #include "inverse/maps/number_list.h"
-#include "render/world/geometry.h"
+#include "render/world/world.h"
 #include "scene/formats/obj.h"
 
 namespace trilens {

@@ -9,7 +9,6 @@
 #include "base/math/box.h"
 #include "base/raymesh/triangle_scene.h"
 #include "inverse/maps/film_images.h"
-#include "inverse/maps/proxy_description.h"
 #include "inverse/maps/target.h"
 #include "render/world/world.h"
 

@@ -1,17 +1,36 @@
-// The rectangles that pictures are unwrapped to: latitude-longitude, cube map, plane, object; each as a map
-// from its pixels to directions or points, and back.
+// Which proxy geometry stands for what a photograph of a mirror does not say: how far away things are.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/math/box.h"
 #include "base/math/vec.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/util/names.h"
 #include "scene/data/scene.h"
 
 namespace trilens {
+
+/// kScene: the scene's objects, and infinity where there are none. kInfinity: light from afar. kSphere: of
+/// this radius about the centre. kBox: the walls of a room, seen from inside. kMesh: the triangles of an OBJ
+/// file, and infinity between them.
+enum class ProxyKind { kScene, kInfinity, kSphere, kBox, kMesh };
+
+struct ProxyDescription {
+    ProxyKind kind = ProxyKind::kScene;
+    double radius = 1;
+    Box box;
+    std::string file;  // kMesh
+};
+
+/// Reads "scene", "infinity", "sphere:R", "box:x0,y0,z0,x1,y1,z1", or the name of an OBJ file ("room.obj").
+/// Throws UsageError that says what is wrong.
+ProxyDescription parse_proxy(const std::string& text);
+
+// The rectangles that pictures are unwrapped to: latitude-longitude, cube map, plane, object; each as a map
+// from its pixels to directions or points, and back.
 
 /// kEquirect: latitude and longitude as the scene's background has them: the middle column is -Z, the right
 /// half +X, the top row +Y. kCubemap: six square faces side by side, +X -X +Y -Y +Z -Z, each turned as OpenGL

@@ -1,4 +1,4 @@
-#include "inverse/maps/warp_mesh.h"
+#include "inverse/maps/film_map.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,11 +10,10 @@
 #include "inverse/maps/film_images.h"
 #include "inverse/maps/film_map.h"
 #include "inverse/maps/proxy.h"
-#include "inverse/maps/resolution.h"
 #include "inverse/maps/sampled_map.h"
 #include "inverse/unwrap/photo.h"
 #include "render/frame/frame.h"
-#include "render/world/geometry.h"
+#include "render/world/world.h"
 
 namespace trilens {
 namespace {

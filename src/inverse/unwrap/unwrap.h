@@ -9,9 +9,8 @@
 
 #include "base/description/material.h"
 #include "base/image/image.h"
+#include "base/util/error.h"
 #include "base/util/names.h"
-#include "base/util/progress.h"
-#include "inverse/maps/proxy_description.h"
 #include "inverse/maps/target.h"
 #include "paths/trace/path.h"
 #include "render/frame/request.h"

@@ -11,7 +11,6 @@
 #include "base/util/parallel.h"
 #include "measure/common/comparable.h"
 #include "measure/displacement/image_finder.h"
-#include "measure/displacement/reference_layers.h"
 
 namespace trilens {
 namespace {

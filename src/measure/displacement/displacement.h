@@ -34,7 +34,7 @@ enum class Shift : std::uint8_t {
 /// Statistics over the pixels that are kFound, and the vectors themselves, per pixel of the data window. What
 /// could not be measured is in no mean, so every mean is to be read with its losses, which are counted in
 /// both directions, and with the unmeasured. Each pixel of the test that shows the layer is in one of pixels,
-/// lost and unmeasured. At folds of the reference (folds.h) displacements fall more slowly than elsewhere:
+/// lost and unmeasured. At folds of the reference (position_field.h) displacements fall more slowly than elsewhere:
 /// the mean off the folds shows the order of the surface alone.
 struct Displacement {
     std::optional<Summary> summary;  // of the shifts' lengths, pixels; none where no pixel was found

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "measure/displacement/search_prior.h"
-
 namespace trilens {
 namespace {
 

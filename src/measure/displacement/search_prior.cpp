@@ -1,4 +1,4 @@
-#include "measure/displacement/search_prior.h"
+#include "measure/displacement/image_query.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "measure/field/field_cell_bounds.h"
+#include "measure/field/field_pyramid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,18 +1,66 @@
-// Pyramid of boxes over a position field, for nearest-point queries.
+// Bounds of the points that a cell's patches can show, computed lazily.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
+#include <mutex>
 #include <vector>
 
+#include "base/math/box.h"
 #include "base/math/vec.h"
 #include "base/util/ids.h"
 #include "measure/field/patch.h"
 #include "measure/field/position_field.h"
 
 namespace trilens {
+
+/// All points that patches from any corner of a cell show lie in the box, and between two planes across each
+/// direction: those of the cell's own axes, for a cell that is long and oblique fills little of its box.
+struct FieldCellBounds {
+    struct Slab {
+        float direction[3] = {0, 0, 0};
+        float low, high;  // of dot(direction, point)
+    };
+    float low[3], high[3];  // low > high: it shows nothing
+    Slab slabs[2];
+
+    bool may_hold(const Vec3& point) const;
+};
+
+/// World frame, of the cell (column, row) .. (column + 1, row + 1) of pixel centres and the pieces that its
+/// corners show, whole or triangle by triangle. `other`: as make_patch has it.
+FieldCellBounds reach_of_cell(const FieldPyramid& index, const PositionField& other, int column, int row);
+
+/// Values that many threads may ask for. What is not asked for takes the room of a pointer.
+template <typename Value>
+class LazyValues {
+  public:
+    explicit LazyValues(std::size_t count) : known_(std::make_unique<std::atomic<Value*>[]>(count)) {}
+
+    /// The value that make() returns, always the same.
+    template <typename Make>
+    const Value& get(std::size_t index, Make&& make) {
+        if (const Value* const found = known_[index].load(std::memory_order_acquire)) return *found;
+        const Value made = make();
+        const std::lock_guard guard(mutex_);
+        // Another thread may have made it meanwhile.
+        if (const Value* const found = known_[index].load(std::memory_order_relaxed)) return *found;
+        values_.push_back(made);
+        known_[index].store(&values_.back(), std::memory_order_release);
+        return values_.back();
+    }
+
+  private:
+    std::unique_ptr<std::atomic<Value*>[]> known_;
+    std::mutex mutex_;          // of what follows
+    std::deque<Value> values_;  // stay where they are
+};
+
+// Pyramid of boxes over a position field, for nearest-point queries.
 
 /// The bounding boxes of four cells, or of four groups of cells: the children 2 x + 0, 1 and 2 y + 0, 1 of a
 /// larger group. Empty: low > high.
@@ -86,5 +134,39 @@ struct FieldPyramid {
     // The last level is one quad.
     std::vector<Level> levels;
 };
+
+// Packet traversal of a field pyramid: the cells that may show the points of neighbouring pixels.
+
+/// Points that are looked for, each from its pixel and as far as it may lie from there; side by side in
+/// lanes.
+class PointPacket {
+  public:
+    static constexpr std::size_t kPoints = 64;
+
+    void clear() { count = 0; }
+    bool is_full() const { return count == kPoints; }
+    /// `squared_reach`: pixels.
+    void add(const FieldSample& wanted, double squared_reach);
+
+    std::size_t count = 0;
+    // Lanes from `count` on are anything.
+    alignas(64) float point[3][kPoints];
+    alignas(64) float pixel[2][kPoints];  // column, row
+    alignas(64) float most[kPoints];      // the square of the reach, a little more
+};
+
+/// A cell, and which points of a packet it may show: bit i for point i.
+struct CellOfMany {
+    int column = 0, row = 0;
+    std::uint64_t points = 0;
+};
+
+/// All cells whose own box (FieldPyramid::may_show) holds points that they are near enough to; now and then
+/// one that is a little too far away.
+void find_cells(const FieldPyramid& index, const PointPacket& packet, std::vector<CellOfMany>& cells);
+
+/// Those of `points` that the cell may hold (FieldCellBounds::may_hold), and now and then one that it just
+/// does not.
+std::uint64_t held_by(const FieldCellBounds& reach, const PointPacket& packet, std::uint64_t points);
 
 }  // namespace trilens

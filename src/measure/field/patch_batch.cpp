@@ -1,6 +1,5 @@
-#include "measure/field/patch_batch.h"
-
 #include "measure/field/patch.h"
+
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "measure/field/patch_batch.cpp"

@@ -1,4 +1,4 @@
-#include "measure/field/pyramid_query.h"
+#include "measure/field/field_pyramid.h"
 
 #include <bit>
 

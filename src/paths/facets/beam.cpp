@@ -1,4 +1,4 @@
-#include "paths/facets/beam.h"
+#include "paths/facets/one_history.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "base/util/parallel.h"
+#include "paths/facets/divide_facet.h"
 #include "paths/facets/path_build.h"
-#include "paths/facets/predict.h"
 
 namespace trilens {
 namespace {

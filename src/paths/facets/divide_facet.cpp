@@ -7,8 +7,7 @@
 #include <span>
 
 #include "paths/facets/one_history.h"
-#include "paths/probe/probe_cache.h"
-#include "paths/probe/same_histories.h"
+#include "paths/probe/path_probe.h"
 
 namespace trilens {
 namespace {

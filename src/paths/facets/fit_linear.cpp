@@ -1,4 +1,4 @@
-#include "paths/facets/fit_linear.h"
+#include "paths/facets/fit_nodes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/util/parallel.h"
-#include "paths/facets/fit_linear.h"
 
 namespace trilens {
 namespace {

@@ -5,8 +5,7 @@
 #include <limits>
 
 #include "intersect/patch_tree.h"
-#include "paths/facets/beam.h"
-#include "paths/probe/same_histories.h"
+#include "paths/probe/path_probe.h"
 #include "reflect/reflection.h"
 
 namespace trilens {

@@ -11,7 +11,7 @@
 
 #include "paths/facets/divide_facet.h"
 #include "paths/facets/fit_nodes.h"
-#include "paths/facets/path_builder.h"
+#include "paths/facets/optic_paths.h"
 
 namespace trilens {
 

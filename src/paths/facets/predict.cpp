@@ -1,4 +1,4 @@
-#include "paths/facets/predict.h"
+#include "paths/facets/divide_facet.h"
 
 #include <cmath>
 #include <limits>

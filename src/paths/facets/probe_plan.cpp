@@ -1,4 +1,4 @@
-#include "paths/facets/probe_plan.h"
+#include "paths/facets/optic_paths.h"
 
 #include <algorithm>
 #include <cmath>

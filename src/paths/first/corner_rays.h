@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "base/raymesh/linear_camera.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/surface.h"
 #include "paths/trace/path.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/util/check.h"
-#include "paths/probe/ray_scale.h"
+#include "paths/probe/path_probe.h"
 #include "reflect/reflection.h"
 
 namespace trilens {

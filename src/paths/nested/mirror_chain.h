@@ -49,4 +49,16 @@ std::optional<ChainRay> chain_ray(const MirrorChain& chain, const Vec3& eye_dire
 /// principle holds along every ray of the chain; the ray's distance from the point is what is driven to zero.
 std::optional<ChainRay> image_over(const MirrorChain& chain, const Vec3& point, const Vec3& start);
 
+// The images of a grid's points over a chain of mirrors: each found from its neighbour's.
+
+/// The eye's rays over the chain in these directions, but those that miss a mirror.
+std::vector<ChainRay> rays_over(const MirrorChain& chain, std::span<const Vec3> towards);
+
+/// Per point of the grid one image, where the search finds one: first from the ray of `starts` that passes it
+/// at the smallest angle, then from point to point along facets. Where a point has several images, neighbours
+/// have those that belong together. Of a closed surface points all of whose facets are turned away, and that
+/// stand next to none that is not, have none. The same for any number of threads.
+std::vector<std::optional<ChainRay>> grid_images(const MirrorChain& chain, std::span<const ChainRay> starts,
+                                                 const SurfaceGrid& grid);
+
 }  // namespace trilens

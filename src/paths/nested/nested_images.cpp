@@ -1,4 +1,4 @@
-#include "paths/nested/nested_images.h"
+#include "paths/nested/mirror_chain.h"
 
 #include <algorithm>
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "paths/probe/ray_scale.h"
 #include "reflect/reflection.h"
 
 namespace trilens {
+
 namespace {
 
 constexpr double kStep = 1e-4;      // of a face's parameters, for differences
@@ -233,6 +233,100 @@ NodeCorner later_corner(const PathProbe& probe, const PathSegment& segment, doub
             factor * probe.screen,
             segment.next / size,
             segment.weight};
+}
+
+namespace {
+
+double largest_channel(const Vec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+/// The segment of the same kind as `wanted` behind `parent`; kNone where there is none.
+Id same_behind(Id parent, const PathSegment& wanted, const std::vector<PathSegment>& segments) {
+    const auto same = std::find_if(segments.begin(), segments.end(), [&](const PathSegment& one) {
+        return one.parent == parent && one.step == wanted.step && one.colours == wanted.colours &&
+               one.medium == wanted.medium && one.ends == wanted.ends && one.principal == wanted.principal;
+    });
+    return same == segments.end() ? kNone : static_cast<Id>(same - segments.begin());
+}
+
+std::ptrdiff_t count_principal(const std::vector<PathSegment>& segments) {
+    return std::count_if(segments.begin(), segments.end(),
+                         [](const PathSegment& segment) { return segment.principal; });
+}
+
+}  // namespace
+
+std::vector<std::size_t> matched(const std::vector<PathSegment>& histories,
+                                 const std::vector<PathSegment>& segments) {
+    std::vector<std::size_t> found;
+    for (const PathSegment& wanted : histories) {
+        const Id parent = wanted.parent == kNone ? kNone : static_cast<Id>(found[wanted.parent]);
+        const Id same = same_behind(parent, wanted, segments);
+        if (same == kNone) return {};
+        found.push_back(same);
+    }
+    return found;
+}
+
+bool covers(const std::vector<std::size_t>& match, const std::vector<PathSegment>& segments) {
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        if (std::find(match.begin(), match.end(), i) != match.end()) continue;
+        if (segments[i].principal || largest_channel(segments[i].weight) > kMuchLight * kLeastWeight)
+            return false;
+    }
+    return true;
+}
+
+bool same_principal(const std::vector<PathSegment>& a, const std::vector<PathSegment>& b) {
+    if (count_principal(a) != count_principal(b)) return false;
+    std::vector<Id> found(a.size(), kNone);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (!a[i].principal) continue;
+        found[i] = same_behind(a[i].parent == kNone ? kNone : found[a[i].parent], a[i], b);
+        if (found[i] == kNone) return false;
+    }
+    return true;
+}
+
+// Principal paths first: where they differ no others matter.
+
+FacetPoint ProbeCache::between(std::initializer_list<const FacetPoint*> points) {
+    FacetPoint middle;
+    const double share = 1.0 / static_cast<double>(points.size());
+    for (const FacetPoint* one : points) {
+        middle.screen += share * one->screen;
+        middle.chord += share * one->chord;
+    }
+    probes_.push_back(probe_chord(context_, {middle.screen, middle.chord, params_.reach},
+                                  {.side = params_.side, .least_weight = kPrincipalOnly}));
+    middle.probe = &probes_.back();
+    note(middle.probe->cut);
+    return middle;
+}
+
+FacetPoint ProbeCache::middle_of(const FacetPoint& a, const FacetPoint& b) {
+    Ends ends{a.probe, b.probe};
+    if (std::less<>()(ends.second, ends.first)) std::swap(ends.first, ends.second);
+    const auto [known, is_new] = middles_.try_emplace(ends);
+    if (is_new) known->second = between({&a, &b});
+    return known->second;
+}
+
+void ProbeCache::follow_all_at(const FacetPoint& point, double least_weight) {
+    if (!point.probe->principal_only) return;
+    follow_all(context_, *point.probe, least_weight);
+    if (params_.beside) probe_offsets(context_, *point.probe);
+    note(point.probe->cut);
+}
+
+bool may_agree(std::span<const FacetPoint> points) {
+    const PathProbe& first = *points[0].probe;
+    return std::all_of(points.begin(), points.end(), [&](const FacetPoint& point) {
+        const PathProbe& probe = *point.probe;
+        return probe.state == ProbeState::kSeen && probe.front == first.front &&
+               (&probe == &first || same_principal(first.segments, probe.segments));
+    });
 }
 
 }  // namespace trilens

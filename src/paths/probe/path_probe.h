@@ -1,16 +1,33 @@
-// Traces the exact paths of the camera ray through one point of a facet (a probe).
+// How much longer than the eye's a corner ray is after optics.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <deque>
 #include <functional>
+#include <initializer_list>
 #include <limits>
+#include <map>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
-#include "base/raymesh/linear_camera.h"
+#include "base/raymesh/ray_mesh.h"
 #include "paths/trace/follow.h"
 
 namespace trilens {
+
+/// The ray scale: the cube root of the solid angle that a bundle of rays has before optics, > 0, over that
+/// which it has after them, >= 0 (mathematics, section 6); within 1/50 and 50, for a fold of the directions,
+/// or a focus of the bundle, would make corner rays endless or nothing.
+inline double ray_scale_of(double before, double after) {
+    constexpr double kMostScale = 50;
+    return after > 0 ? std::clamp(std::cbrt(before / after), 1 / kMostScale, kMostScale) : kMostScale;
+}
+
+// Traces the exact paths of the camera ray through one point of a facet (a probe).
 
 /// A camera as facets ask it.
 struct PathCamera {
@@ -142,5 +159,75 @@ double farther(const PathProbe& probe, const PathSegment& segment, bool unfolds)
 
 /// A later segment's ray, as long as the eye ray times the ray scale and what `farther` says.
 NodeCorner later_corner(const PathProbe& probe, const PathSegment& segment, double ray_scale, bool unfolds);
+
+// Whether the paths from two places have the same histories.
+
+/// A path with so many times the least weight that is not matched is another history.
+inline constexpr double kMuchLight = 8;
+
+/// For each of `histories` its place in `segments`: the same steps, colours, media and end; empty where one
+/// is missing.
+std::vector<std::size_t> matched(const std::vector<PathSegment>& histories,
+                                 const std::vector<PathSegment>& segments);
+
+/// Whether no principal path and none that carries much light is left out of `match`.
+bool covers(const std::vector<std::size_t>& match, const std::vector<PathSegment>& segments);
+
+/// Whether the principal paths have the same histories: if not, no two lists with these among them are
+/// matched() and covered both ways, whatever fainter paths there are.
+bool same_principal(const std::vector<PathSegment>& a, const std::vector<PathSegment>& b);
+
+// The probes of a facet's points while it is divided: no point twice, and no more of its paths than are
+// needed.
+
+/// A point of a facet. `screen` homogeneous, `chord` on the facet's plane, world.
+struct FacetPoint {
+    PathProbe* probe = nullptr;
+    Vec3 screen{0}, chord{0};
+    Id shared = kNone;  // see PartCorner
+};
+
+/// How a facet's points are looked at.
+struct ProbeCacheParams {
+    ProbeSide side = ProbeSide::kFront;
+    double reach = 0;     // see Chord
+    bool beside = false;  // probe_offsets() where all paths are followed
+};
+
+/// Makes probes and keeps them. `context` must live longer.
+class ProbeCache {
+  public:
+    ProbeCache(const ProbeContext& context, const ProbeCacheParams& params)
+        : context_(context), params_(params) {}
+
+    /// The point with equal weights of these. Of the paths there the principal ones alone are followed.
+    FacetPoint between(std::initializer_list<const FacetPoint*> points);
+
+    /// between() two, in whatever order; the same probe each time.
+    FacetPoint middle_of(const FacetPoint& a, const FacetPoint& b);
+
+    /// Has all paths followed there, down to `least_weight`.
+    void follow_all_at(const FacetPoint& point, double least_weight);
+
+    /// Counts what the paths left out at a probe, which need not be one of these.
+    void note(const CutPaths& cut) { cut_ = most_cut(cut_, cut); }
+
+    /// The probes, at places that stay, and the most that any left out.
+    std::deque<PathProbe>& probes() { return probes_; }
+    const CutPaths& cut() const { return cut_; }
+
+  private:
+    using Ends = std::pair<const PathProbe*, const PathProbe*>;
+
+    const ProbeContext& context_;
+    ProbeCacheParams params_;
+    std::deque<PathProbe> probes_;
+    CutPaths cut_;
+    std::map<Ends, FacetPoint> middles_;  // of edges; nothing depends on the order
+};
+
+/// Whether one list of histories may hold at all these points: they see the optic from one side, by the same
+/// principal paths.
+bool may_agree(std::span<const FacetPoint> points);
 
 }  // namespace trilens

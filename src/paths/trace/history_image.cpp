@@ -1,6 +1,6 @@
 // The ray's distance from the point, as a map from two film coordinates to two; its Jacobian by central
 // differences of exact rays.
-#include "paths/trace/history_image.h"
+#include "paths/trace/follow.h"
 
 #include <cmath>
 

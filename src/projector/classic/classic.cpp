@@ -4,15 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
-#include "projector/classic/classic_fill.h"
-#include "projector/classic/facet_frustum.h"
-#include "projector/scene/prepared_data.h"
+#include "projector/scene/bvh.h"
 #include "trilinear/outline.h"
 
 namespace trilens {
@@ -204,6 +203,170 @@ void draw_classic(const PreparedScene& scene, const RayMesh& mesh, const FacetSa
             for (std::size_t place = 0; place < rows.size(); ++place) hits[rows.sample[place]] = found[place];
         }
     });
+}
+
+// Fills polygons row by row: every side notes where it crosses the rows of samples, and pairs of crossings
+// are runs.
+
+namespace {
+
+/// The point at `depth` between a nearer and a farther vertex.
+Vec3 at_depth(const Vec3& nearer, const Vec3& farther, double depth) {
+    return farther + (farther.z - depth) / (farther.z - nearer.z) * (nearer - farther);
+}
+
+}  // namespace
+
+SampleRows make_sample_rows(std::span<const Id> samples, const SampleGrid& grid) {
+    std::vector<Vec2> position(samples.size());
+    for (std::size_t s = 0; s < samples.size(); ++s) position[s] = grid.position(samples[s]);
+    std::vector<std::size_t> order(samples.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (grid.side > 1) {
+        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return std::pair(position[a].y, position[a].x) < std::pair(position[b].y, position[b].x);
+        });
+    }
+    SampleRows rows;
+    for (const std::size_t s : order) {
+        if (rows.row.empty() || rows.row.back().y != position[s].y)
+            rows.row.push_back({position[s].y, rows.size(), rows.size()});
+        rows.sample.push_back(samples[s]);
+        rows.x.push_back(position[s].x);
+        rows.row.back().end = rows.size();
+    }
+    return rows;
+}
+
+void PolygonFiller::add_side(const Vec2& a, const Vec2& b) {
+    const bool down = std::pair(a.y, a.x) < std::pair(b.y, b.x);
+    const Vec2 &top = down ? a : b, &bottom = down ? b : a;
+    const auto before = [](const SampleRows::Row& row, double y) { return row.y < y; };
+    auto row = std::lower_bound(rows_.row.begin(), rows_.row.end(), top.y, before);
+    for (; row != rows_.row.end() && row->y < bottom.y; ++row) {
+        const double share = (row->y - top.y) / (bottom.y - top.y);
+        crossing_.push_back(
+            {static_cast<std::size_t>(row - rows_.row.begin()), top.x + share * (bottom.x - top.x)});
+    }
+}
+
+void PolygonFiller::add(const ScreenPolygon& polygon) {
+    flat_.clear();
+    const auto push = [&](const Vec3& v) { flat_.push_back({v.x / v.z, v.y / v.z}); };
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vec3 &v = polygon[i], &next = polygon[(i + 1) % polygon.size()];
+        const bool in = v.z >= least_depth_, next_in = next.z >= least_depth_;
+        if (in) push(v);
+        if (in != next_in) push(in ? at_depth(next, v, least_depth_) : at_depth(v, next, least_depth_));
+    }
+    for (std::size_t i = 0; i < flat_.size(); ++i) add_side(flat_[i], flat_[(i + 1) % flat_.size()]);
+}
+
+void PolygonFiller::fill(const std::function<void(std::size_t first, std::size_t end)>& body) {
+    std::sort(crossing_.begin(), crossing_.end(), [](const Crossing& a, const Crossing& b) {
+        return a.row != b.row ? a.row < b.row : a.x < b.x;
+    });
+    // Closed polygons cross every row an even number of times.
+    for (std::size_t i = 0; i + 1 < crossing_.size(); i += 2) {
+        const SampleRows::Row& row = rows_.row[crossing_[i].row];
+        const auto place = [&](double x) {
+            const auto begin = rows_.x.begin() + static_cast<std::ptrdiff_t>(row.first),
+                       end = rows_.x.begin() + static_cast<std::ptrdiff_t>(row.end);
+            return static_cast<std::size_t>(std::lower_bound(begin, end, x) - rows_.x.begin());
+        };
+        const std::size_t first = place(crossing_[i].x), end = place(crossing_[i + 1].x);
+        if (first < end) body(first, end);
+    }
+    crossing_.clear();
+}
+
+namespace {
+
+// A plane is trusted only beyond this share of the coordinates involved. Rounding in the planes, the boxes
+// and the decision who is hit stays below 64 units in the last place of them (1.4e-14).
+constexpr double kSlack = 1e-13;
+// Rounding of the dot product of two unit vectors.
+constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
+// A normal further off than this is not the plane of a side.
+constexpr double kLargestTurn = 1e-9;
+
+double size_of(const Vec3& v) {
+    return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
+}
+
+double reach(const Box& box) {
+    return size_of(glm::max(glm::abs(box.low), glm::abs(box.high)));
+}
+
+/// The largest normal . x over the box; at least the computed normal . x of each of its points.
+double highest(const Box& box, const Vec3& normal) {
+    return std::max(normal.x * box.low.x, normal.x * box.high.x) +
+           std::max(normal.y * box.low.y, normal.y * box.high.y) +
+           std::max(normal.z * box.low.z, normal.z * box.high.z);
+}
+
+}  // namespace
+
+FacetFrustum::FacetFrustum(const TrilinearFacet& facet) : centre_(facet.corner[0].origin) {
+    const std::array<Ray, 3>& c = facet.corner;
+    const Vec3 o1 = (c[1].origin - centre_) * 0.5, o2 = (c[2].origin - centre_) * 0.5;
+    const Vec3 d1 = (c[1].direction - c[0].direction) * 0.5, d2 = (c[2].direction - c[0].direction) * 0.5;
+    constexpr std::array<Vec2, 4> kCorners{Vec2{-1, -1}, Vec2{1, -1}, Vec2{1, 1}, Vec2{-1, 1}};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double u = kCorners[k].x, v = kCorners[k].y;
+        origin_[k] = (o1 + o2) + u * o1 + v * o2;
+        direction_[k] = (c[0].direction + d1 + d2) + u * d1 + v * d2;
+        unit_direction_[k] = normalize_or_zero(direction_[k]);
+        origin_size_ = std::max(origin_size_, size_of(origin_[k]));
+    }
+    add_axis();
+
+    // The sides: through adjacent directions where the frustum opens or closes, else along the axis.
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t next = (k + 1) % 4;
+        const Vec3 across = cross(direction_[k], direction_[next]);
+        add_plane(across);
+        add_plane(-across);
+        const Vec3 along = cross(origin_[next] - origin_[k], axis_);
+        add_plane(along);
+        add_plane(-along);
+    }
+}
+
+void FacetFrustum::add_axis() {
+    for (const Vec3& d : unit_direction_) axis_ += d;
+    axis_ = normalize_or_zero(axis_);
+    least_cosine_ = 1;
+    for (const Vec3& d : unit_direction_) least_cosine_ = std::min(least_cosine_, dot(axis_, d));
+    // The axis means something unless a ray goes nearly across it.
+    constexpr double kSteep = 0.01;
+    if (!(least_cosine_ > kSteep)) least_cosine_ = 0;
+    add_plane(axis_);
+}
+
+void FacetFrustum::add_plane(const Vec3& normal) {
+    Vec3 unit = normalize_or_zero(normal);
+    if (unit == Vec3(0)) return;
+
+    // A normal that should be square to two directions misses by rounding; turn it towards the axis by as
+    // much.
+    double least = 1;
+    for (const Vec3& d : unit_direction_) least = std::min(least, dot(unit, d));
+    if (least < kRounding) {
+        if (!(least > -kLargestTurn && least_cosine_ > 0)) return;
+        unit += (kRounding - least) / least_cosine_ * axis_;
+    }
+    double offset = std::numeric_limits<double>::infinity();
+    for (const Vec3& o : origin_) offset = std::min(offset, dot(unit, o));
+    plane_[planes_++] = {unit, offset - kSlack * origin_size_};
+}
+
+bool FacetFrustum::misses(const Box& box) const {
+    const double slack = kSlack * reach(box);
+    for (std::size_t k = 0; k < planes_; ++k) {
+        if (highest(box, plane_[k].normal) + slack < plane_[k].offset) return true;
+    }
+    return false;
 }
 
 }  // namespace trilens

@@ -14,7 +14,7 @@
 
 #include "projector/exact/exact_hit.h"
 #include "projector/kernel/setup-inl.h"
-#include "projector/scene/prepared_data.h"
+#include "projector/scene/bvh.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace trilens {

@@ -9,8 +9,7 @@
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
 #include "base/raymesh/triangle_scene.h"
-#include "projector/scene/leaf_tree.h"
-#include "projector/scene/prepared_data.h"
+#include "projector/scene/bvh.h"
 #include "projector/tiles/sample_tiles.h"
 
 namespace trilens {

@@ -11,7 +11,7 @@
 
 #include "base/util/parallel.h"
 #include "projector/exact/exact_hit.h"
-#include "projector/scene/prepared_data.h"
+#include "projector/scene/bvh.h"
 
 namespace trilens {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/sample_grid.h"
-#include "projector/exact/facet_rays.h"
+#include "projector/exact/exact_hit.h"
 #include "projector/scene/prepared_scene.h"
 
 namespace trilens {

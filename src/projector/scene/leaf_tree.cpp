@@ -1,5 +1,5 @@
 // Builds the wide tree top down by medians, so that almost all leaves are full.
-#include "projector/scene/leaf_tree.h"
+#include "projector/scene/bvh.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "base/util/parallel.h"
-#include "projector/scene/prepared_data.h"
 
 namespace trilens {
 namespace {

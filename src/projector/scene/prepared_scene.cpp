@@ -1,5 +1,5 @@
 // Copies a scene into leaf order.
-#include "projector/scene/prepared_data.h"
+#include "projector/scene/bvh.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 // The engines behind one seam: each fills in what every sample shows.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 
 #include "base/raymesh/sample_grid.h"
-#include "render/frame/fragment_key.h"
 #include "render/frame/frame.h"
 #include "render/frame/request.h"
 #include "render/frame/views.h"
@@ -43,5 +43,21 @@ class Viewer {
 /// has, or the optics have too many facets to hold.
 std::unique_ptr<Viewer> make_viewer(const World& world, const FrameParams& frame, const EngineChoice& engine,
                                     const Warn& warn);
+
+// Views through facets: the two projectors, and Embree on the rays of the same facets.
+
+/// A viewer in which every optic is its N x N grid. `engine`: any but kLimitTruth. With
+/// kClassic, too, the exact projector finds which facet each sample sees; the classic one draws the objects
+/// there, and those that the camera sees itself. `watch`: told every RayMesh that leaves an optic and is
+/// drawn through, with the samples that it is drawn at and the grid that they count in; all only live for the
+/// call.
+using WatchMesh = std::function<void(const RayMesh&, const FacetSamples&, const SampleGrid&)>;
+std::unique_ptr<Viewer> make_facet_viewer(const World& world, Frame frame, const EngineChoice& engine,
+                                          const WatchMesh& watch = {});
+
+// Viewer of the exact surfaces: the limit truth.
+
+/// A viewer that follows every sample's camera ray to the exact surface and on into the scene.
+std::unique_ptr<Viewer> make_limit_viewer(const World& world, CameraRays camera);
 
 }  // namespace trilens

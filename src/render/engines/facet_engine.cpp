@@ -1,4 +1,4 @@
-#include "render/engines/facet_engine.h"
+#include "render/engines/engine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,7 @@
 #include "render/engines/fragment_keys.h"
 #include "render/engines/path_ends.h"
 #include "render/engines/rim_samples.h"
-#include "render/engines/trace_samples.h"
-#include "render/frame/optic_window.h"
+#include "render/frame/frame.h"
 
 namespace trilens {
 namespace {

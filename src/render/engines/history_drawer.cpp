@@ -1,11 +1,11 @@
-#include "render/engines/history_drawer.h"
+#include "render/engines/path_ends.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "base/util/parallel.h"
-#include "render/engines/history_keys.h"
+#include "render/engines/fragment_keys.h"
 
 namespace trilens {
 namespace {

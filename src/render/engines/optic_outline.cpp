@@ -1,4 +1,4 @@
-#include "render/engines/optic_outline.h"
+#include "render/engines/rim_samples.h"
 
 #include <algorithm>
 #include <cmath>

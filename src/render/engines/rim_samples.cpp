@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/util/parallel.h"
-#include "render/engines/first_surface.h"
-#include "render/world/geometry.h"
+#include "render/engines/path_ends.h"
+#include "render/world/world.h"
 
 namespace trilens {
 namespace {

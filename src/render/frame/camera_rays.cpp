@@ -4,10 +4,176 @@
 #include <cmath>
 #include <vector>
 
+#include "base/math/box.h"
 #include "base/util/parallel.h"
+#include "paths/trace/path_world.h"
+#include "render/world/world.h"
+#include "surfaces/surfaces.h"
 #include "trilinear/points/point_images.h"
 
 namespace trilens {
+
+namespace {
+
+/// Boxes come from grids of about so many facets, widened by this share of their sides for what lies between.
+constexpr double kBoxFacets = 20'000, kWider = 0.25;
+constexpr int kFinestForBox = 8;
+
+Box box_around(const Surface& surface) {
+    const double per_face =
+        kBoxFacets / (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
+    Box box;
+    const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), 1, kFinestForBox);
+    for (const Vec3& point : make_grid(surface, n).points) box.include(point);
+    const Vec3 margin = kWider * box.size();
+    return {box.low - margin, box.high + margin};
+}
+
+bool holds(const Box& box, const Vec3& p) {
+    for (int k = 0; k < 3; ++k)
+        if (!(box.low[k] <= p[k] && p[k] <= box.high[k])) return false;
+    return true;
+}
+
+/// The point that all rays of the camera start in; none where they do not.
+std::optional<Vec3> eye_of(const CameraRays& camera) {
+    if (camera.linear) {
+        if (camera.linear->parallel || camera.near_depth > 0) return std::nullopt;
+        return camera.linear->eye;
+    }
+    const std::optional<Vec3> eye = camera.model ? camera.model->eye() : std::nullopt;
+    const std::optional<Ray> middle =
+        eye ? camera.model->ray(0.5 * Vec2(camera.film.width, camera.film.height)) : std::nullopt;
+    return middle && middle->origin == *eye ? eye : std::nullopt;
+}
+
+const Material* glass_of(const World& world, Id optic) {
+    return optic == kNone ? nullptr : &world.scene.materials[world.optics[optic].material];
+}
+
+Id active(const World& world, const Media& media) {
+    return media.active([&](Id optic) { return world.scene.meshes[world.optics[optic].mesh].priority; });
+}
+
+}  // namespace
+
+Media CameraMedia::of(const Ray& ray) const {
+    if (!by_ray) return fixed;
+    std::vector<Id> asked;
+    for (std::size_t i = 0; i < near.size(); ++i)
+        if (holds(boxes[i], ray.origin)) asked.push_back(near[i]);
+    if (asked.empty()) return {};
+    return bodies_along(path_world(*world), asked, {ray.origin, normalize_or_zero(ray.direction)});
+}
+
+CameraMedia camera_media_of(const World& world, const CameraRays& camera) {
+    CameraMedia around;
+    const std::optional<Vec3> eye = eye_of(camera);
+    for (std::size_t i = 0; i < world.optics.size(); ++i) {
+        if (world.optics[i].mirror) continue;
+        const Box box = box_around(*world.optics[i].surface);
+        if (eye && !holds(box, *eye)) continue;
+        around.near.push_back(static_cast<Id>(i));
+        around.boxes.push_back(box);
+    }
+    if (around.near.empty()) return around;
+    if (!eye) {
+        around.world = &world;
+        around.by_ray = true;
+        return around;
+    }
+    EnclosingBodies found = enclosing_bodies(path_world(world), around.near, *eye);
+    around.fixed = found.media;
+    around.unsure = std::move(found.unsure);
+    return around;
+}
+
+CameraMedia media_by_ray(const World& world) {
+    CameraMedia around;
+    around.world = &world;
+    around.by_ray = true;
+    for (std::size_t i = 0; i < world.optics.size(); ++i) {
+        if (world.optics[i].mirror) continue;
+        around.near.push_back(static_cast<Id>(i));
+        around.boxes.push_back(box_around(*world.optics[i].surface));
+    }
+    return around;
+}
+
+void warn_of_unsure_media(const World& world, const CameraMedia& around, const Warn& warn) {
+    if (!warn) return;
+    const auto bodies = std::count_if(world.optics.begin(), world.optics.end(),
+                                      [](const Optic& optic) { return !optic.mirror; });
+    if (bodies < 2) return;  // what leaves a body leaves it whether it was inside or not
+    for (const Id optic : around.unsure)
+        warn("the camera is inside of " + world.names[world.optics[optic].mesh] +
+             " in some directions only, for that is no closed surface or is inside out; it is taken to be " +
+             (around.fixed.holds(optic) ? "inside" : "outside"));
+}
+
+void set_initial_media(const CameraMedia& around, SampleViews& views) {
+    if (around.none()) return;
+    if (!around.by_ray) {
+        views.around = {around.fixed};
+        for (SampleView& view : views.samples) view.around = 0;
+        return;
+    }
+    std::vector<Media> found(views.samples.size());
+    parallel_for(found.size(), 256, [&](std::size_t from, std::size_t to) {
+        for (std::size_t s = from; s < to; ++s)
+            if (views.samples[s].ray.direction != Vec3(0)) found[s] = around.of(views.samples[s].ray);
+    });
+    for (std::size_t s = 0; s < found.size(); ++s) {
+        if (found[s].count == 0) continue;
+        views.samples[s].around = static_cast<Id>(views.around.size());
+        views.around.push_back(found[s]);
+    }
+}
+
+Vec3 light_of_view(const World& world, const SampleViews& views, const SampleView& view) {
+    if (view.around == kNone) return Vec3(1);
+    const Material* glass = glass_around(world, views.around_of(view));
+    if (view.optic != kNone) return volume_transmittance(*glass, views.on_optic(view).way);
+    return view.hit.seen() ? volume_transmittance(*glass, view.hit.t * length(view.ray.direction)) : Vec3(1);
+}
+
+const Material* glass_around(const World& world, const Media& around) {
+    return glass_of(world, active(world, around));
+}
+
+GlassInterface interface_of(const World& world, Id optic, const Media& around, bool front) {
+    const Material* own = glass_of(world, optic);
+    const Vec3& tint = own->base_color_factor;
+    if (around.count == 0) return {front ? nullptr : own, front ? own : nullptr, tint};
+    const std::optional<MediaSides> sides = sides_of(around, optic, front);
+    if (!sides) return {own, own, tint};  // light lost: nothing is drawn there
+    return {glass_of(world, active(world, sides->before)), glass_of(world, active(world, sides->after)),
+            tint};
+}
+
+OpticWeights first_weights(const World& world, const SampleViews& views, const SampleView& view) {
+    const bool fresnel = world.scene.render.fresnel;
+    const Material& material = *glass_of(world, view.optic);
+    const Incidence& incidence = views.on_optic(view).incidence;
+    if (view.around == kNone) return optic_weights(material, incidence, fresnel);
+    OpticWeights weights =
+        world.optics[view.optic].mirror
+            ? optic_weights(material, incidence, fresnel)
+            : interface_weights(interface_of(world, view.optic, views.around_of(view), incidence.front),
+                                incidence.cosine, fresnel);
+    const Vec3 light = light_of_view(world, views, view);
+    weights.reflect *= light;
+    weights.refract *= light;
+    return weights;
+}
+
+double relative_ior(const World& world, std::size_t optic, const Media& around) {
+    const Id own = static_cast<Id>(optic);
+    const bool front = !around.holds(own);
+    const double eta = eta_of(interface_of(world, own, around, front), -1);
+    return front ? 1 / eta : eta;
+}
+
 namespace {
 
 bool has_optics(const Scene& scene) {

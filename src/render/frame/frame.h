@@ -1,20 +1,71 @@
-// What depends on a picture's camera and resolution: the camera's rays, and optics as facets that it sees.
+// Which facet of a grid holds a parameter position.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
-#include "paths/facets/path_builder.h"
+#include "base/raymesh/ray_mesh.h"
+#include "base/raymesh/surface.h"
+#include "camera/model/camera_model.h"
+#include "paths/facets/optic_paths.h"
 #include "paths/first/corner_rays.h"
 #include "paths/nested/nested_optics.h"
-#include "render/frame/camera_media.h"
 #include "render/frame/camera_rays.h"
-#include "render/frame/film_grid.h"
 #include "render/frame/request.h"
-#include "render/world/geometry.h"
 #include "render/world/world.h"
 
 namespace trilens {
+
+/// Every face's parameters in bins that know the facets which reach into them. The grid must live longer.
+class FacetLookup {
+  public:
+    FacetLookup(const SurfaceGrid& grid, std::size_t faces);
+
+    /// The first of the grid's facets that holds the position of the face; kNone where rounding leaves it in
+    /// none.
+    Id at(Id face, const Vec2& uv) const;
+
+  private:
+    struct FaceBins {
+        std::size_t first = 0;  // of its side * side bins, row by row
+        std::size_t side = 1;
+    };
+    template <typename Body>
+    void for_each_bin(std::size_t facet, const Body& body) const;
+    std::size_t cell_of(double x, const FaceBins& bins) const;
+
+    const SurfaceGrid& grid_;
+    std::vector<FaceBins> faces_;
+    std::vector<std::size_t> begin_;  // per bin, and one more: into facets_
+    std::vector<Id> facets_;          // ascending in each bin
+};
+
+// An optic's grid on the film of a camera that is not linear: where its facets appear, perhaps several times.
+
+/// The grid's facets once for each place at which a branch of the camera shows them (twice where they lie
+/// across a panorama's seam), with affine screens. Facets that no film place can show are left out.
+struct FilmGrid {
+    SurfaceGrid grid;               // facets in their places; points are those of the original
+    std::vector<CornerView> views;  // per corner of `grid`
+    std::vector<Id> original;       // per facet of `grid`: the facet it is
+    std::vector<std::size_t> first,
+        placed;                       // original facet f is at placed[first[f]] .. placed[first[f+1]-1]
+    std::vector<std::size_t> branch;  // per facet of `grid`
+    std::vector<Vec2> middle;         // likewise, pixels
+    std::vector<double> reach;        // how far from its middle the film may show it, pixels
+    std::size_t lost = 0;  // facets with a corner on the film and none to be placed: across a pole, or partly
+                           // where the camera has no image
+
+    /// The facet of `grid` by which the film shows original facet f at that place: the nearest of the branch
+    /// that the film shows there; where that has none, the nearest of another that reaches so far (branches
+    /// go on smoothly). kNone where none does.
+    Id facet_at(Id f, const Vec2& at, const CameraModel& model) const;
+};
+
+FilmGrid make_film_grid(const SurfaceGrid& grid, const CameraModel& model, const FilmSize& film);
+
+// What depends on a picture's camera and resolution: the camera's rays, and optics as facets that it sees.
 
 /// One optic as facets that the camera sees. Facets of the RayMeshes are those of the grid, or, where there
 /// is a film_grid, of that.
@@ -80,5 +131,14 @@ const RayMesh* find_path(const FramedOptic& optic, Path path);
 /// Throws UsageError for a camera that the scene does not have, a resolution beyond 1..1024 (0: none is asked
 /// for), or a largest error beyond 0..kMostMaxError.
 void check_frame(const World& world, const FrameParams& frame);
+
+// Conservative screen bounds of an optic.
+
+/// The pixels of the film that the optic's facets may cover. All of them where its corners do not say: the
+/// camera is not linear, or some lie behind it.
+SampleGrid optic_window(const FramedOptic& optic, const CameraRays& camera);
+
+/// The part of a grid in a window's pixels, with the grid's own samples; of size 0 where they share none.
+SampleGrid part_in(const SampleGrid& grid, const SampleGrid& window);
 
 }  // namespace trilens

@@ -18,7 +18,7 @@ namespace trilens {
 inline constexpr double kAnyError = std::numeric_limits<double>::infinity();
 
 /// Which facets stand for the samples in them. kAll: each that may. kWorthwhile: those that it takes less to
-/// probe than to follow their samples' own rays, which the others' are (paths/facets/probe_plan.h).
+/// probe than to follow their samples' own rays, which the others' are (paths/facets/optic_paths.h).
 /// Pictures are drawn so; what facets themselves are good for is seen with all.
 enum class FacetUse { kAll, kWorthwhile };
 

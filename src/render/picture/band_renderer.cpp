@@ -1,4 +1,4 @@
-#include "render/picture/band_renderer.h"
+#include "render/picture/picture.h"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,10 @@
 
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "render/frame/camera_media.h"
+#include "render/frame/camera_rays.h"
 #include "render/picture/channels.h"
 #include "render/picture/fragments.h"
-#include "render/picture/pixel_filter.h"
-#include "render/picture/ray_differentials.h"
+#include "render/picture/sample_colour.h"
 
 namespace trilens {
 namespace {

@@ -7,7 +7,7 @@
 #include "base/util/format.h"
 #include "camera/camera.h"
 #include "render/engines/engine.h"
-#include "render/picture/ray_differentials.h"
+#include "render/picture/sample_colour.h"
 
 namespace trilens {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/picture/fragment_shader.h"
+#include "render/picture/fragments.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/picture/ray_differentials.h"
+#include "render/picture/sample_colour.h"
 
 namespace trilens {
 namespace {

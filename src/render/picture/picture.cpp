@@ -9,11 +9,9 @@
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "base/util/names.h"
-#include "base/util/progress.h"
 #include "base/util/version.h"
 #include "paths/trace/follow.h"
 #include "render/engines/engine.h"
-#include "render/picture/band_renderer.h"
 #include "scene/read/reading.h"
 
 namespace trilens {

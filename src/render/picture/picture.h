@@ -2,7 +2,8 @@
 #pragma once
 
 #include "base/image/image.h"
-#include "base/util/progress.h"
+#include "base/util/error.h"
+#include "render/engines/engine.h"
 #include "render/frame/request.h"
 
 namespace trilens {
@@ -14,5 +15,15 @@ struct World;
 /// fit the machine's memory, and as make_viewer and draw_layers do. `sink`: as draw_layers has it.
 Picture draw_picture(const World& world, const PictureRequest& request, const Progress& progress,
                      const Warn& warn, const StripSink* sink = nullptr);
+
+// From views to an image, band by band: shading, the filter, and the channels.
+
+/// Draws the window, which lies on the film and is not empty, band by band. Colours are the mean over the
+/// samples of a pixel, or as the film's filter weights those around; ids, positions and depths are those of
+/// the pixel's centre, whatever the number of samples. Throws Interrupted, and ComputationError when a pixel
+/// is not finite. `sink`: takes the pixels band by band where it is given; then the image that comes back has
+/// no channels.
+Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& request, const Progress& progress,
+                  LayerStatistics* statistics = nullptr, const StripSink* sink = nullptr);
 
 }  // namespace trilens

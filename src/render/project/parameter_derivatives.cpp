@@ -1,11 +1,11 @@
-#include "render/project/parameter_derivatives.h"
+#include "render/project/image_chain.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/math/box.h"
 #include "base/util/parallel.h"
-#include "render/frame/camera_media.h"
+#include "render/frame/camera_rays.h"
 #include "scene/data/scene_digest.h"
 
 namespace trilens {

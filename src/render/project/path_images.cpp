@@ -5,7 +5,7 @@
 #include "base/math/box.h"
 #include "base/util/parallel.h"
 #include "render/project/image_chain.h"
-#include "render/world/geometry.h"
+#include "render/world/world.h"
 #include "specular/specular_point.h"
 
 namespace trilens {

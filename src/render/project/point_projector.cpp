@@ -6,7 +6,7 @@
 
 #include "base/math/box.h"
 #include "reflect/reflection.h"
-#include "render/project/image_weight.h"
+#include "render/project/image_chain.h"
 
 namespace trilens {
 namespace {

@@ -5,11 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "render/frame/facet_lookup.h"
-#include "render/project/facet_images.h"
+#include "render/frame/frame.h"
 #include "render/project/image_chain.h"
-#include "render/project/occlusion.h"
-#include "render/project/parameter_derivatives.h"
 #include "render/project/path_images.h"
 #include "render/project/project.h"
 #include "specular/specular_search.h"

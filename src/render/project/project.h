@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/math/vec.h"
-#include "base/util/progress.h"
+#include "base/util/error.h"
 #include "paths/trace/path.h"
 #include "render/frame/request.h"
-#include "render/shoot/event_word.h"
+#include "render/shoot/shoot.h"
 
 namespace trilens {
 

@@ -3,10 +3,8 @@
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
-#include "render/frame/camera_media.h"
+#include "render/frame/camera_rays.h"
 #include "render/project/image_chain.h"
-#include "render/project/image_weight.h"
-#include "render/project/occlusion.h"
 #include "render/project/project.h"
 
 namespace trilens {

@@ -1,4 +1,4 @@
-#include "render/world/caustic_lights.h"
+#include "render/world/world.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,7 @@
 #include "base/math/box.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "paths/trace/enclosing_bodies.h"
-#include "render/world/geometry.h"
+#include "paths/trace/path_world.h"
 #include "shade/lights/light_sample.h"
 #include "surfaces/surfaces.h"
 

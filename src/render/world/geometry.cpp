@@ -1,11 +1,10 @@
-#include "render/world/geometry.h"
+#include "render/world/world.h"
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 
 #include "base/raymesh/surface.h"
-#include "render/world/caustic_lights.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {

@@ -4,8 +4,6 @@
 
 #include "base/math/box.h"
 #include "base/util/error.h"
-#include "render/world/caustic_lights.h"
-#include "render/world/geometry.h"
 #include "scene/data/scene_digest.h"
 #include "shade/optic_weights.h"
 #include "surfaces/memory_budget.h"

@@ -1,18 +1,116 @@
-// The world: a scene made of triangles to look at, and optics to look through.
+// Acceleration structures and grids of a world, built lazily.
 #pragma once
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/raymesh/surface.h"
-#include "base/util/progress.h"
+#include "base/util/error.h"
+#include "base/util/parallel.h"
+#include "caustics/beam_light.h"
+#include "intersect/limit_tracer.h"
+#include "intersect/tracer.h"
+#include "paths/trace/path_world.h"
+#include "projector/projector.h"
 #include "render/world/scene_reuse.h"
 #include "scene/data/scene.h"
 #include "shade/shade.h"
 
 namespace trilens {
+
+struct CausticLights;
+
+/// An optic's grid at one resolution. Its facets as a scene: triangle f is facet f, its object the optic's.
+class OpticFacets {
+  public:
+    OpticFacets(SurfaceGrid grid, Id object) : grid_(std::move(grid)), object_(object) {}
+
+    const SurfaceGrid& grid() const { return grid_; }
+    TriangleScene scene() const;
+    const PreparedScene& prepared() const;
+    const Tracer& tracer() const;
+
+  private:
+    SurfaceGrid grid_;
+    Id object_ = kNone;
+    Lazy<PreparedScene> prepared_;
+    Lazy<Tracer> tracer_;
+};
+
+/// Makes room for what is built later; called once, when the world has all its optics.
+void prepare_geometry(World& world);
+
+/// The same where a changed world keeps parts: `kept_optics` holds, per optic of now, the index it had before
+/// or kNone; `keeps_objects`: all objects are as they were.
+void keep_geometry(World& world, const std::vector<Id>& kept_optics, bool keeps_objects);
+
+/// The objects for the projector, and for rays.
+const PreparedScene& prepared_objects(const World& world);
+const Tracer& object_tracer(const World& world);
+
+/// The exact surface of an optic for rays.
+const LimitTracer& limit_tracer(const World& world, std::size_t optic);
+
+/// All optics as paths meet them, with their exact surfaces, and how far the scene has paths followed.
+const PathWorld& path_world(const World& world);
+
+/// Whether any light asks what lies between it and a point.
+bool has_shadows(const World& world);
+
+/// The segments that an object, or the exact surface of a mirror, meets. Glass lets the light through.
+Segments::Bits casts_shadow(const World& world, const Segments& segments);
+
+/// The segments that an object or an optic of any kind meets: where light that is followed over optics does not
+/// come straight.
+Segments::Bits meets_anything(const World& world, const Segments& segments);
+
+/// The beams of lights with caustics, made when first asked for.
+const CausticLights& caustic_lights(const World& world);
+
+/// Builds what casts_shadow asks, where the scene has shadows: before many threads do.
+void prepare_shadows(const World& world);
+
+/// The optic's facets at resolution n. The last resolution of each optic is kept, so that a new camera finds
+/// it.
+std::shared_ptr<const OpticFacets> optic_facets(const World& world, std::size_t optic, int n);
+
+// The lights of a world whose light is followed over optics.
+
+/// Beams of the scene's lights.
+struct CausticLights {
+    PathWorld optics;                                               // as lights see them
+    std::vector<std::vector<std::unique_ptr<BeamLight>>> by_light;  // its samples'; none: it is not followed
+};
+
+/// The light as sources whose rays start in a point or are parallel: its samples, of a sphere parts of its
+/// surface; none for ambient light. `background`: what an environment's light is of.
+std::vector<BeamSource> beam_sources(const Light& light, const Background& background);
+
+/// Whether any light is followed over optics.
+bool has_caustics(const World& world);
+
+/// The beams of one light of the scene, of each of its samples, whether it says that it is followed or not.
+/// Throws UsageError for a light that has none.
+std::vector<std::unique_ptr<BeamLight>> make_beam_lights(const World& world, const PathWorld& optics,
+                                                         std::size_t light, const BeamGridParams& params = {},
+                                                         const Progress& progress = {});
+
+/// Irradiance of all samples together.
+Vec3 irradiance(const std::vector<std::unique_ptr<BeamLight>>& lights, const Receiver& receiver);
+
+/// The scene's optics and depth, with first events of both kinds.
+PathWorld optics_for_lights(const World& world);
+
+/// Beams of all lights that are followed; made when first asked for.
+std::unique_ptr<CausticLights> make_caustic_lights(const World& world);
+
+/// Warns of what beams leave out.
+void warn_of_lost_light(const World& world, const CausticLights& lights, const Warn& warn);
+
+// The world: a scene made of triangles to look at, and optics to look through.
 
 /// One optic: its exact surface and what it does to light.
 struct Optic {
@@ -26,7 +124,7 @@ struct Optic {
 struct WorldGeometry;
 
 /// What does not change from picture to picture; pointers inside point into the world itself, so it stays
-/// where it is. Thread-safe to read. What is built from it (trees, grids) is in geometry.h.
+/// where it is. Thread-safe to read. What is built from it (trees, grids) stands above.
 struct World {
     World();
     ~World();

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/raymesh/check_data.h"
+#include "base/raymesh/sample_grid.h"
 #include "base/util/error.h"
 
 namespace trilens {

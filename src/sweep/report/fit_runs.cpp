@@ -1,5 +1,5 @@
 // The order with which the errors of a sweep fall.
-#include "sweep/report/fit_runs.h"
+#include "sweep/report/sweep_report.h"
 
 #include <algorithm>
 #include <limits>

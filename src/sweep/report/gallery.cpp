@@ -7,11 +7,8 @@
 #include "base/files/files.h"
 #include "report/page.h"
 #include "report/text.h"
-#include "sweep/report/fit_runs.h"
-#include "sweep/report/report_text.h"
 #include "sweep/report/sweep_pictures.h"
-#include "sweep/report/sweep_plots.h"
-#include "sweep/store/results_json.h"
+#include "sweep/report/sweep_report.h"
 #include "sweep/store/sweep_folder.h"
 
 namespace trilens {

@@ -1,4 +1,4 @@
-#include "sweep/report/report_text.h"
+#include "sweep/report/sweep_report.h"
 
 #include <algorithm>
 #include <optional>
@@ -7,8 +7,6 @@
 #include "base/util/error.h"
 #include "base/util/format.h"
 #include "report/text.h"
-#include "sweep/report/fit_runs.h"
-#include "sweep/report/sweep_plots.h"
 
 namespace trilens {
 

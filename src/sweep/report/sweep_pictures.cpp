@@ -16,10 +16,8 @@
 #include "base/util/parallel.h"
 #include "image/image_io.h"
 #include "report/text.h"
-#include "sweep/report/report_text.h"
-#include "sweep/report/sweep_plots.h"
-#include "sweep/store/run_files.h"
-#include "sweep/store/sweep_ownership.h"
+#include "sweep/report/sweep_report.h"
+#include "sweep/store/sweep_folder.h"
 
 namespace trilens {
 namespace {

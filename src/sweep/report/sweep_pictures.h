@@ -13,7 +13,6 @@
 
 #include "base/image/image.h"
 #include "report/page.h"
-#include "report/pictures.h"
 #include "sweep/store/results.h"
 
 namespace trilens {

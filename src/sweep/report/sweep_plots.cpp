@@ -1,4 +1,4 @@
-#include "sweep/report/sweep_plots.h"
+#include "sweep/report/sweep_report.h"
 
 #include <algorithm>
 #include <cctype>
@@ -10,10 +10,8 @@
 #include <set>
 #include <utility>
 
-#include "report/heat_map.h"
 #include "report/plot.h"
 #include "report/text.h"
-#include "sweep/report/fit_runs.h"
 
 namespace trilens {
 

@@ -9,11 +9,8 @@
 #include "base/files/files.h"
 #include "base/util/format.h"
 #include "report/page.h"
-#include "sweep/report/report_text.h"
 #include "sweep/report/sweep_pictures.h"
-#include "sweep/report/sweep_plots.h"
 #include "sweep/store/sweep_folder.h"
-#include "sweep/store/sweep_ownership.h"
 
 namespace trilens {
 namespace {

@@ -1,4 +1,4 @@
-#include "sweep/run/merge.h"
+#include "sweep/run/farm_scripts.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,8 +9,6 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "sweep/store/results_json.h"
-#include "sweep/store/run_files.h"
 #include "sweep/store/sweep_folder.h"
 
 namespace trilens {

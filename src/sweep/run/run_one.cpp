@@ -1,4 +1,4 @@
-#include "sweep/run/run_one.h"
+#include "sweep/run/sweep.h"
 
 #include <algorithm>
 #include <charconv>
@@ -14,12 +14,10 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "base/util/progress.h"
 #include "image/image_io.h"
 #include "report/text.h"
 #include "sweep/report/sweep_pictures.h"
 #include "sweep/store/machine.h"
-#include "sweep/store/run_files.h"
 #include "sweep/store/sweep_folder.h"
 
 namespace trilens {

@@ -16,17 +16,10 @@
 #include "base/util/check.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "sweep/report/fit_runs.h"
-#include "sweep/report/report_text.h"
 #include "sweep/report/sweep_pictures.h"
 #include "sweep/report/sweep_report.h"
-#include "sweep/run/run_one.h"
-#include "sweep/store/csv.h"
 #include "sweep/store/machine.h"
-#include "sweep/store/results_json.h"
-#include "sweep/store/run_files.h"
 #include "sweep/store/sweep_folder.h"
-#include "sweep/store/sweep_ownership.h"
 
 namespace trilens {
 namespace {

@@ -1,5 +1,5 @@
 // runs.csv and displacement.csv: one row per run, and one row per run, optic and layer.
-#include "sweep/store/csv.h"
+#include "sweep/store/sweep_folder.h"
 
 #include <algorithm>
 #include <array>

@@ -156,4 +156,9 @@ inline std::string run_folder(const std::string& folder, const std::string& id) 
     return folder + "/runs/" + id;
 }
 
+// The JSON Schema of summary.json: what its fields mean.
+
+/// JSON Schema (draft 7), as text.
+const char* summary_schema();
+
 }  // namespace trilens

@@ -1,5 +1,5 @@
 // The sweep's own JSON files: written so that people can read them, read so that damage is noticed.
-#include "sweep/store/results_json.h"
+#include "sweep/store/sweep_folder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The files of one run: what makes it finished, and what it then says.
-#include "sweep/store/run_files.h"
+#include "sweep/store/sweep_folder.h"
 
 #include <sys/stat.h>
 
@@ -15,13 +15,9 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
-#include "base/util/progress.h"
 #include "image/image_io.h"
 #include "measure/compare.h"
-#include "measure/compare_layers.h"
-#include "measure/difference.h"
 #include "measure/displacement/displacement.h"
-#include "sweep/store/results_json.h"
 
 namespace trilens {
 namespace {

@@ -1,4 +1,4 @@
-#include "sweep/store/summary_schema.h"
+#include "sweep/store/results.h"
 
 namespace trilens {
 

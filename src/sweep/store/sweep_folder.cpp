@@ -16,8 +16,6 @@
 #include "base/files/files.h"
 #include "base/util/error.h"
 #include "base/util/format.h"
-#include "sweep/store/results_json.h"
-#include "sweep/store/sweep_ownership.h"
 
 namespace trilens {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "sweep/store/sweep_ownership.h"
+#include "sweep/store/sweep_folder.h"
 
 #include <algorithm>
 #include <array>

@@ -8,7 +8,7 @@
 
 #include "base/math/box.h"
 #include "base/math/roots.h"
-#include "base/raymesh/check_data.h"
+#include "base/raymesh/sample_grid.h"
 #include "base/util/error.h"
 #include "base/util/parallel.h"
 

@@ -99,7 +99,7 @@ class MeshPointImages {
     /// All images of a world point with t >= 0 inside their facet (borders: see point_images). An image on an
     /// edge or corner that facets share is listed once, with the smallest facet. Images behind the camera
     /// (screen w <= 0) are left out. Throws InputError for a point that is not finite or beyond
-    /// kLargestNumber (base/raymesh/check_data.h).
+    /// kLargestNumber (base/raymesh/sample_grid.h).
     std::vector<MeshPointImage> images(const Vec3& point) const;
 
     /// The same for many points, in parallel.

@@ -11,7 +11,7 @@
 #include <iterator>
 #include <optional>
 
-#include "cli/scene_options.h"
+#include "cli/options.h"
 #include "view/script.h"
 #include "view/window/gl_screen.h"
 #include "view/window/memory_screen.h"

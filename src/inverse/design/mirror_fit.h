@@ -1,12 +1,25 @@
-// One sample of a mirror in design: its reflected ray, the slopes that the wish needs, and their derivatives.
+// What the design of a mirror is fitted by: the sphere to begin with, and the rows of one sample.
 #pragma once
 
 #include <array>
+#include <span>
 
-#include "inverse/design/height_field.h"
-#include "inverse/design/wish.h"
+#include "inverse/design/design.h"
 
 namespace trilens {
+
+// The sphere that comes nearest to a wish: what a freeform mirror is held against.
+
+DesignErrors design_errors(std::vector<double> degrees);
+
+/// Radius and tilt by Levenberg and Marquardt, through the anchor, from the flat rectangle.
+BestSphere best_sphere(const DesignWish& wish, const WishedRays& rays, std::span<const Vec2> samples);
+
+/// The height over `at` of the sphere of this curvature (0: a plane; positive: convex towards +z) through
+/// (anchor, 0) with slopes `tilt` there; none where the sphere does not reach so far.
+std::optional<Height> sphere_height(double curvature, const Vec2& tilt, const Vec2& at);
+
+// One sample of a mirror in design: its reflected ray, the slopes that the wish needs, and their derivatives.
 
 /// Where the samples of a rectangle lie: middles of columns x rows equal parts, row by row.
 std::vector<Vec2> patch_samples(const Vec2& size, const std::array<int, 2>& counts);
