@@ -37,7 +37,8 @@ Answer gltf_file(std::string_view bytes) {
     const bool binary = bytes.substr(0, 4) == "glTF";
     const std::string file = put_file(binary ? "fuzzed.glb" : "fuzzed.gltf", bytes);
     return answer([&] {
-        SceneRequest request{file};
+        SceneRequest request;
+        request.file = file;
         request.import.optics = {"mirror*"};
         request.import.time = 0.25;
         const Scene scene = load_scene(request);

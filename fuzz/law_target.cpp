@@ -54,7 +54,9 @@ void require_light(const Image& image, bool is_unlit) {
 void require_redrawn(const Image& image, const Bytes& bytes, const PictureRequest& request) {
     const std::string file = put_file(
         "drawn.exr", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    const Renderer again(load_scene({file}));
+    SceneRequest drawn_scene;
+    drawn_scene.file = file;
+    const Renderer again(load_scene(drawn_scene));
     require(encode_image(again.draw(request).image) == bytes, "a picture's header draws another picture");
     require(read_image(file).metadata == image.metadata, "a picture's header is another once it is read");
 }

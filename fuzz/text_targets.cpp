@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "fuzz/target.h"
+#include "scene/data/scene_digest.h"
 #include "scene/formats/obj.h"
 #include "trilens/animation.h"
 #include "trilens/design.h"

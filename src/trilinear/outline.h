@@ -155,6 +155,12 @@ struct ClippedShapes {
 
 ClippedShapes clip_in_scene(const FacetAndTriangle& pair, const std::vector<Shape>& shapes);
 
+/// A closed polygon in the facet's weights, the last vertex joined to the first. Between its vertices t and
+/// the barycentrics are not linear: t = n . (a - o) / (n . d) for the triangle's plane.
+struct Outline {
+    std::vector<ImageVertex> vertex;
+};
+
 /// A polyline whose two ends lie on the facet's border (one weight exactly 0).
 using Chain = std::vector<ImageVertex>;
 
@@ -167,12 +173,6 @@ std::vector<Outline> join_along_border(const FacetAndTriangle& pair, const std::
 std::vector<Outline> clip_on_screen(const FacetAndTriangle& pair, std::vector<Outline> outlines);
 
 // The image of a scene triangle in a facet as closed outlines: what a scanline filler or a drawing needs.
-
-/// A closed polygon in the facet's weights, the last vertex joined to the first. Between its vertices t and
-/// the barycentrics are not linear: t = n . (a - o) / (n . d) for the triangle's plane.
-struct Outline {
-    std::vector<ImageVertex> vertex;
-};
 
 struct ShapeParams {
     Curves curves = Curves::kArcs;

@@ -12,6 +12,8 @@ using namespace trilens;
 namespace trilens_test {
 namespace {
 
+void unheard(const std::string&) {}
+
 /// What a pixel shows, in ids.
 struct Seen {
     Id direct, optic, facet, reflect, refract;
@@ -63,7 +65,7 @@ void close_edge_ties(const World& world, std::vector<Differing>& open) {
                            Vec2(c, -c), Vec2(-c, -c)}) {
         if (open.empty()) return;
         const CameraRays camera = shifted(make_camera_rays(world.scene, 0), by);
-        const Frame frame = make_frame(world, camera, FrameParams{}, ignore);
+        const Frame frame = make_frame(world, camera, FrameParams{}, unheard);
         const std::unique_ptr<Viewer> project = make_facet_viewer(world, frame, Engine::kExact);
         const std::unique_ptr<Viewer> trace = make_facet_viewer(world, frame, Engine::kFacetsTruth);
         std::erase_if(open, [&](const Differing& pixel) {
@@ -81,8 +83,8 @@ Agreement compare_engines(const World& world) {
     const Film& film = world.scene.film;
     const SampleGrid grid{0, 0, film.width, film.height, 1};
     SampleViews projected, traced;
-    make_viewer(world, {}, Engine::kExact, ignore)->view(grid, projected);
-    make_viewer(world, {}, Engine::kFacetsTruth, ignore)->view(grid, traced);
+    make_viewer(world, {}, Engine::kExact, unheard)->view(grid, projected);
+    make_viewer(world, {}, Engine::kFacetsTruth, unheard)->view(grid, traced);
 
     Agreement result;
     result.pixels = grid.size();

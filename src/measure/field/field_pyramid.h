@@ -1,4 +1,4 @@
-// Bounds of the points that a cell's patches can show, computed lazily.
+// Pyramid of boxes over a position field, bounds of what its cells can show, and queries for nearest points.
 #pragma once
 
 #include <array>
@@ -17,6 +17,8 @@
 #include "measure/field/position_field.h"
 
 namespace trilens {
+
+struct FieldPyramid;
 
 /// All points that patches from any corner of a cell show lie in the box, and between two planes across each
 /// direction: those of the cell's own axes, for a cell that is long and oblique fills little of its box.

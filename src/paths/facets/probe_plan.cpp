@@ -7,7 +7,7 @@
 namespace trilens {
 namespace {
 
-constexpr double kMostSamples = 1e9;  // of a part; more count as so many
+constexpr double kMostCountedSamples = 1e9;  // of a part; more count as so many
 /// What is believed before anything was seen, and how many parts it weighs as much as.
 constexpr double kPriorAgree = 0.8, kPriorProjected = 0.8, kPriorParts = 4;
 /// Parts of parts with fewer samples than this are worth nothing at all.
@@ -48,7 +48,7 @@ ProbePlan::ProbePlan(double per_pixel, const ProbeCosts& costs, const ProbeTally
 }
 
 double ProbePlan::samples_in(double area) const {
-    return std::min(kMostSamples, area * per_pixel_);
+    return std::min(kMostCountedSamples, area * per_pixel_);
 }
 
 const ProbePlan::Share& ProbePlan::share(int level) const {
@@ -87,7 +87,7 @@ bool ProbePlan::is_worth_dividing(int level, double samples, bool probed) const 
 
 double ProbePlan::least_samples() const {
     double high = 1;
-    while (high < kMostSamples && !is_worth_corners(high)) high *= 2;
+    while (high < kMostCountedSamples && !is_worth_corners(high)) high *= 2;
     if (!is_worth_corners(high)) return std::numeric_limits<double>::infinity();
     double low = high / 2;
     for (int i = 0; i < 20; ++i) (is_worth_corners(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);

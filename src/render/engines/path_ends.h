@@ -95,7 +95,7 @@ void trace_samples(const TraceSamplesParams& params, std::span<const TracedSampl
                    SampleViews& views, PathEnds& out);
 
 /// Where a sample's ray meets its optic first.
-struct FirstHit {
+struct FirstOpticHit {
     SurfaceHit at;
     Media around;  // what the ray starts in
 };
@@ -110,7 +110,7 @@ struct SamplePaths {
 /// Appends the ends of all paths of a sample whose ray meets its optic (view.optic) there, with their steps.
 /// `first_step` of the ends counts in `steps`. The rays that leave carry the eye-to-surface length, as corner
 /// rays do.
-void follow_sample(const World& world, const FirstHit& first, const SampleView& view,
+void follow_sample(const World& world, const FirstOpticHit& first, const SampleView& view,
                    const SamplePaths& found);
 
 // What the samples of one optic see over all its paths, drawn through the RayMesh of each history.

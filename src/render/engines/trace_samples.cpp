@@ -107,7 +107,7 @@ void append_steps(const std::vector<PathSegment>& segments, Id last, std::vector
 
 }  // namespace
 
-void follow_sample(const World& world, const FirstHit& first, const SampleView& view,
+void follow_sample(const World& world, const FirstOpticHit& first, const SampleView& view,
                    const SamplePaths& found) {
     auto& [on_optic, ends, steps] = found;
     const SurfaceHit& hit = first.at;

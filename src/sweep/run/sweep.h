@@ -1,5 +1,5 @@
-// One run from its picture to its files: drawn, timed, compared with its truth, kept; the truths, each traced
-// once by whichever process or thread comes first.
+// A sweep: plan, runs from picture to files, each drawn, timed, compared with its truth and kept; the truths, each
+// traced once by whichever process or thread comes first.
 #pragma once
 
 #include <condition_variable>
@@ -21,6 +21,9 @@
 #include "sweep/store/results.h"
 
 namespace trilens {
+
+struct SweepParams;
+struct SweepCallbacks;
 
 // The truths of a sweep: each traced once, by whichever process or thread comes first, and kept in the
 // folder.
