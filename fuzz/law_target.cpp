@@ -52,8 +52,8 @@ void require_light(const Image& image, bool is_unlit) {
 
 /// The picture's own header draws it again.
 void require_redrawn(const Image& image, const Bytes& bytes, const PictureRequest& request) {
-    const std::string file = put_file(
-        "drawn.exr", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    const std::string file =
+        put_file("drawn.exr", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     SceneRequest drawn_scene;
     drawn_scene.file = file;
     const Renderer again(load_scene(drawn_scene));
@@ -72,11 +72,9 @@ void require_window(const Renderer& renderer, const Image& whole, PictureRequest
         for (int y = 0; y < part.data_height; ++y)
             for (int x = 0; x < part.data_width; ++x) {
                 const auto in_part = static_cast<std::size_t>(y * part.data_width + x);
-                const auto in_whole =
-                    static_cast<std::size_t>((part.y0 + y) * whole.width + part.x0 + x);
-                const bool same = channel.is_id()
-                                      ? channel.ids()[in_part] == other->ids()[in_whole]
-                                      : channel.floats()[in_part] == other->floats()[in_whole];
+                const auto in_whole = static_cast<std::size_t>((part.y0 + y) * whole.width + part.x0 + x);
+                const bool same = channel.is_id() ? channel.ids()[in_part] == other->ids()[in_whole]
+                                                  : channel.floats()[in_part] == other->floats()[in_whole];
                 require(same, "a window's " + channel.name + " is not the whole's");
             }
     }

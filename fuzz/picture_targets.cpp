@@ -26,8 +26,8 @@ bool same_values(const Channel& a, const Channel& b) {
 /// What is written is what is read, to the last bit.
 void require_round_trip(const Image& image) {
     const std::vector<unsigned char> bytes = encode_image(image);
-    const Image again = read_image(
-        put_file("again.exr", {reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+    const Image again =
+        read_image(put_file("again.exr", {reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
     require(again.width == image.width && again.height == image.height && again.x0 == image.x0 &&
                 again.y0 == image.y0 && again.data_width == image.data_width &&
                 again.data_height == image.data_height,
@@ -78,8 +78,8 @@ Answer png_file(std::string_view bytes) {
         const auto texture = decode_texture(encoded, "fuzzed.png");
         require(texture != nullptr, "neither a texture nor a word");
         require(texture->width > 0 && texture->height > 0, "a texture without texels");
-        require(texture->rgb.size() == 3 * static_cast<std::size_t>(texture->width) *
-                                           static_cast<std::size_t>(texture->height),
+        require(texture->rgb.size() ==
+                    3 * static_cast<std::size_t>(texture->width) * static_cast<std::size_t>(texture->height),
                 "a texture without a value for each texel");
     });
 }

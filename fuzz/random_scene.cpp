@@ -1,5 +1,5 @@
-// Structure-aware generation (as in Csmith, or libFuzzer's custom mutators): bytes become the choices of a grammar of
-// legal scenes, so that a change of a byte is a change of the scene.
+// Structure-aware generation (as in Csmith, or libFuzzer's custom mutators): bytes become the choices of a
+// grammar of legal scenes, so that a change of a byte is a change of the scene.
 #include "fuzz/random_scene.h"
 
 #include <fmt/format.h>
@@ -24,9 +24,7 @@ class Choices {
         const int number = 256 * byte() + byte();
         return low + (high - low) * number / 65535.0;
     }
-    double log_between(double low, double high) {
-        return std::exp(between(std::log(low), std::log(high)));
-    }
+    double log_between(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
     Vec3 vector(double size) {
         const double x = between(-size, size), y = between(-size, size), z = between(-size, size);
         return {x, y, z};
@@ -109,17 +107,19 @@ std::string materials(Grammar& g, bool unlit) {
         R"({{ "name": "chrome", "metallicFactor": 1, "baseColorFactor": [{}, {}, 1] }},
     {{ "name": "glass", "transmissionFactor": 1, "ior": {}{} }},)",
         share(g), share(g), kIndices[static_cast<std::size_t>(g.choose.below(6))],
-        g.choose.chance(80) ? fmt::format(R"(, "volume": {{ "attenuationDistance": {}, "attenuationColor": [0.9, 0.5, 0.2] }})",
-                                          g.scale)
-                            : "");
+        g.choose.chance(80)
+            ? fmt::format(
+                  R"(, "volume": {{ "attenuationDistance": {}, "attenuationColor": [0.9, 0.5, 0.2] }})",
+                  g.scale)
+            : "");
     for (const char* name : {"a", "b", "c"})
         all += fmt::format(R"(
     {{ "name": "{}", {} "baseColorFactor": [{}, {}, {}] }},)",
                            name,
-                           unlit                   ? R"("unlit": true,)"
-                           : g.choose.chance(128) ? fmt::format(R"("roughnessFactor": {},)",
-                                                                 0.05 + 0.95 * share(g))
-                                                  : "",
+                           unlit ? R"("unlit": true,)"
+                           : g.choose.chance(128)
+                               ? fmt::format(R"("roughnessFactor": {},)", 0.05 + 0.95 * share(g))
+                               : "",
                            share(g), share(g), share(g));
     all.pop_back();
     return all;
@@ -192,9 +192,9 @@ std::string object(Grammar& g, int number) {
     std::string shape;
     switch (g.choose.below(4)) {
         case 0:
-            shape = fmt::format(R"("points": [{}, {}, {}, {}], "faceVertexCounts": [4], "faceVertexIndices": [3,2,1,0])",
-                                g.place({-5, -1, -5}), g.place({5, -1, -5}), g.place({5, -1, 5}),
-                                g.place({-5, -1, 5}));
+            shape = fmt::format(
+                R"("points": [{}, {}, {}, {}], "faceVertexCounts": [4], "faceVertexIndices": [3,2,1,0])",
+                g.place({-5, -1, -5}), g.place({5, -1, -5}), g.place({5, -1, 5}), g.place({-5, -1, 5}));
             break;
         case 1: {  // two triangles that cross
             shape = fmt::format(
@@ -204,17 +204,17 @@ std::string object(Grammar& g, int number) {
             break;
         }
         case 2:
-            shape = fmt::format(
-                R"("primitive": {{ "type": "box", "center": {}, "size": [{}, {}, {}] }})",
-                g.place(centre(g, number) + Vec3(0, 0, -2)), g.size(0.01, 2), g.size(0.01, 2), g.size(0.01, 2));
+            shape = fmt::format(R"("primitive": {{ "type": "box", "center": {}, "size": [{}, {}, {}] }})",
+                                g.place(centre(g, number) + Vec3(0, 0, -2)), g.size(0.01, 2), g.size(0.01, 2),
+                                g.size(0.01, 2));
             break;
         default:
             shape = fmt::format(
                 R"("primitive": {{ "type": "sphere", "center": {}, "radius": {}, "segments": 8 }})",
                 g.place(centre(g, number) + Vec3(-1.5, 0, 1)), g.size(0.01, 1));
     }
-    return fmt::format(R"({{ "name": "object {}", "role": "object", "material": "{}", {} }})", number, material,
-                       shape);
+    return fmt::format(R"({{ "name": "object {}", "role": "object", "material": "{}", {} }})", number,
+                       material, shape);
 }
 
 std::string light(Grammar& g) {
@@ -225,21 +225,22 @@ std::string light(Grammar& g) {
         case 0:
             return fmt::format(R"({{ "type": "directional", "direction": {}{} }})", way, shadows);
         case 1:
-            return fmt::format(R"({{ "type": "point", "position": {}, "intensity": {}{} }})", at, far, shadows);
+            return fmt::format(R"({{ "type": "point", "position": {}, "intensity": {}{} }})", at, far,
+                               shadows);
         case 2:
             return fmt::format(
-                R"({{ "type": "spot", "position": {}, "direction": {}, "outerConeAngle": 30, "intensity": {}{} }})", at,
-                way, far, shadows);
+                R"({{ "type": "spot", "position": {}, "direction": {}, "outerConeAngle": 30, "intensity": {}{} }})",
+                at, way, far, shadows);
         case 3:
             return fmt::format(
-                R"({{ "type": "rectangle", "position": {}, "direction": {}, "size": [{}, {}], "samples": 4{} }})", at, way,
-                g.scale, 0.5 * g.scale, shadows);
+                R"({{ "type": "rectangle", "position": {}, "direction": {}, "size": [{}, {}], "samples": 4{} }})",
+                at, way, g.scale, 0.5 * g.scale, shadows);
         case 4:
-            return fmt::format(
-                R"({{ "type": "sphere", "position": {}, "radius": {}, "samples": 4{} }})", at, g.size(0.01, 1), shadows);
+            return fmt::format(R"({{ "type": "sphere", "position": {}, "radius": {}, "samples": 4{} }})", at,
+                               g.size(0.01, 1), shadows);
         case 5:
-            return fmt::format(R"({{ "type": "directional", "direction": {}, "angle": 5, "samples": 4{} }})", way,
-                               shadows);
+            return fmt::format(R"({{ "type": "directional", "direction": {}, "angle": 5, "samples": 4{} }})",
+                               way, shadows);
         default:
             return fmt::format(R"({{ "type": "ambient", "samples": 4{} }})", shadows);
     }

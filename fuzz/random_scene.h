@@ -1,5 +1,5 @@
-// Random legal scenes: every kind of optic, camera, light and material, at any scale, touching, nested, seen edge on
-// and from inside. The same bytes are the same scene on every machine.
+// Random legal scenes: every kind of optic, camera, light and material, at any scale, touching, nested, seen
+// edge on and from inside. The same bytes are the same scene on every machine.
 #pragma once
 
 #include <string>

@@ -95,8 +95,7 @@ Answer obj_text(std::string_view bytes) {
 Answer mtl_text(std::string_view bytes) {
     return answer([&] {
         for (const MtlMaterial& material : parse_mtl(std::string(bytes), "fuzzed.mtl").materials)
-            for (int c = 0; c < 3; ++c)
-                require(material.diffuse[c] >= 0, "a colour that is none");
+            for (int c = 0; c < 3; ++c) require(material.diffuse[c] >= 0, "a colour that is none");
     });
 }
 

@@ -1,4 +1,5 @@
-// Every seed of the fuzzers, and what once broke, through its target: any compiler's test of what fuzzers found.
+// Every seed of the fuzzers, and what once broke, through its target: any compiler's test of what fuzzers
+// found.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
