@@ -16,7 +16,7 @@ import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SEEDS = ROOT / "fuzz" / "seeds"
-PROGRAM = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "build/release/trilens")
+PROGRAM = str(pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release/trilens").resolve())
 
 CAMERA = {"name": "c", "type": "perspective", "yfov": 40, "lookAt": {"eye": [0, 0, 4], "at": [0, 0, 0]}}
 SMALL = {
@@ -53,7 +53,7 @@ def scenes():
     write("scene", "glass", text(glass))
     moving = dict(SMALL, animation={"fps": 24, "tracks": [
         {"target": "/meshes/0/primitive/radius", "keys": [{"frame": 0, "value": 1}, {"frame": 8, "value": 0.5}]},
-        {"target": "/cameras/0/yfov", "keys": [{"frame": 0, "value": 30}, {"frame": 4, "value": 60, "interpolation": "smooth"}]}]})
+        {"target": "/cameras/0/yfov", "keys": [{"frame": 0, "value": 30}, {"frame": 4, "value": 60}], "interpolation": "smooth"}]})
     write("animation", "moving", b"\x24" + text(moving).encode())
 
 
@@ -169,7 +169,8 @@ def pictures():
 
 
 def studies():
-    write("sweep", "all", text({"over": {"resolution": ["1..8:x2"], "engine": ["exact", "facets"]}, "scene": "scene.json"}))
+    write("sweep", "all", text({"version": 1, "title": "All", "scenes": ["scene.json"], "zip": False, "over": [
+        {"axis": "resolution", "values": "1..8:x2"}, {"axis": "engine", "values": ["exact", "facets"]}]}))
     write("test", "golden", text({"against": ["golden", "truth"], "tags": ["fast"], "fail": 0.01, "max": {"rmse": 0.1}}))
     write("test", "resolutions", text({"against": ["facets"], "resolution": [2, 4, 8], "set": {"/film/width": 16}}))
     with tempfile.TemporaryDirectory() as place:
