@@ -83,7 +83,7 @@ void require_window(const Renderer& renderer, const Image& whole, PictureRequest
     }
 }
 
-/// Of an image of a point, the ray through its pixel over the same events comes to the point.
+/// Each point has its answer; an image's steps are its events, and its weights are shares of light.
 void require_images(const Renderer& renderer, const Scene& scene) {
     std::vector<Vec3> points;
     for (const Mesh& mesh : scene.meshes)

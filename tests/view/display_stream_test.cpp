@@ -1,70 +1,23 @@
 // The viewer on a display server: the bytes of lines, the pictures that arrive, a server that goes away.
 #include "view/display_stream.h"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 #include <trilens/error.h>
 #include <trilens/version.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 
+#include "support/small_server.h"
 #include "support/test.h"
 #include "view/viewer.h"
 
 using namespace trilens;
+using namespace trilens_test;
 
 namespace {
-
-/// Takes one connection: everything, or so many bytes and then hangs up hard.
-class OneConnection {
-  public:
-    explicit OneConnection(std::size_t most = SIZE_MAX) {
-        listener_ = socket(AF_INET, SOCK_STREAM, 0);
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        REQUIRE(bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
-        REQUIRE(listen(listener_, 1) == 0);
-        socklen_t size = sizeof address;
-        getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
-        address_ = "127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-        thread_ = std::thread([this, most] { take(most); });
-    }
-    ~OneConnection() { received(); }
-
-    const std::string& address() const { return address_; }
-    const std::vector<std::uint8_t>& received() {
-        if (thread_.joinable()) thread_.join();
-        return bytes_;
-    }
-
-  private:
-    void take(std::size_t most) {
-        const int connection = accept(listener_, nullptr, nullptr);
-        close(listener_);
-        std::uint8_t some[4096];
-        while (bytes_.size() < most) {
-            const ssize_t count = recv(connection, some, std::min(sizeof some, most - bytes_.size()), 0);
-            if (count <= 0) break;
-            bytes_.insert(bytes_.end(), some, some + count);
-        }
-        const linger at_once{1, 0};
-        if (bytes_.size() >= most) setsockopt(connection, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
-        close(connection);
-    }
-
-    int listener_ = -1;
-    std::string address_;
-    std::vector<std::uint8_t> bytes_;
-    std::thread thread_;
-};
 
 /// The operations of a stream of messages, in order.
 std::vector<int> operations_in(const std::vector<std::uint8_t>& bytes) {
@@ -109,7 +62,7 @@ TEST_CASE("lines over a picture have the bytes that tev reads", "[view][display]
 TEST_CASE("a display server gets the viewer's last picture to the bit, and facets as lines on it",
           "[view][display]") {
     const SceneRequest request = ball_request(trilens_test::scratch_dir("view_display"));
-    OneConnection server;
+    SmallServer server;
     std::vector<float> drawn_red;
     {
         Session session = open_session(request);
@@ -146,7 +99,7 @@ TEST_CASE("a display server that goes away in the middle of a tile is a warning,
           "[view][display][bad-input]") {
     const SceneRequest request = ball_request(trilens_test::scratch_dir("view_display_away"));
     for (const std::size_t most : {1, 40, 5000}) {
-        OneConnection server(most);
+        SmallServer server(most);
         Viewer viewer(request);
         viewer.show_on(server.address());
         REQUIRE(viewer.drawing().wait_done(600));
