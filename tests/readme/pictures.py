@@ -56,6 +56,8 @@ def require_file(path):
     elif path.suffix == ".jpg":
         if data[:3] != b"\xff\xd8\xff" or data[-2:] != b"\xff\xd9" or len(data) < 4000:
             raise Blank(f"{path.name} is no whole JPEG")
+        if b"oiiotool " in data:
+            raise Blank(f"{path.name} holds the command that wrote it, with its maker's paths: oiiotool --nosoftwareattrib")
     elif path.suffix == ".exr":
         if data[:4] != b"\x76\x2f\x31\x01" or len(data) < 4000:
             raise Blank(f"{path.name} is no OpenEXR picture")
