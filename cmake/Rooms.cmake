@@ -1,5 +1,5 @@
-# trilens_room(NAME FOLDER [FOLDERS folders...] [SEES rooms...] [DOORS libraries...]): one room = one static library
-# that links what it may see publicly and its outside libraries privately, so no other room finds their headers.
+# trilens_room(NAME FOLDER [LIGHT] [FOLDERS folders...] [SEES rooms...] [DOORS libraries...]): one room = one static
+# library that links what it may see publicly and its outside libraries privately, so no other room finds their headers.
 # FOLDERS: those inside of the room, each of which may see those named before it; what stands in the room itself, its
 # door, sees them all (a test holds that).
 include(CMakeParseArguments)
@@ -42,12 +42,18 @@ function(trilens_unite target)
   target_compile_options(${target} PRIVATE $<$<AND:$<BOOL:${TRILENS_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
 endfunction()
 
+# What reads, writes and talks, and the tests, wait for files and for the rooms that compute: compiling them takes a
+# third less time so, and none of what they do more.
+function(trilens_light target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # The rooms' own headers, for the rooms and their tests.
 add_library(trilens_sources INTERFACE)
 target_include_directories(trilens_sources INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
 
 function(trilens_room name folder)
-  cmake_parse_arguments(ROOM "" "" "FOLDERS;SEES;DOORS" ${ARGN})
+  cmake_parse_arguments(ROOM "LIGHT" "" "FOLDERS;SEES;DOORS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   add_library(trilens_${name} STATIC ${sources})
   target_link_libraries(trilens_${name} PUBLIC trilens_options trilens_sources)
@@ -64,6 +70,9 @@ function(trilens_room name folder)
   endforeach()
   set_property(TARGET trilens_${name} PROPERTY TRILENS_DOORS "${ROOM_DOORS}")
   trilens_unite(trilens_${name})
+  if(ROOM_LIGHT)
+    trilens_light(trilens_${name})
+  endif()
 endfunction()
 
 # trilens_library(TARGET ROOMS rooms... [ON target]): a shared library made of whole rooms. Only GLM is passed on, which
@@ -86,10 +95,10 @@ function(trilens_library target)
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 endfunction()
 
-# trilens_client(NAME FOLDER [SEES clients...] [DOORS libraries...]): a room that stands on the public headers, as
+# trilens_client(NAME FOLDER [LIGHT] [SEES clients...] [DOORS libraries...]): a room that stands on the public headers, as
 # they are installed, and on other such rooms.
 function(trilens_client name folder)
-  cmake_parse_arguments(CLIENT "" "" "SEES;DOORS" ${ARGN})
+  cmake_parse_arguments(CLIENT "LIGHT" "" "SEES;DOORS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
   add_library(trilens_${name} STATIC ${sources})
   target_include_directories(trilens_${name} BEFORE PUBLIC ${PROJECT_BINARY_DIR}/include)
@@ -99,4 +108,7 @@ function(trilens_client name folder)
     target_link_libraries(trilens_${name} PUBLIC trilens_${room})
   endforeach()
   trilens_unite(trilens_${name})
+  if(CLIENT_LIGHT)
+    trilens_light(trilens_${name})
+  endif()
 endfunction()

@@ -19,7 +19,7 @@ using namespace trilens_test;
 
 namespace {
 
-constexpr int kOpticsWidth = 96, kHeight = 72;
+constexpr int kOpticsWidth = 96, kOpticsHeight = 72;
 
 /// A ball of that material before a coloured wall and a floor, seen by `camera`.
 std::string ball_scene(const std::string& camera, const std::string& material, int depth) {
@@ -45,14 +45,14 @@ std::string as_ray_mesh(int n) {
     from.eye = {0.5, 0.6, 4};
     from.at = {0, 0, 0};
     from.kind = PerspectiveCamera{.yfov = 45};
-    const Camera camera = make_camera(from, {kOpticsWidth, kHeight});
+    const Camera camera = make_camera(from, {kOpticsWidth, kOpticsHeight});
     std::ostringstream points, directions, screen, triangles;
     for (std::ostringstream* text : {&points, &directions, &screen}) text->precision(17);
     for (int j = 0; j <= n; ++j)
         for (int i = 0; i <= n; ++i) {
             const char* comma = i + j > 0 ? "," : "";
             const Ray ray = *exact_ray(
-                camera, {i * kOpticsWidth / static_cast<double>(n), j * kHeight / static_cast<double>(n)});
+                camera, {i * kOpticsWidth / static_cast<double>(n), j * kOpticsHeight / static_cast<double>(n)});
             points << comma << "[" << ray.origin.x << "," << ray.origin.y << "," << ray.origin.z << "]";
             directions << comma << "[" << ray.direction.x << "," << ray.direction.y << "," << ray.direction.z
                        << "]";
@@ -73,7 +73,7 @@ SampleViews look(const World& world, Engine engine, GridKind grid = GridKind::kS
     SampleViews views;
     FrameParams frame;
     frame.grid = grid;
-    make_viewer(world, frame, engine, ignore)->view({0, 0, kOpticsWidth, kHeight, 1}, views);
+    make_viewer(world, frame, engine, ignore)->view({0, 0, kOpticsWidth, kOpticsHeight, 1}, views);
     return views;
 }
 
@@ -186,7 +186,7 @@ TEST_CASE("a camera inside a room of mirrors: engines agree and rays end where t
         CHECK(off.compared > 2000);
         CHECK(traced.optic == 0);
         CHECK(static_cast<double>(traced.seen) <= 0.002 * static_cast<double>(traced.compared));
-        CHECK(static_cast<double>(off.optic) <= 0.02 * kOpticsWidth * kHeight);
+        CHECK(static_cast<double>(off.optic) <= 0.02 * kOpticsWidth * kOpticsHeight);
         CHECK(static_cast<double>(off.seen) <= 0.03 * static_cast<double>(off.compared));
         CHECK(off.median < 0.02);
     }

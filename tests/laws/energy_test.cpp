@@ -51,7 +51,7 @@ const std::string kColours =
     glass_box(R"("ior":2.2,"dispersion":2)", R"(,"subdivisionScheme":"bilinear")") +
     R"(,"render":{"maxDepth":2}})";
 
-void ignore(const std::string&) {}
+void say_nothing(const std::string&) {}
 
 /// Its statistics.
 LayerStatistics check_energy(const std::string& name, const std::string& scene, int n, Engine engine) {
@@ -59,7 +59,7 @@ LayerStatistics check_energy(const std::string& name, const std::string& scene, 
     const auto world = world_from(name, scene, n);
     PictureRequest request;
     request.engine = engine;
-    const Picture picture = draw_picture(*world, request, {}, ignore);
+    const Picture picture = draw_picture(*world, request, {}, say_nothing);
     const LayerStatistics& statistics = picture.statistics;
     CHECK(statistics.optic_pixels > 400);
     double least = 1, most = 0;

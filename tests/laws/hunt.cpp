@@ -18,7 +18,7 @@ using namespace trilens;
 namespace trilens_test {
 namespace {
 
-constexpr int kHuntWidth = 160, kHeight = 120;
+constexpr int kHuntWidth = 160, kHuntHeight = 120;
 /// Ends that carry less than this share of a pixel's light are not looked for: Projection may leave them out.
 constexpr double kMuchLight = 1.0 / 16;
 
@@ -128,7 +128,7 @@ std::string host(Dice& dice, std::string& what) {
 
 /// A ball, a rod or a small cage, a pixel to thirty in radius.
 std::string small_optic(Dice& dice, int number, std::string& what) {
-    constexpr double kPixel = 3.6 / kHeight;
+    constexpr double kPixel = 3.6 / kHuntHeight;
     const double radius = kPixel * dice.log_between(1, 30);
     const bool glass = dice.chance(0.35);
     const double depth = dice.chance(0.5) ? dice.between(-3, -0.8) : dice.between(-0.6, 2.2);
@@ -267,7 +267,7 @@ Quarry make_quarry(std::uint64_t seed) {
     {{ "name": "blue", "unlit": true, "baseColorFactor": [0.1, 0.2, 0.8] }} ],
   "meshes": [ {},
   {} ] }})",
-                              kHuntWidth, kHeight, cameras, depth, dice.between(1.2, 1.8), meshes, kHuntRoom);
+                              kHuntWidth, kHuntHeight, cameras, depth, dice.between(1.2, 1.8), meshes, kHuntRoom);
     return quarry;
 }
 

@@ -13,7 +13,7 @@ using namespace trilens_test;
 
 namespace {
 
-constexpr int kWindowWidth = 96, kHeight = 72, kFacets = 3;
+constexpr int kWindowWidth = 96, kWindowHeight = 72, kFacets = 3;
 
 std::vector<Hit> facets_seen(const FramedOptic& optic, const RayMesh& camera, const SampleGrid& grid) {
     std::vector<Hit> hits(grid.size());
@@ -51,11 +51,11 @@ const std::string kEyeAtFour =
 TEST_CASE("an optic's window holds all samples that meet its facets, with the same hits", "[laws][law]") {
     for (const std::string& name : shipped_scenes()) {
         CAPTURE(name);
-        const auto world = shipped_world(name, kFacets, kWindowWidth, kHeight);
+        const auto world = shipped_world(name, kFacets, kWindowWidth, kWindowHeight);
         if (!world) continue;
         const Frame frame = window_frame(*world);
         for (const int side : {1, 2}) {
-            const SampleGrid whole{0, 0, kWindowWidth, kHeight, side}, inner{7, 11, 71, 43, side};
+            const SampleGrid whole{0, 0, kWindowWidth, kWindowHeight, side}, inner{7, 11, 71, 43, side};
             for (const FramedOptic& optic : frame.optics) {
                 const SampleGrid window = optic_window(optic, frame.camera);
                 const std::vector<Hit> all = facets_seen(optic, frame.camera.mesh, whole);

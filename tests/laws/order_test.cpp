@@ -16,7 +16,7 @@ using namespace trilens_test;
 
 namespace {
 
-constexpr int kOrderWidth = 320, kHeight = 240;
+constexpr int kOrderWidth = 320, kOrderHeight = 240;
 constexpr std::size_t kLevels = 3;  // n, 2 n, 4 n
 
 Image draw_layer(const World& world, Engine engine) {
@@ -74,7 +74,7 @@ void check_orders(const std::vector<OrderCase>& cases) {
         std::array<Image, kLevels> images;
         Image truth;
         for (std::size_t i = 0; i < kLevels; ++i) {
-            const auto world = shipped_world(one.scene, one.n << i, kOrderWidth, kHeight, &missing);
+            const auto world = shipped_world(one.scene, one.n << i, kOrderWidth, kOrderHeight, &missing);
             if (!world) break;
             images[i] = draw_layer(*world, Engine::kExact);
             if (i == 0) truth = draw_layer(*world, Engine::kLimitTruth);

@@ -16,7 +16,7 @@ using namespace trilens_test;
 
 namespace {
 
-constexpr int kPovrayWidth = 320, kHeight = 240;
+constexpr int kPovrayWidth = 320, kPovrayHeight = 240;
 
 /// A ball in both languages.
 struct Ball {
@@ -82,7 +82,7 @@ std::string pov(const Vec3& v) {
 std::string scene_json(const Stage& stage) {
     std::ostringstream out;
     out.precision(17);
-    out << "{\"version\":1,\"film\":{\"width\":" << kPovrayWidth << ",\"height\":" << kHeight
+    out << "{\"version\":1,\"film\":{\"width\":" << kPovrayWidth << ",\"height\":" << kPovrayHeight
         << "},\"cameras\":[{\"name\":\"main\",\"yfov\":" << stage.yfov
         << ",\"lookAt\":{\"eye\":" << json(stage.eye) << ",\"at\":" << json(stage.at)
         << ",\"up\":[0,1,0]}}],\"materials\":[";
@@ -122,7 +122,7 @@ std::string scene_pov(const Stage& stage) {
     out << "#version 3.7;\nglobal_settings { assumed_gamma 1.0 max_trace_level 31 adc_bailout 1/10000 "
            "ambient_light 1 }\nbackground { rgb 0 }\n"
         << "camera { perspective location " << pov(stage.eye) << " direction " << pov(forward) << " right "
-        << pov(high * kPovrayWidth / kHeight * right) << " up " << pov(high * up) << " }\n";
+        << pov(high * kPovrayWidth / kPovrayHeight * right) << " up " << pov(high * up) << " }\n";
     for (const Ball& ball : stage.balls) {
         out << "sphere { " << pov(ball.center) << ", " << ball.radius << " ";
         const std::string fresnel = stage.fresnel ? " reflection { 0, 1 fresnel on } conserve_energy" : "";
@@ -151,7 +151,7 @@ std::vector<Vec3> read_ppm(const std::string& file) {
     while (in.peek() == '#') in.ignore(1 << 16, '\n');
     in >> width >> height >> most;
     in.get();
-    if (kind != "P6" || width != kPovrayWidth || height != kHeight || most != 65535) return {};
+    if (kind != "P6" || width != kPovrayWidth || height != kPovrayHeight || most != 65535) return {};
     std::vector<Vec3> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     for (Vec3& pixel : pixels)
         for (int c = 0; c < 3; ++c) {
@@ -165,7 +165,7 @@ std::vector<Vec3> draw_pov(const Stage& stage, const std::string& name) {
     const std::string folder = scratch_dir("povray_" + name);
     std::ofstream(folder + "/scene.pov") << scene_pov(stage);
     const std::string command = "cd '" + folder + "' && povray -D -GA +Iscene.pov +Oscene.ppm +FP16 +W" +
-                                std::to_string(kPovrayWidth) + " +H" + std::to_string(kHeight) +
+                                std::to_string(kPovrayWidth) + " +H" + std::to_string(kPovrayHeight) +
                                 " -A File_Gamma=1.0 >povray.log 2>&1";
     const int status = std::system(command.c_str());
     INFO("see " << folder << "/povray.log");
@@ -204,7 +204,7 @@ Against compare_with_pov(const Stage& stage, const std::string& name, double sam
     const auto world = world_from("povray_" + name, scene_json(stage), 8);
     SampleViews views;
     make_limit_viewer(*world, make_camera_rays(world->scene, 0))
-        ->view({0, 0, kPovrayWidth, kHeight, 1}, views);
+        ->view({0, 0, kPovrayWidth, kPovrayHeight, 1}, views);
     Against result;
     for (std::size_t p = 0; p < other.size(); ++p) {
         const CutPaths cut = views.samples[p].optic == kNone ? CutPaths() : views.of_optics[p].cut;
@@ -251,8 +251,8 @@ void check_stage(const Stage& stage, const std::string& name, double same) {
     const Against a = compare_with_pov(stage, name, same, kEdge);
     INFO(a.first);
     CHECK(a.off_edge == 0);
-    CHECK(a.differing < kPovrayWidth * kHeight / 500);
-    CHECK(a.trapped < kPovrayWidth * kHeight / 100);
+    CHECK(a.differing < kPovrayWidth * kPovrayHeight / 500);
+    CHECK(a.trapped < kPovrayWidth * kPovrayHeight / 100);
 }
 
 bool povray_missing() {

@@ -16,7 +16,7 @@ using namespace trilens_test;
 
 namespace {
 
-constexpr int kWidth = 320, kHeight = 240;
+constexpr int kSilentWidth = 320, kSilentHeight = 240;
 constexpr int kFiner = 16;  // times as many pixels, where the truth is looked at more closely
 constexpr double kMostOff = 1;
 
@@ -37,8 +37,8 @@ struct Truths {
     std::unique_ptr<World> finer;  // where it was asked for
     int larger = 1;                // times, the film
 
-    int width() const { return larger * kWidth; }
-    int height() const { return larger * kHeight; }
+    int width() const { return larger * kSilentWidth; }
+    int height() const { return larger * kSilentHeight; }
 
     /// Whether the exact surface shows that point within a pixel of the pixel's middle. At the rim of a ball
     /// a pixel holds so much of the scene that displacements between pixels' middles say little.
@@ -105,7 +105,7 @@ void check_silent(const std::vector<SilentCase>& cases) {
     for (const SilentCase& one : cases) {
         std::string missing;
         const auto world =
-            shipped_world(one.scene, one.n, one.larger * kWidth, one.larger * kHeight, &missing);
+            shipped_world(one.scene, one.n, one.larger * kSilentWidth, one.larger * kSilentHeight, &missing);
         if (!world) {
             WARN(one.scene << " is left out: " << missing);
             continue;
@@ -154,7 +154,7 @@ TEST_CASE("nor where paths end at their first optic, whatever the corner rays", 
 }
 
 TEST_CASE("near total reflection no facet lies, whatever error is allowed", "[laws][law]") {
-    const auto world = shipped_world("paths/prism", 32, kWidth, kHeight);
+    const auto world = shipped_world("paths/prism", 32, kSilentWidth, kSilentHeight);
     REQUIRE(world);
     Truths truths{"paths/prism", draw(*world, Engine::kLimitTruth), nullptr};
     // It is not the prediction that divides them there, but that one history is not proven.

@@ -15,7 +15,7 @@ using trilens_test::Seen;
 
 namespace {
 
-constexpr int kEnvironmentWidth = 96, kHeight = 72;
+constexpr int kEnvironmentWidth = 96, kEnvironmentHeight = 72;
 
 /// What a curved mirror may show of the sky: directions of a film in front of an eye, bent a little.
 Seen sky(double x, double y) {
@@ -31,8 +31,8 @@ Image with_optic(Image image, Id optic) {
 using EnvironmentWarp = std::function<Vec2(double x, double y)>;
 
 Displacement measure_sky(const Field& field, const EnvironmentWarp& warp) {
-    const Image reference = with_optic(image_of(kEnvironmentWidth, kHeight, field), 5);
-    const Image test = with_optic(image_of(kEnvironmentWidth, kHeight,
+    const Image reference = with_optic(image_of(kEnvironmentWidth, kEnvironmentHeight, field), 5);
+    const Image test = with_optic(image_of(kEnvironmentWidth, kEnvironmentHeight,
                                            [&](double x, double y) {
                                                const Vec2 from = warp(x, y);
                                                return field(from.x, from.y);
@@ -55,7 +55,7 @@ Errors errors_of(const Displacement& found, const EnvironmentWarp& warp) {
                      y = static_cast<double>(i / kEnvironmentWidth) + 0.5;
         const Vec2 to = warp(x, y);
         const bool is_inside =
-            to.x > 0.5 && to.y > 0.5 && to.x < kEnvironmentWidth - 0.5 && to.y < kHeight - 0.5;
+            to.x > 0.5 && to.y > 0.5 && to.x < kEnvironmentWidth - 0.5 && to.y < kEnvironmentHeight - 0.5;
         double& largest = is_inside ? errors.inside : errors.beyond;
         largest = std::max(largest, glm::length(to - Vec2(x, y) - Vec2(found.shift_x[i], found.shift_y[i])));
     }
@@ -83,11 +83,11 @@ TEST_CASE("a field of directions that is moved, turned or scaled gives its shift
             const Errors errors = errors_of(found, warp);
             CHECK(errors.inside < 3e-4);
             CHECK(errors.beyond < 0.03);
-            const double beyond = (size + 1) * (kEnvironmentWidth + kHeight);
+            const double beyond = (size + 1) * (kEnvironmentWidth + kEnvironmentHeight);
             CHECK(static_cast<double>(found.pixels) >=
-                  kEnvironmentWidth * kHeight - (size < 0.8 ? 0 : beyond));
+                  kEnvironmentWidth * kEnvironmentHeight - (size < 0.8 ? 0 : beyond));
             CHECK(found.lost == 0);
-            CHECK(found.pixels + found.unmeasured == kEnvironmentWidth * kHeight);
+            CHECK(found.pixels + found.unmeasured == kEnvironmentWidth * kEnvironmentHeight);
         }
     }
 }
@@ -103,9 +103,9 @@ TEST_CASE("a turn of the whole sky moves its picture as a pinhole says", "[measu
                                     way.x * std::sin(turn) + way.z * std::cos(turn)));
         };
         const Image reference = with_optic(
-            image_of(kEnvironmentWidth, kHeight, [&](double x, double y) { return pinhole(x, y, 0); }), 1);
+            image_of(kEnvironmentWidth, kEnvironmentHeight, [&](double x, double y) { return pinhole(x, y, 0); }), 1);
         const Image test = with_optic(
-            image_of(kEnvironmentWidth, kHeight, [&](double x, double y) { return pinhole(x, y, angle); }),
+            image_of(kEnvironmentWidth, kEnvironmentHeight, [&](double x, double y) { return pinhole(x, y, angle); }),
             1);
         const Displacement found = measure_displacement(reference, test, "reflect").value();
         for (int column = 10; column < 80; ++column) {
@@ -121,12 +121,12 @@ TEST_CASE("a turn of the whole sky moves its picture as a pinhole says", "[measu
 TEST_CASE("the environment and an object never answer for one another", "[measure][environment][law]") {
     // A ball of radius 1 round the origin shows points that are, as numbers, directions.
     const Field ball = [](double x, double y) { return Seen{3, 0, sky(x, y).point}; };
-    const Image directions = with_optic(image_of(kEnvironmentWidth, kHeight, sky), 5),
-                points = with_optic(image_of(kEnvironmentWidth, kHeight, ball), 5);
+    const Image directions = with_optic(image_of(kEnvironmentWidth, kEnvironmentHeight, sky), 5),
+                points = with_optic(image_of(kEnvironmentWidth, kEnvironmentHeight, ball), 5);
     const Displacement found = measure_displacement(directions, points, "reflect").value();
     CHECK(found.pixels == 0);
-    CHECK(found.lost == kEnvironmentWidth * kHeight);
-    CHECK(found.missing == kEnvironmentWidth * kHeight);
+    CHECK(found.lost == kEnvironmentWidth * kEnvironmentHeight);
+    CHECK(found.missing == kEnvironmentWidth * kEnvironmentHeight);
 
     // Side by side, with a border that moves by less than a pixel.
     const Field both = [&](double x, double y) { return x + 0.3 * y < 50 ? ball(x, y) : sky(x, y); };
@@ -141,22 +141,22 @@ TEST_CASE("the environment and an object never answer for one another", "[measur
 }
 
 TEST_CASE("the environment counts through an optic and with a direction only", "[measure][environment]") {
-    const Image test = image_of(kEnvironmentWidth, kHeight, sky);
+    const Image test = image_of(kEnvironmentWidth, kEnvironmentHeight, sky);
     // No optic at all.
     const Displacement unlit =
         measure_displacement(with_optic(test, kNone), with_optic(test, kNone), "reflect").value();
     CHECK_FALSE(unlit.coverage.has_value());
     // Zeros: an image that gives no direction.
     const Image blank =
-        with_optic(image_of(kEnvironmentWidth, kHeight, [](double, double) { return Seen{}; }), 5);
+        with_optic(image_of(kEnvironmentWidth, kEnvironmentHeight, [](double, double) { return Seen{}; }), 5);
     CHECK_FALSE(measure_displacement(blank, blank, "reflect")->coverage.has_value());
     // Through another optic it is another thing.
     CHECK(measure_displacement(with_optic(test, 4), with_optic(test, 5), "reflect")->lost ==
-          kEnvironmentWidth * kHeight);
+          kEnvironmentWidth * kEnvironmentHeight);
     // A direction that is no number is lost, not skipped.
     Image broken = with_optic(test, 5);
     broken.find("reflect.Z")->floats()[77] = std::nanf("");
     const Displacement found = measure_displacement(with_optic(test, 5), broken, "reflect").value();
     CHECK(found.lost == 1);
-    CHECK(found.pixels == kEnvironmentWidth * kHeight - 1);
+    CHECK(found.pixels == kEnvironmentWidth * kEnvironmentHeight - 1);
 }

@@ -16,7 +16,7 @@ using trilens_test::Seen;
 
 namespace {
 
-constexpr int kSliverWidth = 80, kHeight = 40;
+constexpr int kSliverWidth = 80, kSliverHeight = 40;
 
 /// A wide piece in columns 20..39, and beside nothing else, along a curve of pixels 20 columns and more away,
 /// the same points again, as a rim shows them: a pixel there holds 40 times as much across.
@@ -48,15 +48,15 @@ Image line_of(int count, const std::function<Vec3(double at)>& curve) {
 }  // namespace
 
 TEST_CASE("the shift of a sliver is measured along it and falls with the error", "[measure][sliver]") {
-    const Image reference = image_of(kSliverWidth, kHeight, rim(is_column, Vec2(0)));
+    const Image reference = image_of(kSliverWidth, kSliverHeight, rim(is_column, Vec2(0)));
     double before = 0;
     for (const double size : {0.4, 0.1, 0.025, 0.00625}) {
         const Vec2 by(0.005 * size, size);
         const Displacement found =
-            measure_displacement(reference, image_of(kSliverWidth, kHeight, rim(is_column, by)), "reflect")
+            measure_displacement(reference, image_of(kSliverWidth, kSliverHeight, rim(is_column, by)), "reflect")
                 .value();
         INFO("shift " << size);
-        for (std::size_t row = 1; row + 1 < kHeight; ++row) {
+        for (std::size_t row = 1; row + 1 < kSliverHeight; ++row) {
             const std::size_t i = row * kSliverWidth + 52;
             REQUIRE(found.state[i] == Shift::kFound);
             CHECK(static_cast<double>(found.shift_y[i]) == Approx(size).epsilon(0.01));
@@ -72,23 +72,23 @@ TEST_CASE("the shift of a sliver is measured along it and falls with the error",
 TEST_CASE("a sliver's shift across is not taken for one along: it is unmeasured", "[measure][sliver]") {
     // Across by 0.1, a step along is at most 0.1: the line through the pixels passes the point by more than
     // half a step.
-    const Image reference = image_of(kSliverWidth, kHeight, rim(is_column, Vec2(0)));
+    const Image reference = image_of(kSliverWidth, kSliverHeight, rim(is_column, Vec2(0)));
     const Displacement across =
-        measure_displacement(reference, image_of(kSliverWidth, kHeight, rim(is_column, Vec2(0.05, 0.001))),
+        measure_displacement(reference, image_of(kSliverWidth, kSliverHeight, rim(is_column, Vec2(0.05, 0.001))),
                              "reflect")
             .value();
-    for (std::size_t row = 0; row < kHeight; ++row)
+    for (std::size_t row = 0; row < kSliverHeight; ++row)
         CHECK(across.state[row * kSliverWidth + 52] == Shift::kUnmeasured);
-    CHECK(across.unmeasured == kHeight);
+    CHECK(across.unmeasured == kSliverHeight);
     CHECK(across.lost == 0);
     CHECK(across.summary.value().max < 0.051);
 }
 
 TEST_CASE("single pixels in a diagonal have no axis: unmeasured, not twenty pixels away",
           "[measure][sliver]") {
-    const Image reference = image_of(kSliverWidth, kHeight, rim(is_diagonal, Vec2(0)));
+    const Image reference = image_of(kSliverWidth, kSliverHeight, rim(is_diagonal, Vec2(0)));
     const Displacement found =
-        measure_displacement(reference, image_of(kSliverWidth, kHeight, rim(is_diagonal, Vec2(0, 0.01))),
+        measure_displacement(reference, image_of(kSliverWidth, kSliverHeight, rim(is_diagonal, Vec2(0, 0.01))),
                              "reflect")
             .value();
     CHECK(found.unmeasured == 30);

@@ -53,7 +53,7 @@ double turned(const Stage& stage, double h, std::size_t* events = nullptr) {
     return 0;
 }
 
-constexpr double kMediaGlass = 1.5, kWater = 1.33, kInner = 0.6, kLiquid = 0.75;
+constexpr double kMediaGlass = 1.5, kMediaWater = 1.33, kMediaInner = 0.6, kLiquid = 0.75;
 
 }  // namespace
 
@@ -62,22 +62,22 @@ TEST_CASE("liquid that reaches into its glass: the one of higher priority is ins
         for (const bool glass_first : {true, false}) {
             const auto stage_of = [&](Stage& stage, int glass, int liquid) {
                 const auto add_glass = [&] {
-                    stage.add_body(Shell(1, kInner), glass_of(kMediaGlass), glass);
+                    stage.add_body(Shell(1, kMediaInner), glass_of(kMediaGlass), glass);
                 };
                 if (glass_first) add_glass();
-                stage.add_ball(Vec3(0), kLiquid, glass_of(kWater), liquid);
+                stage.add_ball(Vec3(0), kLiquid, glass_of(kMediaWater), liquid);
                 if (!glass_first) add_glass();
             };
             const double outside = 2 * media_turn_at(h, 1, 1, kMediaGlass);
             const auto inside = [&](double r) {
-                return h < kWater * r ? media_turn_at(h, r, kMediaGlass, kWater) : 0;
+                return h < kMediaWater * r ? media_turn_at(h, r, kMediaGlass, kMediaWater) : 0;
             };
             INFO("h " << h << ", glass " << (glass_first ? "first" : "second"));
 
             Stage glass_wins;
             stage_of(glass_wins, 1, 0);
-            if (h < kWater * kInner)
-                CHECK(turned(glass_wins, h) == Approx(outside + 2 * inside(kInner)).margin(1e-9));
+            if (h < kMediaWater * kMediaInner)
+                CHECK(turned(glass_wins, h) == Approx(outside + 2 * inside(kMediaInner)).margin(1e-9));
 
             Stage liquid_wins;
             stage_of(liquid_wins, 0, 1);
@@ -85,10 +85,10 @@ TEST_CASE("liquid that reaches into its glass: the one of higher priority is ins
 
             // Of equal ones the one that the ray came into last: the liquid's own skin on the way in, the
             // glass's on the way out.
-            if (h >= kWater * kInner) continue;
+            if (h >= kMediaWater * kMediaInner) continue;
             Stage equal;
             stage_of(equal, 3, 3);
-            CHECK(turned(equal, h) == Approx(outside + inside(kLiquid) + inside(kInner)).margin(1e-9));
+            CHECK(turned(equal, h) == Approx(outside + inside(kLiquid) + inside(kMediaInner)).margin(1e-9));
         }
     }
 }
@@ -97,12 +97,12 @@ TEST_CASE("liquid that just fills its glass, or ends before it", "[paths]") {
     // A gap of air: turned at every skin.
     Stage gap;
     gap.add_body(Shell(1, 0.8), glass_of(kMediaGlass), 1);
-    gap.add_ball(Vec3(0), 0.5, glass_of(kWater));
+    gap.add_ball(Vec3(0), 0.5, glass_of(kMediaWater));
     const double h = 0.3;
     std::size_t steps = 0;
     CHECK(turned(gap, h, &steps) ==
           Approx(2 * (media_turn_at(h, 1, 1, kMediaGlass) + media_turn_at(h, 0.8, kMediaGlass, 1) +
-                      media_turn_at(h, 0.5, 1, kWater)))
+                      media_turn_at(h, 0.5, 1, kMediaWater)))
               .margin(1e-9));
     CHECK(steps == 6);
 }

@@ -17,7 +17,7 @@ using namespace trilens;
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 /// A mirror sphere over a triangle.
 Scene small_scene() {
@@ -103,7 +103,7 @@ TEST_CASE("a scene built in memory is drawn, and one that is none is refused wit
         {"/film", [](Scene& s) { s.film.width = s.film.height = 1 << 20; }},
         {"/film/spp", [](Scene& s) { s.film.spp = 0; }},
         {"/cameras", [](Scene& s) { s.cameras.clear(); }},
-        {"/cameras/0", [](Scene& s) { s.cameras[0].eye.x = kNaN; }},
+        {"/cameras/0", [](Scene& s) { s.cameras[0].eye.x = kNotANumber; }},
         {"/materials/1/ior", [](Scene& s) { s.materials[1].ior = 0; }},
         {"/materials/0/baseColorTexture",
          [](Scene& s) {
@@ -115,7 +115,7 @@ TEST_CASE("a scene built in memory is drawn, and one that is none is refused wit
         {"/meshes/0/resolution", [](Scene& s) { s.meshes[0].resolution = 0; }},
         {"/meshes/0", [](Scene& s) { s.meshes[0].primitive.reset(); }},
         {"/meshes/1/triangles/0", [](Scene& s) { s.meshes[1].object.triangles[0][1] = 3; }},
-        {"/meshes/1/points/2", [](Scene& s) { s.meshes[1].object.points[2].y = kNaN; }},
+        {"/meshes/1/points/2", [](Scene& s) { s.meshes[1].object.points[2].y = kNotANumber; }},
         {"/meshes/1/material", [](Scene& s) { s.meshes[1].object.material.clear(); }},
         {"/meshes/1/uvs", [](Scene& s) { s.meshes[1].object.uvs.resize(5); }}};
     for (const auto& [place, change] : broken) {
@@ -145,7 +145,7 @@ TEST_CASE("requests that a scene cannot answer are refused", "[trilens][bad-inpu
     request.engine = ClassicParams{Curves::kSlices, Clip::kScene, 0};
     CHECK_THROWS_AS(renderer.draw(request), UsageError);
     CHECK_THROWS_AS(renderer.explain({}, 64, 0), UsageError);
-    CHECK_THROWS_AS(renderer.project(std::vector<Vec3>{{0, kNaN, 0}}), InputError);
+    CHECK_THROWS_AS(renderer.project(std::vector<Vec3>{{0, kNotANumber, 0}}), InputError);
     CHECK_THROWS_AS(renderer.seen_triangle({}), UsageError);
     Scene scene = small_scene();
     CHECK_THROWS_AS(set_resolution(scene, 1025), InputError);
