@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "caustics/footprint.h"
+#include "caustics/refined_beams.h"
 
 namespace trilens {
 namespace {
@@ -12,6 +13,9 @@ namespace {
 constexpr double kWidestFootprint = 0.25;
 /// A smooth surface's normal makes light at grazing no brighter than so.
 constexpr double kMostTurned = 10;
+
+/// Rays of a beam may fall this many tolerances beside its triangle.
+constexpr double kMostBent = 2;
 
 /// What the rays at a beam's ends say about the way to a plane.
 enum class Way { kFree, kStopped, kUnknown };
@@ -47,41 +51,74 @@ BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const Be
         progress(static_cast<double>(i + 1) / static_cast<double>(outlines.size()));
     }
     tree_ = BeamTree(beams_);
+    refined_ = std::make_unique<RefinedBeams>(space_, source_, beams_);
 }
 
-/// Calls use(light) for what arrives by each beam: irradiance on the receiver's plane times the cosine that
-/// counts.
+BeamLight::~BeamLight() = default;
+
+/// A triangle that falls on a receiver's plane.
+struct BeamLight::Piece {
+    const LightBeam& beam;
+    const BeamCorners& corners;
+    const FallenBeam& fallen;
+    const ReceiverPlane& plane;
+    Way way;  // of the whole beam
+};
+
+/// Irradiance on the receiver's plane times the cosine that counts; none where nothing comes.
+std::optional<Vec3> BeamLight::light_of(const Piece& piece, const Receiver& receiver) const {
+    const std::optional<FootprintPart> here = part_at_footprint(piece.fallen, piece.plane);
+    if (!here) return std::nullopt;
+    Vec3 light(0), weights(0);
+    for (int k = 0; k < 3; ++k) {
+        const auto c = static_cast<std::size_t>(k);
+        light += here->weights[k] * piece.fallen.share[c] * piece.fallen.light[c];
+        weights += here->weights[k] * piece.fallen.weights[c];
+    }
+    Vec3 origin(0), direction(0);
+    for (int k = 0; k < 3; ++k) {
+        const BeamEnd& end = *piece.corners.end[static_cast<std::size_t>(k)];
+        origin += weights[k] * end.origin, direction += weights[k] * end.direction;
+    }
+    const double cosine = -dot(receiver.shading_normal, direction);
+    if (!(cosine > 0)) return std::nullopt;
+    if (piece.way == Way::kUnknown && is_hidden(piece.beam, receiver.lifted, origin)) return std::nullopt;
+    const double geometric = -dot(piece.plane.normal, direction);
+    light *= body_transmittance(*space_.optics, beams_.histories[piece.beam.history].medium,
+                                length(origin - receiver.point));
+    return here->density / piece.plane.unit_area * std::min(cosine / geometric, kMostTurned) * light;
+}
+
+/// Calls use(light) for what arrives by each beam, or each of its exact pieces.
 template <typename Use>
 void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const {
     const ReceiverPlane plane(receiver, kWidestFootprint * space_.size);
-    tree_.for_each_near(receiver.point, plane.reach, [&](Id index) {
+    const double same_place = kSamePlace * space_.size;
+    if (!receiver.exact) {
+        tree_.for_each_near(receiver.point, plane.reach, [&](Id index) {
+            const LightBeam& beam = beams_.beams[index];
+            const BeamCorners corners = corners_of(beams_, beam);
+            const FallenBeams fallen = fall(corners, plane);
+            if (fallen.count == 0) return;
+            const Way way = way_to(beams_, beam, plane, same_place);
+            if (way == Way::kStopped) return;
+            for (std::size_t i = 0; i < fallen.count; ++i)
+                if (const auto light = light_of({beam, corners, fallen.part[i], plane, way}, receiver))
+                    use(*light);
+        });
+        return;
+    }
+    const double bent = kMostBent * tolerance_ * space_.size;
+    const double guess = bent * std::max(length(plane.dual_s), length(plane.dual_t));
+    tree_.for_each_near(receiver.point, plane.reach + bent, [&](Id index) {
         const LightBeam& beam = beams_.beams[index];
-        const FallenBeams fallen = fall(beams_, beam, plane);
-        for (std::size_t i = 0; i < fallen.count; ++i) {
-            const FallenBeam& part = fallen.part[i];
-            const std::optional<FootprintPart> here = part_at_footprint(part, plane);
-            if (!here) continue;
-            Vec3 light(0), weights(0);
-            for (int k = 0; k < 3; ++k) {
-                const auto c = static_cast<std::size_t>(k);
-                light += here->weights[k] * part.share[c] * part.light[c];
-                weights += here->weights[k] * part.weights[c];
-            }
-            Vec3 origin(0), direction(0);
-            for (int k = 0; k < 3; ++k) {
-                const BeamEnd& end = beams_.ends[beam.end[static_cast<std::size_t>(k)]];
-                origin += weights[k] * end.origin, direction += weights[k] * end.direction;
-            }
-            const double cosine = -dot(receiver.shading_normal, direction);
-            if (!(cosine > 0)) continue;
-            const Way way = way_to(beams_, beam, plane, kSamePlace * space_.size);
-            const Vec3 from = receiver.lifted;
-            if (way == Way::kStopped || (way == Way::kUnknown && is_hidden(beam, from, origin))) continue;
-            const double geometric = -dot(plane.normal, direction);
-            light *= body_transmittance(*space_.optics, beams_.histories[beam.history].medium,
-                                        length(origin - receiver.point));
-            use(here->density / plane.unit_area * std::min(cosine / geometric, kMostTurned) * light);
-        }
+        const Way way = way_to(beams_, beam, plane, same_place);
+        if (way == Way::kStopped) return;
+        refined_->for_each_piece(
+            index, plane, guess, [&](const BeamCorners& corners, const FallenBeam& fallen) {
+                const auto light = light_of({beam, corners, fallen, plane, Way::kUnknown}, receiver);
+                if (light) use(*light);
+            });
     });
 }
 
@@ -141,9 +178,9 @@ std::vector<ExactArrival> BeamLight::exact_arrivals(const Receiver& receiver) co
     Receiver point = receiver;
     point.sides = {};
     ReceiverPlane plane(point, space_.size);
-    tree_.for_each_near(receiver.point, 2 * tolerance_ * space_.size, [&](Id index) {
+    tree_.for_each_near(receiver.point, kMostBent * tolerance_ * space_.size, [&](Id index) {
         const LightBeam& beam = beams_.beams[index];
-        const FallenBeams fallen = fall(beams_, beam, plane, INFINITY);
+        const FallenBeams fallen = fall(corners_of(beams_, beam), plane, INFINITY);
         const BeamHistory& history = beams_.histories[beam.history];
         LightPath like;
         like.steps = history.steps, like.colours = history.colours, like.medium = history.medium;

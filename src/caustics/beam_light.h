@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@
 #include "shade/receiver.h"
 
 namespace trilens {
+
+class RefinedBeams;
 
 /// What was left out of a light's beams.
 struct BeamLosses {
@@ -33,7 +36,12 @@ class BeamLight {
     BeamLight(const LightSpace& space, const BeamSource& source, const BeamGridParams& params,
               const std::vector<std::vector<Vec3>>& outlines, const Progress& progress = {});
 
-    /// Irradiance at the receiver, linear Rec.709, of all that comes over optics.
+    ~BeamLight();
+    BeamLight(const BeamLight&) = delete;
+    BeamLight& operator=(const BeamLight&) = delete;
+
+    /// Irradiance at the receiver, linear Rec.709, of all that comes over optics: of the beams as they are,
+    /// or where the receiver asks for it of beams divided by exact rays until they are flat at its footprint.
     Vec3 irradiance(const Receiver& receiver) const;
 
     /// Beams that hold the point and whose way is free.
@@ -49,8 +57,10 @@ class BeamLight {
     const BeamLosses& losses() const { return losses_; }
 
   private:
+    struct Piece;
     template <typename Use>
     void for_each_arrival(const Receiver& receiver, const Use& use) const;
+    std::optional<Vec3> light_of(const Piece& piece, const Receiver& receiver) const;
     bool comes(const ExactArrival& arrival, const Receiver& receiver) const;
     bool is_hidden(const LightBeam& beam, const Vec3& from, const Vec3& origin) const;
 
@@ -59,6 +69,7 @@ class BeamLight {
     double tolerance_ = 0;
     Beams beams_;
     BeamTree tree_;
+    std::unique_ptr<RefinedBeams> refined_;
     BeamLosses losses_;
 };
 

@@ -6,15 +6,9 @@
 namespace trilens {
 namespace {
 
-/// Rays this nearly along the plane bring no light.
-constexpr double kGrazing = 1e-4;
 /// Corners' light may differ from the mean by so much; beyond it, at folds, the wavefront says nothing about
 /// a triangle.
 constexpr double kMostShare = 2;
-
-double cross2(const Vec2& a, const Vec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
 
 /// A convex polygon of at most 8 corners.
 template <typename Corner>
@@ -83,16 +77,15 @@ ReceiverPlane::ReceiverPlane(const Receiver& receiver, double largest_side)
     dual_t = cross(normal, dual_s);
 }
 
-FallenBeams fall(const Beams& beams, const LightBeam& beam, const ReceiverPlane& plane, double reach) {
+FallenBeams fall(const BeamCorners& beam, const ReceiverPlane& plane, double reach) {
     FallenBeams fallen;
-    std::array<const BeamEnd*, 3> end;
+    const auto& end = beam.end;
     std::array<EndOnPlane, 3> on;
     int whole = 0, falling = 0, above = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        end[k] = &beams.ends[beam.end[k]];
         on[k] = {dot(end[k]->origin - plane.point, plane.normal), -dot(end[k]->direction, plane.normal)};
-        falling += on[k].fall > kGrazing, above += on[k].height >= 0;
-        whole += on[k].fall > kGrazing && on[k].height >= 0;
+        falling += on[k].fall > kGrazingFall, above += on[k].height >= 0;
+        whole += on[k].fall > kGrazingFall && on[k].height >= 0;
     }
     if (falling == 0 || above == 0) return fallen;
     if (whole == 3) {
@@ -105,9 +98,10 @@ FallenBeams fall(const Beams& beams, const LightBeam& beam, const ReceiverPlane&
                 std::max({part.at[0][c], part.at[1][c], part.at[2][c]}) < -reach)
                 return fallen;
         part.measure = beam.measure;
-        part.tie = beam.end;
-        const double area =
-            0.5 * std::fabs(cross2(part.at[1] - part.at[0], part.at[2] - part.at[0])) * plane.unit_area;
+        for (std::size_t k = 0; k < 3; ++k) part.place[k] = end[k]->place;
+        const double area = 0.5 *
+                            std::fabs(cross_on_plane(part.at[1] - part.at[0], part.at[2] - part.at[0])) *
+                            plane.unit_area;
         for (std::size_t k = 0; k < 3; ++k) {
             part.light[k] = end[k]->light;
             part.share[k] = share_of(*end[k], on[k], beam.measure / area);
@@ -122,7 +116,7 @@ FallenBeams fall(const Beams& beams, const LightBeam& beam, const ReceiverPlane&
     inside.corner = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
     inside.count = 3;
     const Vec3 heights(on[0].height, on[1].height, on[2].height), falls(on[0].fall, on[1].fall, on[2].fall);
-    inside.clip([&](const Vec3& w) { return dot(w, falls) - 2 * kGrazing; });
+    inside.clip([&](const Vec3& w) { return dot(w, falls) - 2 * kGrazingFall; });
     inside.clip([&](const Vec3& w) { return dot(w, heights); });
     for (std::size_t i = 1; i + 1 < inside.count && fallen.count < fallen.part.size(); ++i) {
         FallenBeam& part = fallen.part[fallen.count++];
@@ -136,10 +130,10 @@ FallenBeams fall(const Beams& beams, const LightBeam& beam, const ReceiverPlane&
                     part.light[k] += w[e] * of.light;
             }
             part.at[k] = plane.at(origin + dot(w, heights) / dot(w, falls) * direction);
-            part.tie[k] = static_cast<Id>(k);
+            part.place[k] = w[0] * end[0]->place + w[1] * end[1]->place + w[2] * end[2]->place;
         }
-        part.measure = beam.measure * std::fabs(cross2(Vec2(part.weights[1] - part.weights[0]),
-                                                       Vec2(part.weights[2] - part.weights[0])));
+        part.measure = beam.measure * std::fabs(cross_on_plane(Vec2(part.weights[1] - part.weights[0]),
+                                                               Vec2(part.weights[2] - part.weights[0])));
     }
     return fallen;
 }
@@ -150,14 +144,16 @@ namespace {
 /// both beams that share it.
 double side_of(const FallenBeam& fallen, std::size_t k) {
     const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
-    const bool straight = fallen.tie[a] < fallen.tie[b];
-    const double side = straight ? cross2(fallen.at[a], fallen.at[b]) : -cross2(fallen.at[b], fallen.at[a]);
+    const Vec2 &place_a = fallen.place[a], &place_b = fallen.place[b];
+    const bool straight = place_a.x != place_b.x ? place_a.x < place_b.x : place_a.y < place_b.y;
+    const double side =
+        straight ? cross_on_plane(fallen.at[a], fallen.at[b]) : -cross_on_plane(fallen.at[b], fallen.at[a]);
     if (side != 0) return side;
     return straight ? 1e-300 : -1e-300;
 }
 
 double triangle_area(const FallenBeam& fallen) {
-    return 0.5 * std::fabs(cross2(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]));
+    return 0.5 * std::fabs(cross_on_plane(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]));
 }
 
 std::optional<FootprintPart> part_at_point(const FallenBeam& fallen) {
@@ -171,7 +167,7 @@ std::optional<FootprintPart> part_at_point(const FallenBeam& fallen) {
 
 Vec3 weights_at(const FallenBeam& fallen, const Vec2& at, double twice_area) {
     const Vec2 a = fallen.at[0] - at, b = fallen.at[1] - at, c = fallen.at[2] - at;
-    const Vec3 weights = Vec3(cross2(b, c), cross2(c, a), cross2(a, b)) / twice_area;
+    const Vec3 weights = Vec3(cross_on_plane(b, c), cross_on_plane(c, a), cross_on_plane(a, b)) / twice_area;
     return glm::clamp(weights, Vec3(0), Vec3(1));
 }
 
@@ -193,12 +189,12 @@ std::optional<FootprintPart> part_at_footprint(const FallenBeam& fallen, const R
             if (inside.count < 3) return std::nullopt;
         }
     if (!is_cut) return FootprintPart{fallen.measure, Vec3(1.0 / 3)};
-    const double twice_area = cross2(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]);
+    const double twice_area = cross_on_plane(fallen.at[1] - fallen.at[0], fallen.at[2] - fallen.at[0]);
     double twice_part = 0;
     Vec2 middle(0);
     for (std::size_t i = 1; i + 1 < inside.count; ++i) {
         const Vec2 a = inside.corner[0], b = inside.corner[i], c = inside.corner[i + 1];
-        const double part = cross2(b - a, c - a);
+        const double part = cross_on_plane(b - a, c - a);
         twice_part += part;
         middle += part / 3 * (a + b + c);
     }

@@ -10,6 +10,10 @@
 
 namespace trilens {
 
+inline double cross_on_plane(const Vec2& a, const Vec2& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
 /// Coordinates of a receiver's plane in which its footprint is the square [-1/2, 1/2]^2; of a receiver
 /// without one orthonormal ones about the point.
 struct ReceiverPlane {
@@ -27,15 +31,27 @@ struct ReceiverPlane {
     }
 };
 
+/// Rays this nearly along a plane bring no light to it.
+inline constexpr double kGrazingFall = 1e-4;
+
 /// A triangle of a beam on a plane.
 struct FallenBeam {
     std::array<Vec2, 3> at{};              // in the plane's coordinates
     std::array<Vec3, 3> light{};           // at its corners
     std::array<double, 3> share{1, 1, 1};  // of the mean light, how much falls around each corner
     std::array<Vec3, 3> weights{Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};  // of the beam's ends
-    std::array<Id, 3> tie{};  // the ends' numbers, which decide whose a point on a side is
-    double measure = 0;       // of the light's film
+    std::array<Vec2, 3> place{};                                               // on the light's window
+    double measure = 0;                                                        // of the light's film
 };
+
+/// Three rays and the part of the light's film between them.
+struct BeamCorners {
+    std::array<const BeamEnd*, 3> end{};
+    double measure = 0;
+};
+inline BeamCorners corners_of(const Beams& beams, const LightBeam& beam) {
+    return {{&beams.ends[beam.end[0]], &beams.ends[beam.end[1]], &beams.ends[beam.end[2]]}, beam.measure};
+}
 
 /// The triangles, at most three, that a beam makes on the side of the plane that its rays come to; fewer
 /// parts where some of its rays go away from the plane, or start behind it.
@@ -45,7 +61,7 @@ struct FallenBeams {
 };
 /// Those that lie wholly farther from the footprint than `reach`, in its own coordinates along either, may be
 /// left out.
-FallenBeams fall(const Beams& beams, const LightBeam& beam, const ReceiverPlane& plane, double reach = 0);
+FallenBeams fall(const BeamCorners& beam, const ReceiverPlane& plane, double reach = 0);
 
 /// What of a triangle is at the footprint.
 struct FootprintPart {

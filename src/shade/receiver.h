@@ -14,6 +14,7 @@ struct Receiver {
     Vec3 lifted{0};          // where shadow rays end: off the surface, on its side
     // Sides of the parallelogram around the point over which light is averaged; zero: the point alone.
     std::array<Vec3, 2> sides{};
+    bool exact = false;  // as traced pictures want it, however long it takes
 };
 
 }  // namespace trilens

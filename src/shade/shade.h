@@ -97,6 +97,7 @@ struct SeenAlong {
     // point alone.
     const std::array<Vec3, 2>* footprint = nullptr;
     bool without_caustics = false;  // light that comes over optics is not asked for
+    bool exact_caustics = false;    // it comes by exact rays
 };
 
 /// The light at a point of a surface, as it arrives.

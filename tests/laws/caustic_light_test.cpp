@@ -262,13 +262,14 @@ TEST_CASE("a moving lamp's light behind a lens neither flickers nor is lost", "[
 
 TEST_CASE("light through a flat slab has the density of Snell's law", "[laws][law][caustics]") {
     constexpr double kTop = 1.5, kBottom = 1, kLampHeight = 4, kIndex = 1.5;
-    const LitWorld lit(lit_world(R"({"name": "slab", "role": "optic", "material": "glass", "resolution": 4,
+    const LitWorld lit(
+        lit_world(R"({"name": "slab", "role": "optic", "material": "glass", "resolution": 4,
         "subdivisionScheme": "bilinear",
         "points": [[-4,1,-4],[4,1,-4],[4,1,4],[-4,1,4],[-4,1.5,-4],[4,1.5,-4],[4,1.5,4],[-4,1.5,4]],
         "faceVertexCounts": [4,4,4,4,4,4],
         "faceVertexIndices": [0,1,2,3, 4,7,6,5, 0,4,5,1, 1,5,6,2, 2,6,7,3, 3,7,4,0]})",
-                                 R"({"type": "point", "position": [0, 4, 0], "intensity": 10, "caustics": true})"),
-                       {.first_cells = 12});
+                  R"({"type": "point", "position": [0, 4, 0], "intensity": 10, "caustics": true})"),
+        {.first_cells = 12});
     std::size_t compared = 0;
     for (const double angle : {0.1, 0.2, 0.3, 0.45, 0.6}) {
         const double inner = std::asin(std::sin(angle) / kIndex), air = kLampHeight - (kTop - kBottom);
@@ -298,9 +299,7 @@ TEST_CASE("a mirror ball's light is at Alhazen's point", "[laws][law][caustics]"
         const Vec2 out = in - 2 * glm::dot(in, normal) * normal;
         return at.x - at.y / out.y * out.x;
     };
-    const auto angle_at_lamp = [](double a) {
-        return std::atan2(0.8 * std::sin(a), 3 - 0.8 * std::cos(a));
-    };
+    const auto angle_at_lamp = [](double a) { return std::atan2(0.8 * std::sin(a), 3 - 0.8 * std::cos(a)); };
     for (const double a : {1.0, 1.1, 1.2, 1.25}) {
         constexpr double kStep = 1e-5;
         const double radius = landing(a);
@@ -329,7 +328,8 @@ TEST_CASE("sphere lights and backgrounds send their light to optics", "[laws][la
     };
     constexpr double kPi = 3.14159265358979;
     const double sine2 = 0.8 * 0.8 / 18, solid_angle = 2 * kPi * (1 - std::sqrt(1 - sine2));
-    CHECK(arriving(R"({"type": "sphere", "position": [0, 4, 3], "radius": 0.01, "intensity": 100, "samples": 48,
+    CHECK(
+        arriving(R"({"type": "sphere", "position": [0, 4, 3], "radius": 0.01, "intensity": 100, "samples": 48,
         "visible": false})") == Approx(100 * kPi * 1e-4 * solid_angle).epsilon(0.02));
     // A white sky lights a floor as Lambert has it, and its other half shines from below.
     Light sky;
@@ -345,4 +345,35 @@ TEST_CASE("sphere lights and backgrounds send their light to optics", "[laws][la
     }
     CHECK(from_above == Approx(2 * kPi).epsilon(0.01));
     CHECK(from_below == Approx(2 * kPi).epsilon(0.01));
+}
+
+TEST_CASE("a traced picture's light is that of exact paths, found without its beams' pieces",
+          "[laws][law][caustics]") {
+    for (const bool is_glass : {true, false}) {
+        const LitWorld lit(lit_world(std::string(R"({"name": "ball", "role": "optic", "material": ")") +
+                                         (is_glass ? "glass" : "mirror") + R"(", "resolution": 8,
+            "primitive": {"type": "sphere", "center": [0, 1, 0], "radius": 0.8}})",
+                                     kLamp));
+        std::mt19937 random(5);
+        std::uniform_real_distribution<double> place(-3, 3);
+        std::size_t lit_points = 0, near = 0;
+        double worst_beams = 0;
+        for (int i = 0; i < 600; ++i) {
+            Receiver there = on_floor(place(random), place(random));
+            const double truth = lit.light().exact_irradiance(there).y;
+            if (truth < 0.01) continue;
+            ++lit_points;
+            there.sides = {Vec3(1e-3, 0, 0), Vec3(0, 0, 1e-3)};
+            const double by_beams = lit.light().irradiance(there).y;
+            there.exact = true;
+            const double by_pieces = lit.light().irradiance(there).y;
+            CAPTURE(is_glass, there.point.x, there.point.z, truth, by_beams, by_pieces);
+            near += std::fabs(by_pieces - truth) < 5e-3 * truth;
+            worst_beams = std::max(worst_beams, std::fabs(by_beams - truth) / truth);
+        }
+        CAPTURE(is_glass, lit_points, near, worst_beams);
+        CHECK(lit_points > 40);
+        CHECK(near + lit_points / 25 >= lit_points);  // a border of the light may run through a footprint
+        CHECK(worst_beams > 5e-3);                    // two answers, not one
+    }
 }

@@ -57,7 +57,7 @@ class FilteredSamples {
         const RayDifferentials differentials(world, viewer, grid_);
         parallel_for(colours_.size(), 1024, [&](std::size_t from, std::size_t to) {
             sample_colours(world, views, from, std::span(colours_).subspan(from, to - from),
-                           grid_.side == 1 ? &differentials : nullptr);
+                           grid_.side == 1 || has_caustics(world) ? &differentials : nullptr);
             for (std::size_t s = from; s < to; ++s) colours_[s] = filter_.averaged(colours_[s]);
         });
     }
@@ -179,7 +179,9 @@ void find_colours(const BandSource& source, const Band& band, std::size_t first,
         return;
     }
     std::vector<SampleColour> samples(colours.size() * per_pixel);
-    sample_colours(world, band.views, first * per_pixel, samples);
+    const RayDifferentials differentials(world, viewer, grid);
+    sample_colours(world, band.views, first * per_pixel, samples,
+                   has_caustics(world) ? &differentials : nullptr);
     for (std::size_t i = 0; i < colours.size(); ++i)
         colours[i] = mean_colour(filter, std::span(samples).subspan(i * per_pixel, per_pixel));
 }

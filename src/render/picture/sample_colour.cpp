@@ -59,12 +59,15 @@ void Contributions::add_sample(std::size_t index) {
         seen_[count_] = contribution.seen;
         const Hit& hit = *contribution.seen.hit;
         const bool textured = has_texture(world_.shading, hit), lit = world_.shading.caustic && hit.seen();
-        if (differentials_ && (textured || lit))
+        if (differentials_ && lit) seen_[count_].exact_caustics = differentials_->are_traced();
+        if (differentials_ && ((textured && differentials_->side() == 1) || lit))
             if (const auto differential = differentials_->of(views_, first_ + index, contribution)) {
                 differential_[count_] = *differential;
-                if (textured) seen_[count_].differential = &differential_[count_];
+                if (textured && differentials_->side() == 1)
+                    seen_[count_].differential = &differential_[count_];
                 if (lit) {
                     footprint_[count_] = footprint_of(world_.objects, contribution.seen, *differential);
+                    for (Vec3& side : footprint_[count_]) side /= differentials_->side();
                     seen_[count_].footprint = &footprint_[count_];
                 }
             }
@@ -154,6 +157,10 @@ std::optional<Ray> ray_after(const PathWorld& world, const Ray& from, const Medi
 }
 
 }  // namespace
+
+bool RayDifferentials::are_traced() const {
+    return !viewer_.has_facets();
+}
 
 RayDifferential FacetMap::differential(const Vec2& place) const {
     const IdTriple& corner = mesh->facets[facet];

@@ -85,7 +85,7 @@ struct FacetMap {
 /// was traced, or the facet is seen edge on.
 FacetMap facet_map(const Viewer& viewer, const SampleView& view, const PathEnd* end);
 
-/// The differentials of the samples of one grid of views, whose pixels have one sample.
+/// The differentials of the samples of one grid of views.
 class RayDifferentials {
   public:
     RayDifferentials(const World& world, const Viewer& viewer, const SampleGrid& grid)
@@ -94,6 +94,11 @@ class RayDifferentials {
     /// Of a contribution's ray, per pixel; none where rays beside it have another history or none.
     std::optional<RayDifferential> of(const SampleViews& views, std::size_t sample,
                                       const Contribution& contribution) const;
+
+    /// Samples along each side of a pixel: a sample stands for that part of it.
+    int side() const { return grid_.side; }
+    /// Whether every ray is exact: light is then to be, too.
+    bool are_traced() const;
 
   private:
     std::optional<Ray> camera_ray(const SampleView& view, const Vec2& place) const;

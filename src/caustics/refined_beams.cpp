@@ -1,0 +1,179 @@
+#include "caustics/refined_beams.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trilens {
+namespace {
+
+/// Halvings of a beam's sides.
+constexpr int kMostLevels = 9;
+/// Sides of a triangle bent by less than this share of the footprint are straight once they are halved: a
+/// quarter of it remains.
+constexpr double kStraight = 0.04;
+/// Quarters of a triangle whose areas differ by less than this share are equally bright.
+constexpr double kEvenQuarters = 0.06;
+/// Triangles thinner than this share of the footprint need not be so.
+constexpr double kThin = 0.1;
+/// What a point without a footprint is looked at by: a share of the scene's size.
+constexpr double kPointSize = 1e-4;
+
+std::optional<Vec2> place_on(const ReceiverPlane& plane, const BeamEnd& end) {
+    const double height = dot(end.origin - plane.point, plane.normal),
+                 fall = -dot(end.direction, plane.normal);
+    if (!(height >= 0) || !(fall > kGrazingFall)) return std::nullopt;
+    return plane.at(end.origin + height / fall * end.direction);
+}
+
+using Ends = std::array<const BeamEnd*, 3>;
+
+/// The corner triangles, and the one between the middles.
+std::array<Ends, 4> quarters(const Ends& end, const std::array<BeamEnd, 3>& middle) {
+    return {{{end[0], &middle[2], &middle[1]},
+             {&middle[2], end[1], &middle[0]},
+             {&middle[1], &middle[0], end[2]},
+             {&middle[0], &middle[1], &middle[2]}}};
+}
+
+}  // namespace
+
+RefinedBeams::RefinedBeams(const LightSpace& space, const BeamSource& source, const Beams& beams)
+    : space_(space),
+      source_(source),
+      beams_(&beams),
+      division_(std::make_unique<Lazy<BeamDivision>[]>(beams.beams.size())) {}
+
+/// Where the history ends between, its border is as straight as the beam has it.
+BeamEnd RefinedBeams::middle(Id beam, const BeamEnd& a, const BeamEnd& b) const {
+    const LightBeam& of = beams_->beams[beam];
+    const BeamHistory& history = beams_->histories[of.history];
+    const LightWindow& window = beams_->windows[of.window];
+    BeamEnd end;
+    end.place = 0.5 * (a.place + b.place);
+    end.film = window.density(end.place);
+    LightPath like;
+    like.steps = history.steps, like.colours = history.colours, like.medium = history.medium;
+    const Ray ray = window.ray(end.place);
+    if (const auto single = follow_history(space_, source_, ray, like)) {
+        end.origin = single->path.ray.origin, end.direction = single->path.ray.direction;
+        end.arriving = single->path.arriving;
+        if (is_free(space_, ray, *single)) end.light = single->path.light;
+        return end;
+    }
+    end.origin = 0.5 * (a.origin + b.origin);
+    end.direction = normalize_or_zero(a.direction + b.direction);
+    end.arriving = 0.5 * (a.arriving + b.arriving), end.light = 0.5 * (a.light + b.light);
+    return end;
+}
+
+std::unique_ptr<BeamDivision> RefinedBeams::divide(Id beam, const Ends& end) const {
+    auto division = std::make_unique<BeamDivision>();
+    for (std::size_t k = 0; k < 3; ++k)
+        division->middle[k] = middle(beam, *end[(k + 1) % 3], *end[(k + 2) % 3]);
+    return division;
+}
+
+struct RefinedBeams::Visit {
+    const RefinedBeams& refined;
+    Id beam;
+    const ReceiverPlane& plane;
+    const Use& use;
+    double unit;  // of the plane's coordinates, that a footprint is wide
+    double half;  // of the footprint
+
+    BeamCorners corners_of(const Ends& end) const {
+        const LightWindow& window = refined.beams_->windows[refined.beams_->beams[beam].window];
+        return {end, window.measure(end[0]->place, end[1]->place, end[2]->place)};
+    }
+
+    /// Of a triangle of which a part falls on the plane, or none.
+    void use_part(const Ends& end) const {
+        const BeamCorners corners = corners_of(end);
+        const FallenBeams fallen = fall(corners, plane);
+        for (std::size_t i = 0; i < fallen.count; ++i) use(corners, fallen.part[i]);
+    }
+
+    void use_whole(const Ends& end, const std::array<Vec2, 3>& at) const {
+        if (is_beyond(at, 0)) return;
+        FallenBeam fallen;
+        fallen.at = at;
+        for (std::size_t k = 0; k < 3; ++k) fallen.light[k] = end[k]->light, fallen.place[k] = end[k]->place;
+        const BeamCorners corners = corners_of(end);
+        fallen.measure = corners.measure;
+        use(corners, fallen);
+    }
+
+    bool is_beyond(std::span<const Vec2> at, double room) const {
+        for (int c = 0; c < 2; ++c) {
+            double low = INFINITY, high = -INFINITY;
+            for (const Vec2& one : at) low = std::min(low, one[c]), high = std::max(high, one[c]);
+            if (low - room > half || high + room < -half) return true;
+        }
+        return false;
+    }
+
+    /// Corners, then middles.
+    bool is_flat(const std::array<Vec2, 6>& at, double bulge) const {
+        if (bulge > kStraight * unit) return false;
+        const double all = cross_on_plane(at[1] - at[0], at[2] - at[0]);
+        const double side = std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
+        if (std::fabs(all) < kThin * unit * side) return true;
+        const double quarter[4] = {
+            cross_on_plane(at[5] - at[0], at[4] - at[0]), cross_on_plane(at[1] - at[5], at[3] - at[5]),
+            cross_on_plane(at[3] - at[4], at[2] - at[4]), cross_on_plane(at[4] - at[3], at[5] - at[3])};
+        return std::all_of(quarter, quarter + 4, [&](double one) {
+            return std::fabs(4 * one - all) < kEvenQuarters * std::fabs(all);
+        });
+    }
+
+    void visit(const Ends& end, const Lazy<BeamDivision>& division, int level, double guess) const {
+        std::array<Vec2, 6> at;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::optional<Vec2> on = place_on(plane, *end[k]);
+            if (!on) return use_part(end);
+            at[k] = *on;
+        }
+        if (is_beyond(std::span(at).first(3), guess)) return;
+        const BeamDivision& by = division.get([&] { return refined.divide(beam, end); });
+        double bulge = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::optional<Vec2> on = place_on(plane, by.middle[k]);
+            if (!on) return use_part(end);
+            at[3 + k] = *on;
+            bulge = std::max(bulge, length(*on - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3])));
+        }
+        if (is_beyond(at, bulge)) return;
+        const std::array<Ends, 4> parts = quarters(end, by.middle);
+        const std::array<std::array<Vec2, 3>, 4> on_plane{
+            {{at[0], at[5], at[4]}, {at[5], at[1], at[3]}, {at[4], at[3], at[2]}, {at[3], at[4], at[5]}}};
+        const bool is_last = level + 1 >= kMostLevels || is_flat(at, bulge);
+        for (std::size_t i = 0; i < 4; ++i) {
+            if (is_last)
+                use_whole(parts[i], on_plane[i]);
+            else
+                visit(parts[i], by.part[i], level + 1, 0.5 * bulge);
+        }
+    }
+};
+
+void RefinedBeams::for_each_piece(Id beam, const ReceiverPlane& plane, double guess, const Use& use) const {
+    const Ends end = corners_of(*beams_, beams_->beams[beam]).end;
+    std::array<Vec2, 3> at;
+    bool whole = true;
+    for (std::size_t k = 0; k < 3 && whole; ++k) {
+        const std::optional<Vec2> on = place_on(plane, *end[k]);
+        whole = on.has_value();
+        if (on) at[k] = *on;
+    }
+    const Visit visit{*this,
+                      beam,
+                      plane,
+                      use,
+                      plane.has_footprint ? 1 : kPointSize * space_.size,
+                      plane.has_footprint ? 0.5 : 0};
+    if (!whole) return visit.use_part(end);
+    const double side = std::max({length(at[1] - at[0]), length(at[2] - at[1]), length(at[0] - at[2])});
+    visit.visit(end, division_[beam], 0, std::max(guess, 0.5 * side));
+}
+
+}  // namespace trilens
