@@ -110,7 +110,11 @@ def variants(definition):
     return found
 
 
-HEAD = ("field", "type", "default", "meaning")
+def field_table(rows):
+    """A table of fields, which pages.css folds where the window is narrow."""
+    return "```{rst-class} fields\n```\n\n" + table(("field", "type", "default", "meaning"), rows)
+
+
 # What stands on a page of its own; everything else is on the page of the scene file.
 CAMERA_PARTS = ("camera", "lookAt", "placedRay", "view")
 SURFACE_PARTS = ("mesh", "primitive", "normals", "transform", "rotation", "fit")
@@ -120,7 +124,7 @@ def section(schema, name, level="##", text=""):
     definition = schema.definitions[name]
     title = definition.get("title", name)
     return (f"\n{level} {title[:1].upper() + title[1:]}\n\n{definition.get('description', '')}\n\n{text}"
-            + table(HEAD, schema.rows(definition, required=definition.get("required", []))))
+            + field_table(schema.rows(definition, required=definition.get("required", []))))
 
 
 def kinds_of(schema, name, pictures, note=""):
@@ -134,7 +138,7 @@ def kinds_of(schema, name, pictures, note=""):
         text += f"\n### {kind}\n\n`\"type\": \"{kind}\"`{note}\n\n"
         if kind in pictures:
             text += f"![{pictures[kind][1]}]({pictures[kind][0]})\n\n"
-        text += table(HEAD, rows)
+        text += field_table(rows)
     return text
 
 
@@ -216,7 +220,7 @@ def write_scene_pages(program, out):
     rest = [name for name, one in schema.definitions.items()
             if "properties" in one and name not in (*CAMERA_PARTS, *SURFACE_PARTS)]
     text = (hand + "\n## A scene\n\n" + root.get("description", "") + "\n\n"
-            + table(HEAD, schema.rows(root, required=root["required"])))
+            + field_table(schema.rows(root, required=root["required"])))
     for name in rest:
         definition = schema.definitions[name]
         text += section(schema, name) if not variants(definition) else (

@@ -131,9 +131,6 @@ void check_colours(const World& world, const Case& one) {
 
 /// What is known to be off, and why.
 Case case_of(const std::string& name) {
-    // Samples at the water's rim that a facet covers by a hair, and the exact surface does not: their rays go
-    // straight on, and what they see counts as the reflection. The beauty has it right.
-    if (name == "water") return {name, {}, 0, 21};
     // Where the stem is seen at a grazing angle glass mirrors nearly all light: a fringe of less than a
     // pixel, a part of a pixel wider where the outline is a chord of the glass's.
     if (name == "paths/wine-glass") return {name, {}, 0, 6};

@@ -366,7 +366,7 @@ const SceneExample kExamples[] = {
     {"mirror-cylinder", "anamorphic art: a mirror cylinder folds a stretched shape into a heart in a ring",
      kMirrorCylinder},
     {"crystal-ball", "light into glass and out of it again, and what is behind upside down", kCrystalBall},
-    {"cameras", "a mirror ball in a room, seen by fifteen cameras: fisheye, panorama, strip, slits, ...",
+    {"cameras", "a mirror ball in a room, seen by fifteen cameras: fisheye, panorama, strip, slits and others",
      kCamerasExample},
     {"caustic", "string art: threads along the rays in a mirrored ring draw their caustic, a nephroid",
      kCausticExample},
