@@ -94,31 +94,21 @@ template <typename Use>
 void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const {
     const ReceiverPlane plane(receiver, kWidestFootprint * space_.size);
     const double same_place = kSamePlace * space_.size;
-    if (!receiver.exact) {
-        tree_.for_each_near(receiver.point, plane.reach, [&](Id index) {
-            const LightBeam& beam = beams_.beams[index];
-            const BeamCorners corners = corners_of(beams_, beam);
-            const FallenBeams fallen = fall(corners, plane);
-            if (fallen.count == 0) return;
-            const Way way = way_to(beams_, beam, plane, same_place);
-            if (way == Way::kStopped) return;
-            for (std::size_t i = 0; i < fallen.count; ++i)
-                if (const auto light = light_of({beam, corners, fallen.part[i], plane, way}, receiver))
-                    use(*light);
-        });
-        return;
-    }
     const double bent = kMostBent * tolerance_ * space_.size;
     const double guess = bent * std::max(length(plane.dual_s), length(plane.dual_t));
     tree_.for_each_near(receiver.point, plane.reach + bent, [&](Id index) {
         const LightBeam& beam = beams_.beams[index];
-        const Way way = way_to(beams_, beam, plane, same_place);
-        if (way == Way::kStopped) return;
-        refined_->for_each_piece(
-            index, plane, guess, [&](const BeamCorners& corners, const FallenBeam& fallen) {
-                const auto light = light_of({beam, corners, fallen, plane, Way::kUnknown}, receiver);
-                if (light) use(*light);
-            });
+        std::optional<Way> way;
+        const auto use_piece = [&](const BeamCorners& corners, const FallenBeam& fallen) {
+            if (!way) way = way_to(beams_, beam, plane, same_place);
+            if (*way == Way::kStopped) return;
+            const Way asked = receiver.exact ? Way::kUnknown : *way;
+            if (const auto light = light_of({beam, corners, fallen, plane, asked}, receiver)) use(*light);
+        };
+        if (receiver.exact)
+            refined_->for_each_piece(index, plane, guess, use_piece);
+        else
+            refined_->for_each_curved_piece(index, plane, use_piece);
     });
 }
 

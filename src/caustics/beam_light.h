@@ -26,10 +26,9 @@ struct BeamLosses {
 
 /// One light's beams over all optics, ready to be asked. Thread-safe to read.
 ///
-/// A beam falls on a receiver's plane as a triangle, whose corners are exact. It carries the light of its
-/// part of the film, whatever its shape: over a footprint that is the share of its area inside, so light is
-/// finite at folds, where triangles have no area, and none is lost. Inside of a triangle light changes as
-/// the wavefront's spread at its corners says.
+/// A beam falls on a receiver's plane as a quadratic triangle, exact at its corners and the middles of its
+/// sides, in flat pieces. Each carries the light of its part of the film, whatever its shape: over a
+/// footprint that is the share of its area inside, so light is finite at folds, where pieces have no area.
 class BeamLight {
   public:
     /// `space` and what it points to must live longer. `outlines`: points on each optic's surface, by optic.

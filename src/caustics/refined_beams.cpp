@@ -176,4 +176,88 @@ void RefinedBeams::for_each_piece(Id beam, const ReceiverPlane& plane, double gu
     visit.visit(end, division_[beam], 0, std::max(guess, 0.5 * side));
 }
 
+namespace {
+
+/// Pieces along each side of a curved beam.
+constexpr int kPieces = 4;
+
+/// Quadratic Lagrange weights of the corners and of the middles across from them.
+std::array<double, 6> quadratic_weights(const Vec3& w) {
+    return {w.x * (2 * w.x - 1), w.y * (2 * w.y - 1), w.z * (2 * w.z - 1),
+            4 * w.y * w.z,       4 * w.z * w.x,       4 * w.x * w.y};
+}
+
+/// The corners of the pieces, row by row from the third corner's side.
+struct PieceGrid {
+    static constexpr int kCount = (kPieces + 1) * (kPieces + 2) / 2;
+    std::array<Vec3, kCount> weights;
+    std::array<std::array<double, 6>, kCount> quadratic;
+    std::array<std::array<int, 3>, kPieces * kPieces> piece;
+
+    static int at(int i, int j) { return j * (kPieces + 1) - j * (j - 1) / 2 + i; }
+    PieceGrid() {
+        for (int j = 0; j <= kPieces; ++j)
+            for (int i = 0; i + j <= kPieces; ++i) {
+                const auto n = static_cast<std::size_t>(at(i, j));
+                weights[n] = Vec3(kPieces - i - j, i, j) / static_cast<double>(kPieces);
+                quadratic[n] = quadratic_weights(weights[n]);
+            }
+        std::size_t n = 0;
+        for (int j = 0; j < kPieces; ++j)
+            for (int i = 0; i + j < kPieces; ++i) {
+                piece[n++] = {at(i, j), at(i + 1, j), at(i, j + 1)};
+                if (i + j + 1 < kPieces) piece[n++] = {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+            }
+    }
+};
+
+}  // namespace
+
+void RefinedBeams::for_each_curved_piece(Id beam, const ReceiverPlane& plane, const Use& use) const {
+    static const PieceGrid grid;
+    const BeamCorners corners = corners_of(*beams_, beams_->beams[beam]);
+    const Ends& end = corners.end;
+    const Visit visit{*this, beam, plane, use, 1, plane.has_footprint ? 0.5 : 0};
+    std::array<Vec2, 6> at;
+    double side = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::optional<Vec2> on = place_on(plane, *end[k]);
+        if (!on) return visit.use_part(end);
+        at[k] = *on;
+    }
+    for (std::size_t k = 0; k < 3; ++k) side = std::max(side, length(at[k] - at[(k + 1) % 3]));
+    if (visit.is_beyond(std::span(at).first(3), side)) return;
+    const BeamDivision& by = division_[beam].get([&] { return divide(beam, end); });
+    double bulge = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::optional<Vec2> on = place_on(plane, by.middle[k]);
+        if (!on) return visit.use_part(end);
+        at[3 + k] = *on;
+        bulge = std::max(bulge, length(*on - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3])));
+    }
+    if (visit.is_beyond(at, bulge)) return;
+
+    std::array<Vec2, PieceGrid::kCount> corner;
+    for (std::size_t n = 0; n < corner.size(); ++n) {
+        corner[n] = Vec2(0);
+        for (std::size_t k = 0; k < 6; ++k) corner[n] += grid.quadratic[n][k] * at[k];
+    }
+    for (const std::array<int, 3>& piece : grid.piece) {
+        FallenBeam fallen;
+        for (std::size_t k = 0; k < 3; ++k) fallen.at[k] = corner[static_cast<std::size_t>(piece[k])];
+        if (visit.is_beyond(fallen.at, 0)) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto n = static_cast<std::size_t>(piece[k]);
+            const Vec3& w = fallen.weights[k] = grid.weights[n];
+            const std::array<double, 6>& q = grid.quadratic[n];
+            fallen.light[k] = Vec3(0);
+            for (std::size_t c = 0; c < 3; ++c)
+                fallen.light[k] += q[c] * end[c]->light + q[3 + c] * by.middle[c].light;
+            fallen.place[k] = w.x * end[0]->place + w.y * end[1]->place + w.z * end[2]->place;
+        }
+        fallen.measure = corners.measure / (kPieces * kPieces);
+        use(corners, fallen);
+    }
+}
+
 }  // namespace trilens

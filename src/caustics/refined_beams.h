@@ -31,6 +31,10 @@ class RefinedBeams {
     /// may fall from its triangle.
     void for_each_piece(Id beam, const ReceiverPlane& plane, double guess, const Use& use) const;
 
+    /// The same of the beam as a quadratic surface through its corners and the middles of its sides, which
+    /// are exact, in 16 flat pieces.
+    void for_each_curved_piece(Id beam, const ReceiverPlane& plane, const Use& use) const;
+
   private:
     struct Visit;
     BeamEnd middle(Id beam, const BeamEnd& a, const BeamEnd& b) const;
