@@ -100,8 +100,7 @@ FacetMirror mirror_sphere() {
     params.look_at = {{0.3, 0.4, 4}, {0, 0, 0}, {0, 1, 0}};
     params.width = kWidth;
     params.height = kHeight;
-    Primitive sphere;
-    sphere.type = Primitive::Type::kSphere;
+    const Primitive sphere;
     const LinearCamera camera = make_perspective(params);
     const SurfaceGrid grid = make_grid(*make_primitive_surface(sphere), kResolution);
     TriangleScene facets;

@@ -109,8 +109,7 @@ MirrorSphere mirror_sphere(int n, int width, int height) {
     params.width = width;
     params.height = height;
     const LinearCamera camera = make_perspective(params);
-    Primitive sphere;
-    sphere.type = Primitive::Type::kSphere;
+    const Primitive sphere;
     const SurfaceGrid grid = make_grid(*make_primitive_surface(sphere), n);
     MirrorSphere result{{0, 0, width, height, 1}, make_reflection(grid, camera)};
     for (std::size_t f = 0; f < result.mesh.facets.size(); ++f) {

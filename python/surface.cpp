@@ -85,9 +85,23 @@ const char* domain_name(const Surface& surface, Id face) {
     return surface.domain(face) == FaceDomain::kSquare ? "square" : "triangle";
 }
 
-SurfacePointer primitive_surface(const std::string& type, Primitive primitive) {
-    primitive.type = require_named<Primitive::Type>("primitive", type);
-    return make_surface(primitive);
+/// What the maker takes, of whatever kind.
+struct Lengths {
+    double radius, focal_length, height;
+    Vec2 size;
+};
+
+PrimitiveKind primitive_kind(const std::string& type, const Lengths& of) {
+    const std::vector<PrimitiveKind> kinds{SpherePrimitive{of.radius},
+                                           ParaboloidPrimitive{of.radius, of.focal_length},
+                                           CylinderPrimitive{of.radius, of.height}, PlanePrimitive{of.size}};
+    std::vector<std::string> names;
+    for (const PrimitiveKind& kind : kinds) {
+        names.emplace_back(std::visit([](const auto& one) { return one.kName; }, kind));
+        if (names.back() == type) return kind;
+    }
+    require_known("primitive", type, names);
+    return {};
 }
 
 void bind_grid(py::module_& module) {
@@ -154,19 +168,16 @@ void bind_surface_makers(py::module_& module) {
         "primitive_surface",
         [](const std::string& type, const Triple& center, const Triple& axis, const Triple& tangent,
            double radius, double focal_length, double height, const std::array<double, 2>& size) {
-            return primitive_surface(type, {Primitive::Type::kSphere,
-                                            vec3(center),
-                                            vec3(axis),
-                                            vec3(tangent),
-                                            radius,
-                                            focal_length,
-                                            height,
-                                            {size[0], size[1]}});
+            const Lengths lengths{radius, focal_length, height, {size[0], size[1]}};
+            return SurfacePointer(
+                make_surface({vec3(center), vec3(axis), vec3(tangent), primitive_kind(type, lengths)}));
         },
         py::arg("type"), py::kw_only(), py::arg("center") = tuple_of(unit.center),
         py::arg("axis") = tuple_of(unit.axis), py::arg("tangent") = tuple_of(unit.tangent),
-        py::arg("radius") = unit.radius, py::arg("focal_length") = unit.focal_length,
-        py::arg("height") = unit.height, py::arg("size") = py::make_tuple(unit.size.x, unit.size.y),
+        py::arg("radius") = SpherePrimitive().radius,
+        py::arg("focal_length") = ParaboloidPrimitive().focal_length,
+        py::arg("height") = CylinderPrimitive().height,
+        py::arg("size") = py::make_tuple(PlanePrimitive().size.x, PlanePrimitive().size.y),
         "The exact surface of a \"sphere\", \"paraboloid\", \"cylinder\" or \"plane\", world frame and "
         "units.\n\n"
         "center: of sphere, cylinder and plane; the paraboloid's apex. axis: from the apex to the focus, "

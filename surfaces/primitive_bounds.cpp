@@ -21,7 +21,8 @@ struct Slopes {
 
 /// The cube's face on the sphere. The largest values lie at the face's corners, but for the first
 /// derivatives: (pi/2)^k times 1, sqrt(32/27), sqrt(16/27), 16/9 and 2.35178, here rounded up.
-Slopes sphere_slopes(double radius) {
+Slopes slopes_of(const SpherePrimitive& sphere, Id) {
+    const double radius = sphere.radius;
     const double first = kQuarter, second = first * kQuarter, third = second * kQuarter;
     Slopes s;
     s.u = s.v = radius * first;
@@ -33,12 +34,12 @@ Slopes sphere_slopes(double radius) {
     return s;
 }
 
-Slopes cylinder_slopes(const Primitive& primitive) {
+Slopes slopes_of(const CylinderPrimitive& cylinder, Id) {
     Slopes s;
-    s.u = primitive.radius * kQuarter;
+    s.u = cylinder.radius * kQuarter;
     s.uu = s.u * kQuarter;
     s.uuu = s.uu * kQuarter;
-    s.v = primitive.height;
+    s.v = cylinder.height;
     s.normal_u = kQuarter;
     return s;
 }
@@ -64,9 +65,9 @@ Slopes disk_slopes(double rim, bool inner) {
 }
 
 /// Lifts the disk by |p|^2 / (4 focal length), by the product rule.
-Slopes paraboloid_slopes(const Primitive& primitive, bool inner) {
-    const Slopes p = disk_slopes(primitive.radius, inner);
-    const double far = primitive.radius, lift = 1 / (2 * primitive.focal_length);
+Slopes slopes_of(const ParaboloidPrimitive& paraboloid, Id face) {
+    const Slopes p = disk_slopes(paraboloid.radius, face == 4);
+    const double far = paraboloid.radius, lift = 1 / (2 * paraboloid.focal_length);
     Slopes s;
     s.u = std::hypot(p.u, lift * far * p.u);
     s.v = std::hypot(p.v, lift * far * p.v);
@@ -85,34 +86,19 @@ Slopes paraboloid_slopes(const Primitive& primitive, bool inner) {
     return s;
 }
 
-Slopes plane_slopes(const Primitive& primitive) {
+Slopes slopes_of(const PlanePrimitive& plane, Id) {
     Slopes s;
-    s.u = primitive.size.x;
-    s.v = primitive.size.y;
+    s.u = plane.size.x;
+    s.v = plane.size.y;
     return s;
-}
-
-Slopes slopes_of(const Primitive& primitive, Id face) {
-    switch (primitive.type) {
-        case Primitive::Type::kSphere:
-            break;
-        case Primitive::Type::kParaboloid:
-            return paraboloid_slopes(primitive, face == 4);
-        case Primitive::Type::kCylinder:
-            return cylinder_slopes(primitive);
-        case Primitive::Type::kPlane:
-            return plane_slopes(primitive);
-    }
-    return sphere_slopes(primitive.radius);
 }
 
 class PrimitiveBounder final : public SurfaceBounder {
   public:
-    PrimitiveBounder(const Primitive& primitive, const Surface& surface)
-        : primitive_(primitive), surface_(surface) {}
+    PrimitiveBounder(const PrimitiveKind& kind, const Surface& surface) : kind_(kind), surface_(surface) {}
 
     SurfaceBounds bounds(Id face, const Vec2& low, const Vec2& high) const override {
-        const Slopes s = slopes_of(primitive_, face);
+        const Slopes s = std::visit([&](const auto& one) { return slopes_of(one, face); }, kind_);
         const Vec2 way = 0.5 * (high - low);
         const auto within = [&](double by_u, double by_v, double size) {
             return by_u * way.x + by_v * way.y + kRounding * size;
@@ -130,15 +116,15 @@ class PrimitiveBounder final : public SurfaceBounder {
     }
 
   private:
-    Primitive primitive_;
+    PrimitiveKind kind_;
     const Surface& surface_;
 };
 
 }  // namespace
 
-std::unique_ptr<const SurfaceBounder> make_primitive_bounder(const Primitive& primitive,
+std::unique_ptr<const SurfaceBounder> make_primitive_bounder(const PrimitiveKind& kind,
                                                              const Surface& surface) {
-    return std::make_unique<PrimitiveBounder>(primitive, surface);
+    return std::make_unique<PrimitiveBounder>(kind, surface);
 }
 
 }  // namespace trilens

@@ -9,7 +9,7 @@
 namespace trilens {
 
 /// Bounds of `surface`, which is the primitive's as make_primitive_surface makes it.
-std::unique_ptr<const SurfaceBounder> make_primitive_bounder(const Primitive& primitive,
+std::unique_ptr<const SurfaceBounder> make_primitive_bounder(const PrimitiveKind& kind,
                                                              const Surface& surface);
 
 }  // namespace trilens

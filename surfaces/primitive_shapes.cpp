@@ -41,7 +41,7 @@ double inverse_tangent(double value) {
 /// A cube mapped onto the sphere; a face's parameters are angles seen from the centre.
 class Sphere final : public PrimitiveShape {
   public:
-    explicit Sphere(double radius) : radius_(radius) {}
+    explicit Sphere(const SpherePrimitive& sphere) : radius_(sphere.radius) {}
     std::size_t face_count() const override { return 6; }
     FaceBorder border(Id face) const override { return borders_[face]; }
 
@@ -133,7 +133,8 @@ Vec2 quarter_turns(const Vec2& p, Id turns) {
 /// sides (faces 0 to 3, u outward, v around) that blend linearly from its edge to the rim along one angle.
 class Paraboloid final : public PrimitiveShape {
   public:
-    Paraboloid(double rim, double focal_length) : rim_(rim), inner_(rim / 2), four_f_(4 * focal_length) {}
+    explicit Paraboloid(const ParaboloidPrimitive& paraboloid)
+        : rim_(paraboloid.radius), inner_(paraboloid.radius / 2), four_f_(4 * paraboloid.focal_length) {}
     std::size_t face_count() const override { return 5; }
     FaceBorder border(Id face) const override { return borders_[face]; }
 
@@ -197,7 +198,8 @@ class Paraboloid final : public PrimitiveShape {
 /// Four quarters, u around and v along the axis.
 class Cylinder final : public PrimitiveShape {
   public:
-    Cylinder(double radius, double height) : radius_(radius), height_(height) {}
+    explicit Cylinder(const CylinderPrimitive& cylinder)
+        : radius_(cylinder.radius), height_(cylinder.height) {}
     std::size_t face_count() const override { return 4; }
     FaceBorder border(Id face) const override { return borders_[face]; }
 
@@ -235,7 +237,7 @@ class Cylinder final : public PrimitiveShape {
 
 class Plane final : public PrimitiveShape {
   public:
-    explicit Plane(const Vec2& size) : size_(size) {}
+    explicit Plane(const PlanePrimitive& plane) : size_(plane.size) {}
     std::size_t face_count() const override { return 1; }
     FaceBorder border(Id) const override { return {}; }
 
@@ -260,20 +262,23 @@ class Plane final : public PrimitiveShape {
     Vec2 size_;
 };
 
+std::unique_ptr<PrimitiveShape> shape_of(const SpherePrimitive& sphere) {
+    return std::make_unique<Sphere>(sphere);
+}
+std::unique_ptr<PrimitiveShape> shape_of(const ParaboloidPrimitive& paraboloid) {
+    return std::make_unique<Paraboloid>(paraboloid);
+}
+std::unique_ptr<PrimitiveShape> shape_of(const CylinderPrimitive& cylinder) {
+    return std::make_unique<Cylinder>(cylinder);
+}
+std::unique_ptr<PrimitiveShape> shape_of(const PlanePrimitive& plane) {
+    return std::make_unique<Plane>(plane);
+}
+
 }  // namespace
 
-std::unique_ptr<PrimitiveShape> make_primitive_shape(const Primitive& primitive) {
-    switch (primitive.type) {
-        case Primitive::Type::kSphere:
-            break;
-        case Primitive::Type::kParaboloid:
-            return std::make_unique<Paraboloid>(primitive.radius, primitive.focal_length);
-        case Primitive::Type::kCylinder:
-            return std::make_unique<Cylinder>(primitive.radius, primitive.height);
-        case Primitive::Type::kPlane:
-            return std::make_unique<Plane>(primitive.size);
-    }
-    return std::make_unique<Sphere>(primitive.radius);
+std::unique_ptr<PrimitiveShape> make_primitive_shape(const PrimitiveKind& kind) {
+    return std::visit([](const auto& one) { return shape_of(one); }, kind);
 }
 
 }  // namespace trilens

@@ -1,4 +1,4 @@
-// The four primitive shapes in their own frame: z along the axis, x along the tangent, the origin at the
+// The shapes of primitives in their own frame: z along the axis, x along the tangent, the origin at the
 // centre.
 #pragma once
 
@@ -30,6 +30,6 @@ class PrimitiveShape {
 };
 
 /// The shape of a checked primitive.
-std::unique_ptr<PrimitiveShape> make_primitive_shape(const Primitive& primitive);
+std::unique_ptr<PrimitiveShape> make_primitive_shape(const PrimitiveKind& kind);
 
 }  // namespace trilens

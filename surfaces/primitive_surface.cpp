@@ -38,8 +38,8 @@ std::array<double, 2> solve(const std::array<double, 3>& c) {
 class PrimitiveSurface final : public Surface {
   public:
     PrimitiveSurface(const Primitive& primitive, const Mat3& world_from_local)
-        : primitive_(primitive),
-          shape_(make_primitive_shape(primitive)),
+        : kind_(primitive.kind),
+          shape_(make_primitive_shape(primitive.kind)),
           center_(primitive.center),
           world_from_local_(world_from_local) {}
 
@@ -48,14 +48,15 @@ class PrimitiveSurface final : public Surface {
     FaceBorder border(Id face) const override { return shape_->border(face); }
     bool has_closed_form() const override { return true; }
     double sphere_curvature() const override {
-        return primitive_.type == Primitive::Type::kSphere ? 1 / primitive_.radius : 0;
+        const auto* sphere = std::get_if<SpherePrimitive>(&kind_);
+        return sphere ? 1 / sphere->radius : 0;
     }
     SurfaceParameter sphere_place(const Vec3& normal) const override {
-        if (primitive_.type != Primitive::Type::kSphere) return {};
+        if (!std::holds_alternative<SpherePrimitive>(kind_)) return {};
         return shape_->place(glm::transpose(world_from_local_) * normal);
     }
     std::unique_ptr<const SurfaceBounder> make_bounder() const override {
-        return make_primitive_bounder(primitive_, *this);
+        return make_primitive_bounder(kind_, *this);
     }
 
     SurfacePoint eval(Id face, const Vec2& uv) const override {
@@ -109,7 +110,7 @@ class PrimitiveSurface final : public Surface {
         }
     }
 
-    Primitive primitive_;
+    PrimitiveKind kind_;
     std::unique_ptr<PrimitiveShape> shape_;
     Vec3 center_;
     Mat3 world_from_local_;  // columns: tangent, axis x tangent, axis
@@ -121,15 +122,8 @@ void check_positive(double value, const char* what) {
 }
 
 void check_sizes(const Primitive& primitive) {
-    using Type = Primitive::Type;
-    if (primitive.type == Type::kPlane) {
-        check_positive(primitive.size.x, "size");
-        check_positive(primitive.size.y, "size");
-    } else {
-        check_positive(primitive.radius, "radius");
-    }
-    if (primitive.type == Type::kParaboloid) check_positive(primitive.focal_length, "focal length");
-    if (primitive.type == Type::kCylinder) check_positive(primitive.height, "height");
+    PrimitiveKind kind = primitive.kind;
+    std::visit([](auto& one) { for_each_length(one, check_positive); }, kind);
     const Vec3& c = primitive.center;
     if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z))
         throw InputError("", "primitive", "center must be finite");

@@ -17,35 +17,37 @@ void grow_by_disk(Box& box, const Vec3& center, const Vec3& axis, double radius)
     box.include(center + half);
 }
 
-Box primitive_box(const Primitive& p) {
+void grow_by(Box& box, const SpherePrimitive& sphere, const Primitive& at) {
+    box.include(at.center - Vec3(sphere.radius));
+    box.include(at.center + Vec3(sphere.radius));
+}
+
+/// Apex and rim; between them the surface lies in the box of the solid cylinder around it.
+void grow_by(Box& box, const ParaboloidPrimitive& paraboloid, const Primitive& at) {
+    const double radius = paraboloid.radius;
+    grow_by_disk(box, at.center, at.axis, radius);
+    grow_by_disk(box, at.center + radius * radius / (4 * paraboloid.focal_length) * at.axis, at.axis, radius);
+}
+
+void grow_by(Box& box, const CylinderPrimitive& cylinder, const Primitive& at) {
+    grow_by_disk(box, at.center - 0.5 * cylinder.height * at.axis, at.axis, cylinder.radius);
+    grow_by_disk(box, at.center + 0.5 * cylinder.height * at.axis, at.axis, cylinder.radius);
+}
+
+void grow_by(Box& box, const PlanePrimitive& plane, const Primitive& at) {
+    const Vec3 u = 0.5 * plane.size.x * at.tangent, v = 0.5 * plane.size.y * cross(at.axis, at.tangent);
+    for (const Vec3& corner : {u + v, u - v, -u + v, -u - v}) box.include(at.center + corner);
+}
+
+Box primitive_box(const Primitive& primitive) {
     Box box;
-    switch (p.type) {
-        case Primitive::Type::kSphere:
-            box.include(p.center - Vec3(p.radius));
-            box.include(p.center + Vec3(p.radius));
-            break;
-        case Primitive::Type::kParaboloid:
-            // Apex and rim; between them the surface lies in the box of the solid cylinder around it.
-            grow_by_disk(box, p.center, p.axis, p.radius);
-            grow_by_disk(box, p.center + p.radius * p.radius / (4 * p.focal_length) * p.axis, p.axis,
-                         p.radius);
-            break;
-        case Primitive::Type::kCylinder:
-            grow_by_disk(box, p.center - 0.5 * p.height * p.axis, p.axis, p.radius);
-            grow_by_disk(box, p.center + 0.5 * p.height * p.axis, p.axis, p.radius);
-            break;
-        case Primitive::Type::kPlane: {
-            const Vec3 u = 0.5 * p.size.x * p.tangent, v = 0.5 * p.size.y * cross(p.axis, p.tangent);
-            for (const Vec3& corner : {u + v, u - v, -u + v, -u - v}) box.include(p.center + corner);
-            break;
-        }
-    }
+    std::visit([&](const auto& kind) { grow_by(box, kind, primitive); }, primitive.kind);
     return box;
 }
 
 std::string shape_name(const Mesh& mesh) {
     if (mesh.role == Role::kObject) return "polygons";
-    return mesh.primitive ? name_of(mesh.primitive->type) : name_of(mesh.cage.scheme);
+    return mesh.primitive ? kind_name(*mesh.primitive) : name_of(mesh.cage.scheme);
 }
 
 MeshInfo make_mesh_info(const Mesh& mesh, const Scene& scene) {

@@ -14,10 +14,8 @@ using namespace trilens_test;
 
 namespace {
 
-std::unique_ptr<Surface> primitive(Primitive::Type type) {
-    Primitive wanted;
-    wanted.type = type;
-    return make_primitive_surface(wanted);
+std::unique_ptr<Surface> primitive(const PrimitiveKind& kind) {
+    return make_primitive_surface({.kind = kind});
 }
 
 /// A cage's unit cube, all its edges creased, without its last `open` faces.
@@ -72,20 +70,20 @@ void check_bounds(const Surface& surface, int n, Random& random) {
 
 TEST_CASE("Patches bound the surface and its normals", "[intersect]") {
     Random random(3);
-    for (const auto type :
-         {Primitive::Type::kSphere, Primitive::Type::kParaboloid, Primitive::Type::kCylinder})
-        for (const int n : {3, 8}) check_bounds(*primitive(type), n, random);
+    for (const PrimitiveKind& kind :
+         std::initializer_list<PrimitiveKind>{SpherePrimitive(), ParaboloidPrimitive(), CylinderPrimitive()})
+        for (const int n : {3, 8}) check_bounds(*primitive(kind), n, random);
     for (const double sharpness : {0.0, 1.5, 10.0}) check_bounds(*cube(sharpness), 4, random);
     check_bounds(*cube(0, 2), 4, random);
 }
 
 TEST_CASE("Borders and creases are rims, and closed surfaces are known", "[intersect]") {
     const auto tree_of = [](const Surface& surface) { return PatchTree(surface, make_grid(surface, 4)); };
-    const PatchTree ball = tree_of(*primitive(Primitive::Type::kSphere));
+    const PatchTree ball = tree_of(*primitive(SpherePrimitive()));
     CHECK(ball.rims().empty());
     CHECK(ball.is_closed());
     CHECK_FALSE(ball.is_height_field());
-    const PatchTree plane = tree_of(*primitive(Primitive::Type::kPlane));
+    const PatchTree plane = tree_of(*primitive(PlanePrimitive()));
     CHECK_FALSE(plane.is_closed());
     CHECK(plane.is_height_field());
     CHECK(plane.rims().size() == 16);

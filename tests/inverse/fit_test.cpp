@@ -63,7 +63,8 @@ double worst_error(const FitResult& found, const Scene& truth, const std::string
     const Mesh &a = truth.meshes[0], &b = fitted.meshes[0];
     if (a.primitive) {
         worst = std::max(length(a.primitive->center - b.primitive->center),
-                         std::abs(a.primitive->radius - b.primitive->radius));
+                         std::abs(std::get<SpherePrimitive>(a.primitive->kind).radius -
+                                  std::get<SpherePrimitive>(b.primitive->kind).radius));
     }
     for (std::size_t k = 0; k < a.cage.points.size(); ++k)
         worst = std::max(worst, length(a.cage.points[k] - b.cage.points[k]));

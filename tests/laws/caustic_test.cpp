@@ -194,7 +194,7 @@ TEST_CASE("the caustic of crossed slits are the slits; of an eye and a flat mirr
 
     Scene flat = inside_ball();
     Primitive plane;
-    plane.type = Primitive::Type::kPlane;
+    plane.kind = PlanePrimitive();
     plane.center = {0, 0, -1}, plane.axis = {0, 0, 1};
     flat.meshes[0].primitive = plane;
     CHECK(drawn(flat, "main", 4).caustics.empty());

@@ -55,7 +55,7 @@ std::map<std::string, int> kinds_over_film(const Scene& scene) {
 TEST_CASE("a flat mirror is a pinhole, a ball one of two slits: rays of one eye stay normal to a surface",
           "[laws][law]") {
     Primitive flat;
-    flat.type = Primitive::Type::kPlane;
+    flat.kind = PlanePrimitive();
     flat.axis = {0, 0, 1};
     const auto of_flat = kinds_over_film(optic_before_wall(flat));
     REQUIRE(of_flat.size() == 1);

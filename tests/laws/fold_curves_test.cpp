@@ -163,10 +163,9 @@ TEST_CASE("folds drawn through glass and in a mirror are where the truth's Jacob
 
     // A concave mirror that throws the image of an eye beside its axis about on the wall behind the camera.
     Primitive bowl;
-    bowl.type = Primitive::Type::kParaboloid;
+    bowl.kind = ParaboloidPrimitive{.radius = 1.5, .focal_length = 2.6};
     bowl.center = {0, 0, -1};
     bowl.axis = {0, 0, 1};
-    bowl.radius = 1.5, bowl.focal_length = 2.6;
     Scene scene = before_wall(bowl, false, 4.5, {0.9, 0.4, 4});
     scene.render.max_depth = 0;
     check_folds(scene, "reflect");
@@ -176,7 +175,7 @@ TEST_CASE("flat and convex mirrors have no folds, and none are drawn that nobody
     Scene ball = before_wall(Primitive{}, false, 6, {0, 0.2, 4});
     CHECK(Renderer(ball).draw_lines({}, {.folds = true}).folds == 0);
     Primitive flat;
-    flat.type = Primitive::Type::kPlane;
+    flat.kind = PlanePrimitive();
     flat.axis = {0, 0, 1};
     CHECK(Renderer(before_wall(flat, false, 6, {0, 0.2, 4})).draw_lines({}, {.folds = true}).folds == 0);
     const LineDrawing plain = Renderer(before_wall(Primitive{}, true, -1.4, {0, 0.2, 4.2})).draw_lines({});

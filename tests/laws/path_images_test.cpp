@@ -16,9 +16,7 @@ Mesh ball_mesh(const std::string& name, const Vec3& centre, double radius, Id ma
     mesh.role = Role::kOptic;
     mesh.material = material;
     mesh.resolution = 12;
-    mesh.primitive = Primitive{};
-    mesh.primitive->center = centre;
-    mesh.primitive->radius = radius;
+    mesh.primitive = Primitive{.center = centre, .kind = SpherePrimitive{radius}};
     return mesh;
 }
 

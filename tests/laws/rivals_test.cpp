@@ -71,9 +71,7 @@ FrameParams on_film(int n) {
 }
 
 Primitive plate() {
-    Primitive primitive;
-    primitive.type = Primitive::Type::kPlane;
-    return primitive;
+    return {.kind = PlanePrimitive()};
 }
 
 }  // namespace

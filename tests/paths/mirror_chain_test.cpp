@@ -35,11 +35,10 @@ Vec3 alhazen_point(const Vec3& e, const Vec3& x) {
 
 Primitive mirror_plane_at(const Vec3& center, const Vec3& axis, const Vec3& tangent) {
     Primitive plane;
-    plane.type = Primitive::Type::kPlane;
     plane.center = center;
     plane.axis = normalize(axis);
     plane.tangent = normalize(tangent - dot(tangent, plane.axis) * plane.axis);
-    plane.size = {40, 40};
+    plane.kind = PlanePrimitive{{40, 40}};
     return plane;
 }
 

@@ -92,12 +92,7 @@ Shown compare(const Layered& layered, NestedOptics& seen, Id mirror, int step) {
 
 TEST_CASE("of two balls behind one another a flat mirror shows the nearer, as exact paths do", "[paths]") {
     Layered layered;
-    Primitive plane;
-    plane.type = Primitive::Type::kPlane;
-    plane.center = {0, 0, -4};
-    plane.axis = {0, 0, 1};
-    plane.tangent = {1, 0, 0};
-    plane.size = {9, 9};
+    const Primitive plane{{0, 0, -4}, {0, 0, 1}, {1, 0, 0}, PlanePrimitive{{9, 9}}};
     layered.stage.add(make_primitive_surface(plane), mirror_of());
     layered.stage.add_ball({1.8, 0.3, -1.5}, 0.6, mirror_of());
     layered.stage.add_ball({2.2, 0.2, 0.4}, 0.7, mirror_of());

@@ -110,13 +110,7 @@ void put_up(Stage& stage) {
 }
 
 Primitive plane_at(const Vec3& center, const Vec3& axis, const Vec3& tangent) {
-    Primitive plane;
-    plane.type = Primitive::Type::kPlane;
-    plane.center = center;
-    plane.axis = normalize(axis);
-    plane.tangent = normalize(tangent);
-    plane.size = {6, 6};
-    return plane;
+    return {center, normalize(axis), normalize(tangent), PlanePrimitive{{6, 6}}};
 }
 
 /// The images of `eye` in the mirrors of a node's history, the last mirror's last.

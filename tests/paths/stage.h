@@ -44,10 +44,9 @@ class Stage {
         return static_cast<Id>(world.optics.size() - 1);
     }
     Id add_ball(const Vec3& center, double radius, const trilens::Material& material, int priority = 0) {
-        trilens::Primitive sphere;
-        sphere.center = center;
-        sphere.radius = radius;
-        return add(trilens::make_primitive_surface(sphere), material, priority);
+        return add(
+            trilens::make_primitive_surface({.center = center, .kind = trilens::SpherePrimitive{radius}}),
+            material, priority);
     }
     template <class Body>
     Id add_body(Body body, const trilens::Material& material, int priority = 0) {

@@ -94,22 +94,23 @@ TEST_CASE("primitives move and turn and grow", "[scene]") {
     const std::string turn_x_to_y = R"({"translate":[1,2,3],"rotate":[0,0,1,1],"scale":[2,2,2]})";
     const Primitive sphere = load(R"({"type":"sphere","center":[1,0,0],"radius":3})", turn_x_to_y);
     CHECK(length(sphere.center - Vec3(1, 4, 3)) < 1e-14);
-    CHECK(sphere.radius == Approx(6));
+    CHECK(std::get<SpherePrimitive>(sphere.kind).radius == Approx(6));
     const Primitive plane =
         load(R"({"type":"plane","normal":[0,0,5],"tangent":[1,0,1],"size":[1,2]})", turn_x_to_y);
     CHECK(length(plane.axis - Vec3(0, 0, 1)) < 1e-14);
     CHECK(length(plane.tangent - Vec3(0, 1, 0)) < 1e-14);
-    CHECK(plane.size.y == Approx(4));
+    CHECK(std::get<PlanePrimitive>(plane.kind).size.y == Approx(4));
     const Primitive dish =
         load(R"({"type":"paraboloid","axis":[1,0,0],"focalLength":0.5,"radius":2})", turn_x_to_y);
     CHECK(length(dish.axis - Vec3(0, 1, 0)) < 1e-14);
-    CHECK(dish.focal_length == Approx(1));
+    CHECK(std::get<ParaboloidPrimitive>(dish.kind).focal_length == Approx(1));
+    CHECK(std::get<ParaboloidPrimitive>(dish.kind).radius == Approx(4));
     CHECK(std::abs(dot(dish.axis, dish.tangent)) < 1e-14);
     CHECK(length(dish.tangent) == Approx(1));
     const Primitive tube = load(R"({"type":"cylinder","height":3})", "{}");
     CHECK(tube.axis == Vec3(0, 1, 0));
     CHECK(tube.tangent == Vec3(1, 0, 0));
-    CHECK(tube.height == 3);
+    CHECK(std::get<CylinderPrimitive>(tube.kind).height == 3);
 }
 
 TEST_CASE("what a scene holds is counted", "[scene]") {

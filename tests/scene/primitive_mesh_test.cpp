@@ -33,17 +33,13 @@ Solid measure(const ObjectMesh& mesh) {
     return solid;
 }
 
-ObjectPrimitive shape_of(ObjectShape shape, int segments) {
+ObjectPrimitive shape_of(const ObjectPrimitiveKind& kind, int segments) {
     ObjectPrimitive p;
-    p.shape = shape;
+    p.kind = kind;
     p.segments = segments;
     p.axis = normalize(Vec3(0.3, 1, -0.4));
     p.tangent = normalize(cross(p.axis, Vec3(1, 0, 0)));
     p.center = {0.2, -0.3, 0.5};
-    p.radius = 1.3;
-    p.height = 2.2;
-    p.focal_length = 0.7;
-    p.size = {1, 2, 3};
     return p;
 }
 
@@ -53,19 +49,19 @@ TEST_CASE("tessellated primitives come to the areas and volumes of the formulas,
           "[scene][law]") {
     const double r = 1.3, h = 2.2, f = 0.7;
     struct Known {
-        ObjectShape shape;
+        ObjectPrimitiveKind kind;
         double area, volume;  // 0: not closed
     };
     const double bowl = 8 * M_PI * f * f / 3 * (std::pow(1 + r * r / (4 * f * f), 1.5) - 1);
-    const std::vector<Known> known{{ObjectShape::kSphere, 4 * M_PI * r * r, 4 * M_PI * r * r * r / 3},
-                                   {ObjectShape::kCylinder, 2 * M_PI * r * (r + h), M_PI * r * r * h},
-                                   {ObjectShape::kDisk, M_PI * r * r, 0},
-                                   {ObjectShape::kParaboloid, bowl, 0}};
+    const std::vector<Known> known{{SpherePrimitive{r}, 4 * M_PI * r * r, 4 * M_PI * r * r * r / 3},
+                                   {CylinderPrimitive{r, h}, 2 * M_PI * r * (r + h), M_PI * r * r * h},
+                                   {DiskPrimitive{r}, M_PI * r * r, 0},
+                                   {ParaboloidPrimitive{r, f}, bowl, 0}};
     for (const Known& one : known) {
-        INFO(name_of(one.shape));
+        INFO(kind_name(shape_of(one.kind, 3)));
         double last = 0;
         for (const int segments : {24, 48, 96}) {
-            const Solid solid = measure(triangulate(tessellate(shape_of(one.shape, segments))).object);
+            const Solid solid = measure(triangulate(tessellate(shape_of(one.kind, segments))).object);
             const double off = std::fabs(solid.area / one.area - 1);
             CHECK(off < 12.0 / (segments * segments));
             if (last > 0) CHECK(off == Approx(last / 4).epsilon(0.1));
@@ -75,27 +71,28 @@ TEST_CASE("tessellated primitives come to the areas and volumes of the formulas,
             CHECK(solid.worst_turn > 1 - 30.0 / (segments * segments));
         }
     }
-    const Solid box = measure(triangulate(tessellate(shape_of(ObjectShape::kBox, 3))).object);
+    const Solid box = measure(triangulate(tessellate(shape_of(BoxPrimitive{{1, 2, 3}}, 3))).object);
     CHECK(box.area == Approx(22));
     CHECK(box.volume == Approx(6));
     CHECK(box.worst_turn == Approx(1));
-    const Solid plane = measure(triangulate(tessellate(shape_of(ObjectShape::kPlane, 3))).object);
+    const Solid plane = measure(triangulate(tessellate(shape_of(PlanePrimitive{{1, 2}}, 3))).object);
     CHECK(plane.area == Approx(2));
     CHECK(plane.worst_turn == Approx(1));
 }
 
 TEST_CASE("points and normals of tessellated spheres and cylinders are exact, uvs turn once around",
           "[scene]") {
-    const ObjectPrimitive ball = shape_of(ObjectShape::kSphere, 17);
+    const double radius = 1.3;
+    const ObjectPrimitive ball = shape_of(SpherePrimitive{radius}, 17);
     const PolygonMesh mesh = tessellate(ball);
     CHECK(mesh.uvs.size() == mesh.cage.face_vertex_indices.size());
     for (std::size_t i = 0; i < mesh.cage.face_vertex_indices.size(); ++i) {
         const Vec3 from =
             mesh.cage.points[static_cast<std::size_t>(mesh.cage.face_vertex_indices[i])] - ball.center;
-        CHECK(length(from) == Approx(ball.radius).epsilon(1e-14));
-        CHECK(length(mesh.normals[i] - from / ball.radius) < 1e-14);
+        CHECK(length(from) == Approx(radius).epsilon(1e-14));
+        CHECK(length(mesh.normals[i] - from / radius) < 1e-14);
         CHECK(mesh.uvs[i].y ==
-              Approx(0.5 + std::asin(std::clamp(dot(from, ball.axis) / ball.radius, -1.0, 1.0)) / M_PI)
+              Approx(0.5 + std::asin(std::clamp(dot(from, ball.axis) / radius, -1.0, 1.0)) / M_PI)
                   .margin(1e-7));
     }
 }

@@ -131,14 +131,27 @@ std::vector<Change> changes_of_shapes() {
             [](Scene& s) { s.meshes[0].object.material[0] = 9; },
             [](Scene& s) { s.meshes[0].cage.normals = {Vec3(1, 0, 0)}; },
             [](Scene& s) { s.meshes[0].primitive.reset(); },
-            [](Scene& s) { s.meshes[0].primitive->type = Primitive::Type::kPlane; },
+            [](Scene& s) { s.meshes[0].primitive->kind = PlanePrimitive(); },
             [](Scene& s) { s.meshes[0].primitive->center.x = 1; },
             [](Scene& s) { s.meshes[0].primitive->axis.x = 1; },
             [](Scene& s) { s.meshes[0].primitive->tangent.x = 2; },
-            [](Scene& s) { s.meshes[0].primitive->radius = 2; },
-            [](Scene& s) { s.meshes[0].primitive->focal_length = 2; },
-            [](Scene& s) { s.meshes[0].primitive->height = 3; },
-            [](Scene& s) { s.meshes[0].primitive->size.y = 3; },
+            [](Scene& s) { s.meshes[0].primitive->kind = SpherePrimitive{2}; },
+            [](Scene& s) { s.meshes[0].primitive->kind = ParaboloidPrimitive(); },
+            [](Scene& s) {
+                s.meshes[0].primitive->kind = ParaboloidPrimitive{2, 1};
+            },
+            [](Scene& s) {
+                s.meshes[0].primitive->kind = ParaboloidPrimitive{1, 2};
+            },
+            [](Scene& s) {
+                s.meshes[0].primitive->kind = CylinderPrimitive{1, 2};
+            },
+            [](Scene& s) {
+                s.meshes[0].primitive->kind = CylinderPrimitive{1, 3};
+            },
+            [](Scene& s) {
+                s.meshes[0].primitive->kind = PlanePrimitive{{2, 3}};
+            },
             [](Scene& s) { s.meshes[0].cage.points[0].x = 9; },
             [](Scene& s) { s.meshes[0].cage.face_vertex_counts[0] = 4; },
             [](Scene& s) { s.meshes[0].cage.face_vertex_indices[2] = 1; },

@@ -97,21 +97,12 @@ Outside points_outside(const Surface& surface, unsigned seed, int box_count) {
     return result;
 }
 
-Primitive primitive_of(Primitive::Type type) {
-    Primitive primitive;
-    primitive.type = type;
-    primitive.center = {3, -2, 0.5};
-    primitive.axis = {0.3, 0.8, -0.4};
-    primitive.radius = 1.7;
-    primitive.focal_length = 0.6;
-    primitive.height = 4;
-    primitive.size = {3, 0.7};
-    return primitive;
+Primitive primitive_of(const PrimitiveKind& kind) {
+    return {.center = {3, -2, 0.5}, .axis = {0.3, 0.8, -0.4}, .kind = kind};
 }
 
-constexpr std::array<Primitive::Type, 4> kBoundedTypes = {
-    Primitive::Type::kSphere, Primitive::Type::kParaboloid, Primitive::Type::kCylinder,
-    Primitive::Type::kPlane};
+const std::array<PrimitiveKind, 4> kBoundedKinds = {SpherePrimitive{1.7}, ParaboloidPrimitive{1.7, 0.6},
+                                                    CylinderPrimitive{1.7, 4}, PlanePrimitive{{3, 0.7}}};
 
 /// An octahedron as a Loop cage: all its vertices have four faces, so none is regular.
 Cage octahedron() {
@@ -125,10 +116,10 @@ Cage octahedron() {
 }  // namespace
 
 TEST_CASE("no point of a primitive lies outside its bounds", "[surfaces][law]") {
-    for (const Primitive::Type type : kBoundedTypes) {
-        const auto surface = make_primitive_surface(primitive_of(type));
-        const Outside outside = points_outside(*surface, 1 + static_cast<unsigned>(type), 4000);
-        CAPTURE(static_cast<int>(type), outside.worst);
+    for (const PrimitiveKind& kind : kBoundedKinds) {
+        const auto surface = make_primitive_surface(primitive_of(kind));
+        const Outside outside = points_outside(*surface, 1 + static_cast<unsigned>(kind.index()), 4000);
+        CAPTURE(kind.index(), outside.worst);
         CHECK(outside.outside == 0);
         CHECK(outside.points > 300000);
     }
@@ -165,8 +156,8 @@ TEST_CASE("bounds shrink at least in proportion to the box", "[surfaces][law]") 
         if (name == "sheet" || name == "cube" || name == "prism 5" || name == "octahedron")
             surfaces.emplace_back(name, make_limit_surface(cage, name, {}));
     }
-    for (const Primitive::Type type : kBoundedTypes)
-        surfaces.emplace_back("primitive", make_primitive_surface(primitive_of(type)));
+    for (const PrimitiveKind& kind : kBoundedKinds)
+        surfaces.emplace_back("primitive", make_primitive_surface(primitive_of(kind)));
     REQUIRE(surfaces.size() == 8);
 
     Boxes boxes(77);

@@ -13,80 +13,98 @@ using namespace trilens;
 
 namespace {
 
-using Type = Primitive::Type;
-constexpr Type kTypes[] = {Type::kSphere, Type::kParaboloid, Type::kCylinder, Type::kPlane};
+const PrimitiveKind kSphere = SpherePrimitive(), kParaboloid = ParaboloidPrimitive(),
+                    kCylinder = CylinderPrimitive(), kPlane = PlanePrimitive();
+const PrimitiveKind kKinds[] = {kSphere, kParaboloid, kCylinder, kPlane};
 
 /// A primitive somewhere in space, of a size around `scale`.
-Primitive random_primitive(Type type, double scale, std::mt19937& random) {
+Primitive random_primitive(const PrimitiveKind& kind, double scale, std::mt19937& random) {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> size(0.5, 2);
     const auto direction = [&] { return normalize(Vec3(normal(random), normal(random), normal(random))); };
-    Primitive primitive;
-    primitive.type = type;
+    Primitive primitive{.kind = kind};
     primitive.center = scale * 3.0 * direction();
     primitive.axis = direction();
     primitive.tangent = normalize(cross(primitive.axis, direction()));
-    primitive.radius = scale * size(random);
-    primitive.focal_length = scale * size(random);
-    primitive.height = scale * size(random);
-    primitive.size = scale * Vec2(size(random), size(random));
+    const auto choose = [&](double& length, const char*) { length = scale * size(random); };
+    std::visit([&](auto& one) { for_each_length(one, choose); }, primitive.kind);
     return primitive;
 }
 
-struct Local {
-    double x, y, z;
-};
-Local to_local(const Primitive& p, const Vec3& world) {
+// What each shape's formula says of a point in its own frame: how far it is from satisfying the equation,
+// about in units of length; whether it lies inside the bounds; the unit normal on the side that is the front;
+// and the whole area.
+
+double residual(const SpherePrimitive& p, const Vec3& q) {
+    return std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z) - p.radius;
+}
+double residual(const ParaboloidPrimitive& p, const Vec3& q) {
+    return (q.x * q.x + q.y * q.y) / (4 * p.focal_length) - q.z;
+}
+double residual(const CylinderPrimitive& p, const Vec3& q) {
+    return std::hypot(q.x, q.y) - p.radius;
+}
+double residual(const PlanePrimitive&, const Vec3& q) {
+    return q.z;
+}
+
+bool is_inside(const SpherePrimitive&, const Vec3&, double) {
+    return true;
+}
+bool is_inside(const ParaboloidPrimitive& p, const Vec3& q, double slack) {
+    return std::hypot(q.x, q.y) <= p.radius + slack;
+}
+bool is_inside(const CylinderPrimitive& p, const Vec3& q, double slack) {
+    return std::abs(q.z) <= p.height / 2 + slack;
+}
+bool is_inside(const PlanePrimitive& p, const Vec3& q, double slack) {
+    return std::abs(q.x) <= p.size.x / 2 + slack && std::abs(q.y) <= p.size.y / 2 + slack;
+}
+
+Vec3 front(const SpherePrimitive&, const Vec3& q) {
+    return normalize(q);
+}
+Vec3 front(const ParaboloidPrimitive& p, const Vec3& q) {
+    return normalize(Vec3(-q.x, -q.y, 2 * p.focal_length));
+}
+Vec3 front(const CylinderPrimitive&, const Vec3& q) {
+    return normalize(Vec3(q.x, q.y, 0));
+}
+Vec3 front(const PlanePrimitive&, const Vec3&) {
+    return {0, 0, 1};
+}
+
+constexpr double kPi = 3.14159265358979323846;
+double area_of(const SpherePrimitive& p) {
+    return 4 * kPi * p.radius * p.radius;
+}
+double area_of(const ParaboloidPrimitive& p) {
+    const double f = p.focal_length, r = p.radius;
+    return 8 * kPi * f * f / 3 * (std::pow(1 + r * r / (4 * f * f), 1.5) - 1);
+}
+double area_of(const CylinderPrimitive& p) {
+    return 2 * kPi * p.radius * p.height;
+}
+double area_of(const PlanePrimitive& p) {
+    return p.size.x * p.size.y;
+}
+
+Vec3 to_local(const Primitive& p, const Vec3& world) {
     const Vec3 offset = world - p.center;
     return {dot(offset, p.tangent), dot(offset, cross(p.axis, p.tangent)), dot(offset, p.axis)};
 }
 
-/// How far a point is from satisfying the shape's equation, about in units of length.
 double residual(const Primitive& p, const Vec3& world) {
-    const Local q = to_local(p, world);
-    switch (p.type) {
-        case Type::kSphere:
-            return std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z) - p.radius;
-        case Type::kParaboloid:
-            return (q.x * q.x + q.y * q.y) / (4 * p.focal_length) - q.z;
-        case Type::kCylinder:
-            return std::hypot(q.x, q.y) - p.radius;
-        case Type::kPlane:
-            break;
-    }
-    return q.z;
+    return std::visit([&](const auto& kind) { return residual(kind, to_local(p, world)); }, p.kind);
 }
 
 bool is_inside_bounds(const Primitive& p, const Vec3& world, double slack) {
-    const Local q = to_local(p, world);
-    switch (p.type) {
-        case Type::kSphere:
-            return true;
-        case Type::kParaboloid:
-            return std::hypot(q.x, q.y) <= p.radius + slack;
-        case Type::kCylinder:
-            return std::abs(q.z) <= p.height / 2 + slack;
-        case Type::kPlane:
-            break;
-    }
-    return std::abs(q.x) <= p.size.x / 2 + slack && std::abs(q.y) <= p.size.y / 2 + slack;
+    return std::visit([&](const auto& kind) { return is_inside(kind, to_local(p, world), slack); }, p.kind);
 }
 
-/// The unit normal of the equation on the side that is the front.
 Vec3 front(const Primitive& p, const Vec3& world) {
-    const Local q = to_local(p, world);
-    const Vec3 side = cross(p.axis, p.tangent);
-    switch (p.type) {
-        case Type::kSphere:
-            return normalize(world - p.center);
-        case Type::kParaboloid:
-            return normalize(2 * p.focal_length * p.axis - q.x * p.tangent - q.y * side);
-        case Type::kCylinder:
-            return normalize(q.x * p.tangent + q.y * side);
-        case Type::kPlane:
-            break;
-    }
-    return p.axis;
+    const Vec3 n = std::visit([&](const auto& kind) { return front(kind, to_local(p, world)); }, p.kind);
+    return n.x * p.tangent + n.y * cross(p.axis, p.tangent) + n.z * p.axis;
 }
 
 Vec2 random_uv(std::mt19937& random) {
@@ -104,10 +122,10 @@ Vec2 random_uv(std::mt19937& random) {
 TEST_CASE("Points of primitives satisfy the equation, with its normal and derivatives",
           "[surfaces][oracle]") {
     std::mt19937 random(3);
-    for (Type type : kTypes)
+    for (const PrimitiveKind& kind : kKinds)
         for (double scale : {1e-4, 1e-2, 1.0, 1e2, 1e4}) {
-            CAPTURE(static_cast<int>(type), scale);
-            const Primitive primitive = random_primitive(type, scale, random);
+            CAPTURE(kind.index(), scale);
+            const Primitive primitive = random_primitive(kind, scale, random);
             const auto surface = make_primitive_surface(primitive);
             double area = 0;
             for (int i = 0; i < 200; ++i) {
@@ -139,9 +157,9 @@ TEST_CASE("Points of primitives satisfy the equation, with its normal and deriva
 
 TEST_CASE("The faces of a primitive cover it once", "[surfaces][law]") {
     std::mt19937 random(4);
-    for (Type type : kTypes) {
-        CAPTURE(static_cast<int>(type));
-        const Primitive p = random_primitive(type, 1, random);
+    for (const PrimitiveKind& kind : kKinds) {
+        CAPTURE(kind.index());
+        const Primitive p = random_primitive(kind, 1, random);
         const auto surface = make_primitive_surface(p);
         // The integral of |du x dv| over all faces against the area in closed form.
         double area = 0;
@@ -152,12 +170,7 @@ TEST_CASE("The faces of a primitive cover it once", "[surfaces][law]") {
                     const SurfacePoint point = surface->eval(face, {(i + 0.5) / kSteps, (j + 0.5) / kSteps});
                     area += length(cross(point.du, point.dv)) / (kSteps * kSteps);
                 }
-        const double pi = 3.14159265358979323846, f = p.focal_length, r = p.radius;
-        const double expected = type == Type::kSphere ? 4 * pi * r * r
-                                : type == Type::kParaboloid
-                                    ? 8 * pi * f * f / 3 * (std::pow(1 + r * r / (4 * f * f), 1.5) - 1)
-                                : type == Type::kCylinder ? 2 * pi * r * p.height
-                                                          : p.size.x * p.size.y;
+        const double expected = std::visit([](const auto& one) { return area_of(one); }, p.kind);
         CHECK(area == Approx(expected).epsilon(1e-4));
     }
 }
@@ -166,10 +179,10 @@ TEST_CASE("A hit lies on the ray and on the surface, and is the first", "[surfac
     std::mt19937 random(5);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> exponent(-3, 3);
-    for (Type type : kTypes)
+    for (const PrimitiveKind& kind : kKinds)
         for (double scale : {1e-4, 1.0, 1e4}) {
-            CAPTURE(static_cast<int>(type), scale);
-            const Primitive primitive = random_primitive(type, scale, random);
+            CAPTURE(kind.index(), scale);
+            const Primitive primitive = random_primitive(kind, scale, random);
             const auto surface = make_primitive_surface(primitive);
             CHECK(surface->has_closed_form());
             int hits = 0, misses = 0;
@@ -243,8 +256,7 @@ TEST_CASE("t_min leaves earlier hits out", "[surfaces]") {
 
 TEST_CASE("Of primitives the sphere alone has the curvature of a sphere", "[surfaces]") {
     for (const double radius : {1e-4, 0.5, 3e4}) {
-        Primitive sphere;
-        sphere.radius = radius;
+        const Primitive sphere{.kind = SpherePrimitive{radius}};
         const auto surface = make_primitive_surface(sphere);
         CHECK(surface->sphere_curvature() == Approx(1 / radius).epsilon(1e-15));
         // Its normals point away from the centre, and lie on it.
@@ -255,19 +267,15 @@ TEST_CASE("Of primitives the sphere alone has the curvature of a sphere", "[surf
         CHECK(there.face == 2);
         CHECK(length(there.uv - Vec2(0.3, 0.8)) < 1e-14);
     }
-    CHECK(make_primitive_surface({.type = Type::kPlane})->sphere_place({0, 0, 1}).face == kNone);
+    CHECK(make_primitive_surface({.kind = kPlane})->sphere_place({0, 0, 1}).face == kNone);
     std::mt19937 random(7);
-    for (const Type type : kTypes)
-        if (type != Type::kSphere)
-            CHECK(make_primitive_surface(random_primitive(type, 1, random))->sphere_curvature() == 0);
+    for (const PrimitiveKind& kind : kKinds)
+        if (!std::holds_alternative<SpherePrimitive>(kind))
+            CHECK(make_primitive_surface(random_primitive(kind, 1, random))->sphere_curvature() == 0);
 }
 
 TEST_CASE("Rays along the axis, through the rim's plane and along the surface", "[surfaces]") {
-    Primitive dish;
-    dish.type = Type::kParaboloid;
-    dish.axis = {0, 0, 1};
-    dish.radius = 2;
-    dish.focal_length = 0.5;
+    const Primitive dish{.axis = {0, 0, 1}, .kind = ParaboloidPrimitive{2, 0.5}};
     const auto paraboloid = make_primitive_surface(dish);
     const auto down = paraboloid->intersect({{1, 0.5, 10}, {0, 0, -1}}, 0);
     REQUIRE(down);
@@ -277,17 +285,13 @@ TEST_CASE("Rays along the axis, through the rim's plane and along the surface", 
         Vec3(0, 0, -1) - 2.0 * dot(Vec3(0, 0, -1), down->point.normal) * down->point.normal;
     CHECK(length(cross(reflected, Vec3(0, 0, 0.5) - down->point.position)) < 1e-15);
 
-    Primitive tube;
-    tube.type = Type::kCylinder;
-    tube.axis = {0, 0, 1};
+    const Primitive tube{.axis = {0, 0, 1}, .kind = CylinderPrimitive()};
     const auto cylinder = make_primitive_surface(tube);
     CHECK_FALSE(cylinder->intersect({{0.5, 0, 10}, {0, 0, -1}}, 0));
     CHECK(cylinder->intersect({{0, 0, 0.9}, {1, 0, 0}}, 0)->t == Approx(1));
     CHECK_FALSE(cylinder->intersect({{0, 0, 1.1}, {1, 0, 0}}, 0));
 
-    Primitive square;
-    square.type = Type::kPlane;
-    const auto plane = make_primitive_surface(square);
+    const auto plane = make_primitive_surface({.kind = kPlane});
     CHECK_FALSE(plane->intersect({{-5, 0, 0}, {1, 0, 0}}, 0));
     CHECK(plane->intersect({{0.5, 1, -0.5}, {0, -1, 0}}, 0)->point.normal == Vec3(0, 1, 0));
 }
@@ -295,30 +299,32 @@ TEST_CASE("Rays along the axis, through the rim's plane and along the surface", 
 TEST_CASE("Grids of primitives close, and their points satisfy the equation", "[surfaces][oracle]") {
     std::mt19937 random(6);
     for (int n : {1, 4, 9}) {
-        CHECK(
-            make_grid(*make_primitive_surface(random_primitive(Type::kSphere, 1, random)), n).points.size() ==
-            static_cast<std::size_t>(6 * n * n + 2));
-        CHECK(make_grid(*make_primitive_surface(random_primitive(Type::kCylinder, 1, random)), n)
-                  .points.size() == static_cast<std::size_t>(4 * n * (n + 1)));
-        CHECK(make_grid(*make_primitive_surface(random_primitive(Type::kParaboloid, 1, random)), n)
-                  .points.size() == static_cast<std::size_t>((n + 1) * (n + 1) + 4 * n * n));
-        CHECK(
-            make_grid(*make_primitive_surface(random_primitive(Type::kPlane, 1, random)), n).points.size() ==
-            static_cast<std::size_t>((n + 1) * (n + 1)));
+        CHECK(make_grid(*make_primitive_surface(random_primitive(kSphere, 1, random)), n).points.size() ==
+              static_cast<std::size_t>(6 * n * n + 2));
+        CHECK(make_grid(*make_primitive_surface(random_primitive(kCylinder, 1, random)), n).points.size() ==
+              static_cast<std::size_t>(4 * n * (n + 1)));
+        CHECK(make_grid(*make_primitive_surface(random_primitive(kParaboloid, 1, random)), n).points.size() ==
+              static_cast<std::size_t>((n + 1) * (n + 1) + 4 * n * n));
+        CHECK(make_grid(*make_primitive_surface(random_primitive(kPlane, 1, random)), n).points.size() ==
+              static_cast<std::size_t>((n + 1) * (n + 1)));
     }
 }
 
 TEST_CASE("Primitives without a size or a frame are refused", "[surfaces][bad-input]") {
+    for (const PrimitiveKind& kind : kKinds)
+        for (const double wrong : {0.0, -1.0, std::numeric_limits<double>::infinity()})
+            for (int which = 0; which < 2; ++which) {
+                Primitive bad{.kind = kind};
+                int number = 0;
+                const auto spoil = [&](double& length, const char*) {
+                    if (which == number++) length = wrong;
+                };
+                std::visit([&](auto& one) { for_each_length(one, spoil); }, bad.kind);
+                if (which >= number) continue;  // a sphere has one length alone
+                CAPTURE(kind.index(), wrong, which);
+                CHECK_THROWS_AS(make_primitive_surface(bad), InputError);
+            }
     Primitive bad;
-    bad.radius = 0;
-    CHECK_THROWS_AS(make_primitive_surface(bad), InputError);
-    bad.radius = std::numeric_limits<double>::infinity();
-    CHECK_THROWS_AS(make_primitive_surface(bad), InputError);
-    bad = Primitive{};
     bad.tangent = 2.0 * bad.axis;
-    CHECK_THROWS_AS(make_primitive_surface(bad), InputError);
-    bad = Primitive{};
-    bad.type = Type::kParaboloid;
-    bad.focal_length = -1;
     CHECK_THROWS_AS(make_primitive_surface(bad), InputError);
 }

@@ -139,7 +139,7 @@ TEST_CASE("scenes that are none are refused by all that takes scenes", "[trilens
         add([&](Scene& scene) { scene.meshes[index].cage.crease_lengths = {3}; });
         for (const double x : kOddNumbers)
             add([&](Scene& scene) {
-                if (scene.meshes[index].primitive) scene.meshes[index].primitive->radius = x;
+                if (scene.meshes[index].primitive) scene.meshes[index].primitive->kind = SpherePrimitive{x};
             });
     }
     const Warn quiet = [](const std::string&) {};
@@ -247,17 +247,18 @@ TEST_CASE("surfaces refuse cages, primitives and grids that are none", "[trilens
         with_cage([&](Cage& cage) {
             cage.corner_indices = {0}, cage.corner_sharpnesses = {static_cast<float>(x)};
         });
-        for (const Primitive::Type type : {Primitive::Type::kSphere, Primitive::Type::kParaboloid,
-                                           Primitive::Type::kCylinder, Primitive::Type::kPlane})
-            for (int field = 0; field < 6; ++field) {
-                Primitive odd;
-                odd.type = type;
+        for (const PrimitiveKind& kind : std::initializer_list<PrimitiveKind>{
+                 SpherePrimitive(), ParaboloidPrimitive(), CylinderPrimitive(), PlanePrimitive()})
+            for (int field = 0; field < 5; ++field) {
+                Primitive odd{.kind = kind};
                 if (field == 0) odd.center = Vec3(x);
                 if (field == 1) odd.axis = Vec3(x);
                 if (field == 2) odd.tangent = Vec3(x);
-                if (field == 3) odd.radius = x;
-                if (field == 4) odd.focal_length = odd.height = x;
-                if (field == 5) odd.size = {x, x};
+                int number = 3;  // of a kind's first two lengths
+                const auto make_odd = [&](double& length, const char*) {
+                    if (field == number++) length = x;
+                };
+                std::visit([&](auto& one) { for_each_length(one, make_odd); }, odd.kind);
                 only_errors("make_surface", [&] { make_surface_grid(*make_surface(odd), 2); });
             }
     }

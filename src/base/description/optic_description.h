@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "base/math/vec.h"
@@ -48,32 +49,73 @@ struct Cage {
     std::vector<int> corner_indices;
     std::vector<double> corner_sharpnesses;
     std::vector<int> hole_indices;  // faces that are not drawn
-    std::vector<Vec3> normals;      // kUnsubdivided: per face corner, any length, zero: the face's own; or empty
+    std::vector<Vec3> normals;  // kUnsubdivided: per face corner, any length, zero: the face's own; or empty
 };
+
+// The kinds of primitives, each with its lengths, in its own frame: z along the axis, x along the tangent.
+// for_each_length() calls use(length, its name) with every member: what scales, checks or hashes primitives
+// asks it.
+
+struct SpherePrimitive {
+    static constexpr const char* kName = "sphere";
+    double radius = 1;
+};
+template <typename Use>
+void for_each_length(SpherePrimitive& sphere, const Use& use) {
+    auto& [radius] = sphere;
+    use(radius, "radius");
+}
+
+/// Its centre is the apex, its axis goes from there towards the focus.
+struct ParaboloidPrimitive {
+    static constexpr const char* kName = "paraboloid";
+    double radius = 1;        // of its rim
+    double focal_length = 1;  // apex to focus
+};
+template <typename Use>
+void for_each_length(ParaboloidPrimitive& paraboloid, const Use& use) {
+    auto& [radius, focal_length] = paraboloid;
+    use(radius, "radius");
+    use(focal_length, "focal length");
+}
+
+struct CylinderPrimitive {
+    static constexpr const char* kName = "cylinder";
+    double radius = 1;
+    double height = 2;  // along the axis
+};
+template <typename Use>
+void for_each_length(CylinderPrimitive& cylinder, const Use& use) {
+    auto& [radius, height] = cylinder;
+    use(radius, "radius");
+    use(height, "height");
+}
+
+/// Its axis is its normal.
+struct PlanePrimitive {
+    static constexpr const char* kName = "plane";
+    Vec2 size{2, 2};  // lengths of its sides along tangent and axis x tangent
+};
+template <typename Use>
+void for_each_length(PlanePrimitive& plane, const Use& use) {
+    auto& [size] = plane;
+    use(size.x, "size");
+    use(size.y, "size");
+}
+
+using PrimitiveKind = std::variant<SpherePrimitive, ParaboloidPrimitive, CylinderPrimitive, PlanePrimitive>;
 
 /// An optic given by a formula instead of a cage; world frame.
 struct Primitive {
-    enum class Type { kSphere, kParaboloid, kCylinder, kPlane };
-    Type type = Type::kSphere;
-    Vec3 center{0};  // sphere: centre; paraboloid: apex; cylinder and plane: middle
-    Vec3 axis{0, 1,
-              0};  // unit. paraboloid: from the apex towards the focus; cylinder: along it; plane: its normal
-    Vec3 tangent{
-        1, 0, 0};  // unit, at right angles to axis: where u begins (paraboloid, cylinder), the u side (plane)
-    double radius = 1;        // sphere, cylinder; paraboloid: radius of its rim
-    double focal_length = 1;  // paraboloid: apex to focus
-    double height = 2;        // cylinder: length along the axis
-    Vec2 size{2, 2};          // plane: lengths of its sides along tangent and axis x tangent
+    Vec3 center{0};
+    Vec3 axis{0, 1, 0};     // unit
+    Vec3 tangent{1, 0, 0};  // unit, at right angles to axis: where u begins
+    PrimitiveKind kind = SpherePrimitive();
 };
 
-template <>
-struct EnumNames<Primitive::Type> {
-    static constexpr std::array kTable{
-        NamedValue<Primitive::Type>{Primitive::Type::kSphere, "sphere"},
-        NamedValue<Primitive::Type>{Primitive::Type::kParaboloid, "paraboloid"},
-        NamedValue<Primitive::Type>{Primitive::Type::kCylinder, "cylinder"},
-        NamedValue<Primitive::Type>{Primitive::Type::kPlane, "plane"}};
-};
+inline const char* kind_name(const Primitive& primitive) {
+    return std::visit([](const auto& kind) { return kind.kName; }, primitive.kind);
+}
 
 // How an optic is cut into facets: where they lie, and how the rays at their corners are chosen.
 

@@ -10,26 +10,23 @@ namespace {
 constexpr int kSides = 64;
 
 ObjectPrimitive shape_of(const RectangleLight& light) {
-    // A plane's size is along tangent and axis x tangent.
-    ObjectPrimitive plane{ObjectShape::kPlane, light.position, light.direction};
-    plane.tangent = normalize_or_zero(sides_of(light).width);
-    plane.size = {light.size.x, light.size.y, 0};
-    return plane;
+    return {.center = light.position,
+            .axis = light.direction,
+            .tangent = normalize_or_zero(sides_of(light).width),
+            .kind = PlanePrimitive{light.size}};
 }
 
 ObjectPrimitive shape_of(const DiskLight& light) {
-    ObjectPrimitive disk{ObjectShape::kDisk, light.position, light.direction};
-    disk.tangent = normalize_or_zero(sides_of(RectangleLight{.direction = light.direction}).width);
-    disk.radius = light.radius;
-    disk.segments = kSides;
-    return disk;
+    const RectangleLight square{.direction = light.direction};
+    return {.center = light.position,
+            .axis = light.direction,
+            .tangent = normalize_or_zero(sides_of(square).width),
+            .kind = DiskPrimitive{light.radius},
+            .segments = kSides};
 }
 
 ObjectPrimitive shape_of(const SphereLight& light) {
-    ObjectPrimitive sphere{ObjectShape::kSphere, light.position};
-    sphere.radius = light.radius;
-    sphere.segments = kSides;
-    return sphere;
+    return {.center = light.position, .kind = SpherePrimitive{light.radius}, .segments = kSides};
 }
 
 std::optional<ObjectPrimitive> shape_of(const Light& light) {

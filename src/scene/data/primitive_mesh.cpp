@@ -74,18 +74,65 @@ Patch square(const Vec3& middle, const Vec3& along_u, const Vec3& along_v) {
 }
 
 /// A disk whose normal is the frame's axis, or against it.
-void add_disk(const Vec3& middle, const AxisFrame& frame, const ObjectPrimitive& p, bool along,
-              PolygonMesh& mesh) {
-    const double turn = along ? 1 : -1;
-    const Patch disk = [=](double u, double v) {
-        return SurfaceCorner{middle + (1 - v) * p.radius * frame.around(turn * u), turn * frame.axis};
+struct Disk {
+    Vec3 middle;
+    double radius;
+    bool along;
+};
+void add_disk(const Disk& disk, const AxisFrame& frame, int segments, PolygonMesh& mesh) {
+    const double turn = disk.along ? 1 : -1;
+    const Patch patch = [=](double u, double v) {
+        return SurfaceCorner{disk.middle + (1 - v) * disk.radius * frame.around(turn * u), turn * frame.axis};
     };
-    add_patch(disk, p.segments, 1, {false, true}, mesh);
+    add_patch(patch, segments, 1, {false, true}, mesh);
 }
 
-void add_box(const ObjectPrimitive& p, const AxisFrame& frame, PolygonMesh& mesh) {
-    const Vec3 half[3] = {0.5 * p.size.x * frame.tangent, 0.5 * p.size.y * frame.axis,
-                          -0.5 * p.size.z * frame.side};
+// Each kind's patches; p has its place and segments.
+
+void add_shape(const SpherePrimitive& sphere, const ObjectPrimitive& p, PolygonMesh& mesh) {
+    const AxisFrame frame(p);
+    const Patch patch = [&](double u, double v) {
+        const double latitude = (v - 0.5) * std::numbers::pi;
+        const Vec3 normal = std::cos(latitude) * frame.around(u) + std::sin(latitude) * frame.axis;
+        return SurfaceCorner{p.center + sphere.radius * normal, normal};
+    };
+    add_patch(patch, p.segments, (p.segments + 1) / 2, {true, true}, mesh);
+}
+
+/// r^2 = 4 f z; the front looks away from the focus, as outside a bowl.
+void add_shape(const ParaboloidPrimitive& paraboloid, const ObjectPrimitive& p, PolygonMesh& mesh) {
+    const AxisFrame frame(p);
+    const double focal_length = paraboloid.focal_length;
+    const Patch patch = [&](double u, double v) {
+        const double r = v * paraboloid.radius;
+        const Vec3 out = frame.around(u);
+        const Vec3 point = p.center + r * out + r * r / (4 * focal_length) * frame.axis;
+        return SurfaceCorner{point, normalize_or_zero(r / (2 * focal_length) * out - frame.axis)};
+    };
+    add_patch(patch, p.segments, (p.segments + 3) / 4, {true, false}, mesh);
+}
+
+void add_shape(const CylinderPrimitive& cylinder, const ObjectPrimitive& p, PolygonMesh& mesh) {
+    const AxisFrame frame(p);
+    const Vec3 up = 0.5 * cylinder.height * frame.axis;
+    const Patch patch = [&](double u, double v) {
+        const Vec3 out = frame.around(u);
+        return SurfaceCorner{p.center + cylinder.radius * out + (2 * v - 1) * up, out};
+    };
+    add_patch(patch, p.segments, 1, {}, mesh);
+    add_disk({p.center + up, cylinder.radius, true}, frame, p.segments, mesh);
+    add_disk({p.center - up, cylinder.radius, false}, frame, p.segments, mesh);
+}
+
+void add_shape(const PlanePrimitive& plane, const ObjectPrimitive& p, PolygonMesh& mesh) {
+    const AxisFrame frame(p);
+    add_patch(square(p.center, plane.size.x * frame.tangent, plane.size.y * frame.side), 1, 1, {}, mesh);
+}
+
+void add_shape(const BoxPrimitive& box, const ObjectPrimitive& p, PolygonMesh& mesh) {
+    const AxisFrame frame(p);
+    const Vec3 half[3] = {0.5 * box.size.x * frame.tangent, 0.5 * box.size.y * frame.axis,
+                          -0.5 * box.size.z * frame.side};
     for (int k = 0; k < 3; ++k) {
         const Vec3 &out = half[k], &u = half[(k + 1) % 3], &v = half[(k + 2) % 3];
         add_patch(square(p.center + out, 2.0 * u, 2.0 * v), 1, 1, {}, mesh);
@@ -93,56 +140,15 @@ void add_box(const ObjectPrimitive& p, const AxisFrame& frame, PolygonMesh& mesh
     }
 }
 
+void add_shape(const DiskPrimitive& disk, const ObjectPrimitive& p, PolygonMesh& mesh) {
+    add_disk({p.center, disk.radius, true}, AxisFrame(p), p.segments, mesh);
+}
+
 }  // namespace
 
-PolygonMesh tessellate(const ObjectPrimitive& p) {
+PolygonMesh tessellate(const ObjectPrimitive& primitive) {
     PolygonMesh mesh;
-    const AxisFrame frame(p);
-    switch (p.shape) {
-        case ObjectShape::kSphere:
-            add_patch(
-                [&](double u, double v) {
-                    const double latitude = (v - 0.5) * std::numbers::pi;
-                    const Vec3 normal =
-                        std::cos(latitude) * frame.around(u) + std::sin(latitude) * frame.axis;
-                    return SurfaceCorner{p.center + p.radius * normal, normal};
-                },
-                p.segments, (p.segments + 1) / 2, {true, true}, mesh);
-            break;
-        case ObjectShape::kParaboloid:
-            // r^2 = 4 f z; the front looks away from the focus, as outside a bowl.
-            add_patch(
-                [&](double u, double v) {
-                    const double r = v * p.radius;
-                    const Vec3 out = frame.around(u);
-                    const Vec3 point = p.center + r * out + r * r / (4 * p.focal_length) * frame.axis;
-                    return SurfaceCorner{point,
-                                         normalize_or_zero(r / (2 * p.focal_length) * out - frame.axis)};
-                },
-                p.segments, (p.segments + 3) / 4, {true, false}, mesh);
-            break;
-        case ObjectShape::kCylinder: {
-            const Vec3 up = 0.5 * p.height * frame.axis;
-            add_patch(
-                [&](double u, double v) {
-                    const Vec3 out = frame.around(u);
-                    return SurfaceCorner{p.center + p.radius * out + (2 * v - 1) * up, out};
-                },
-                p.segments, 1, {}, mesh);
-            add_disk(p.center + up, frame, p, true, mesh);
-            add_disk(p.center - up, frame, p, false, mesh);
-            break;
-        }
-        case ObjectShape::kPlane:
-            add_patch(square(p.center, p.size.x * frame.tangent, p.size.y * frame.side), 1, 1, {}, mesh);
-            break;
-        case ObjectShape::kBox:
-            add_box(p, frame, mesh);
-            break;
-        case ObjectShape::kDisk:
-            add_disk(p.center, frame, p, true, mesh);
-            break;
-    }
+    std::visit([&](const auto& kind) { add_shape(kind, primitive, mesh); }, primitive.kind);
     return mesh;
 }
 

@@ -186,8 +186,10 @@ void add(const Light& light, Digest& digest) {
 }
 
 void add(const Primitive& primitive, Digest& digest) {
-    const auto& [type, center, axis, tangent, radius, focal_length, height, size] = primitive;
-    digest.add_all(type, center, axis, tangent, radius, focal_length, height, size);
+    auto [center, axis, tangent, kind] = primitive;
+    digest.add_all(center, axis, tangent, kind.index());
+    const auto add_length = [&](double length, const char*) { digest.add(length); };
+    std::visit([&](auto& one) { for_each_length(one, add_length); }, kind);
 }
 
 void add(const Cage& cage, Digest& digest) {

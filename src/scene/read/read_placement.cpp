@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
+#include "json/kinds.h"
 #include "scene/read/reading.h"
 
 namespace trilens {
@@ -58,38 +60,64 @@ Transform read_transform(const Node& mesh) {
     return make_transform(translate, rotate, scale);
 }
 
+namespace {
+
+/// What a kind's frame turns about: nothing that anybody sees, its axis, or its normal.
+enum class Turns { kNone, kAxis, kNormal };
+Turns turns_of(const SpherePrimitive&) {
+    return Turns::kNone;
+}
+Turns turns_of(const PlanePrimitive&) {
+    return Turns::kNormal;
+}
+Turns turns_of(const DiskPrimitive&) {
+    return Turns::kNormal;
+}
+template <typename Kind>
+Turns turns_of(const Kind&) {
+    return Turns::kAxis;
+}
+
+Field<ObjectPrimitive> direction_of(const char* key, Turns turns) {
+    Field<ObjectPrimitive> field = part<ObjectPrimitive>(key, ref("vec3"));
+    field.schema["default"] = to_json_value(ObjectPrimitive().axis);
+    field.kinds = kinds_with<ObjectPrimitiveKind>([&](const auto& kind) { return turns_of(kind) == turns; });
+    return field;
+}
+
+}  // namespace
+
 const std::vector<Field<ObjectPrimitive>>& primitive_fields() {
     using P = ObjectPrimitive;
-    const auto along = [](const char* key) {
-        Field<P> field = part<P>(key, ref("vec3"));
-        field.schema["default"] = to_json_value(P().axis);
-        return field;
-    };
     static const std::vector<Field<P>> fields = [&] {
+        Field<P> tangent = part<P>("tangent", ref("vec3"),
+                                   "Default: a direction at right angles to axis or normal, +X for +Y.");
+        tangent.kinds =
+            kinds_with<ObjectPrimitiveKind>([](const auto& kind) { return turns_of(kind) != Turns::kNone; });
         Field<P> size =
-            part<P>("size", {{"type", "array"}, {"minItems", 2}, {"maxItems", 3}, {"items", ref("positive")}},
-                    "plane: along tangent and normal x tangent, 2 by 2 by default; box: along "
-                    "tangent, axis and tangent x axis.");
-        size.read = [](const Json& json, P& into) {
-            for (std::size_t k = 0; k < json.size(); ++k)
-                into.size[static_cast<int>(k)] = json[k].get<double>();
-        };
+            of_kinds<P>("size", TRILENS_MEMBER(size),
+                        {{"type", "array"}, {"minItems", 2}, {"maxItems", 3}, {"items", ref("positive")}},
+                        "plane: along tangent and normal x tangent, 2 by 2 by default; box: along "
+                        "tangent, axis and tangent x axis.");
+        size.needed_by = {BoxPrimitive::kName};
+        Field<P> segments = setting("segments", &P::segments, whole_in(3, 1024),
+                                    "object: pieces of a full circle; an optic is exact.");
+        segments.kinds = kinds_with<ObjectPrimitiveKind>([](const auto& kind) {
+            return requires {
+                kind.radius;
+            };
+        });
         return std::vector<Field<P>>{
-            choice("type", &P::shape).without_default(),
+            type_field<P>(),
             setting("center", &P::center, ref("vec3"), "paraboloid: its apex."),
-            setting("radius", &P::radius, ref("positive"), "paraboloid: of its rim.")
-                .of({"sphere", "paraboloid", "cylinder", "disk"}),
-            along("axis").of({"paraboloid", "cylinder", "box"}),
-            along("normal").of({"plane", "disk"}),
-            part<P>("tangent", ref("vec3"),
-                    "Default: a direction at right angles to axis or normal, +X for +Y.")
-                .of({"paraboloid", "cylinder", "plane", "box", "disk"}),
-            setting("focalLength", &P::focal_length, ref("positive")).of({"paraboloid"}),
-            setting("height", &P::height, ref("positive")).of({"cylinder"}),
-            std::move(size).of({"plane", "box!"}),
-            setting("segments", &P::segments, whole_in(3, 1024),
-                    "object: pieces of a full circle; an optic is exact.")
-                .of({"sphere", "paraboloid", "cylinder", "disk"}),
+            of_kinds<P>("radius", TRILENS_MEMBER(radius), ref("positive"), "paraboloid: of its rim."),
+            direction_of("axis", Turns::kAxis),
+            direction_of("normal", Turns::kNormal),
+            std::move(tangent),
+            of_kinds<P>("focalLength", TRILENS_MEMBER(focal_length), ref("positive"), ""),
+            of_kinds<P>("height", TRILENS_MEMBER(height), ref("positive"), ""),
+            std::move(size),
+            std::move(segments),
         };
     }();
     return fields;
@@ -109,18 +137,35 @@ Json primitive_schema() {
 
 namespace {
 
+/// A plane's size has two sides, a box's three.
+void check_sides(const Node& node) {
+    if (!node.has("size")) return;
+    const std::string kind = node["type"].json.get<std::string>();
+    const std::size_t sides = kind == BoxPrimitive::kName ? 3 : 2;
+    if (node["size"].size() != sides)
+        node["size"].fail("has " + std::to_string(node["size"].size()) + " entries, must have " +
+                          std::to_string(sides) + " for a " + kind);
+}
+
 /// In its own frame.
 ObjectPrimitive read_shape(const Node& node) {
+    check_sides(node);
     ObjectPrimitive shape;
     read_fields(node, primitive_fields(), shape);
-    const std::size_t sides = shape.shape == ObjectShape::kBox ? 3 : 2;
-    if (node.has("size") && node["size"].size() != sides)
-        node["size"].fail("has " + std::to_string(node["size"].size()) + " entries, must have " +
-                          std::to_string(sides) + " for a " + name_of(shape.shape));
     const char* const axis = node.has("normal") ? "normal" : "axis";
     if (node.has(axis)) shape.axis = read_direction(node[axis]);
     shape.tangent = read_tangent(node, shape.axis);
     return shape;
+}
+
+/// None where an object alone has that kind.
+std::optional<PrimitiveKind> optic_kind(const ObjectPrimitiveKind& of_object) {
+    return std::visit(
+        []<typename Kind>(const Kind& kind) -> std::optional<PrimitiveKind> {
+            if constexpr (std::is_constructible_v<PrimitiveKind, Kind>) return kind;
+            return std::nullopt;
+        },
+        of_object);
 }
 
 }  // namespace
@@ -131,25 +176,25 @@ PolygonMesh read_object_primitive(const Node& node) {
 
 Primitive read_primitive(const Node& node, const Transform& transform, const Node& mesh) {
     const ObjectPrimitive shape = read_shape(node);
-    const std::optional<Primitive::Type> type = find_named<Primitive::Type>(name_of(shape.shape));
-    if (!type)
-        node["type"].fail(std::string("a ") + name_of(shape.shape) + " is an object's: an optic is " +
+    std::optional<PrimitiveKind> kind = optic_kind(shape.kind);
+    if (!kind)
+        node["type"].fail(std::string("a ") + kind_name(shape) + " is an object's: an optic is " +
                           "a sphere, a paraboloid, a cylinder, a plane, or a cage");
     if (node.has("segments")) node["segments"].fail("are an object's: an optic is exact");
     const std::optional<double> factor = similarity_factor(transform);
     if (!factor) mesh["transform"].fail("a primitive stays exact only under a uniform scale");
 
     Primitive primitive;
-    primitive.type = *type;
     primitive.center = map_point(transform, shape.center);
     primitive.axis = normalize_or_zero(transform.linear * shape.axis);
     primitive.tangent = normalize_or_zero(transform.linear * shape.tangent);
-    primitive.radius = shape.radius * *factor;
-    primitive.focal_length = shape.focal_length * *factor;
-    primitive.height = shape.height * *factor;
-    primitive.size = *factor * Vec2(shape.size.x, shape.size.y);
-    const double extent = std::max({primitive.radius, primitive.focal_length, primitive.height,
-                                    primitive.size.x, primitive.size.y, length(primitive.center)});
+    double extent = length(primitive.center);
+    const auto scale = [&](double& side, const char*) {
+        side *= *factor;
+        extent = std::max(extent, side);
+    };
+    std::visit([&](auto& one) { for_each_length(one, scale); }, *kind);
+    primitive.kind = *kind;
     if (!(extent <= kLargestCoordinate))
         mesh.fail("its transform carries the primitive beyond coordinates of 1e30");
     return primitive;
