@@ -172,6 +172,32 @@ std::vector<Vec2> ChainHessian::solve(std::span<const Vec2> right) const {
     return solution;
 }
 
+PathSensitivity::PathSensitivity(const PathChain& chain, std::span<const SurfacePoint> points,
+                                 const std::array<Vec3, 2>& slope) {
+    const ChainBend bend = chain_bend(chain, points);
+    const ChainHessian hessian(chain, bend, points);
+    is_regular_ = hessian.is_regular();
+    if (!is_regular_) return;
+    const std::size_t last = points.size() - 1;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        std::vector<Vec2> right(points.size(), Vec2(0));
+        right[0] = {dot(slope[axis], points[0].du), dot(slope[axis], points[0].dv)};
+        lambda_[axis] = hessian.solve(right);
+        // F of the last event changes by -H_k dX along its tangents; at infinity the way itself turns by dX.
+        const Vec2& at_end = lambda_[axis][last];
+        by_point_[axis] = turn_of_way(index_along(chain, last + 1), bend.way[last + 1],
+                                      chain.point.is_direction ? 1 : bend.length[last + 1],
+                                      at_end.x * points[last].du + at_end.y * points[last].dv);
+    }
+}
+
+Vec2 PathSensitivity::moved(const Vec2& pixel_change, std::span<const Vec2> law_change) const {
+    Vec2 change = pixel_change;
+    for (std::size_t i = 0; i < law_change.size(); ++i)
+        change -= Vec2(dot(lambda_[0][i], law_change[i]), dot(lambda_[1][i], law_change[i]));
+    return change;
+}
+
 namespace {
 
 /// One iterate of Newton's method.

@@ -2,6 +2,7 @@
 // theorem for how they move.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -75,6 +76,28 @@ class ChainHessian {
     std::vector<double> matrix_;
     std::vector<std::size_t> pivot_;
     bool is_regular_ = true;
+};
+
+/// How the image over a path of light moves: the implicit function theorem on the law F(u, theta) = 0, where
+/// u are the places on the surfaces and theta is what moves: du / dtheta = -A^-1 dF / dtheta. Only the first
+/// event's place moves the image, so two solutions with A, which is symmetric, serve everything that moves.
+class PathSensitivity {
+  public:
+    /// `slope`: how the image's pixel moves with the first event's position, rows x and y.
+    PathSensitivity(const PathChain& chain, std::span<const SurfacePoint> points,
+                    const std::array<Vec3, 2>& slope);
+
+    /// False at a caustic, where the image moves infinitely fast; nothing else may be asked then.
+    bool is_regular() const { return is_regular_; }
+    /// Pixels per scene unit of the chain's point; of a direction per radian across it. Rows x and y.
+    const std::array<Vec3, 2>& by_point() const { return by_point_; }
+    /// How the pixel moves with a number: of its change at fixed places, and that of the law there.
+    Vec2 moved(const Vec2& pixel_change, std::span<const Vec2> law_change) const;
+
+  private:
+    bool is_regular_ = false;
+    std::array<std::vector<Vec2>, 2> lambda_;  // A^-1 of how x, and y, move with the places
+    std::array<Vec3, 2> by_point_{};
 };
 
 /// Where a step leaves its face: the parameter of the surface near a point of space, seen from another place;

@@ -148,8 +148,9 @@ Vec2 FitProblem::linearise_pair(FitPair& pair, std::span<const ParameterDifferen
     pair.is_lost = false;
     pair.metric = derivatives->by_point;
     for (std::size_t p = 0; p < parameters_.size(); ++p)
-        for (std::size_t axis = 0; axis < 2; ++axis)
-            jacobian(row + axis, p) = derivatives->by_parameter[p][axis] * parameters_[p].scale / pair.sigma;
+        for (int axis = 0; axis < 2; ++axis)
+            jacobian(row + static_cast<std::size_t>(axis), p) =
+                derivatives->by_parameter[p][axis] * parameters_[p].scale / pair.sigma;
     return off;
 }
 

@@ -170,8 +170,8 @@ struct ParameterDifference {
 
 /// Of the image of a point on a path's last ray.
 struct PathDerivatives {
-    std::array<Vec3, 2> by_point{};                   // of x and of y, pixels per scene unit
-    std::vector<std::array<double, 2>> by_parameter;  // pixels per unit of each parameter
+    std::array<Vec3, 2> by_point{};  // of x and of y, pixels per scene unit
+    std::vector<Vec2> by_parameter;  // pixels per unit of each parameter
 };
 
 /// A place on the film and the camera that it is of.
@@ -182,17 +182,9 @@ struct ShownPlace {
 
 /// Of the image at `place`, whose path to `point` goes over the events. None at a caustic, where the image
 /// moves infinitely fast, and where the camera does not show the first event.
-///
-/// Events P_i(u_i) between the eye P_0 and the point; n_i the index between P_i and P_i+1, e_i the unit
-/// direction, H_i = n_i / l_i (1 - e_i e_i^T). The path is stationary: F_i = (dP_i/du)^T (n_i-1 e_i-1 -
-/// n_i e_i) = 0, with symmetric block tridiagonal Hessian A = dF/du; so du/dtheta = -A^-1 dF/dtheta, at fixed
-/// u. Only the first event's u moves the image, so two solutions with A serve any number of parameters.
 std::optional<PathDerivatives> path_derivatives(const FitScene& scene, const ShownPlace& place,
                                                 std::span<const OpticEvent> events, const Vec3& point,
                                                 std::span<const ParameterDifference> parameters);
-
-/// Where the camera shows a world point, nearest to `near`; none where it does not.
-std::optional<Vec2> pixel_of_point(const Camera& camera, const Vec3& point, const Vec2& near);
 
 // The least squares problem of a fit: residuals and Jacobians of all pairs, along rays or by exact images.
 

@@ -18,13 +18,6 @@ double index_of(const ChainModel& model, Id body, int colour) {
     return body == kNone ? 1 : ior_of(model.scene->materials[model.materials[body]], colour);
 }
 
-std::optional<Vec2> nearest_pixel(const Camera& camera, const Vec3& place, const Vec2& near) {
-    std::optional<Vec2> best;
-    for (const FilmImage& image : film_positions(camera, place))
-        if (!best || length(image.pixel - near) < length(*best - near)) best = image.pixel;
-    return best;
-}
-
 ChainModel model_of(const World& world, const Frame& frame, std::vector<const Surface*>& surfaces,
                     std::vector<Id>& materials) {
     for (const Optic& optic : world.optics) {
@@ -80,28 +73,38 @@ std::optional<PathChain> make_chain(const ChainModel& model, std::span<const Pat
     return chain;
 }
 
-std::optional<FilmPlace> film_place(const Camera& camera, const Vec3& place, const Vec2& near) {
-    FilmPlace found;
+std::optional<Vec2> film_pixel(const Camera& camera, const Vec3& place, const Vec2& near) {
     if (camera.linear) {
         const Vec3 screen = screen_from_world(*camera.linear, place);
         if (!(screen.z > 0)) return std::nullopt;
-        found.pixel = Vec2(screen) / screen.z;
+        return Vec2(screen) / screen.z;
+    }
+    std::optional<Vec2> best;
+    for (const FilmImage& image : film_positions(camera, place))
+        if (!best || length(image.pixel - near) < length(*best - near)) best = image.pixel;
+    return best;
+}
+
+std::optional<FilmPlace> film_place(const Camera& camera, const Vec3& place, const Vec2& near) {
+    const std::optional<Vec2> pixel = film_pixel(camera, place, near);
+    if (!pixel) return std::nullopt;
+    FilmPlace found{*pixel};
+    if (camera.linear) {
+        const double depth = screen_from_world(*camera.linear, place).z;
         for (int axis = 0; axis < 2; ++axis) {
             const Vec4& row = axis == 0 ? camera.linear->screen_x : camera.linear->screen_y;
             found.slope[static_cast<std::size_t>(axis)] =
-                (Vec3(row) - found.pixel[axis] * Vec3(camera.linear->screen_w)) / screen.z;
+                (Vec3(row) - found.pixel[axis] * Vec3(camera.linear->screen_w)) / depth;
         }
         return found;
     }
-    const std::optional<Vec2> pixel = nearest_pixel(camera, place, near);
-    if (!pixel || !camera.model || !camera.model->eye()) return std::nullopt;
-    found.pixel = *pixel;
+    if (!camera.model || !camera.model->eye()) return std::nullopt;
     const double step = kPlaceStep * length(place - *camera.model->eye());
     for (int k = 0; k < 3; ++k) {
         Vec3 by(0);
         by[k] = step;
-        const auto after = nearest_pixel(camera, place + by, *pixel),
-                   before = nearest_pixel(camera, place - by, *pixel);
+        const auto after = film_pixel(camera, place + by, *pixel),
+                   before = film_pixel(camera, place - by, *pixel);
         if (!after || !before) return std::nullopt;
         for (int axis = 0; axis < 2; ++axis)
             found.slope[static_cast<std::size_t>(axis)][k] = ((*after)[axis] - (*before)[axis]) / (2 * step);
@@ -155,25 +158,9 @@ std::optional<ChainImage> solve_image(const World& world, const Frame& frame,
     if (!film) return std::nullopt;
     image.film = *film;
 
-    const ChainHessian hessian(*chain, bend, shape->points);
-    image.is_regular = hessian.is_regular();
-    if (!image.is_regular) return image;
-    // F of the last event changes by -H_k dX along its tangents; at infinity the way itself turns by dX.
-    const std::size_t last = start.size() - 1;
-    const double index = chain->events[last].index_after;
-    const SurfacePoint &first = shape->points.front(), &end = shape->points.back();
-    for (int k = 0; k < 3; ++k) {
-        Vec3 by(0);
-        by[k] = 1;
-        const Vec3& way = bend.way[last + 1];
-        const Vec3 turn =
-            index / (point.is_direction ? 1 : bend.length[last + 1]) * (by - dot(way, by) * way);
-        std::vector<Vec2> right(start.size(), Vec2(0));
-        right[last] = {dot(turn, end.du), dot(turn, end.dv)};
-        const Vec2 moved = hessian.solve(right).front();
-        for (std::size_t axis = 0; axis < 2; ++axis)
-            image.derivative[axis][k] = dot(image.film.slope[axis], moved.x * first.du + moved.y * first.dv);
-    }
+    const PathSensitivity sensitivity(*chain, shape->points, image.film.slope);
+    image.is_regular = sensitivity.is_regular();
+    image.derivative = sensitivity.by_point();
     return image;
 }
 

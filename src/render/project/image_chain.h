@@ -87,6 +87,8 @@ struct FilmPlace {
     std::array<Vec3, 2> slope{};
 };
 std::optional<FilmPlace> film_place(const Camera& camera, const Vec3& place, const Vec2& near);
+/// Its pixel alone.
+std::optional<Vec2> film_pixel(const Camera& camera, const Vec3& place, const Vec2& near);
 
 /// The path of light near a start, as events on the surfaces (their points and normals set anew); and the
 /// place of the film that shows it. Steps from face to face follow the optics' exact surfaces.
@@ -123,11 +125,9 @@ Vec3 weight_of_direct(const World& world, const Frame& frame, const Ray& view, d
 
 // How images move with the numbers of a scene: the implicit function theorem on Fermat's stationarity.
 
-/// Along a path of light the law F(u, theta) = 0 holds, where u are the places on the surfaces and theta is a
-/// number of the scene. So du / dtheta = -A^-1 dF/dtheta with the path's Hessian A, and the image moves by
-/// what the camera makes of it. A is solved for once per image, for all numbers. dF/dtheta and the camera's
-/// own part, both at fixed u, are central differences of exact evaluations of the scene a step to either
-/// side: no image is searched for again. Thread-safe to read; the world must live longer.
+/// A PathSensitivity per image serves all numbers. How the law and the camera's own part move with a number,
+/// both at fixed places on the surfaces, are central differences of exact evaluations of the scene a step to
+/// either side: no image is searched for again. Thread-safe to read; the world must live longer.
 class ParameterDerivatives {
   public:
     /// `camera`: the frame's, index into Scene::cameras. `pointers`: as find_numbers has them. Throws

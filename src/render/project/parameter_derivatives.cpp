@@ -62,9 +62,9 @@ struct ParameterDerivatives::Model {
         for (std::size_t i = 0; i < events.size(); ++i)
             if (is_moved[events[i].optic])
                 points[i] = pointers[events[i].optic]->eval_first_order(events[i].face, events[i].uv);
-        const std::optional<FilmPlace> film = film_place(camera, points.front().position, near);
-        if (!film) return std::nullopt;
-        return ChainState{chain_law(chain_bend(*chain, points), points), film->pixel};
+        const std::optional<Vec2> pixel = film_pixel(camera, points.front().position, near);
+        if (!pixel) return std::nullopt;
+        return ChainState{chain_law(chain_bend(*chain, points), points), *pixel};
     }
 };
 
@@ -120,23 +120,21 @@ std::vector<Vec2> ParameterDerivatives::of(const WorldImage& image, const Projec
 }
 
 std::vector<Vec2> ParameterDerivatives::of_direct(const Vec2& pixel, const ProjectedPoint& point) const {
-    const auto shown = [&](const Model& model) -> std::optional<FilmPlace> {
-        if (!point.is_direction) return film_place(model.camera, point.place, pixel);
+    const auto shown = [&](const Model& model) -> std::optional<Vec2> {
+        if (!point.is_direction) return film_pixel(model.camera, point.place, pixel);
         const std::optional<ChainEnd> eye = chain_eye(model.camera);
         if (!eye || eye->is_direction) return std::nullopt;
-        return film_place(model.camera, eye->place + kFarInSizes * size_ * point.place, pixel);
+        return film_pixel(model.camera, eye->place + kFarInSizes * size_ * point.place, pixel);
     };
     std::vector<Vec2> moved;
     for (const Step& step : steps_) {
         const auto before = shown(*step.before), after = shown(*step.after);
         if (!before || !after) return {};
-        moved.push_back((after->pixel - before->pixel) / step.size);
+        moved.push_back((*after - *before) / step.size);
     }
     return moved;
 }
 
-/// dx = dx at fixed u - lambda . dF, with A lambda = dx / du (A is symmetric): two solutions serve all
-/// numbers.
 std::vector<Vec2> ParameterDerivatives::of_chain(const WorldImage& image, const ProjectedPoint& point) const {
     const std::span<const PathEvent> events = image.events;
     Media around;
@@ -152,26 +150,18 @@ std::vector<Vec2> ParameterDerivatives::of_chain(const WorldImage& image, const 
     for (const PathEvent& event : events)
         points.push_back(now_->pointers[event.optic]->eval(event.face, event.uv));
     const std::optional<FilmPlace> film = film_place(now_->camera, points.front().position, image.pixel);
-    const ChainHessian hessian(*chain, chain_bend(*chain, points), points);
-    if (!film || !hessian.is_regular()) return {};
-    std::array<std::vector<Vec2>, 2> lambda;
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-        std::vector<Vec2> right(events.size(), Vec2(0));
-        right[0] = {dot(film->slope[axis], points[0].du), dot(film->slope[axis], points[0].dv)};
-        lambda[axis] = hessian.solve(right);
-    }
+    if (!film) return {};
+    const PathSensitivity sensitivity(*chain, points, film->slope);
+    if (!sensitivity.is_regular()) return {};
 
     std::vector<Vec2> moved;
     for (const Step& step : steps_) {
         const auto before = step.before->state(events, *media, point, points, image.pixel),
                    after = step.after->state(events, *media, point, points, image.pixel);
         if (!before || !after) return {};
-        Vec2 change = after->pixel - before->pixel;
-        for (std::size_t i = 0; i < events.size(); ++i) {
-            const Vec2 law = after->law[i] - before->law[i];
-            change -= Vec2(dot(lambda[0][i], law), dot(lambda[1][i], law));
-        }
-        moved.push_back(change / step.size);
+        std::vector<Vec2> law = after->law;
+        for (std::size_t i = 0; i < events.size(); ++i) law[i] -= before->law[i];
+        moved.push_back(sensitivity.moved(after->pixel - before->pixel, law) / step.size);
     }
     return moved;
 }
