@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "shade/shade.h"
+#include "support/shaded_triangle.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -14,20 +14,12 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 /// A white matt floor y = 0 about the origin, seen from above.
-struct Floor {
-    TriangleScene triangles;
-    ShadeScene shading;
+struct Floor : trilens_test::ShadedTriangle {
     Hit hit{0, 1.0, {1.0 / 3, 1.0 / 3}};
     Ray ray{{0, 1, 0}, {0, -1, 0}};
 
-    explicit Floor(const Light& light) {
-        triangles.points = {{-1, 0, 1}, {2, 0, 1}, {-1, 0, -2}};
-        triangles.triangles = {{0, 1, 2}};
-        triangles.object = triangles.primitive = {0};
-        shading.triangles = &triangles;
-        shading.material = {0};
-        shading.materials = {Material{}};
-        shading.lights = {light};
+    explicit Floor(const Light& light)
+        : trilens_test::ShadedTriangle({{{-1, 0, 1}, {2, 0, 1}, {-1, 0, -2}}}, light) {
         shading.size = 10;
     }
     /// At the origin.

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "shade/shade.h"
 #include "support/draw.h"
+#include "support/shaded_triangle.h"
 #include "support/test.h"
 
 using namespace trilens;
@@ -17,19 +17,11 @@ std::shared_ptr<const Texture> one_texel(const Vec3& value) {
 }
 
 /// A triangle in the plane z = 0 whose u runs along `u` and whose v along `v`, both in that plane.
-struct MappedTriangle {
-    TriangleScene triangles;
-    ShadeScene shading;
+struct MappedTriangle : trilens_test::ShadedTriangle {
     Hit hit{0, 1.0, {0.3, 0.3}};
 
-    MappedTriangle(const Vec3& u, const Vec3& v, const Light& light) {
-        triangles.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-        triangles.triangles = {{0, 1, 2}};
-        triangles.object = triangles.primitive = {0};
-        shading.triangles = &triangles;
-        shading.material = {0};
-        shading.materials = {Material{}};
-        shading.lights = {light};
+    MappedTriangle(const Vec3& u, const Vec3& v, const Light& light)
+        : trilens_test::ShadedTriangle({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, light) {
         // uv of a point p: solves p = s u + t v.
         const double area = u.x * v.y - u.y * v.x;
         const auto uv_of = [&](const Vec3& p) {
@@ -37,7 +29,6 @@ struct MappedTriangle {
         };
         shading.uvs = {{uv_of(triangles.points[0]), uv_of(triangles.points[1]), uv_of(triangles.points[2])}};
     }
-    Material& material() { return shading.materials[0]; }
     Vec3 seen(const Vec3& from) const { return shade_hit(shading, hit, {from, -from}); }
 };
 
