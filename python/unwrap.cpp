@@ -40,6 +40,24 @@ std::optional<Vec3> center_of(const std::optional<Triple>& center) {
     return center ? std::optional(vec3(*center)) : std::nullopt;
 }
 
+struct TargetArguments {
+    std::string to, proxy;
+    std::optional<Triple> center;
+    Name optic, path;
+    double tolerance = TargetRequest().tolerance;
+};
+
+TargetRequest target_request(const Renderer& self, const TargetArguments& given) {
+    TargetRequest request;
+    request.target = parse_target(given.to, self.scene());
+    request.proxy = parse_proxy(given.proxy);
+    request.center = center_of(given.center);
+    request.optic = optic_index(self, given.optic);
+    request.path = path_named(given.path);
+    request.tolerance = given.tolerance;
+    return request;
+}
+
 void set_images(UnwrapRequest& request, const std::variant<std::string, int>& images) {
     if (const int* rank = std::get_if<int>(&images)) {
         request.rank = *rank;
@@ -58,15 +76,9 @@ void bind_unwrap_itself(RendererClass& renderer) {
            const std::optional<Triple>& center, const std::string& proxy, const Name& optic, const Name& path,
            const std::variant<std::string, int>& images, double min_resolution, double tolerance,
            bool divide_weight, const py::object& progress) {
-            UnwrapRequest request;
-            request.to = parse_target(to, self.scene());
-            request.proxy = parse_proxy(proxy);
-            request.center = center_of(center);
-            request.optic = optic_index(self, optic);
-            request.path = path_named(path);
+            UnwrapRequest request{target_request(self, {to, proxy, center, optic, path, tolerance})};
             set_images(request, images);
             request.min_resolution = min_resolution;
-            request.tolerance = tolerance;
             request.divide_weight = divide_weight;
             const auto* several = std::get_if<std::vector<Photo>>(&photo);
             const std::vector<Photo> given = several ? *several : std::vector<Photo>{std::get<Photo>(photo)};
@@ -151,24 +163,11 @@ py::dict map_arrays(FilmMap map) {
     return arrays;
 }
 
-struct MapArguments {
-    std::string to, way, proxy;
-    std::optional<Triple> center;
-    Name optic, path, word, camera;
-    double tolerance = 0.01;
-};
-
-FilmMapRequest map_request(const Renderer& self, const MapArguments& given) {
-    FilmMapRequest request;
-    request.target = parse_target(given.to, self.scene());
-    request.way = require_named<MapWay>("way", given.way);
-    request.proxy = parse_proxy(given.proxy);
-    request.center = center_of(given.center);
-    request.optic = optic_index(self, given.optic);
-    request.path = path_named(given.path);
-    if (given.word) request.word = EventWord(*given.word);
-    request.tolerance = given.tolerance;
-    request.frame = frame_params(self, 0, given.camera);
+FilmMapRequest map_request(const Renderer& self, const TargetArguments& target, const Name& word,
+                           const Name& camera) {
+    FilmMapRequest request{target_request(self, target)};
+    if (word) request.word = EventWord(*word);
+    request.frame = frame_params(self, 0, camera);
     return request;
 }
 
@@ -212,7 +211,8 @@ void bind_caustic(RendererClass& renderer) {
         "tolerance: how far light may fall from its place, as a share of the scene's size.\n"
         "file: written too: .exr.\n"
         "progress: as in draw.\n"
-        "Returns a dict: irradiance (height, width, 3), linear Rec.709, the mean of each pixel; flux_in, from "
+        "Returns a dict: irradiance (height, width, 3), linear Rec.709, the mean of each pixel; flux_in, "
+        "from "
         "the light to the\noptics, flux_on_objects and flux_away, from there, and flux_received, in the map, "
         "each three colours; beams;\ncoarse, the parts of the light that the tolerance would have divided "
         "further.\n"
@@ -226,8 +226,9 @@ void bind_map(RendererClass& renderer) {
            const std::optional<Triple>& center, const std::string& proxy, const Name& optic, const Name& path,
            const Name& word, double tolerance, const std::optional<PhotoFile>& file,
            const py::object& progress) {
-            const FilmMapRequest request =
-                map_request(self, {to, way, proxy, center, optic, path, word, camera, tolerance});
+            FilmMapRequest request =
+                map_request(self, {to, proxy, center, optic, path, tolerance}, word, camera);
+            request.way = require_named<MapWay>("way", way);
             PythonCall call(progress);
             FilmMap map = call.run([&] {
                 FilmMap made = make_map(self, request, call.progress("map"));
@@ -261,8 +262,8 @@ void bind_map(RendererClass& renderer) {
         [](const Renderer& self, const std::string& to, int columns, int rows, const Name& camera,
            double max_error, const std::optional<Triple>& center, const std::string& proxy, const Name& optic,
            const Name& word, const std::optional<PhotoFile>& file) {
-            const FilmMapRequest request =
-                map_request(self, {to, "view", proxy, center, optic, std::nullopt, word, camera, 0.01});
+            FilmMapRequest request = map_request(self, {to, proxy, center, optic, {}}, word, camera);
+            request.way = MapWay::kView;
             const WarpMesh mesh = PythonCall().run([&] {
                 WarpMesh made = make_mesh(self, request, {columns, rows, max_error});
                 if (file) write_mesh(file->string(), made);

@@ -1,7 +1,7 @@
 // trilens anamorph: pages for mirror anamorphoses, at true scale.
 #include <trilens/anamorph.h>
 #include <trilens/error.h>
-#include <trilens/stopwatch.h>
+#include <trilens/utilities.h>
 #include <limits>
 #include <memory>
 #include <sstream>

@@ -1,7 +1,7 @@
 // trilens caustic: the irradiance that a light brings over optics onto an object.
-#include <trilens/caustic.h>
 #include <trilens/error.h>
-#include <trilens/stopwatch.h>
+#include <trilens/maps.h>
+#include <trilens/utilities.h>
 #include <memory>
 
 #include "cli/commands.h"

@@ -1,10 +1,8 @@
 // trilens compare: error metrics and a verdict.
 #include <trilens/compare.h>
 #include <trilens/display.h>
-#include <trilens/files.h>
 #include <trilens/image.h>
-#include <trilens/stopwatch.h>
-#include <trilens/text.h>
+#include <trilens/utilities.h>
 
 #include <algorithm>
 #include <charconv>

@@ -1,7 +1,6 @@
 // trilens design: a freeform mirror for a wanted map.
 #include <trilens/design.h>
-#include <trilens/files.h>
-#include <trilens/stopwatch.h>
+#include <trilens/utilities.h>
 
 #include <algorithm>
 #include <span>

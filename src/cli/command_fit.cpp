@@ -1,7 +1,6 @@
 // trilens fit: parameters of a scene from pairs of pixels and world points.
-#include <trilens/files.h>
 #include <trilens/fit.h>
-#include <trilens/stopwatch.h>
+#include <trilens/utilities.h>
 
 #include <charconv>
 #include <cmath>

@@ -1,7 +1,7 @@
 // trilens map: maps between a film and a panorama, dome, plane or object, for other programs.
 #include <trilens/error.h>
-#include <trilens/map.h>
-#include <trilens/stopwatch.h>
+#include <trilens/maps.h>
+#include <trilens/utilities.h>
 #include <limits>
 #include <memory>
 
@@ -22,15 +22,9 @@ struct MapOptions {
 };
 
 FilmMapRequest request_of(const MapOptions& options, const Renderer& renderer) {
-    FilmMapRequest request;
-    request.target = parse_target(options.to, renderer.scene());
-    request.proxy = parse_proxy(options.direction.proxy);
-    request.center = center_given(options.direction.center);
-    request.optic = optic_named(renderer, options.direction.optic);
-    request.path = path_given(options.direction.path);
+    FilmMapRequest request{target_request(renderer, options.direction, options.to, options.tolerance)};
     if (!options.way.empty()) request.way = *find_named<MapWay>(options.way);
     if (!options.word.empty()) request.word = EventWord(options.word);
-    request.tolerance = options.tolerance;
     request.frame.camera = find_camera(renderer.scene(), options.scene.camera);
     return request;
 }

@@ -1,6 +1,6 @@
 // trilens project: where world points appear.
 #include <trilens/project.h>
-#include <trilens/stopwatch.h>
+#include <trilens/utilities.h>
 
 #include <algorithm>
 #include <utility>

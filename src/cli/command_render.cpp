@@ -1,8 +1,8 @@
 // trilens render and trilens trace: one picture, or the frames of an animation.
 #include <trilens/animation.h>
+#include <trilens/compare.h>
 #include <trilens/display.h>
-#include <trilens/regions.h>
-#include <trilens/stopwatch.h>
+#include <trilens/utilities.h>
 
 #include <optional>
 #include <set>

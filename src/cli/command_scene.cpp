@@ -1,7 +1,7 @@
 // trilens scene: validate, info, convert, schema, example.
 #include <trilens/render.h>
 #include <trilens/scene.h>
-#include <trilens/text.h>
+#include <trilens/utilities.h>
 
 #include <filesystem>
 

@@ -1,6 +1,6 @@
 // trilens shoot: what rays meet, event by event.
 #include <trilens/project.h>
-#include <trilens/stopwatch.h>
+#include <trilens/utilities.h>
 
 #include <algorithm>
 

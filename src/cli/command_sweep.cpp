@@ -1,7 +1,6 @@
 // trilens sweep: error against resolution or any other setting, for one scene or for a gallery of scenes.
-#include <trilens/files.h>
-#include <trilens/stopwatch.h>
 #include <trilens/sweep.h>
+#include <trilens/utilities.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,6 +1,6 @@
 // trilens unwrap: photographs of mirrors into panoramas, cube maps, planes and textures.
-#include <trilens/stopwatch.h>
-#include <trilens/unwrap.h>
+#include <trilens/maps.h>
+#include <trilens/utilities.h>
 
 #include <algorithm>
 #include <limits>
@@ -56,19 +56,13 @@ UnwrapPhoto photo_from(const std::string& text, std::size_t index, const UnwrapO
 }
 
 UnwrapRequest request_of(const UnwrapOptions& options, const Renderer& renderer) {
-    UnwrapRequest request;
-    request.to = parse_target(options.to, renderer.scene());
-    request.proxy = parse_proxy(options.direction.proxy);
-    request.center = center_given(options.direction.center);
-    request.optic = optic_named(renderer, options.direction.optic);
-    request.path = path_given(options.direction.path);
+    UnwrapRequest request{target_request(renderer, options.direction, options.to, options.tolerance)};
     if (options.images == "blend") {
         request.images = UnwrapImages::kBlend;
     } else if (options.images != "best") {
         request.rank = parse_integers(options.images, ',', 1, "--images")[0];
     }
     request.min_resolution = options.min_resolution;
-    request.tolerance = options.tolerance;
     request.divide_weight = !options.keep_weight;
     return request;
 }
@@ -93,8 +87,8 @@ Answer run(const UnwrapOptions& options, Console& console) {
     const ImageFormat format =
         is_standard_stream(options.output) ? ImageFormat::kExr : image_format(options.output);
     Answer answer = write_output(options.output, made.image, {format, {}}, console);
-    answer.fields["width"] = request.to.width;
-    answer.fields["height"] = request.to.height;
+    answer.fields["width"] = request.target.width;
+    answer.fields["height"] = request.target.height;
     answer.fields["coverage"] = made.coverage;
     answer.fields["resolution_median"] = made.resolution_median;
     answer.fields["exact_places"] = made.exact_places;
@@ -102,7 +96,7 @@ Answer run(const UnwrapOptions& options, Console& console) {
     answer.fields["seconds"] = seconds;
     console.note(fmt::format("{:.1f} % of the target are seen, in the median at {:.3g} pixels per {}",
                              100 * made.coverage, made.resolution_median,
-                             has_directions(request.to.kind) ? "degree" : "unit"));
+                             has_directions(request.target.kind) ? "degree" : "unit"));
     return answer;
 }
 

@@ -1,13 +1,14 @@
 // The options of the commands: what to draw, how, and what is swept.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <trilens/image.h>
+#include <trilens/maps.h>
 #include <trilens/project.h>
 #include <trilens/render.h>
 #include <trilens/scene.h>
 #include <trilens/sweep.h>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "terminal/command.h"
@@ -39,8 +40,8 @@ struct SceneOptions {
 
 /// The scene argument and its resolution.
 std::vector<Option> scene_argument(SceneOptions& options);
-/// The overrides alone: --size, --spp, --filter, --camera, --max-depth, --set; --optic, --time, --animation of
-/// glTF.
+/// The overrides alone: --size, --spp, --filter, --camera, --max-depth, --set; --optic, --time, --animation
+/// of glTF.
 std::vector<Option> scene_overrides(SceneOptions& options);
 /// The same for commands whose own --optic names one of the scene's optics.
 std::vector<Option> scene_overrides_but_optic(SceneOptions& options);
@@ -71,6 +72,10 @@ struct DirectionOptions {
 };
 
 std::vector<Option> direction_options(DirectionOptions& options);
+
+/// What unwrap and map ask a target by; `to`: the target's text, `tolerance`: pixels. Throws UsageError.
+TargetRequest target_request(const Renderer& renderer, const DirectionOptions& options, const std::string& to,
+                             double tolerance);
 
 /// The optic's index; none where the name is empty. Throws UsageError with the nearest name.
 std::optional<std::size_t> optic_named(const Renderer& renderer, const std::string& name);

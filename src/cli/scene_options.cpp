@@ -1,13 +1,12 @@
 #include "cli/options.h"
 
+#include <trilens/error.h>
+#include <trilens/utilities.h>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iostream>
 #include <iterator>
-#include <trilens/error.h>
-#include <trilens/stopwatch.h>
-#include <trilens/text.h>
 
 #include "terminal/libraries.h"
 
@@ -297,6 +296,18 @@ std::optional<Vec3> center_given(const std::string& text) {
 std::optional<Path> path_given(const std::string& text) {
     if (text.empty()) return std::nullopt;
     return text == "direct" ? Path::kDirect : text == "refract" ? Path::kRefract : Path::kReflect;
+}
+
+TargetRequest target_request(const Renderer& renderer, const DirectionOptions& options, const std::string& to,
+                             double tolerance) {
+    TargetRequest request;
+    request.target = parse_target(to, renderer.scene());
+    request.proxy = parse_proxy(options.proxy);
+    request.center = center_given(options.center);
+    request.optic = optic_named(renderer, options.optic);
+    request.path = path_given(options.path);
+    request.tolerance = tolerance;
+    return request;
 }
 
 }  // namespace trilens

@@ -1,7 +1,7 @@
 #include "terminal/console.h"
 
 #include <trilens/error.h>
-#include <trilens/files.h>
+#include <trilens/utilities.h>
 #include <unistd.h>
 
 #include <algorithm>

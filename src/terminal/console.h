@@ -3,7 +3,7 @@
 #pragma once
 
 #include <trilens/error.h>
-#include <trilens/stopwatch.h>
+#include <trilens/utilities.h>
 
 #include <atomic>
 #include <chrono>

@@ -1,7 +1,7 @@
 // Manual pages in roff, with the macros of man(7).
 #include "terminal/command.h"
 
-#include <trilens/files.h>
+#include <trilens/utilities.h>
 #include <trilens/version.h>
 
 #include <algorithm>

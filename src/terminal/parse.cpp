@@ -1,6 +1,6 @@
 #include "terminal/command.h"
 
-#include <trilens/text.h>
+#include <trilens/utilities.h>
 #include <CLI/CLI.hpp>
 
 namespace trilens {

@@ -1,7 +1,5 @@
 // One run of a program: parsed, run, answered; the one place where failures become exit codes.
-#include <trilens/files.h>
-#include <trilens/stopwatch.h>
-#include <trilens/text.h>
+#include <trilens/utilities.h>
 #include <trilens/version.h>
 
 #include <cmath>

@@ -12,8 +12,8 @@
 #include <string>
 
 #include "inverse/anamorph/anamorph.h"
+#include "trilens/maps.h"
 #include "trilens/render.h"
-#include "trilens/unwrap.h"
 
 namespace trilens {
 

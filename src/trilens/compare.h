@@ -7,6 +7,7 @@
 //     for (const trilens::LayerComparison& layer : trilens::compare_layers(truth, image))
 //         if (layer.displacement && layer.displacement->summary)
 //             std::printf("%s moved by %g px\n", layer.layer.c_str(), layer.displacement->summary->mean);
+//     std::printf("%zu separate shapes\n", trilens::count_regions(truth));
 //     // Of a file of other programs, the layer that stands for it:
 //     const trilens::Image other = trilens::read_compared_image("truth.exr");
 #pragma once
@@ -14,4 +15,5 @@
 #include "measure/common/comparable.h"
 #include "measure/common/statistics.h"
 #include "measure/compare.h"
+#include "measure/pixel/regions.h"
 #include "study/compare_inputs.h"

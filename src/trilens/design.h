@@ -8,4 +8,4 @@
 #pragma once
 
 #include "inverse/design/design.h"
-#include "trilens/files.h"
+#include "trilens/utilities.h"

@@ -7,10 +7,8 @@
 #include "base/util/names.h"
 #include "image/image_io.h"
 #include "trilens/anamorph.h"
-#include "trilens/caustic.h"
 #include "trilens/image.h"
-#include "trilens/map.h"
-#include "trilens/unwrap.h"
+#include "trilens/maps.h"
 
 namespace trilens {
 

@@ -1,7 +1,7 @@
 #include "view/painter.h"
 
 #include <trilens/error.h>
-#include <trilens/stopwatch.h>
+#include <trilens/utilities.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "view/script.h"
 
 #include <trilens/error.h>
-#include <trilens/text.h>
+#include <trilens/utilities.h>
 
 #include <algorithm>
 #include <cmath>

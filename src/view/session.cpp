@@ -2,7 +2,7 @@
 
 #include <trilens/animation.h>
 #include <trilens/error.h>
-#include <trilens/text.h>
+#include <trilens/utilities.h>
 
 #include <cmath>
 #include <system_error>

@@ -2,7 +2,7 @@
 
 #include <trilens/animation.h>
 #include <trilens/error.h>
-#include <trilens/files.h>
+#include <trilens/utilities.h>
 
 #include <cmath>
 

@@ -171,6 +171,11 @@ TEST_CASE("maps that lead nowhere are refused", "[inverse][bad-input]") {
     FilmMapRequest optic = dome_request();
     optic.optic = 4;
     CHECK_THROWS_AS(make_film_map(*world, optic), UsageError);
+    for (const double tolerance : {0.0, -1.0, std::nan("")}) {
+        FilmMapRequest coarse = dome_request();
+        coarse.tolerance = tolerance;
+        CHECK_THROWS_AS(make_film_map(*world, coarse), UsageError);
+    }
     FilmMapRequest glass = dome_request();
     glass.way = MapWay::kView;
     glass.word = EventWord("TT");

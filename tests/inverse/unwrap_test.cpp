@@ -18,7 +18,7 @@ namespace {
 
 UnwrapRequest to_equirect(int width) {
     UnwrapRequest request;
-    request.to = {TargetKind::kEquirect, width, width / 2};
+    request.target = {TargetKind::kEquirect, width, width / 2};
     return request;
 }
 

@@ -1,6 +1,6 @@
 #include "cli/print/print.h"
 
-#include <trilens/text.h>
+#include <trilens/utilities.h>
 
 #include <cmath>
 

@@ -1,7 +1,6 @@
 #include "cli/print/print.h"
 
-#include <trilens/files.h>
-#include <trilens/stopwatch.h>
+#include <trilens/utilities.h>
 
 #include <algorithm>
 #include <cstdio>

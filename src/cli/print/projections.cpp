@@ -1,11 +1,11 @@
 #include "cli/print/print.h"
 
+#include <trilens/utilities.h>
+#include <trilens/version.h>
 #include <algorithm>
 #include <charconv>
 #include <future>
 #include <iterator>
-#include <trilens/text.h>
-#include <trilens/version.h>
 #include <utility>
 
 #include "terminal/libraries.h"

@@ -71,9 +71,13 @@ Vec3 center_of_directions(const World& world, const std::optional<Vec3>& asked,
     return box.empty() ? Vec3(0) : 0.5 * (box.low + box.high);
 }
 
-FilmMap make_film_map(const World& world, const FilmMapRequest& request, const Progress& progress) {
+void check_target_request(const World& world, const TargetRequest& request) {
     if (request.optic && *request.optic >= world.optics.size()) throw UsageError("there is no such optic");
     if (!(request.tolerance > 0)) throw UsageError("the tolerance is a positive number of pixels");
+}
+
+FilmMap make_film_map(const World& world, const FilmMapRequest& request, const Progress& progress) {
+    check_target_request(world, request);
     const Target target(request.target, world.scene);
     const Proxy proxy(request.proxy, world, center_of_directions(world, request.center, request.optic));
     const Film& film = world.scene.film;

@@ -30,16 +30,23 @@ struct EnumNames<MapWay> {
                                        NamedValue<MapWay>{MapWay::kView, "view"}};
 };
 
-struct FilmMapRequest {
+/// Which places of a target a film shows, over what, and how exactly they are found.
+struct TargetRequest {
     TargetDescription target;
-    ProxyDescription proxy;      // of targets of directions
-    std::optional<Vec3> center;  // of these; none: the middle of the optic
-    MapWay way = MapWay::kUnwrap;
+    ProxyDescription proxy;            // of targets of directions
+    std::optional<Vec3> center;        // of these: where directions start; none: the middle of the optic
     std::optional<std::size_t> optic;  // index into World::optics; none: any
-    std::optional<Path> path;          // kUnwrap; none: reflected by mirrors, refracted by glass
-    EventWord word;                    // kView; asks for nothing: the way that carries most light
+    std::optional<Path> path;          // none: reflected by mirrors, refracted by glass
     double tolerance = 0.01;           // pixels of the source that interpolated places may be off
     FrameParams frame;
+};
+
+/// Throws UsageError for an optic that there is not, and a tolerance that is not positive.
+void check_target_request(const World& world, const TargetRequest& request);
+
+struct FilmMapRequest : TargetRequest {
+    MapWay way = MapWay::kUnwrap;
+    EventWord word = {};  // kView, instead of the path; asks for nothing: the way that carries most light
 };
 
 /// One map: per pixel of the warped picture, rows from the top, where it is taken from.

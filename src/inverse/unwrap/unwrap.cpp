@@ -8,7 +8,6 @@
 #include "base/util/format.h"
 #include "base/util/parallel.h"
 #include "inverse/maps/film_images.h"
-#include "inverse/maps/film_map.h"
 #include "inverse/maps/proxy.h"
 #include "inverse/maps/sampled_map.h"
 #include "inverse/unwrap/photo.h"
@@ -218,18 +217,17 @@ Image image_of(Canvas canvas, const TargetDescription& to, bool of_several) {
 Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::vector<UnwrapPhoto>& photos,
                  const Progress& progress) {
     if (photos.empty()) throw UsageError("there is no photograph to unwrap");
-    if (request.optic && *request.optic >= world.optics.size()) throw UsageError("there is no such optic");
+    check_target_request(world, request);
     if (request.rank < 1) throw UsageError("images are counted from 1, the best");
-    if (!(request.tolerance > 0)) throw UsageError("the tolerance is a positive number of pixels");
     for (const UnwrapPhoto& photo : photos) {
         check_photo(world, photo);
         check_front(world, request, photo);
     }
-    const Target target(request.to, world.scene);
+    const Target target(request.target, world.scene);
     const Proxy proxy(request.proxy, world, center_of_directions(world, request.center, request.optic));
 
     Unwrapped result;
-    Canvas canvas(request.to);
+    Canvas canvas(request.target);
     for (std::size_t i = 0; i < photos.size(); ++i) {
         FilmImagesParams params{request.frame, request.optic, request.path,
                                 !target.has_directions() || proxy.asks_visibility()};
@@ -241,8 +239,8 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
             [&](double done) { progress((static_cast<double>(i) + done) / double(photos.size())); },
             progress.cancel};
         const SampledMap map(
-            {request.to.width, request.to.height, first_cell(params.visibility), request.tolerance}, evaluate,
-            part);
+            {request.target.width, request.target.height, first_cell(params.visibility), request.tolerance},
+            evaluate, part);
         result.exact_places += map.exact_count();
         result.worst_accepted = std::max(result.worst_accepted, map.worst_accepted());
         const PhotoDrawer drawer(request, photos[i], target, static_cast<Id>(i));
@@ -253,7 +251,7 @@ Unwrapped unwrap(const World& world, const UnwrapRequest& request, const std::ve
     if (result.coverage == 0)
         throw InputError(photos[0].name, "",
                          "shows nothing of the target: no image of it lies on the film within an optic");
-    result.image = image_of(std::move(canvas), request.to, photos.size() > 1);
+    result.image = image_of(std::move(canvas), request.target, photos.size() > 1);
     return result;
 }
 

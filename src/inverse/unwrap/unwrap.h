@@ -11,9 +11,7 @@
 #include "base/image/image.h"
 #include "base/util/error.h"
 #include "base/util/names.h"
-#include "inverse/maps/target.h"
-#include "paths/trace/path.h"
-#include "render/frame/request.h"
+#include "inverse/maps/film_map.h"
 
 namespace trilens {
 
@@ -42,18 +40,12 @@ struct EnumNames<UnwrapImages> {
                                        NamedValue<UnwrapImages>{UnwrapImages::kBlend, "blend"}};
 };
 
-struct UnwrapRequest {
-    TargetDescription to;
-    ProxyDescription proxy;            // of targets of directions
-    std::optional<Vec3> center;        // of these: where directions start; none: the middle of the optic
-    std::optional<std::size_t> optic;  // index into World::optics; none: all
-    std::optional<Path> path;          // none: reflected by mirrors, refracted by glass
+/// Its source is the photograph, and the frame's camera each photograph's own.
+struct UnwrapRequest : TargetRequest {
     UnwrapImages images = UnwrapImages::kBest;
     int rank = 1;               // kBest: of each photograph, the rank-th best
     double min_resolution = 0;  // pixels of the photograph per degree, or per unit: less counts as not seen
     bool divide_weight = true;  // by what mirrors and glass leave of the light (not below kLeastDivisor)
-    double tolerance = 0.01;    // pixels of the photograph that interpolated places may be off
-    FrameParams frame;          // its camera is each photograph's
 };
 
 inline constexpr double kLeastDivisor = 1.0 / 64;

@@ -2,8 +2,8 @@
 
 #include <imgui.h>
 #include <trilens/error.h>
-#include <trilens/files.h>
 #include <trilens/image.h>
+#include <trilens/utilities.h>
 
 #include <algorithm>
 #include <chrono>
