@@ -68,6 +68,12 @@ function(trilens_room name folder)
       target_link_libraries(trilens_${name} PRIVATE ${door})
     endif()
   endforeach()
+  if("hwy::hwy" IN_LIST ROOM_DOORS)
+    # Instruction sets that bring this code nothing: SSSE3, and those of AVX-512 beyond its first (the last two are
+    # later versions' names for bits).
+    target_compile_definitions(trilens_${name} PRIVATE
+      "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|(1LL<<6)|(1LL<<4))")
+  endif()
   set_property(TARGET trilens_${name} PROPERTY TRILENS_DOORS "${ROOM_DOORS}")
   trilens_unite(trilens_${name})
   if(ROOM_LIGHT)

@@ -21,7 +21,7 @@ constexpr double kClearOfLine = 0.05, kClearOfSingular = 0.05;
 constexpr int kSphereSteps = 6;
 
 /// In units of the sphere, from its centre.
-struct Pair {
+struct EyeAndPoint {
     Vector eye, point;
 };
 
@@ -37,7 +37,7 @@ struct Ways {
     Truth clear, through;
 };
 
-HWY_INLINE Ways ways_of(const Pair& pair) {
+HWY_INLINE Ways ways_of(const EyeAndPoint& pair) {
     const Vector way = minus(pair.point, pair.eye);
     const Number length = size_of(way);
     const Number along = hn::Div(hn::Neg(dot(pair.eye, way)), dot(way, way));
@@ -54,7 +54,7 @@ HWY_INLINE Ways ways_of(const Pair& pair) {
 }
 
 /// One step of Newton's method along the circle.
-HWY_INLINE Vector nearer(const Pair& pair, const Vector& normal) {
+HWY_INLINE Vector nearer(const EyeAndPoint& pair, const Vector& normal) {
     Vector bend = vector(Vec3(0));
     Number slope = number(0);
     for (const Vector& from : {pair.eye, pair.point}) {
@@ -69,13 +69,13 @@ HWY_INLINE Vector nearer(const Pair& pair, const Vector& normal) {
     return unit(minus(normal, over(along, slope)));
 }
 
-HWY_INLINE Vector zero_near(const Pair& pair, Vector normal) {
+HWY_INLINE Vector zero_near(const EyeAndPoint& pair, Vector normal) {
     for (int step = 0; step < kSphereSteps; ++step) normal = nearer(pair, normal);
     return normal;
 }
 
 /// Whether the path's second derivatives along the circle and across are clear of zero.
-HWY_INLINE Truth is_regular(const Pair& pair, const Vector& normal) {
+HWY_INLINE Truth is_regular(const EyeAndPoint& pair, const Vector& normal) {
     Number along = number(0), across = number(0);
     for (const Vector& from : {pair.eye, pair.point}) {
         const Vector way = minus(normal, from);
@@ -104,7 +104,7 @@ HWY_INLINE Edges edges_of(const Vector& from, const Vector& other) {
 
 /// Where a plane mirror would have the image, if that is seen from both; else the middle of the arc that is
 /// seen from both or from none.
-HWY_INLINE Vector near_start(const Pair& pair, const Edges& of_eye, const Edges& of_point) {
+HWY_INLINE Vector near_start(const EyeAndPoint& pair, const Edges& of_eye, const Edges& of_point) {
     const Number eye = size_of(pair.eye), point = size_of(pair.point), one = number(1);
     const Vector plane = unit(plus(times(hn::Div(hn::Sub(point, one), eye), pair.eye),
                                    times(hn::Div(hn::Sub(eye, one), point), pair.point)));
@@ -113,7 +113,7 @@ HWY_INLINE Vector near_start(const Pair& pair, const Edges& of_eye, const Edges&
 }
 
 /// The middle of the arc beyond.
-HWY_INLINE Vector far_start(const Pair& pair, const Edges& of_eye, const Edges& of_point) {
+HWY_INLINE Vector far_start(const EyeAndPoint& pair, const Edges& of_eye, const Edges& of_point) {
     const Vector middle = unit(plus(of_eye.far, of_point.far));
     const Vector between = plus(unit(pair.eye), unit(pair.point));
     return either(hn::Gt(dot(middle, between), number(0)), opposite(middle), middle);
@@ -133,7 +133,7 @@ void find_zeros_here(const SphereShape& sphere, const Vec3& eye, const PointLane
     result.lit = result.shaded = 0;
     for (std::size_t first = 0; first < kPointLanes; first += kWidth) {
         const Vector point = vector_at(points.x + first, points.y + first, points.z + first);
-        const Pair pair{from_center, times(by_radius, minus(point, center))};
+        const EyeAndPoint pair{from_center, times(by_radius, minus(point, center))};
         const Ways ways = ways_of(pair);
         const Edges of_eye = edges_of(pair.eye, pair.point), of_point = edges_of(pair.point, pair.eye);
         const Vector near = zero_near(pair, near_start(pair, of_eye, of_point));

@@ -74,7 +74,7 @@ std::vector<RayMesh> odd_meshes() {
 
 std::vector<CameraDescription> odd_descriptions(const CameraKind& kind) {
     CameraDescription plain;
-    plain.kind = kind;
+    plain.kind = kind, plain.facets = 4;
     std::vector<CameraDescription> all{plain};
     const auto add = [&](const auto& change) { change(all.emplace_back(plain)); };
     const auto add_kind = [&](const auto&... changes) {
@@ -100,7 +100,8 @@ std::vector<CameraDescription> odd_descriptions(const CameraKind& kind) {
         add_kind(ODD(far_depth, x));
         add_kind(ODD(window, (std::array<double, 4>{x, 1, x, 1})),
                  ODD(detail, (std::array<double, 4>{x, 1, x, 1})));
-        add([&](CameraDescription& c) { c.tolerance = x; });
+        // The refinement is one for all kinds, and ends only at its limit of facets: one kind is enough.
+        if (std::holds_alternative<SphericalCamera>(kind)) add([&](CameraDescription& c) { c.tolerance = x; });
         add_kind(ODD(fx, x), ODD(distortion, (std::vector<double>{x, x, x, x})));
         add_kind(ODD(front, x));
     }

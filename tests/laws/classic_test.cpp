@@ -49,12 +49,13 @@ void add(ClassicDifference& sum, const SampleViews& exact, const SampleViews& cl
 
 constexpr std::size_t kMostTessellated = 10'000;
 
-/// Over all shipped scenes that can be loaded.
-ClassicDifference difference(int n, const ClassicParams& params, int width, int height) {
+/// Over those of the scenes that can be loaded.
+ClassicDifference difference(int n, const ClassicParams& params, const std::vector<std::string>& scenes) {
+    constexpr int kWide = 160, kHigh = 120;
     ClassicDifference sum;
-    for (const std::string& name : shipped_scenes()) {
+    for (const std::string& name : scenes) {
         std::string missing;
-        const auto world = shipped_world(name, n, width, height, &missing);
+        const auto world = shipped_world(name, n, kWide, kHigh, &missing);
         if (!world) {
             note_skip("classic engine on scene " + name, missing);
             continue;
@@ -70,13 +71,13 @@ ClassicDifference difference(int n, const ClassicParams& params, int width, int 
     return sum;
 }
 
-}  // namespace
+/// Scenes that differ in all that the classic engine does: a plane, a round, a saddle and a closed mirror, glass.
+const std::vector<std::string> kTellingScenes{"flat", "sphere", "saddle", "closed", "paths/crystal-ball"};
 
-TEST_CASE("with arcs the classic engine shows the exact one's picture but for edges",
-          "[laws][classic][law]") {
-    for (const int n : {1, 2, 8}) {
+void check_arcs(const std::vector<int>& resolutions, const std::vector<std::string>& scenes) {
+    for (const int n : resolutions) {
         for (const Clip clip : {Clip::kScene, Clip::kScreen}) {
-            const ClassicDifference d = difference(n, {Curves::kArcs, clip}, 160, 120);
+            const ClassicDifference d = difference(n, {Curves::kArcs, clip}, scenes);
             INFO("n " << n << ": " << d.differing << " of " << d.pixels << " pixels differ");
             // An outline may lie 0.001 px from its conic.
             CHECK(d.share() < 2e-5);
@@ -84,11 +85,11 @@ TEST_CASE("with arcs the classic engine shows the exact one's picture but for ed
     }
 }
 
-TEST_CASE("slices and tessellation come to the exact picture as K grows", "[laws][classic][law]") {
+void check_pieces(const std::vector<std::string>& scenes) {
     for (const Curves curves : {Curves::kSlices, Curves::kTessellate}) {
         double last = 1, first = 0;
         for (const int k : {1, 4, 16}) {
-            const ClassicDifference d = difference(2, {curves, Clip::kScene, k}, 160, 120);
+            const ClassicDifference d = difference(2, {curves, Clip::kScene, k}, scenes);
             INFO("K " << k << ": " << d.share() << " differ, before " << last);
             // A tenth more, or a few pixels, is noise.
             CHECK(d.share() <= 1.1 * last + 6.0 / static_cast<double>(d.pixels));
@@ -99,6 +100,27 @@ TEST_CASE("slices and tessellation come to the exact picture as K grows", "[laws
         // triangles.
         CHECK(last < (curves == Curves::kSlices ? 0.05 : 0.35) * first);
     }
+}
+
+}  // namespace
+
+TEST_CASE("with arcs the classic engine shows the exact one's picture but for edges",
+          "[laws][classic][law]") {
+    check_arcs({1}, shipped_scenes());
+    check_arcs({2, 8}, kTellingScenes);
+}
+
+TEST_CASE("with arcs the classic engine shows the exact one's picture of every scene at every resolution",
+          "[.long][laws][classic][law]") {
+    check_arcs({1, 2, 8}, shipped_scenes());
+}
+
+TEST_CASE("slices and tessellation come to the exact picture as K grows", "[laws][classic][law]") {
+    check_pieces(kTellingScenes);
+}
+
+TEST_CASE("slices and tessellation come to the exact picture of every scene", "[.long][laws][classic][law]") {
+    check_pieces(shipped_scenes());
 }
 
 TEST_CASE("a mirror in a closed room shows the room in every pixel", "[laws][classic][law]") {

@@ -22,10 +22,10 @@ void check_seeds(std::uint64_t from, std::uint64_t to) {
 }  // namespace
 
 TEST_CASE("Small optics behind, in and before mirrors and glass do not vanish", "[laws][law][hunt]") {
-    check_seeds(0, 70);
+    check_seeds(0, 25);
 }
 
 TEST_CASE("Small optics behind, in and before mirrors and glass do not vanish in many scenes",
           "[.long][laws][law][hunt]") {
-    check_seeds(70, 400);
+    check_seeds(25, 400);
 }

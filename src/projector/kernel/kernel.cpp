@@ -35,10 +35,6 @@
 #include <cmath>
 #include <optional>
 
-// Sets of AVX-512 beyond its first bring this code nothing (the last two are later versions' names for bits).
-#ifndef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | (1LL << 6) | (1LL << 4))
-#endif
 // Processors without SSE4.2 are left to the plain engine.
 #if defined(__x86_64__) && !defined(HWY_BASELINE_TARGETS) && !defined(HWY_COMPILE_ONLY_STATIC)
 #define HWY_BASELINE_TARGETS HWY_SSE4
