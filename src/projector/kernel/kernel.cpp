@@ -4,27 +4,26 @@
 // groups in batches of at most 16 tiles (tiles/sample_tiles.h). Samples of facets too small for that share
 // vectors: mixed groups.
 //
-//     stage            file                     takes -> leaves
-//     set-up           setup-inl.h              a batch's facets and tiles -> state.lanes: rays as functions
-//     of the
-//                                               tile's (u, v), frusta; broken lanes have no bounds
-//     frusta           beams-inl.h              state.lanes -> state.beam (a group), state.work.beams (its
-//     vectors) walk             walk-inl.h               the tree's nodes, nearest first -> leaves that the
-//     group's beam meets;
-//                                               chooses how a leaf is drawn by its cost
-//     leaf modes       leaf_triangles-inl.h     lanes are the leaf's triangles, one tile at a time
-//                      leaf_facets-inl.h        lanes are the group's tiles, one triangle at a time
-//                      leaf_rays-inl.h          lanes are samples, each with its own ray
-//     coverage         coverage-inl.h           a triangle over a whole tile -> state.seen.whole, or pairs of
-//     vectors
-//                                               and triangles
-//     filter           filter-inl.h             floats with error bounds -> state.seen.nearest (sure),
-//     .ambiguous hit points       hit_points-inl.h         sure hits -> t and barycentrics with the bits of
-//     exact/hit_point.h results          resolve-inl.h, write-inl.h  ambiguous hits by exact/exact_hit.h, the
-//     same first-hit rule as the
-//                                               scalar engine -> hits, or triangles with bounds of t
-//     mixed groups     mixed-inl.h              the same stages for vectors whose lanes have facets of their
-//     own
+// clang-format off
+//
+//   stage        file                  takes -> leaves
+//   set-up       setup-inl.h           a batch's facets and tiles -> state.lanes: rays as functions of the
+//                                      tile's (u, v), frusta; broken lanes have no bounds
+//   frusta       beams-inl.h           state.lanes -> state.beam (a group), state.work.beams (its vectors)
+//   walk         walk-inl.h            the tree's nodes, nearest first -> leaves that the group's beam meets;
+//                                      chooses how a leaf is drawn by its cost
+//   leaf modes   leaf_triangles-inl.h  lanes are the leaf's triangles, one tile at a time
+//                leaf_facets-inl.h     lanes are the group's tiles, one triangle at a time
+//                leaf_rays-inl.h       lanes are samples, each with its own ray
+//   coverage     coverage-inl.h        a triangle over a whole tile -> state.seen.whole, or pairs of vectors
+//                                      and triangles
+//   filter       filter-inl.h          floats with error bounds -> state.seen.nearest (sure), .ambiguous
+//   hit points   hit_points-inl.h      sure hits -> t and barycentrics with the bits of exact/hit_point.h
+//   results      resolve-inl.h         ambiguous hits -> sure ones by exact/exact_hit.h, as the scalar engine
+//                write-inl.h           sure hits -> one Hit per sample, or triangles with bounds of t
+//   mixed groups mixed-inl.h           the same stages for vectors whose lanes have facets of their own
+//
+// clang-format on
 //
 // simd-inl.h wraps registers; state.h holds what stages hand on. A stage writes only what its line says.
 // Whatever has no bounds (rays through the eye's plane, too many ambiguous hits) is left to the scalar
