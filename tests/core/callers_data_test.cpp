@@ -101,7 +101,8 @@ std::vector<CameraDescription> odd_descriptions(const CameraKind& kind) {
         add_kind(ODD(window, (std::array<double, 4>{x, 1, x, 1})),
                  ODD(detail, (std::array<double, 4>{x, 1, x, 1})));
         // The refinement is one for all kinds, and ends only at its limit of facets: one kind is enough.
-        if (std::holds_alternative<SphericalCamera>(kind)) add([&](CameraDescription& c) { c.tolerance = x; });
+        if (std::holds_alternative<SphericalCamera>(kind))
+            add([&](CameraDescription& c) { c.tolerance = x; });
         add_kind(ODD(fx, x), ODD(distortion, (std::vector<double>{x, x, x, x})));
         add_kind(ODD(front, x));
     }

@@ -71,7 +71,8 @@ ClassicDifference difference(int n, const ClassicParams& params, const std::vect
     return sum;
 }
 
-/// Scenes that differ in all that the classic engine does: a plane, a round, a saddle and a closed mirror, glass.
+/// Scenes that differ in all that the classic engine does: a plane, a round, a saddle and a closed mirror,
+/// glass.
 const std::vector<std::string> kTellingScenes{"flat", "sphere", "saddle", "closed", "paths/crystal-ball"};
 
 void check_arcs(const std::vector<int>& resolutions, const std::vector<std::string>& scenes) {
