@@ -50,8 +50,12 @@ BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const Be
         }
         progress(static_cast<double>(i + 1) / static_cast<double>(outlines.size()));
     }
-    tree_ = BeamTree(beams_);
     refined_ = std::make_unique<RefinedBeams>(space_, source_, beams_);
+    parallel_for(beams_.beams.size(), 64, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) refined_->middles(static_cast<Id>(i));
+    });
+    tree_ = BeamTree(
+        beams_, [&](Id beam) -> const auto& { return refined_->middles(beam); });
 }
 
 BeamLight::~BeamLight() = default;
@@ -96,7 +100,7 @@ void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const
     const double same_place = kSamePlace * space_.size;
     const double bent = kMostBent * tolerance_ * space_.size;
     const double guess = bent * std::max(length(plane.dual_s), length(plane.dual_t));
-    tree_.for_each_near(receiver.point, plane.reach + bent, [&](Id index) {
+    tree_.for_each_near(receiver.point, plane.reach + (receiver.exact ? bent : 0), [&](Id index) {
         const LightBeam& beam = beams_.beams[index];
         std::optional<Way> way;
         const auto use_piece = [&](const BeamCorners& corners, const FallenBeam& fallen) {

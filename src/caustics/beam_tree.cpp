@@ -8,11 +8,37 @@ namespace trilens {
 namespace {
 constexpr std::uint32_t kBeamsPerLeaf = 4;
 constexpr double kLooseCone = 1e-9;
+
+/// How far beside the hull of a beam's six rays a quadratic through them may lie, at distance t along the
+/// rays: room + t slope.
+struct Bulge {
+    double room = 0, slope = 0;
+};
+
+/// A quadratic leaves the hull by at most a quarter of d, the way from a side's chord to its middle. With
+/// rays o + t v that is do + t dv but for what their lengths to the plane differ, S, times how their
+/// directions do; S is at most 2/3 of the shortest and a third of the beam's width (falls_evenly). Rounded
+/// up.
+Bulge bulge_of(const std::array<const BeamEnd*, 3>& end, const std::array<BeamEnd, 3>& middle) {
+    const Vec3 mean = (end[0]->direction + end[1]->direction + end[2]->direction) / 3.0;
+    double origins = 0, directions = 0, wide = 0, apart = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const BeamEnd &a = *end[(k + 1) % 3], &b = *end[(k + 2) % 3], &m = middle[k];
+        origins = std::max(origins, length(m.origin - 0.5 * (a.origin + b.origin)));
+        directions = std::max(directions, length(m.direction - 0.5 * (a.direction + b.direction)));
+        wide = std::max(wide, length(a.origin - b.origin));
+        apart = std::max({apart, length(a.direction - mean), length(m.direction - mean)});
+    }
+    return {0.5 * (origins + wide * (apart + directions)), 0.5 * (apart + directions)};
+}
+
 }  // namespace
 
 struct BeamTree::Build {
     const Beams& beams;
-    std::vector<Vec2> place;  // of each beam's middle
+    const Middles& middles;
+    std::vector<Vec2> place;   // of each beam's middle
+    std::vector<Bulge> bulge;  // of each beam
 };
 
 bool BeamTree::Node::holds(const Vec3& point, double reach) const {
@@ -26,12 +52,14 @@ bool BeamTree::Node::holds(const Vec3& point, double reach) const {
     return across * cosine - along * sine <= room;
 }
 
-BeamTree::BeamTree(const Beams& beams) {
-    Build of{beams, {}};
+BeamTree::BeamTree(const Beams& beams, const Middles& middles) {
+    Build of{beams, middles, {}, {}};
     for (const LightBeam& beam : beams.beams) {
         Vec2 middle(0);
         for (const Id end : beam.end) middle += beams.ends[end].place / 3.0;
         of.place.push_back(middle);
+        of.bulge.push_back(
+            bulge_of(corners_of(beams, beam).end, middles(static_cast<Id>(&beam - beams.beams.data()))));
     }
     order_.resize(beams.beams.size());
     std::iota(order_.begin(), order_.end(), Id{0});
@@ -50,24 +78,30 @@ void BeamTree::build(const Build& of, std::uint32_t first, std::uint32_t end) {
     const auto at = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
     const auto for_each_end = [&](const auto& use) {
-        for (std::uint32_t i = first; i < end; ++i)
+        for (std::uint32_t i = first; i < end; ++i) {
             for (const Id e : of.beams.beams[order_[i]].end) use(of.beams.ends[e]);
+            for (const BeamEnd& middle : of.middles(order_[i])) use(middle);
+        }
     };
     Node node;
     Vec3 axis(0), center(0);
     for_each_end([&](const BeamEnd& ray) { axis += ray.direction, center += ray.origin; });
     node.axis = normalize_or_zero(axis);
-    node.center = center / (3.0 * (end - first));
+    node.center = center / (6.0 * (end - first));
     double least = 1;
     for_each_end([&](const BeamEnd& ray) { least = std::min(least, dot(node.axis, ray.direction)); });
     if (least > 0.01) {
-        node.cosine = least;
-        node.sine = std::min(1.0, std::sqrt(std::max(0.0, 1 - least * least)) + kLooseCone);
-        for_each_end([&](const BeamEnd& ray) {
-            const Vec3 way = ray.origin - node.center;
-            node.radius = std::max(node.radius, length(way));
-        });
-        node.radius *= 1 + kLooseCone;
+        Bulge most;
+        for (std::uint32_t i = first; i < end; ++i) {
+            const Bulge& one = of.bulge[order_[i]];
+            most = {std::max(most.room, one.room), std::max(most.slope, one.slope)};
+        }
+        node.sine = std::sqrt(std::max(0.0, 1 - least * least)) + most.slope + kLooseCone;
+        node.cosine = std::sqrt(std::max(0.0, 1 - node.sine * node.sine));
+        double around = 0;
+        for_each_end(
+            [&](const BeamEnd& ray) { around = std::max(around, length(ray.origin - node.center)); });
+        node.radius = (most.room + around) * (1 + kLooseCone);
     }
     if (end - first <= kBeamsPerLeaf) {
         node.first = first, node.end = end;

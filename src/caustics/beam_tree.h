@@ -1,7 +1,9 @@
 // A tree of rounded cones over beams: which of them may come to a point.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -9,11 +11,15 @@
 
 namespace trilens {
 
-/// Of the beams as they are when it is made; it keeps no reference to them.
+/// Of the beams as they are when it is made; it keeps no reference to them. It holds each beam as a curved
+/// one: all that a quadratic through the ends and the middles of a beam's sides makes on a plane.
 class BeamTree {
   public:
+    /// The exact rays at the middles of a beam's sides.
+    using Middles = std::function<const std::array<BeamEnd, 3>&(Id beam)>;
+
     BeamTree() = default;
-    explicit BeamTree(const Beams& beams);
+    BeamTree(const Beams& beams, const Middles& middles);
 
     /// Calls use(beam) for every beam that may come nearer to `point` than `reach`, and some others, in an
     /// order that is always the same.

@@ -64,6 +64,15 @@ struct Beams {
     Vec3 flux_away() const;
 };
 
+/// Three rays and the part of the light's film between them.
+struct BeamCorners {
+    std::array<const BeamEnd*, 3> end{};
+    double measure = 0;
+};
+inline BeamCorners corners_of(const Beams& beams, const LightBeam& beam) {
+    return {{&beams.ends[beam.end[0]], &beams.ends[beam.end[1]], &beams.ends[beam.end[2]]}, beam.measure};
+}
+
 /// The beams of a divided window, added to `beams`, but those all of whose rays go on to another optic and
 /// meet no object before. Triangles on which a history ends are cut where it does, which is found along their
 /// sides to a 2^-12th of them.

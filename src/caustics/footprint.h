@@ -44,15 +44,6 @@ struct FallenBeam {
     double measure = 0;                                                        // of the light's film
 };
 
-/// Three rays and the part of the light's film between them.
-struct BeamCorners {
-    std::array<const BeamEnd*, 3> end{};
-    double measure = 0;
-};
-inline BeamCorners corners_of(const Beams& beams, const LightBeam& beam) {
-    return {{&beams.ends[beam.end[0]], &beams.ends[beam.end[1]], &beams.ends[beam.end[2]]}, beam.measure};
-}
-
 /// The triangles, at most three, that a beam makes on the side of the plane that its rays come to; fewer
 /// parts where some of its rays go away from the plane, or start behind it.
 struct FallenBeams {

@@ -73,6 +73,12 @@ std::unique_ptr<BeamDivision> RefinedBeams::divide(Id beam, const Ends& end) con
     return division;
 }
 
+const std::array<BeamEnd, 3>& RefinedBeams::middles(Id beam) const {
+    return division_[beam]
+        .get([&] { return divide(beam, corners_of(*beams_, beams_->beams[beam]).end); })
+        .middle;
+}
+
 struct RefinedBeams::Visit {
     const RefinedBeams& refined;
     Id beam;
@@ -181,6 +187,23 @@ namespace {
 /// Pieces along each side of a curved beam.
 constexpr int kPieces = 4;
 
+/// How much longer one of a beam's rays to a plane may be than another for a quadratic to be its image: the
+/// tree's bulge_of counts on it.
+constexpr double kMostUneven = 5.0 / 3;
+
+bool falls_evenly(const Ends& end, const std::array<BeamEnd, 3>& middle, const ReceiverPlane& plane) {
+    double shortest = INFINITY, longest = 0, wide = 0;
+    const auto add = [&](const BeamEnd& one) {
+        const double t = dot(one.origin - plane.point, plane.normal) / -dot(one.direction, plane.normal);
+        shortest = std::min(shortest, t), longest = std::max(longest, t);
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+        add(*end[k]), add(middle[k]);
+        wide = std::max(wide, length(end[k]->origin - end[(k + 1) % 3]->origin));
+    }
+    return longest <= kMostUneven * shortest + wide / 3;
+}
+
 /// Quadratic Lagrange weights of the corners and of the middles across from them.
 std::array<double, 6> quadratic_weights(const Vec3& w) {
     return {w.x * (2 * w.x - 1), w.y * (2 * w.y - 1), w.z * (2 * w.z - 1),
@@ -218,23 +241,17 @@ void RefinedBeams::for_each_curved_piece(Id beam, const ReceiverPlane& plane, co
     const BeamCorners corners = corners_of(*beams_, beams_->beams[beam]);
     const Ends& end = corners.end;
     const Visit visit{*this, beam, plane, use, 1, plane.has_footprint ? 0.5 : 0};
+    const std::array<BeamEnd, 3>& middle = middles(beam);
     std::array<Vec2, 6> at;
-    double side = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::optional<Vec2> on = place_on(plane, *end[k]);
+    for (std::size_t k = 0; k < 6; ++k) {
+        const std::optional<Vec2> on = place_on(plane, k < 3 ? *end[k] : middle[k - 3]);
         if (!on) return visit.use_part(end);
         at[k] = *on;
     }
-    for (std::size_t k = 0; k < 3; ++k) side = std::max(side, length(at[k] - at[(k + 1) % 3]));
-    if (visit.is_beyond(std::span(at).first(3), side)) return;
-    const BeamDivision& by = division_[beam].get([&] { return divide(beam, end); });
+    if (!falls_evenly(end, middle, plane)) return visit.use_part(end);
     double bulge = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::optional<Vec2> on = place_on(plane, by.middle[k]);
-        if (!on) return visit.use_part(end);
-        at[3 + k] = *on;
-        bulge = std::max(bulge, length(*on - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3])));
-    }
+    for (std::size_t k = 0; k < 3; ++k)
+        bulge = std::max(bulge, length(at[3 + k] - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3])));
     if (visit.is_beyond(at, bulge)) return;
 
     std::array<Vec2, PieceGrid::kCount> corner;
@@ -252,7 +269,7 @@ void RefinedBeams::for_each_curved_piece(Id beam, const ReceiverPlane& plane, co
             const std::array<double, 6>& q = grid.quadratic[n];
             fallen.light[k] = Vec3(0);
             for (std::size_t c = 0; c < 3; ++c)
-                fallen.light[k] += q[c] * end[c]->light + q[3 + c] * by.middle[c].light;
+                fallen.light[k] += q[c] * end[c]->light + q[3 + c] * middle[c].light;
             fallen.place[k] = w.x * end[0]->place + w.y * end[1]->place + w.z * end[2]->place;
         }
         fallen.measure = corners.measure / (kPieces * kPieces);

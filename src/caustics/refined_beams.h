@@ -25,6 +25,9 @@ class RefinedBeams {
     /// `beams` must live longer, and what `space` points to.
     RefinedBeams(const LightSpace& space, const BeamSource& source, const Beams& beams);
 
+    /// The exact rays at the middles of a beam's sides, across from its ends.
+    const std::array<BeamEnd, 3>& middles(Id beam) const;
+
     using Use = std::function<void(const BeamCorners&, const FallenBeam&)>;
     /// The pieces of a beam that may come to the plane's footprint: bent by less than a hundredth of its
     /// side, or so small that it does not matter. `guess`: how far, in the plane's coordinates, a beam's rays
@@ -32,7 +35,8 @@ class RefinedBeams {
     void for_each_piece(Id beam, const ReceiverPlane& plane, double guess, const Use& use) const;
 
     /// The same of the beam as a quadratic surface through its corners and the middles of its sides, which
-    /// are exact, in 16 flat pieces.
+    /// are exact, in 16 flat pieces; of the flat triangle where the plane lies so askew that a quadratic
+    /// says nothing. It is all of the beam that comes to the footprint.
     void for_each_curved_piece(Id beam, const ReceiverPlane& plane, const Use& use) const;
 
   private:
