@@ -30,7 +30,7 @@ Warn PythonCall::warner() {
 
 void PythonCall::report(double done, const std::string& job) {
     const py::gil_scoped_acquire acquired;
-    if (cancel_) return;  // another thread was on its way here when the callback said stop
+    if (raised_) return;
     try {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (!progress_.is_none() && progress_(done, job).is(py::handle(Py_False))) cancel_ = true;

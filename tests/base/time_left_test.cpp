@@ -1,4 +1,5 @@
-// The time that is left of work that repeats.
+// How long work says how far it is: until it is told to stop, and the time that is left of it.
+#include <atomic>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -41,4 +42,17 @@ TEST_CASE("the time left is right within a factor of two, however long what is d
     CHECK_FALSE(left.at(0.5, 9).has_value());
     CHECK(left.at(0.75, 11).value() == Approx(10));
     CHECK(left.at(1, 12).value() == 0);
+}
+
+TEST_CASE("work that was told to stop reports no more", "[base][progress]") {
+    std::atomic<bool> stop = false;
+    std::vector<double> said;
+    const Progress progress{[&](double done) {
+                                said.push_back(done);
+                                stop = done >= 0.5;
+                            },
+                            &stop};
+    for (const double done : {0.25, 0.5, 0.75, 1.0}) progress(done);
+    CHECK(said == std::vector{0.25, 0.5});
+    CHECK(progress.cancelled());
 }

@@ -74,11 +74,12 @@ class Interrupted : public Error {
 
 /// Handed down into long work; default: silent and never cancelled.
 struct Progress {
-    std::function<void(double done)> report;    // share done, 0..1, never called from two threads at once
+    // Share done, 0..1; never called from two threads at once, nor once cancelled.
+    std::function<void(double done)> report;
     const std::atomic<bool>* cancel = nullptr;  // set by a signal handler
 
     void operator()(double done) const {
-        if (report) report(done);
+        if (report && !cancelled()) report(done);
     }
     bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
 };
