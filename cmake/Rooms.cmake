@@ -42,8 +42,8 @@ function(trilens_unite target)
   target_compile_options(${target} PRIVATE $<$<AND:$<BOOL:${TRILENS_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
 endfunction()
 
-# What reads, writes and talks, and the tests, wait for files and for the rooms that compute: compiling them takes a
-# third less time so, and none of what they do more.
+# What reads, writes and talks waits for files and for the rooms that compute: compiling it takes a third less time so,
+# and what it does no more.
 function(trilens_light target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
