@@ -4,10 +4,11 @@
 # door, sees them all (a test holds that).
 include(CMakeParseArguments)
 
-# Contraction off: the same source gives the same last bit on every machine.
+# Contraction off: the same source gives the same last bit on every machine. Names of files as from the source's folder: the
+# same source gives the same library wherever it is built.
 add_library(trilens_options INTERFACE)
 target_compile_options(trilens_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off
+  -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.
   $<$<BOOL:${TRILENS_WERROR}>:-Werror>
   # GCC 12 sees overruns and overreads in std::string's own copies and, sanitized, uninitialized bytes in std::regex; there are none.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,14>>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict>
@@ -68,7 +69,7 @@ function(trilens_room name folder)
       target_link_libraries(trilens_${name} PRIVATE ${door})
     endif()
   endforeach()
-  if("hwy::hwy" IN_LIST ROOM_DOORS)
+  if("hwy::hwy" IN_LIST ROOM_DOORS AND NOT EMSCRIPTEN)
     # Instruction sets that bring this code nothing: SSSE3, and those of AVX-512 beyond its first (the last two are
     # later versions' names for bits).
     target_compile_definitions(trilens_${name} PRIVATE

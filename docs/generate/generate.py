@@ -20,6 +20,12 @@ from python_pages import write_python
 from scene_pages import write_scene_pages
 
 
+MIRROR = """```{raw} html
+<iframe src="mirror.html" title="A mirror to bend" loading="lazy" style="width: 100%; max-width: 660px; height: 590px; border: 0"></iframe>
+<p><em>The projector itself, compiled for browsers: a mirror to bend, projected anew in each picture. <a href="mirror.html">By itself</a>.</em></p>
+```"""
+
+
 def first_comment(text):
     """What a scene's first comment says of it."""
     found = re.search(r"^\s*//(.*(?:\n\s*//.*)*)", text, re.M)
@@ -122,6 +128,8 @@ def copy_pages(out):
         text = re.sub(r"\]\(\.\./((?:results|examples/python)/[\w./-]+\.(?:svg|jpg|png))\)", r"](\1)", text)
         # Other files of the source are named, not linked.
         text = re.sub(r"(?<!!)\[([^]]*)\]\(\.\./([\w./-]+)\)", r"\1 (`\2`)", text)
+        if (SOURCE / "build/browser/mirror.html").exists():
+            text = text.replace("<!-- the projector in a page -->", MIRROR)
         (out / file.name).write_text(text)
 
 

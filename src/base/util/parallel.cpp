@@ -1,5 +1,6 @@
 #include "base/util/parallel.h"
 
+#ifndef __EMSCRIPTEN__  // there parallel_serial.cpp takes its place
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -87,3 +88,5 @@ void run_on_threads(std::size_t count, const std::function<void()>& work) {
 }
 
 }  // namespace trilens
+
+#endif

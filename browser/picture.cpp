@@ -1,0 +1,142 @@
+#include "picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/raymesh/rasterize.h"
+#include "projector/projector.h"
+#include "reflect/reflection.h"
+
+namespace trilens::browser {
+namespace {
+
+const Vec3 kBack(0.035, 0.032, 0.03);  // of the mirror
+const Vec3 kSilver(0.93, 0.94, 0.95);  // what it gives back
+
+LinearCamera camera_of(const Frame& frame) {
+    PerspectiveParams params;
+    params.look_at = {frame.eye, frame.at, Vec3(0, 1, 0)};
+    params.yfov_degrees = 38;
+    params.width = frame.width;
+    params.height = frame.height;
+    return make_perspective(params);
+}
+
+/// Whether an eye sees the facet's mirroring side.
+bool shows_front(const SurfaceGrid& grid, std::size_t facet, const Vec3& eye) {
+    return faces_front(grid, grid.facets[facet], grid.points[grid.corner_point[grid.facets[facet][0]]] - eye);
+}
+
+/// sRGB of linear light, eight bits, by a table.
+std::uint8_t shown(double light) {
+    static const auto table = [] {
+        std::array<std::uint8_t, 4097> made{};
+        for (std::size_t i = 0; i < made.size(); ++i) {
+            const double x = static_cast<double>(i) / 4096;
+            made[i] = static_cast<std::uint8_t>(
+                std::lround(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055)));
+        }
+        return made;
+    }();
+    return table[static_cast<std::size_t>(4096 * std::clamp(light, 0.0, 1.0))];
+}
+
+/// The window's samples: what the camera sees directly, and which facet of the mirror lies before it.
+struct Direct {
+    SampleGrid samples;
+    std::vector<Hit> room, mirror;  // unset where nothing is seen
+};
+
+Direct look(const LittleRoom& room, const RayMesh& rays, const SurfaceGrid& facets,
+            const SampleGrid& samples) {
+    Direct direct{samples, {}, {}};
+    direct.room.resize(samples.size());
+    direct.mirror.resize(samples.size());
+    const FacetSamples all = rasterize_facets(rays, samples);
+    draw(*room.ready, rays, all, samples, direct.room);
+    TriangleScene mirror;
+    append_facets(facets, 0, mirror);
+    draw(PreparedScene(mirror), rays, all, samples, direct.mirror);
+    return direct;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> draw_frame(const LittleRoom& room, const Frame& frame) {
+    const LinearCamera camera = camera_of(frame);
+    const RayMesh rays = make_camera_mesh(camera, frame.width, frame.height);
+    const SurfaceGrid facets = make_grid(frame.mirror, frame.n);
+    const SampleGrid samples{0, frame.first_row, frame.width, frame.last_row, frame.side};
+    const Direct direct = look(room, rays, facets, samples);
+
+    // The samples that see the mirror's front belong to the facets that they see, and the room is projected
+    // through these.
+    std::vector<Id> owner(samples.size(), kNone);
+    std::vector<char> before(samples.size(), 0);  // the mirror is seen, either side
+    for (std::size_t s = 0; s < owner.size(); ++s) {
+        const Hit& hit = direct.mirror[s];
+        before[s] = hit.seen() && (!direct.room[s].seen() || hit.t < direct.room[s].t);
+        if (before[s] && shows_front(facets, hit.triangle, frame.eye)) owner[s] = hit.triangle;
+    }
+    const RayMesh mirror = make_reflection(facets, camera);
+    std::vector<Hit> mirrored(samples.size());
+    draw(*room.ready, mirror, group_by_facet(owner, facets.facets.size()), samples, mirrored);
+
+    // Rays of samples are asked for only where they see the sky.
+    std::vector<FacetWeights> weights(mirror.facets.size());
+    for (std::size_t f = 0; f < weights.size(); ++f)
+        if (mirror.has_rays(f)) weights[f] = facet_weights(mirror, f);
+    const auto light_at = [&](std::size_t s) -> Vec3 {
+        if (owner[s] != kNone) {
+            if (mirrored[s].seen()) return kSilver * light_of(room, mirrored[s]);
+            const Id facet = owner[s];
+            if (!mirror.has_rays(facet) || weights[facet].edge_on) return kBack;
+            return kSilver * sky(sample_ray(mirror, facet, weights[facet], samples.position(s)).direction);
+        }
+        if (before[s]) return kBack;
+        return direct.room[s].seen() ? light_of(room, direct.room[s])
+                                     : sky(film_ray(camera, samples.position(s)).direction);
+    };
+
+    std::vector<std::uint8_t> rgba(4 * samples.pixels(), 255);
+    const std::size_t each = static_cast<std::size_t>(samples.samples_per_pixel());
+    for (std::size_t p = 0; p < samples.pixels(); ++p) {
+        Vec3 light(0);
+        for (std::size_t s = p * each; s < (p + 1) * each; ++s) light += light_at(s);
+        for (int c = 0; c < 3; ++c)
+            rgba[4 * p + static_cast<std::size_t>(c)] = shown(light[c] / static_cast<double>(each));
+    }
+    return rgba;
+}
+
+std::vector<float> facets_on_film(const Frame& frame) {
+    const LinearCamera camera = camera_of(frame);
+    const SurfaceGrid facets = make_grid(frame.mirror, frame.n);
+    std::vector<float> corners;
+    for (const IdTriple& facet : facets.facets) {
+        std::array<Vec3, 3> at;
+        for (std::size_t k = 0; k < 3; ++k)
+            at[k] = screen_from_world(camera, facets.points[facets.corner_point[facet[k]]]);
+        if (std::any_of(at.begin(), at.end(), [](const Vec3& v) { return v.z <= 0; })) continue;
+        for (const Vec3& v : at) {
+            corners.push_back(static_cast<float>(v.x / v.z));
+            corners.push_back(static_cast<float>(v.y / v.z));
+        }
+    }
+    return corners;
+}
+
+std::optional<Vec2> mirror_place(const LittleRoom& room, const Frame& frame, const Vec2& at) {
+    const RayMesh rays = make_camera_mesh(camera_of(frame), frame.width, frame.height);
+    const SurfaceGrid facets = make_grid(frame.mirror, frame.n);
+    const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
+    const Direct direct = look(room, rays, facets, {x, y, x + 1, y + 1, 1});
+    const Hit& hit = direct.mirror[0];
+    if (!hit.seen() || (direct.room[0].seen() && direct.room[0].t < hit.t)) return std::nullopt;
+    const std::array<Vec2, 3>& uv = facets.facet_uv[hit.triangle];
+    return (1 - hit.barycentric.x - hit.barycentric.y) * uv[0] + hit.barycentric.x * uv[1] +
+           hit.barycentric.y * uv[2];
+}
+
+}  // namespace trilens::browser

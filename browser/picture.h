@@ -1,0 +1,32 @@
+// One frame: the room, the mirror before it, and in the mirror the room again, projected through its facets.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bent_mirror.h"
+#include "little_room.h"
+
+namespace trilens::browser {
+
+/// What is drawn: rows [first_row, last_row) of the film.
+struct Frame {
+    int width = 640, height = 480, first_row = 0, last_row = 480;
+    int side = 1;  // side x side samples per pixel
+    int n = 8;     // n x n squares of the mirror
+    Vec3 eye{0, 2, 6}, at{0, 1, 0};
+    BentMirror mirror;
+};
+
+/// RGBA of the rows, eight bits each, sRGB.
+std::vector<std::uint8_t> draw_frame(const LittleRoom& room, const Frame& frame);
+
+/// The corners of the mirror's facets on the film, three x, y pairs for each, in pixels; facets that do not
+/// lie before the camera are left out.
+std::vector<float> facets_on_film(const Frame& frame);
+
+/// Where on the mirror, 0..1 each, one looks at this film place; none where it is not the first thing seen
+/// there.
+std::optional<Vec2> mirror_place(const LittleRoom& room, const Frame& frame, const Vec2& at);
+
+}  // namespace trilens::browser
