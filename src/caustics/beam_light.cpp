@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "caustics/footprint.h"
+#include "caustics/plane_beams.h"
 #include "caustics/refined_beams.h"
 
 namespace trilens {
@@ -16,6 +17,13 @@ constexpr double kMostTurned = 10;
 
 /// Rays of a beam may fall this many tolerances beside its triangle.
 constexpr double kMostBent = 2;
+
+/// What falls on faces smaller than this share of the scene is looked up beam by beam.
+constexpr double kSmallFace = 0.004;
+
+/// Beams whose light on a plane is below this share of the light's mean over the scene are not looked at
+/// closely.
+constexpr double kFaintShare = 0.05;
 
 /// What the rays at a beam's ends say about the way to a plane.
 enum class Way { kFree, kStopped, kUnknown };
@@ -60,6 +68,31 @@ BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const Be
 
 BeamLight::~BeamLight() = default;
 
+void BeamLight::receive_on(std::shared_ptr<const ReceiverFaces> faces) {
+    faces_ = std::move(faces);
+    on_face_ = std::make_unique<Lazy<PlaneBeams>[]>(2 * faces_->faces().size());
+}
+
+/// None: it lies on no face that is worth it.
+const PlaneBeams* BeamLight::plane_beams(const Receiver& receiver) const {
+    const Id at = faces_ ? faces_->face_of(receiver.triangle) : kNone;
+    if (at == kNone) return nullptr;
+    const ReceiverFace& face = faces_->faces()[at];
+    if (face.radius < kSmallFace * space_.size) return nullptr;
+    const bool is_back = dot(face.normal, receiver.normal) < 0;
+    return &on_face_[2 * at + is_back].get([&] {
+        PlaneBeamsParams params;
+        params.tolerance = tolerance_ * space_.size;
+        params.reach = kMostBent * params.tolerance;
+        for (const BeamEnd& end : beams_.ends)
+            params.brightest = std::max(params.brightest, end.light.x + end.light.y + end.light.z);
+        const Vec3 all = beams_.flux_arriving();
+        params.faint_light = kFaintShare * (all.x + all.y + all.z) / (space_.size * space_.size);
+        return std::make_unique<PlaneBeams>(PlaneBeams::Source{beams_, tree_, *refined_}, face,
+                                            is_back ? -face.normal : face.normal, params);
+    });
+}
+
 /// A triangle that falls on a receiver's plane.
 struct BeamLight::Piece {
     const LightBeam& beam;
@@ -86,8 +119,12 @@ std::optional<Vec3> BeamLight::light_of(const Piece& piece, const Receiver& rece
     }
     const double cosine = -dot(receiver.shading_normal, direction);
     if (!(cosine > 0)) return std::nullopt;
-    if (piece.way == Way::kUnknown && is_hidden(piece.beam, receiver.lifted, origin)) return std::nullopt;
     const double geometric = -dot(piece.plane.normal, direction);
+    if (piece.way == Way::kUnknown) {
+        const double t = dot(origin - piece.plane.point, piece.plane.normal) / geometric;
+        const Vec3 there = origin + t * direction + (receiver.lifted - receiver.point);
+        if (is_hidden(piece, there, origin)) return std::nullopt;
+    }
     light *= body_transmittance(*space_.optics, beams_.histories[piece.beam.history].medium,
                                 length(origin - receiver.point));
     return here->density / piece.plane.unit_area * std::min(cosine / geometric, kMostTurned) * light;
@@ -98,37 +135,49 @@ template <typename Use>
 void BeamLight::for_each_arrival(const Receiver& receiver, const Use& use) const {
     const ReceiverPlane plane(receiver, kWidestFootprint * space_.size);
     const double same_place = kSamePlace * space_.size;
+    const auto use_piece = [&](Id index, const BeamCorners& corners, const FallenBeam& fallen) {
+        const LightBeam& beam = beams_.beams[index];
+        Way way = way_to(beams_, beam, plane, same_place);
+        if (way == Way::kStopped) return;
+        if (receiver.exact) way = Way::kUnknown;
+        if (const auto light = light_of({beam, corners, fallen, plane, way}, receiver)) use(*light);
+    };
+    if (!receiver.exact)
+        if (const PlaneBeams* fallen = plane_beams(receiver)) return fallen->for_each_piece(plane, use_piece);
     const double bent = kMostBent * tolerance_ * space_.size;
     const double guess = bent * std::max(length(plane.dual_s), length(plane.dual_t));
     tree_.for_each_near(receiver.point, plane.reach + (receiver.exact ? bent : 0), [&](Id index) {
-        const LightBeam& beam = beams_.beams[index];
-        std::optional<Way> way;
-        const auto use_piece = [&](const BeamCorners& corners, const FallenBeam& fallen) {
-            if (!way) way = way_to(beams_, beam, plane, same_place);
-            if (*way == Way::kStopped) return;
-            const Way asked = receiver.exact ? Way::kUnknown : *way;
-            if (const auto light = light_of({beam, corners, fallen, plane, asked}, receiver)) use(*light);
+        const auto use_one = [&](const BeamCorners& corners, const FallenBeam& fallen) {
+            use_piece(index, corners, fallen);
         };
         if (receiver.exact)
-            refined_->for_each_piece(index, plane, guess, use_piece);
+            refined_->for_each_piece(index, plane, guess, use_one);
         else
-            refined_->for_each_curved_piece(index, plane, use_piece);
+            refined_->for_each_curved_piece(index, plane, use_one);
     });
 }
 
-/// Whether anything lies between a receiver and where a beam leaves the last optic. That optic's own surface
-/// is asked only where the beam's own rays meet it again: the beam's origin may lie a little inside of it.
-bool BeamLight::is_hidden(const LightBeam& beam, const Vec3& from, const Vec3& origin) const {
+/// Whether anything lies between where a piece falls and where it leaves the last optic. That optic itself is
+/// not asked so near to it as the piece is wide: its origin may lie a little inside of it.
+bool BeamLight::is_hidden(const Piece& piece, const Vec3& from, const Vec3& origin) const {
+    const Vec3 toward = origin - from;
     Segments way;
-    way.add(from, (1 - kSamePlace) * (origin - from));
+    way.add(from, (1 - kSamePlace) * toward);
     if (space_.objects->occluded(way)) return true;
-    const Id last = beams_.histories[beam.history].steps.back().optic;
-    const double far = length(origin - from);
-    for (Id i = 0; i < space_.optics->optics.size(); ++i) {
+    const Id last = beams_.histories[piece.beam.history].steps.back().optic;
+    for (Id i = 0; i < space_.optics->optics.size(); ++i)
         if (i != last && space_.optics->optics[i].tracer->occluded(way, way.all())) return true;
+    const double far = length(toward);
+    double wide = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        wide = std::max(wide, length(piece.corners.end[k]->origin - piece.corners.end[(k + 1) % 3]->origin));
+    if (wide < far) {
+        Segments before;
+        before.add(from, (1 - std::max(wide / far, kSamePlace)) * toward);
+        if (space_.optics->optics[last].tracer->occluded(before, before.all())) return true;
     }
     int met = 0;
-    for (const Id e : beam.end) met += beams_.ends[e].optic < (1 - kSamePlace) * far;
+    for (const Id e : piece.beam.end) met += beams_.ends[e].optic < (1 - kSamePlace) * far;
     return met == 3;
 }
 

@@ -8,14 +8,17 @@
 #include <vector>
 
 #include "base/util/error.h"
+#include "base/util/parallel.h"
 #include "caustics/beam_grid.h"
 #include "caustics/beam_tree.h"
 #include "caustics/beams.h"
 #include "caustics/exact_arrivals.h"
+#include "caustics/receiver_faces.h"
 #include "shade/receiver.h"
 
 namespace trilens {
 
+class PlaneBeams;
 class RefinedBeams;
 
 /// What was left out of a light's beams.
@@ -39,6 +42,10 @@ class BeamLight {
     BeamLight(const BeamLight&) = delete;
     BeamLight& operator=(const BeamLight&) = delete;
 
+    /// The triangles that receivers may name: what falls on the plane of one is gathered when it is first
+    /// asked for, and kept. Before any is asked for.
+    void receive_on(std::shared_ptr<const ReceiverFaces> faces);
+
     /// Irradiance at the receiver, linear Rec.709, of all that comes over optics: of the beams as they are,
     /// or where the receiver asks for it of beams divided by exact rays until they are flat at its footprint.
     Vec3 irradiance(const Receiver& receiver) const;
@@ -61,7 +68,8 @@ class BeamLight {
     void for_each_arrival(const Receiver& receiver, const Use& use) const;
     std::optional<Vec3> light_of(const Piece& piece, const Receiver& receiver) const;
     bool comes(const ExactArrival& arrival, const Receiver& receiver) const;
-    bool is_hidden(const LightBeam& beam, const Vec3& from, const Vec3& origin) const;
+    const PlaneBeams* plane_beams(const Receiver& receiver) const;
+    bool is_hidden(const Piece& piece, const Vec3& from, const Vec3& origin) const;
 
     LightSpace space_;
     BeamSource source_;
@@ -69,6 +77,8 @@ class BeamLight {
     Beams beams_;
     BeamTree tree_;
     std::unique_ptr<RefinedBeams> refined_;
+    std::shared_ptr<const ReceiverFaces> faces_;
+    std::unique_ptr<Lazy<PlaneBeams>[]> on_face_;  // by face, and side
     BeamLosses losses_;
 };
 

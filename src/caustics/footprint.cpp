@@ -77,6 +77,13 @@ ReceiverPlane::ReceiverPlane(const Receiver& receiver, double largest_side)
     dual_t = cross(normal, dual_s);
 }
 
+std::optional<Vec2> place_on(const ReceiverPlane& plane, const BeamEnd& end) {
+    const double height = dot(end.origin - plane.point, plane.normal),
+                 fall = -dot(end.direction, plane.normal);
+    if (!(height >= 0) || !(fall > kGrazingFall)) return std::nullopt;
+    return plane.at(end.origin + height / fall * end.direction);
+}
+
 FallenBeams fall(const BeamCorners& beam, const ReceiverPlane& plane, double reach) {
     FallenBeams fallen;
     const auto& end = beam.end;

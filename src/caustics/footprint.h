@@ -34,6 +34,9 @@ struct ReceiverPlane {
 /// Rays this nearly along a plane bring no light to it.
 inline constexpr double kGrazingFall = 1e-4;
 
+/// Where a ray falls, in the plane's coordinates; none where it starts behind the plane or goes away from it.
+std::optional<Vec2> place_on(const ReceiverPlane& plane, const BeamEnd& end);
+
 /// A triangle of a beam on a plane.
 struct FallenBeam {
     std::array<Vec2, 3> at{};              // in the plane's coordinates

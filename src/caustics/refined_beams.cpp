@@ -18,24 +18,16 @@ constexpr double kThin = 0.1;
 /// What a point without a footprint is looked at by: a share of the scene's size.
 constexpr double kPointSize = 1e-4;
 
-std::optional<Vec2> place_on(const ReceiverPlane& plane, const BeamEnd& end) {
-    const double height = dot(end.origin - plane.point, plane.normal),
-                 fall = -dot(end.direction, plane.normal);
-    if (!(height >= 0) || !(fall > kGrazingFall)) return std::nullopt;
-    return plane.at(end.origin + height / fall * end.direction);
-}
+using Ends = BeamEnds;
 
-using Ends = std::array<const BeamEnd*, 3>;
+}  // namespace
 
-/// The corner triangles, and the one between the middles.
-std::array<Ends, 4> quarters(const Ends& end, const std::array<BeamEnd, 3>& middle) {
+std::array<BeamEnds, 4> quarters(const BeamEnds& end, const std::array<BeamEnd, 3>& middle) {
     return {{{end[0], &middle[2], &middle[1]},
              {&middle[2], end[1], &middle[0]},
              {&middle[1], &middle[0], end[2]},
              {&middle[0], &middle[1], &middle[2]}}};
 }
-
-}  // namespace
 
 RefinedBeams::RefinedBeams(const LightSpace& space, const BeamSource& source, const Beams& beams)
     : space_(space),
@@ -73,10 +65,17 @@ std::unique_ptr<BeamDivision> RefinedBeams::divide(Id beam, const Ends& end) con
     return division;
 }
 
-const std::array<BeamEnd, 3>& RefinedBeams::middles(Id beam) const {
-    return division_[beam]
-        .get([&] { return divide(beam, corners_of(*beams_, beams_->beams[beam]).end); })
-        .middle;
+const BeamDivision& RefinedBeams::division(Id beam) const {
+    return division(beam, corners_of(*beams_, beams_->beams[beam]).end, division_[beam]);
+}
+
+const BeamDivision& RefinedBeams::division(Id beam, const BeamEnds& end, const Lazy<BeamDivision>& of) const {
+    return of.get([&] { return divide(beam, end); });
+}
+
+BeamCorners RefinedBeams::corners(Id beam, const BeamEnds& end) const {
+    const LightWindow& window = beams_->windows[beams_->beams[beam].window];
+    return {end, window.measure(end[0]->place, end[1]->place, end[2]->place)};
 }
 
 struct RefinedBeams::Visit {
@@ -87,14 +86,9 @@ struct RefinedBeams::Visit {
     double unit;  // of the plane's coordinates, that a footprint is wide
     double half;  // of the footprint
 
-    BeamCorners corners_of(const Ends& end) const {
-        const LightWindow& window = refined.beams_->windows[refined.beams_->beams[beam].window];
-        return {end, window.measure(end[0]->place, end[1]->place, end[2]->place)};
-    }
-
     /// Of a triangle of which a part falls on the plane, or none.
     void use_part(const Ends& end) const {
-        const BeamCorners corners = corners_of(end);
+        const BeamCorners corners = refined.corners(beam, end);
         const FallenBeams fallen = fall(corners, plane);
         for (std::size_t i = 0; i < fallen.count; ++i) use(corners, fallen.part[i]);
     }
@@ -104,7 +98,7 @@ struct RefinedBeams::Visit {
         FallenBeam fallen;
         fallen.at = at;
         for (std::size_t k = 0; k < 3; ++k) fallen.light[k] = end[k]->light, fallen.place[k] = end[k]->place;
-        const BeamCorners corners = corners_of(end);
+        const BeamCorners corners = refined.corners(beam, end);
         fallen.measure = corners.measure;
         use(corners, fallen);
     }
@@ -140,7 +134,7 @@ struct RefinedBeams::Visit {
             at[k] = *on;
         }
         if (is_beyond(std::span(at).first(3), guess)) return;
-        const BeamDivision& by = division.get([&] { return refined.divide(beam, end); });
+        const BeamDivision& by = refined.division(beam, end, division);
         double bulge = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::optional<Vec2> on = place_on(plane, by.middle[k]);
@@ -182,99 +176,14 @@ void RefinedBeams::for_each_piece(Id beam, const ReceiverPlane& plane, double gu
     visit.visit(end, division_[beam], 0, std::max(guess, 0.5 * side));
 }
 
-namespace {
-
-/// Pieces along each side of a curved beam.
-constexpr int kPieces = 4;
-
-/// How much longer one of a beam's rays to a plane may be than another for a quadratic to be its image: the
-/// tree's bulge_of counts on it.
-constexpr double kMostUneven = 5.0 / 3;
-
-bool falls_evenly(const Ends& end, const std::array<BeamEnd, 3>& middle, const ReceiverPlane& plane) {
-    double shortest = INFINITY, longest = 0, wide = 0;
-    const auto add = [&](const BeamEnd& one) {
-        const double t = dot(one.origin - plane.point, plane.normal) / -dot(one.direction, plane.normal);
-        shortest = std::min(shortest, t), longest = std::max(longest, t);
-    };
-    for (std::size_t k = 0; k < 3; ++k) {
-        add(*end[k]), add(middle[k]);
-        wide = std::max(wide, length(end[k]->origin - end[(k + 1) % 3]->origin));
-    }
-    return longest <= kMostUneven * shortest + wide / 3;
-}
-
-/// Quadratic Lagrange weights of the corners and of the middles across from them.
-std::array<double, 6> quadratic_weights(const Vec3& w) {
-    return {w.x * (2 * w.x - 1), w.y * (2 * w.y - 1), w.z * (2 * w.z - 1),
-            4 * w.y * w.z,       4 * w.z * w.x,       4 * w.x * w.y};
-}
-
-/// The corners of the pieces, row by row from the third corner's side.
-struct PieceGrid {
-    static constexpr int kCount = (kPieces + 1) * (kPieces + 2) / 2;
-    std::array<Vec3, kCount> weights;
-    std::array<std::array<double, 6>, kCount> quadratic;
-    std::array<std::array<int, 3>, kPieces * kPieces> piece;
-
-    static int at(int i, int j) { return j * (kPieces + 1) - j * (j - 1) / 2 + i; }
-    PieceGrid() {
-        for (int j = 0; j <= kPieces; ++j)
-            for (int i = 0; i + j <= kPieces; ++i) {
-                const auto n = static_cast<std::size_t>(at(i, j));
-                weights[n] = Vec3(kPieces - i - j, i, j) / static_cast<double>(kPieces);
-                quadratic[n] = quadratic_weights(weights[n]);
-            }
-        std::size_t n = 0;
-        for (int j = 0; j < kPieces; ++j)
-            for (int i = 0; i + j < kPieces; ++i) {
-                piece[n++] = {at(i, j), at(i + 1, j), at(i, j + 1)};
-                if (i + j + 1 < kPieces) piece[n++] = {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
-            }
-    }
-};
-
-}  // namespace
-
 void RefinedBeams::for_each_curved_piece(Id beam, const ReceiverPlane& plane, const Use& use) const {
-    static const PieceGrid grid;
     const BeamCorners corners = corners_of(*beams_, beams_->beams[beam]);
-    const Ends& end = corners.end;
-    const Visit visit{*this, beam, plane, use, 1, plane.has_footprint ? 0.5 : 0};
     const std::array<BeamEnd, 3>& middle = middles(beam);
-    std::array<Vec2, 6> at;
-    for (std::size_t k = 0; k < 6; ++k) {
-        const std::optional<Vec2> on = place_on(plane, k < 3 ? *end[k] : middle[k - 3]);
-        if (!on) return visit.use_part(end);
-        at[k] = *on;
-    }
-    if (!falls_evenly(end, middle, plane)) return visit.use_part(end);
-    double bulge = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-        bulge = std::max(bulge, length(at[3 + k] - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3])));
-    if (visit.is_beyond(at, bulge)) return;
-
-    std::array<Vec2, PieceGrid::kCount> corner;
-    for (std::size_t n = 0; n < corner.size(); ++n) {
-        corner[n] = Vec2(0);
-        for (std::size_t k = 0; k < 6; ++k) corner[n] += grid.quadratic[n][k] * at[k];
-    }
-    for (const std::array<int, 3>& piece : grid.piece) {
-        FallenBeam fallen;
-        for (std::size_t k = 0; k < 3; ++k) fallen.at[k] = corner[static_cast<std::size_t>(piece[k])];
-        if (visit.is_beyond(fallen.at, 0)) continue;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto n = static_cast<std::size_t>(piece[k]);
-            const Vec3& w = fallen.weights[k] = grid.weights[n];
-            const std::array<double, 6>& q = grid.quadratic[n];
-            fallen.light[k] = Vec3(0);
-            for (std::size_t c = 0; c < 3; ++c)
-                fallen.light[k] += q[c] * end[c]->light + q[3 + c] * middle[c].light;
-            fallen.place[k] = w.x * end[0]->place + w.y * end[1]->place + w.z * end[2]->place;
-        }
-        fallen.measure = corners.measure / (kPieces * kPieces);
-        use(corners, fallen);
-    }
+    const CurvedBeam curved{corners, {&middle[0], &middle[1], &middle[2]}};
+    const std::optional<std::array<Vec2, 6>> at = curved.fall(plane);
+    if (at) return curved.for_each_piece(*at, plane.has_footprint ? 0.5 : 0, PieceGrid::kMostSides, use);
+    const FallenBeams fallen = fall(corners, plane);
+    for (std::size_t i = 0; i < fallen.count; ++i) use(corners, fallen.part[i]);
 }
 
 }  // namespace trilens

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/util/parallel.h"
+#include "caustics/curved_beam.h"
 #include "caustics/footprint.h"
 #include "caustics/light_paths.h"
 
@@ -17,6 +18,9 @@ struct BeamDivision {
     std::array<Lazy<BeamDivision>, 4> part;
 };
 
+/// The corner triangles of a division, and the one between the middles.
+std::array<BeamEnds, 4> quarters(const BeamEnds& end, const std::array<BeamEnd, 3>& middle);
+
 /// Beams as exact rays have them: each is divided where, and as far as, a footprint asks, and what was traced
 /// is kept. What is found does not depend on who asked before. Thread-safe.
 class RefinedBeams {
@@ -26,23 +30,27 @@ class RefinedBeams {
     RefinedBeams(const LightSpace& space, const BeamSource& source, const Beams& beams);
 
     /// The exact rays at the middles of a beam's sides, across from its ends.
-    const std::array<BeamEnd, 3>& middles(Id beam) const;
+    const std::array<BeamEnd, 3>& middles(Id beam) const { return division(beam).middle; }
+    const BeamDivision& division(Id beam) const;
+    /// Of the part of a beam between three ends, that `of` stands for.
+    const BeamDivision& division(Id beam, const BeamEnds& end, const Lazy<BeamDivision>& of) const;
+    /// A part of a beam, with its part of the film.
+    BeamCorners corners(Id beam, const BeamEnds& end) const;
 
-    using Use = std::function<void(const BeamCorners&, const FallenBeam&)>;
+    using Use = UsePiece;
     /// The pieces of a beam that may come to the plane's footprint: bent by less than a hundredth of its
     /// side, or so small that it does not matter. `guess`: how far, in the plane's coordinates, a beam's rays
     /// may fall from its triangle.
     void for_each_piece(Id beam, const ReceiverPlane& plane, double guess, const Use& use) const;
 
-    /// The same of the beam as a quadratic surface through its corners and the middles of its sides, which
-    /// are exact, in 16 flat pieces; of the flat triangle where the plane lies so askew that a quadratic
-    /// says nothing. It is all of the beam that comes to the footprint.
+    /// The pieces of the beam as a curved one (CurvedBeam); of the flat triangle where that does not fall.
+    /// It is all of the beam that comes to the footprint.
     void for_each_curved_piece(Id beam, const ReceiverPlane& plane, const Use& use) const;
 
   private:
     struct Visit;
     BeamEnd middle(Id beam, const BeamEnd& a, const BeamEnd& b) const;
-    std::unique_ptr<BeamDivision> divide(Id beam, const std::array<const BeamEnd*, 3>& end) const;
+    std::unique_ptr<BeamDivision> divide(Id beam, const BeamEnds& end) const;
 
     LightSpace space_;
     BeamSource source_;

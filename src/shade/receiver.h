@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/math/vec.h"
+#include "base/util/ids.h"
 
 namespace trilens {
 
@@ -14,7 +15,8 @@ struct Receiver {
     Vec3 lifted{0};          // where shadow rays end: off the surface, on its side
     // Sides of the parallelogram around the point over which light is averaged; zero: the point alone.
     std::array<Vec3, 2> sides{};
-    bool exact = false;  // as traced pictures want it, however long it takes
+    Id triangle = kNone;  // it lies on, of those that the light knows; kNone: on none of them
+    bool exact = false;   // as traced pictures want it, however long it takes
 };
 
 }  // namespace trilens

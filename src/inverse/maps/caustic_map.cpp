@@ -17,6 +17,16 @@ struct CausticPixel {
     double area = 0;
 };
 
+TriangleScene triangles_of(const FlatRectangle& rectangle) {
+    TriangleScene scene;
+    const Vec3& o = rectangle.origin;
+    scene.points = {o, o + rectangle.u, o + rectangle.u + rectangle.v, o + rectangle.v};
+    scene.triangles = {{0, 1, 2}, {0, 2, 3}};
+    scene.object = {0, 0};
+    scene.primitive = {0, 1};
+    return scene;
+}
+
 CausticPixel pixel_at(const std::vector<std::unique_ptr<BeamLight>>& lights, const Target& target,
                       const Vec2& pixel, bool back, double lift) {
     const std::optional<TargetPlace> place = target.place(pixel);
@@ -25,6 +35,7 @@ CausticPixel pixel_at(const std::vector<std::unique_ptr<BeamLight>>& lights, con
     Vec3 normal = normalize_or_zero(cross(place->dy, place->dx));
     if (back) normal = -normal;
     Receiver receiver{place->at, normal, normal, place->at + lift * normal, {place->dx, place->dy}};
+    if (target.rectangle()) receiver.triangle = 0;
     return {true, irradiance(lights, receiver), length(cross(place->dx, place->dy))};
 }
 
@@ -44,6 +55,10 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
     if (progress.report) making.report = [&](double done) { progress.report(0.5 * done); };
     const std::vector<std::unique_ptr<BeamLight>> lights =
         make_beam_lights(world, optics, request.light, params, making);
+    if (target.rectangle()) {
+        const auto faces = std::make_shared<ReceiverFaces>(triangles_of(*target.rectangle()));
+        for (const auto& light : lights) light->receive_on(faces);
+    }
 
     CausticMap map;
     map.width = request.target.width, map.height = request.target.height;

@@ -186,10 +186,13 @@ Vec3 irradiance(const std::vector<std::unique_ptr<BeamLight>>& lights, const Rec
 std::unique_ptr<CausticLights> make_caustic_lights(const World& world) {
     auto lights = std::make_unique<CausticLights>();
     lights->optics = optics_for_lights(world);
+    const auto faces = std::make_shared<ReceiverFaces>(world.objects);
     for (std::size_t l = 0; l < world.scene.lights.size(); ++l)
         lights->by_light.push_back(world.scene.lights[l].caustics
                                        ? make_beam_lights(world, lights->optics, l)
                                        : std::vector<std::unique_ptr<BeamLight>>());
+    for (const auto& of_light : lights->by_light)
+        for (const auto& light : of_light) light->receive_on(faces);
     return lights;
 }
 

@@ -1,0 +1,76 @@
+#include "caustics/curved_beam.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trilens {
+namespace {
+
+/// How much longer one of a beam's rays to a plane may be than another for a quadratic to be its image: the
+/// tree's bulge_of counts on it.
+constexpr double kMostUneven = 5.0 / 3;
+
+double length_to(const ReceiverPlane& plane, const BeamEnd& end) {
+    return dot(end.origin - plane.point, plane.normal) / -dot(end.direction, plane.normal);
+}
+
+}  // namespace
+
+std::optional<std::array<Vec2, 6>> CurvedBeam::fall(const ReceiverPlane& plane) const {
+    std::array<Vec2, 6> at;
+    double shortest = INFINITY, longest = 0, wide = 0;
+    for (std::size_t k = 0; k < 6; ++k) {
+        const BeamEnd& end = k < 3 ? *corners.end[k] : *middle[k - 3];
+        if (!(-dot(end.direction, plane.normal) > kGrazingFall)) return std::nullopt;
+        const double t = length_to(plane, end);
+        if (!(t >= 0)) return std::nullopt;
+        at[k] = plane.at(end.origin + t * end.direction);
+        shortest = std::min(shortest, t), longest = std::max(longest, t);
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+        wide = std::max(wide, length(corners.end[k]->origin - corners.end[(k + 1) % 3]->origin));
+    if (longest > kMostUneven * shortest + wide / 3) return std::nullopt;
+    return at;
+}
+
+double bulge_on_plane(const std::array<Vec2, 6>& at) {
+    double bulge = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        bulge = std::max(bulge, length(at[3 + k] - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3])));
+    return bulge;
+}
+
+Vec3 CurvedBeam::mean_light(int sides) const {
+    const PieceGrid& grid = PieceGrid::of(sides);
+    Vec3 sum(0);
+    for (std::size_t p = 0; p < grid.pieces; ++p)
+        for (const std::size_t n : grid.piece[p])
+            for (std::size_t c = 0; c < 3; ++c)
+                sum += grid.quadratic[n][c] * corners.end[c]->light +
+                       grid.quadratic[n][3 + c] * middle[c]->light;
+    return sum / (3.0 * static_cast<double>(grid.pieces));
+}
+
+PieceGrid::PieceGrid(int sides) {
+    const auto at = [&](int i, int j) {
+        return static_cast<std::size_t>(j * (sides + 1) - j * (j - 1) / 2 + i);
+    };
+    for (int j = 0; j <= sides; ++j)
+        for (int i = 0; i + j <= sides; ++i) {
+            const std::size_t n = corners++;
+            weights[n] = Vec3(sides - i - j, i, j) / static_cast<double>(sides);
+            quadratic[n] = quadratic_weights(weights[n]);
+        }
+    for (int j = 0; j < sides; ++j)
+        for (int i = 0; i + j < sides; ++i) {
+            piece[pieces++] = {at(i, j), at(i + 1, j), at(i, j + 1)};
+            if (i + j + 1 < sides) piece[pieces++] = {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+        }
+}
+
+const PieceGrid& PieceGrid::of(int sides) {
+    static const PieceGrid one(1), two(2), four(4);
+    return sides == 1 ? one : sides == 2 ? two : four;
+}
+
+}  // namespace trilens

@@ -1,0 +1,234 @@
+#include "caustics/plane_beams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/util/parallel.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::uint32_t kPerLeaf = 4;
+/// Halvings of a beam's sides where its quadratic is wrong, and where there is none.
+constexpr int kMostHalvings = 5, kMostCuts = 2;
+/// A quadratic may be off by this share of the tolerance, and of a path that carries less than the brightest
+/// by so much more of it.
+constexpr double kMostOff = 0.25, kFaintOff = 0.05;
+/// A beam whose sides are straight to so many times that needs no look at its quadratic.
+constexpr double kNearlyStraight = 6;
+/// A beam of one piece, and of four: how much its sides may bend, as a share of the tolerance, and its
+/// quarters' areas and its light differ.
+constexpr double kOneBends = 0.02, kOneDiffers = 0.03;
+constexpr double kFourBend = 0.08, kFourDiffer = 0.12;
+
+double strength_of(const BeamEnd& end) {
+    return end.light.x + end.light.y + end.light.z;
+}
+
+/// Of a side's quarter points and of an inner side's middle: weights of the three ends.
+struct QuarterMiddle {
+    Vec3 weights;
+    std::size_t part, middle;  // whose exact ray it is
+};
+
+/// The nine places at which a beam's four parts have exact rays that it has not.
+std::array<QuarterMiddle, 9> quarter_middles() {
+    const std::array<Vec3, 6> at{Vec3(1, 0, 0),     Vec3(0, 1, 0),     Vec3(0, 0, 1),
+                                 Vec3(0, 0.5, 0.5), Vec3(0.5, 0, 0.5), Vec3(0.5, 0.5, 0)};
+    const std::size_t ends[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
+    std::array<QuarterMiddle, 9> all;
+    for (std::size_t part = 0; part < 3; ++part)
+        for (std::size_t k = 0; k < 3; ++k)
+            all[3 * part + k] = {0.5 * (at[ends[part][(k + 1) % 3]] + at[ends[part][(k + 2) % 3]]), part, k};
+    return all;
+}
+
+ReceiverPlane plane_of(const ReceiverFace& face, const Vec3& normal) {
+    Receiver receiver;
+    receiver.point = face.center;
+    receiver.normal = normal;
+    return ReceiverPlane(receiver, 0);
+}
+
+}  // namespace
+
+/// Of one beam: what it becomes.
+struct PlaneBeams::Maker {
+    const Source& source;
+    const ReceiverPlane& plane;
+    const PlaneBeamsParams& params;
+    double half;  // of the square around the face
+    Id index;
+    std::vector<Curved> curved;
+    std::vector<Flat> flat;
+
+    void add(const BeamEnds& end, const Lazy<BeamDivision>* of, int level) {
+        const BeamDivision& by =
+            of ? source.refined.division(index, end, *of) : source.refined.division(index);
+        const CurvedBeam beam{source.refined.corners(index, end),
+                              {&by.middle[0], &by.middle[1], &by.middle[2]}};
+        const std::optional<std::array<Vec2, 6>> at = beam.fall(plane);
+        if (!at) {
+            if (level < kMostCuts && is_near(end)) return add_parts(end, by, level);
+            return add_flat(beam.corners);
+        }
+        const double bulge = bulge_on_plane(*at);
+        if (is_beyond(*at, half, 2 * bulge)) return;
+        const double room = room_of(beam, *at);
+        if (bulge > kNearlyStraight * room && level < kMostHalvings && is_off(end, by, *at, room))
+            return add_parts(end, by, level);
+        const int sides = sides_of(beam, *at, bulge);
+        curved.push_back({beam, *at, index, sides, beam.mean_light(sides)});
+    }
+
+    /// How far it may be off.
+    double room_of(const CurvedBeam& beam, const std::array<Vec2, 6>& at) const {
+        double strength = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            strength = std::max({strength, strength_of(*beam.corners.end[k]), strength_of(*beam.middle[k])});
+        const double area = 0.5 * std::fabs(cross_on_plane(at[1] - at[0], at[2] - at[0]));
+        if (strength * beam.corners.measure < params.faint_light * area) return INFINITY;
+        return params.tolerance * std::max(kMostOff, kFaintOff * params.brightest / strength);
+    }
+
+    int sides_of(const CurvedBeam& beam, const std::array<Vec2, 6>& at, double bulge) const {
+        const double all = cross_on_plane(at[1] - at[0], at[2] - at[0]);
+        double most = 0;  // difference
+        const std::size_t quarter[4][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}, {3, 4, 5}};
+        for (const auto& q : quarter) {
+            const double area = cross_on_plane(at[q[1]] - at[q[0]], at[q[2]] - at[q[0]]);
+            most = std::max(most, std::fabs(4 * area / all - 1));
+        }
+        double brightest = 0, bends = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double a = strength_of(*beam.corners.end[(k + 1) % 3]),
+                         b = strength_of(*beam.corners.end[(k + 2) % 3]), m = strength_of(*beam.middle[k]);
+            brightest = std::max({brightest, a, m}), bends = std::max(bends, std::fabs(m - 0.5 * (a + b)));
+        }
+        if (brightest > 0) most = std::max(most, bends / brightest);
+        if (bulge <= kOneBends * params.tolerance && most <= kOneDiffers) return 1;
+        return bulge <= kFourBend * params.tolerance && most <= kFourDiffer ? 2 : 4;
+    }
+
+    void add_parts(const BeamEnds& end, const BeamDivision& by, int level) {
+        const std::array<BeamEnds, 4> parts = quarters(end, by.middle);
+        for (std::size_t i = 0; i < 4; ++i) add(parts[i], &by.part[i], level + 1);
+    }
+
+    /// Whether any of it comes to the face.
+    bool is_near(const BeamEnds& end) const {
+        const FallenBeams fallen = fall(source.refined.corners(index, end), plane, half);
+        for (std::size_t i = 0; i < fallen.count; ++i)
+            if (!is_beyond(fallen.part[i].at, half, 0)) return true;
+        return false;
+    }
+
+    void add_flat(const BeamCorners& corners) {
+        const FallenBeams fallen = fall(corners, plane, half);
+        for (std::size_t i = 0; i < fallen.count; ++i)
+            if (!is_beyond(fallen.part[i].at, half, 0)) flat.push_back({corners, fallen.part[i], index});
+    }
+
+    bool is_off(const BeamEnds& end, const BeamDivision& by, const std::array<Vec2, 6>& at,
+                double room) const {
+        static const std::array<QuarterMiddle, 9> places = quarter_middles();
+        const std::array<BeamEnds, 4> parts = quarters(end, by.middle);
+        for (const QuarterMiddle& one : places) {
+            const BeamEnd& exact =
+                source.refined.division(index, parts[one.part], by.part[one.part]).middle[one.middle];
+            const std::optional<Vec2> there = place_on(plane, exact);
+            if (!there) return true;
+            const std::array<double, 6> weights = quadratic_weights(one.weights);
+            Vec2 quadratic(0);
+            for (std::size_t k = 0; k < 6; ++k) quadratic += weights[k] * at[k];
+            if (length(*there - quadratic) > room) return true;
+        }
+        return false;
+    }
+};
+
+PlaneBeams::PlaneBeams(const Source& source, const ReceiverFace& face, const Vec3& normal,
+                       const PlaneBeamsParams& params)
+    : plane_(plane_of(face, normal)) {
+    std::vector<Id> near;
+    source.tree.for_each_near(face.center, face.radius + params.reach,
+                              [&](Id beam) { near.push_back(beam); });
+    std::vector<Maker> made(near.size(),
+                            Maker{source, plane_, params, face.radius + params.reach, kNone, {}, {}});
+    parallel_for(near.size(), 32, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            made[i].index = near[i];
+            made[i].add(corners_of(source.beams, source.beams.beams[near[i]]).end, nullptr, 0);
+        }
+    });
+    for (const Maker& one : made) {
+        curved_.insert(curved_.end(), one.curved.begin(), one.curved.end());
+        flat_.insert(flat_.end(), one.flat.begin(), one.flat.end());
+    }
+    order_.resize(curved_.size() + flat_.size());
+    std::iota(order_.begin(), order_.end(), std::uint32_t{0});
+    for (const std::uint32_t entry : order_) boxes_.push_back(box_of(entry));
+    if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
+}
+
+PlaneBeams::Box2 PlaneBeams::hull_box(const std::array<Vec2, 6>& at) {
+    Box2 box;
+    for (std::size_t k = 0; k < 3; ++k) {
+        box.include(at[k]);
+        box.include(2.0 * at[3 + k] - 0.5 * (at[(k + 1) % 3] + at[(k + 2) % 3]));
+    }
+    return box;
+}
+
+PlaneBeams::Box2 PlaneBeams::box_of(std::uint32_t entry) const {
+    if (entry < curved_.size()) return hull_box(curved_[entry].at);
+    Box2 box;
+    for (const Vec2& at : flat_[entry - curved_.size()].fallen.at) box.include(at);
+    return box;
+}
+
+PlaneBeams::Map PlaneBeams::map_to(const ReceiverPlane& footprint) const {
+    Map map;
+    map.origin = footprint.at(plane_.point);
+    map.turn = Mat2(Vec2(dot(plane_.dual_s, footprint.dual_s), dot(plane_.dual_s, footprint.dual_t)),
+                    Vec2(dot(plane_.dual_t, footprint.dual_s), dot(plane_.dual_t, footprint.dual_t)));
+    return map;
+}
+
+PlaneBeams::Box2 PlaneBeams::box_of(const ReceiverPlane& footprint, const Map& map) const {
+    const Mat2 back = glm::inverse(map.turn);
+    const Vec2 middle = -(back * map.origin);
+    const Vec2 half = footprint.has_footprint ? 0.5 * (glm::abs(back[0]) + glm::abs(back[1])) : Vec2(0);
+    return {middle - half, middle + half};
+}
+
+void PlaneBeams::build(std::uint32_t first, std::uint32_t end) {
+    const auto at = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    Node node;
+    Box2 middles;
+    const auto middle_of = [&](std::uint32_t entry) { return boxes_[entry].low + boxes_[entry].high; };
+    for (std::uint32_t i = first; i < end; ++i) {
+        node.box.include(boxes_[order_[i]].low), node.box.include(boxes_[order_[i]].high);
+        middles.include(middle_of(order_[i]));
+    }
+    if (end - first <= kPerLeaf) {
+        node.first = first, node.end = end;
+    } else {
+        const Vec2 wide = middles.high - middles.low;
+        const int k = wide.x > wide.y ? 0 : 1;
+        const std::uint32_t middle = first + (end - first) / 2;
+        std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + end,
+                         [&](std::uint32_t a, std::uint32_t b) {
+                             const double of_a = middle_of(a)[k], of_b = middle_of(b)[k];
+                             return of_a != of_b ? of_a < of_b : a < b;
+                         });
+        build(first, middle);
+        build(middle, end);
+    }
+    node.skip = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[at] = node;
+}
+
+}  // namespace trilens

@@ -1,0 +1,46 @@
+#include "caustics/receiver_faces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/math/box.h"
+
+namespace trilens {
+namespace {
+
+/// How far corners may lie beside a plane, as a share of the distances on it.
+constexpr double kFlat = 1e-9;
+
+using Corners = std::array<Vec3, 3>;
+
+bool lies_in(const ReceiverFace& face, const Corners& points) {
+    return std::all_of(points.begin(), points.end(), [&](const Vec3& point) {
+        const Vec3 way = point - face.point;
+        return std::fabs(dot(way, face.normal)) <= kFlat * (length(way) + face.radius);
+    });
+}
+
+}  // namespace
+
+ReceiverFaces::ReceiverFaces(const TriangleScene& scene) : face_of_(scene.size(), kNone) {
+    Box box;          // of the face at hand
+    Id last = kNone;  // its last triangle
+    for (Id t = 0; t < scene.size(); ++t) {
+        const IdTriple& corner = scene.triangles[t];
+        const Corners points{scene.points[corner[0]], scene.points[corner[1]], scene.points[corner[2]]};
+        const Vec3 normal = normalize_or_zero(cross(points[1] - points[0], points[2] - points[0]));
+        if (normal == Vec3(0)) continue;
+        if (last == kNone || scene.object[t] != scene.object[last] || !lies_in(faces_.back(), points)) {
+            faces_.push_back({points[0], normal, {}, 0});
+            box = {};
+        }
+        for (const Vec3& point : points) box.include(point);
+        faces_.back().center = 0.5 * (box.low + box.high);
+        faces_.back().radius = 0.5 * length(box.size());
+        face_of_[t] = static_cast<Id>(faces_.size() - 1);
+        last = t;
+    }
+}
+
+}  // namespace trilens
