@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/util/parallel.h"
 
@@ -9,8 +10,7 @@ namespace trilens {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-// With two texels a zone plate is off by a quarter less, and look-ups take twice as long (measured).
-constexpr double kLeastTexels = 1;      // of a footprint's shorter side, at the level that it is looked up in
+constexpr double kLeastTexels = 1.75;   // of a footprint's shorter side: beyond a level's own blur, sqrt(3)
 constexpr double kMostAnisotropy = 32;  // how often a footprint may be as long as wide
 constexpr double kPointTexels = 0.5;    // shorter sides are points
 constexpr double kMostTexels = 1e9;     // longer sides than this are as good as infinite
@@ -163,13 +163,19 @@ Vec3 lookup(const MipMap& map, const TextureSampler& wrap, const Vec2& place, co
         longer /= 2;
         shorter /= 2;
     }
-    const auto places = [](double side) {
-        return side <= kPointTexels ? 1 : static_cast<int>(std::ceil(side)) + 1;
+    // A level's texels are means, and are interpolated: both blur, by this much of a side's square more than
+    // the picture's own do. The places looked up have the second moments of what is left of the sides.
+    const double blur = 3 * (1 - std::ldexp(1.0, -2 * static_cast<int>(level)));
+    const auto places = [blur](double side) {
+        const double rest = std::sqrt(std::max(0.0, side * side - blur));
+        if (rest <= kPointTexels) return std::pair(1, 0.0);
+        const int count = static_cast<int>(std::ceil(rest)) + 1;
+        return std::pair(count, rest / side / std::sqrt(double(count) * count - 1));
     };
-    const int along = places(longer), across = places(shorter);
+    const auto [along, apart_along] = places(longer);
+    const auto [across, apart_across] = places(shorter);
     const Texture& seen = map.level(level);
-    const Vec2 step_along = sides[0] / texels / double(along),
-               step_across = sides[1] / texels / double(across);
+    const Vec2 step_along = apart_along * sides[0] / texels, step_across = apart_across * sides[1] / texels;
     Vec3 sum(0);
     for (int j = 0; j < across; ++j)
         for (int i = 0; i < along; ++i)
