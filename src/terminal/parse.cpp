@@ -3,6 +3,9 @@
 #include <trilens/utilities.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <span>
+
 namespace trilens {
 namespace {
 
@@ -46,9 +49,18 @@ std::string nearest_or_help(const std::string& word, const std::vector<std::stri
                                                              : "; see " + located.called() + " --help";
 }
 
+// What follows it is no option, whatever it begins with.
+const std::string kOptionsEnd = "--";
+
+/// The words of `located` that may be options.
+std::span<const std::string> before_options_end(const Located& located) {
+    const auto end = std::find(located.rest.begin(), located.rest.end(), kOptionsEnd);
+    return {located.rest.begin(), end};
+}
+
 /// Throws where a flag is given a value; CLI11 would take some of them.
 void check_flags(const Located& located) {
-    for (const std::string& word : located.rest) {
+    for (const std::string& word : before_options_end(located)) {
         const std::size_t equals = word.find('=');
         const Option* option = find_option(located.command(), word.substr(0, equals));
         if (equals != std::string::npos && option && is_flag(*option))
@@ -58,10 +70,11 @@ void check_flags(const Located& located) {
 
 /// Throws where an option's value is left out and the next option would be taken for it.
 void check_values(const Located& located) {
-    for (std::size_t i = 0; i + 1 < located.rest.size(); ++i) {
-        const Option* option = find_option(located.command(), located.rest[i]);
+    const std::span<const std::string> words = before_options_end(located);
+    for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+        const Option* option = find_option(located.command(), words[i]);
         if (!option || is_flag(*option) || option->value_follows) continue;
-        const std::string& next = located.rest[++i];
+        const std::string& next = words[++i];
         const std::string name = next.substr(0, next.find('='));
         if (name.rfind("--", 0) == 0 && find_option(located.command(), name))
             throw UsageError(spoken_name(*option) + " takes " + takes(*option) + ", but " + name +
@@ -83,8 +96,10 @@ UsageError unknown_word(const Located& located, const std::vector<std::string>& 
     std::vector<std::string> known;
     for (const Option& option : located.command().options)
         if (!is_argument(option)) known.push_back(long_name(option));
+    const std::span<const std::string> options = before_options_end(located);
     for (const std::string& word : extras) {
         if (word.size() < 2 || word[0] != '-') continue;
+        if (std::find(options.begin(), options.end(), word) == options.end()) continue;
         const std::string name = word.substr(0, word.find('='));
         return UsageError("there is no option \"" + name + "\"" + nearest_or_help(name, known, located));
     }
@@ -124,6 +139,11 @@ Located locate(const Command& root, const std::vector<std::string>& words) {
     located.path = {&root};
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
+        if (word == kOptionsEnd) {
+            located.rest.insert(located.rest.end(), words.begin() + static_cast<std::ptrdiff_t>(i),
+                                words.end());
+            break;
+        }
         const bool is_option = word.size() > 1 && word[0] == '-';
         if (is_option || located.command().commands.empty()) {
             located.rest.push_back(word);
@@ -169,7 +189,11 @@ void parse_options(const Located& located) {
     for (std::size_t k = 0; k < command.options.size(); ++k)
         if (command.options[k].is_answer && !given[k].empty())
             return set_option(command.options[k], given[k]);
-    if (const auto extras = app.remaining(); !extras.empty()) throw unknown_word(located, extras);
+    // CLI11 has taken it for what it is, but leaves it there.
+    std::vector<std::string> extras = app.remaining();
+    if (const auto end = std::find(extras.begin(), extras.end(), kOptionsEnd); end != extras.end())
+        extras.erase(end);
+    if (!extras.empty()) throw unknown_word(located, extras);
     for (std::size_t k = 0; k < command.options.size(); ++k) set_option(command.options[k], given[k]);
     if (command.commands.empty()) check_presence(command, located.called(), given);
 }

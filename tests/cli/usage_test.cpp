@@ -107,6 +107,22 @@ TEST_CASE("project's table quotes the names of optics", "[cli]") {
     CHECK(run.out.find(R"(,reflect,"a,""b""",)") != std::string::npos);
 }
 
+TEST_CASE("after -- a word is no option, whatever it begins with", "[cli][usage]") {
+    const std::string folder = scratch_dir("cli_after_options");
+    write_file(folder, "-n", small_scene());
+    const std::string in_folder = "project --point 0,0,3 -q";
+    const CommandRun named = run_trilens(in_folder + " " + folder + "/-n"),
+                     after = run_trilens(in_folder + " --threads 1 -- " + folder + "/-n");
+    CHECK(named.exit_code == 0);
+    CHECK(after.exit_code == 0);
+    CHECK(after.out == named.out);
+    check_usage("render -q -- a.json -n", {"no further argument \"-n\""});
+    check_usage("render -o a.exr --", {"needs SCENE"});
+    const CommandRun missing = run_trilens("render -o a.exr -- --nothing.json");
+    CHECK(missing.exit_code == 3);
+    CHECK(missing.err.find("--nothing.json") != std::string::npos);
+}
+
 TEST_CASE("values that look like options, and groups of short ones, are read", "[cli][usage]") {
     const std::string folder = scratch_dir("cli_usage_values");
     const std::string scene = write_file(folder, "room.json", small_scene());
