@@ -14,3 +14,15 @@ from ._trilens import *  # noqa: F401,F403
 
 __version__ = _trilens.version()
 __all__ = [name for name in dir(_trilens) if not name.startswith("_")]
+
+
+def _show(self, resolution=16, wipe=1.0, **options):
+    """show(self, resolution: int = 16, wipe: float = 1.0, **options) -> object
+
+    In a notebook: this renderer's picture with sliders for the resolution and for a wipe to the truth (trilens.notebook.show)."""
+    from .notebook import show
+    return show(self, resolution, wipe, **options)
+
+
+_show.__name__, _show.__qualname__ = "show", "Renderer.show"
+Renderer.show = _show  # noqa: F405

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import trilens
-from trilens.notebook import show, wiped
+from trilens.notebook import wiped
 
 
 def test_a_wipe_has_the_picture_on_its_left_and_the_truth_on_its_right(renderer):
@@ -22,14 +22,14 @@ def test_a_wipe_has_the_picture_on_its_left_and_the_truth_on_its_right(renderer)
 
 def test_without_widgets_a_still_picture_is_shown(renderer, monkeypatch):
     monkeypatch.setitem(sys.modules, "ipywidgets", None)
-    shown = show(renderer, 2)
+    shown = renderer.show(2)
     assert isinstance(shown, trilens.Image)
     assert np.array_equal(shown.rgb(), renderer.render(2).rgb())
 
 
 def test_sliders_draw_again(renderer):
     pytest.importorskip("ipywidgets")
-    box = show(renderer, 2)
+    box = renderer.show(2)
     n, wipe, shown = box.children
     assert shown.value == renderer.render(2)._repr_png_()
     n.value = 4
