@@ -111,7 +111,8 @@ def test_every_function_has_the_signature_of_the_stub():
     for name, node, function in functions_of_the_stub():
         if name.endswith("__init__"):
             function = getattr(trilens, name.split(".")[0])
-        expected = [one.arg for one in [*node.args.args, *node.args.kwonlyargs]]
+        rest = [node.args.kwarg] if node.args.kwarg else []
+        expected = [one.arg for one in [*node.args.args, *node.args.kwonlyargs, *rest]]
         arguments = inspect.signature(function).parameters
         assert [one for one in arguments if one != "self"] == [one for one in expected if one != "self"], name
         kinds = {one.arg: inspect.Parameter.KEYWORD_ONLY for one in node.args.kwonlyargs}
