@@ -162,8 +162,9 @@ std::string optic(Grammar& g, int number) {
             break;
         case 2:
             shape = fmt::format(
-                R"("primitive": {{ "type": "cylinder", "center": {}, "axis": {}, "radius": {}, "height": {} }})",
-                g.place(at), text(g.choose.direction()), 0.5 * g.scale * radius, g.size(0.01, 4));
+                R"("primitive": {{ "type": "{}", "center": {}, "axis": {}, "radius": {}, "height": {} }})",
+                n == 3 || n == 5 ? "cone" : "cylinder", g.place(at), text(g.choose.direction()),
+                0.5 * g.scale * radius, g.size(0.01, 4));
             break;
         case 3:
             shape = fmt::format(

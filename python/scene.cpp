@@ -83,7 +83,7 @@ void bind_parts(py::module_& module) {
         mesh, field("name", &MeshInfo::name, "Its name."),
         field("shape", &MeshInfo::shape,
               "\"polygons\", \"catmullClark\", \"loop\", \"bilinear\", \"sphere\", \"paraboloid\",\n"
-              "\"cylinder\" or \"plane\"."),
+              "\"cylinder\", \"cone\" or \"plane\"."),
         field("material", &MeshInfo::material, "Its name; \"inherit\" where triangles carry their own."),
         field("points", &MeshInfo::points, "How many; 0 for a primitive."),
         field("faces", &MeshInfo::faces, "How many; 0 for a primitive."),

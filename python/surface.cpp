@@ -94,7 +94,8 @@ struct Lengths {
 PrimitiveKind primitive_kind(const std::string& type, const Lengths& of) {
     const std::vector<PrimitiveKind> kinds{SpherePrimitive{of.radius},
                                            ParaboloidPrimitive{of.radius, of.focal_length},
-                                           CylinderPrimitive{of.radius, of.height}, PlanePrimitive{of.size}};
+                                           CylinderPrimitive{of.radius, of.height},
+                                           ConePrimitive{of.radius, of.height}, PlanePrimitive{of.size}};
     std::vector<std::string> names;
     for (const PrimitiveKind& kind : kinds) {
         names.emplace_back(std::visit([](const auto& one) { return one.kName; }, kind));
@@ -178,13 +179,15 @@ void bind_surface_makers(py::module_& module) {
         py::arg("focal_length") = ParaboloidPrimitive().focal_length,
         py::arg("height") = CylinderPrimitive().height,
         py::arg("size") = py::make_tuple(PlanePrimitive().size.x, PlanePrimitive().size.y),
-        "The exact surface of a \"sphere\", \"paraboloid\", \"cylinder\" or \"plane\", world frame and "
-        "units.\n\n"
-        "center: of sphere, cylinder and plane; the paraboloid's apex. axis: from the apex to the focus, "
-        "along the\n"
-        "cylinder, or the plane's normal. tangent: where u begins. radius: of sphere and cylinder, of the "
-        "paraboloid's\n"
-        "rim. focal_length: apex to focus. height: the cylinder's. size: the plane's sides.\n"
+        "The exact surface of a \"sphere\", \"paraboloid\", \"cylinder\", \"cone\" or \"plane\", world "
+        "frame and units.\n\n"
+        "center: of sphere, cylinder and plane, of the cone's base; the paraboloid's apex. axis: from the "
+        "apex to the\n"
+        "focus, along the cylinder, from the cone's base to its apex, or the plane's normal. tangent: where "
+        "u begins.\n"
+        "radius: of sphere and cylinder, of the cone's base, of the paraboloid's rim. focal_length: apex to "
+        "focus.\n"
+        "height: the cylinder's or the cone's. size: the plane's sides.\n"
         "Raises InputError for sizes that are not positive.");
 }
 

@@ -44,6 +44,17 @@ Slopes slopes_of(const CylinderPrimitive& cylinder, Id) {
     return s;
 }
 
+/// (1 - v) radius (cos, sin)(u), height v: every derivative is largest at the base.
+Slopes slopes_of(const ConePrimitive& cone, Id) {
+    Slopes s;
+    s.u = s.uv = cone.radius * kQuarter;
+    s.uu = s.uuv = s.u * kQuarter;
+    s.uuu = s.uu * kQuarter;
+    s.v = std::hypot(cone.radius, cone.height);
+    s.normal_u = kQuarter * cone.height / s.v;
+    return s;
+}
+
 /// The paraboloid's disk. Its inner square: r/2 (tan a, tan b), whose tangents have derivatives up to pi,
 /// pi^2 and 2 pi^3 at the corners. Its sides: (1 - u) r/2 (1, tan b) + u r (cos b, sin b).
 Slopes disk_slopes(double rim, bool inner) {

@@ -1,8 +1,9 @@
-// Sphere, paraboloid, cylinder and plane: regular parametrisations with closed-form inverses.
+// Sphere, paraboloid, cylinder, cone and plane: regular parametrisations with closed-form inverses.
 #include "surfaces/primitive_shapes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "surfaces/checked_cage.h"
@@ -129,6 +130,13 @@ Vec2 quarter_turns(const Vec2& p, Id turns) {
     }
 }
 
+/// The quarter turn about z in which a point lies, and which part of it, from 0 to 1, comes before it.
+std::pair<Id, double> quarter_of(const Vec2& p) {
+    const Id quarter = p.y >= 0 ? (p.x > 0 ? 0 : 1) : (p.x <= 0 ? 2 : 3);
+    const Vec2 q = quarter_turns(p, 4 - quarter);
+    return {quarter, std::clamp(std::atan2(q.y, q.x) / (kHalfTurn / 2), 0.0, 1.0)};
+}
+
 /// z = (x^2 + y^2) / (4 focal length) over a disk. The disk is a square of half the radius (face 4) and four
 /// sides (faces 0 to 3, u outward, v around) that blend linearly from its edge to the rim along one angle.
 class Paraboloid final : public PrimitiveShape {
@@ -224,15 +232,61 @@ class Cylinder final : public PrimitiveShape {
     SurfaceParameter place(const Vec3& point) const override {
         const double v = point.z / height_ + 0.5;
         if (!(v >= 0 && v <= 1)) return {};
-        const Vec2 p(point);
-        const Id face = p.y >= 0 ? (p.x > 0 ? 0 : 1) : (p.x <= 0 ? 2 : 3);
-        const Vec2 q = quarter_turns(p, 4 - face);
-        return {face, {std::clamp(std::atan2(q.y, q.x) / (kHalfTurn / 2), 0.0, 1.0), v}};
+        const auto [face, u] = quarter_of(Vec2(point));
+        return {face, {u, v}};
     }
 
   private:
     double radius_, height_;
     std::vector<FaceBorder> borders_ = borders_of({{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});
+};
+
+/// Four quarters, u around and v from the base to the apex, where each quarter's side v = 1 is a point.
+class Cone final : public PrimitiveShape {
+  public:
+    explicit Cone(const ConePrimitive& cone)
+        : radius_(cone.radius), height_(cone.height), slant_(std::hypot(cone.radius, cone.height)) {}
+    std::size_t face_count() const override { return 4; }
+    FaceBorder border(Id face) const override { return borders_[face]; }
+
+    SurfacePoint eval(Id face, const Vec2& uv) const override {
+        const double angle = kHalfTurn / 2 * uv.x, speed = kHalfTurn / 2, wide = radius_ * (1 - uv.y);
+        const Vec2 out = quarter_turns({std::cos(angle), std::sin(angle)}, face);
+        const Vec2 around = speed * quarter_turns(out, 1);
+        SurfacePoint point;
+        point.position = Vec3(wide * out, height_ * uv.y);
+        point.du = Vec3(wide * around, 0);
+        point.dv = Vec3(-radius_ * out, height_);
+        point.duu = Vec3(-wide * speed * speed * out, 0);
+        point.duv = Vec3(-radius_ * around, 0);
+        point.normal = Vec3(height_ / slant_ * out, radius_ / slant_);
+        return point;
+    }
+
+    std::array<double, 3> equation(const Ray& ray) const override {
+        const Vec2 o(ray.origin), d(ray.direction);
+        const double slope = radius_ / height_, wide = radius_ - slope * ray.origin.z,
+                     grows = -slope * ray.direction.z, distance = length(o);
+        return {(distance - wide) * (distance + wide), dot(o, d) - wide * grows, dot(d, d) - grows * grows};
+    }
+
+    SurfaceParameter place(const Vec3& point) const override {
+        const double v = point.z / height_;
+        if (!(v >= 0 && v <= 1)) return {};
+        const auto [face, u] = quarter_of(Vec2(point));
+        return {face, {u, v}};
+    }
+
+  private:
+    static std::vector<FaceBorder> quarters() {
+        std::vector<FaceBorder> borders =
+            borders_of({{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});
+        for (FaceBorder& border : borders) border.corners[2] = border.corners[3] = kNone;
+        return borders;
+    }
+
+    double radius_, height_, slant_;
+    std::vector<FaceBorder> borders_ = quarters();
 };
 
 class Plane final : public PrimitiveShape {
@@ -270,6 +324,9 @@ std::unique_ptr<PrimitiveShape> shape_of(const ParaboloidPrimitive& paraboloid) 
 }
 std::unique_ptr<PrimitiveShape> shape_of(const CylinderPrimitive& cylinder) {
     return std::make_unique<Cylinder>(cylinder);
+}
+std::unique_ptr<PrimitiveShape> shape_of(const ConePrimitive& cone) {
+    return std::make_unique<Cone>(cone);
 }
 std::unique_ptr<PrimitiveShape> shape_of(const PlanePrimitive& plane) {
     return std::make_unique<Plane>(plane);

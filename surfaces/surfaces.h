@@ -40,8 +40,8 @@ std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string&
                                             double memory = machine_memory());
 
 /// The surface of a primitive, exact, with intersect(). Faces: sphere 6 (a cube mapped onto it, equal
-/// angles), cylinder 4 quarters, paraboloid 5 (a square and four sides mapped onto its disk; no singular
-/// point), plane 1. Front is outside of sphere and cylinder, the focus side of the paraboloid, the axis side
+/// angles), cylinder and cone 4 quarters, paraboloid 5 (a square and four sides mapped onto its disk; no singular
+/// point), plane 1. Front is outside of sphere, cylinder and cone, the focus side of the paraboloid, the axis side
 /// of the plane.
 ///
 /// axis and tangent need not be exactly unit or at right angles; the sphere's faces follow them too.

@@ -34,6 +34,11 @@ void grow_by(Box& box, const CylinderPrimitive& cylinder, const Primitive& at) {
     grow_by_disk(box, at.center + 0.5 * cylinder.height * at.axis, at.axis, cylinder.radius);
 }
 
+void grow_by(Box& box, const ConePrimitive& cone, const Primitive& at) {
+    grow_by_disk(box, at.center, at.axis, cone.radius);
+    box.include(at.center + cone.height * at.axis);
+}
+
 void grow_by(Box& box, const PlanePrimitive& plane, const Primitive& at) {
     const Vec3 u = 0.5 * plane.size.x * at.tangent, v = 0.5 * plane.size.y * cross(at.axis, at.tangent);
     for (const Vec3& corner : {u + v, u - v, -u + v, -u - v}) box.include(at.center + corner);

@@ -13,8 +13,8 @@ namespace trilens {
 struct MeshInfo {
     std::string name;
     Role role = Role::kObject;
-    std::string
-        shape;  // "polygons", "catmullClark", "loop", "bilinear", "sphere", "paraboloid", "cylinder", "plane"
+    std::string shape;  // "polygons", "catmullClark", "loop", "bilinear", "sphere", "paraboloid", "cylinder",
+                        // "cone", "plane"
     std::string material;       // its name; "inherit" where the triangles carry their own
     std::size_t points = 0;     // 0 for a primitive
     std::size_t faces = 0;      // 0 for a primitive

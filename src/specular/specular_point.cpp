@@ -20,9 +20,12 @@ constexpr double kAngleTolerance =
 constexpr double kRoundingErrors =
     64;  // coordinates carry this many units of rounding through the evaluation
 constexpr double kParameterTolerance =
-    1e-9;                           // a remaining step that counts as none: an image on the rim between two
-                                    // faces then belongs to both, and is one by distinct_images
-constexpr double kLastStep = 1e-6;  // in (u, v): Newton's error after it is below rounding
+    1e-9;  // a remaining step that counts as none: an image on the rim between two
+           // faces then belongs to both, and is one by distinct_images
+/// A law that is missed by more is not missed by rounding, however short the step: at a cone's apex, where a
+/// parameter stands still, none leads anywhere.
+constexpr double kMostAtRest = 1e-3;
+constexpr double kLastStep = 1e-6;        // in (u, v): Newton's error after it is below rounding
 constexpr double kDifferenceStep = 1e-5;  // cube root of the rounding unit, for central differences in (u, v)
 
 /// The two tangents that the law is tested along.
@@ -186,7 +189,7 @@ Rest solve_law(const Surface& surface, const Iterate& start, const SpecularQuery
         if (fell) continue;
 
         const Vec2 left = damped_step(now, jacobian, 0);
-        rest.solved = left != Vec2(0) && largest(left) <= kParameterTolerance;
+        rest.solved = left != Vec2(0) && largest(left) <= kParameterTolerance && now.residual <= kMostAtRest;
         break;
     }
     return rest;

@@ -70,8 +70,8 @@ void check_bounds(const Surface& surface, int n, Random& random) {
 
 TEST_CASE("Patches bound the surface and its normals", "[intersect]") {
     Random random(3);
-    for (const PrimitiveKind& kind :
-         std::initializer_list<PrimitiveKind>{SpherePrimitive(), ParaboloidPrimitive(), CylinderPrimitive()})
+    for (const PrimitiveKind& kind : std::initializer_list<PrimitiveKind>{
+             SpherePrimitive(), ParaboloidPrimitive(), CylinderPrimitive(), ConePrimitive()})
         for (const int n : {3, 8}) check_bounds(*primitive(kind), n, random);
     for (const double sharpness : {0.0, 1.5, 10.0}) check_bounds(*cube(sharpness), 4, random);
     check_bounds(*cube(0, 2), 4, random);

@@ -203,8 +203,9 @@ TEST_CASE("search: no image is missing on primitives", "[laws][law]") {
     Primitive primitive;
     primitive.axis = {0.2, 1, 0.1};
     unsigned seed = 10;
-    for (const PrimitiveKind& kind : std::initializer_list<PrimitiveKind>{
-             SpherePrimitive(), ParaboloidPrimitive(), CylinderPrimitive(), PlanePrimitive()}) {
+    for (const PrimitiveKind& kind :
+         std::initializer_list<PrimitiveKind>{SpherePrimitive(), ParaboloidPrimitive(), CylinderPrimitive(),
+                                              ConePrimitive(), PlanePrimitive()}) {
         primitive.kind = kind;
         const auto surface = make_primitive_surface(primitive);
         check(compare_with_brute_force({*surface, SpecularEvent::kReflect, 1, 80, 150}, ++seed), 20);

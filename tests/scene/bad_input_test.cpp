@@ -138,9 +138,9 @@ TEST_CASE("wrong types and ranges and lengths", "[scene]") {
          "/meshes/0/creaseSharpnesses/0: -1 is out of range: must be at least 0"},
         {"/meshes/1/primitive/radius", "0",
          "/meshes/1/primitive/radius: 0 is out of range: must be greater than 0"},
-        {"/meshes/1/primitive/type", "cone",
-         "/meshes/1/primitive/type: unknown value 'cone'; known: sphere, paraboloid, cylinder, plane, box, "
-         "disk"},
+        {"/meshes/1/primitive/type", "torus",
+         "/meshes/1/primitive/type: unknown value 'torus'; known: sphere, paraboloid, cylinder, cone, plane, "
+         "box, disk"},
         {"/meshes/2/role", "mirror", "/meshes/2/role: unknown value 'mirror'; known: object, optic"},
         {"/lights/1/position", "null", "/lights/1/position: expected an array, found null"},
         {"/lights/0/intensity", "-1", "/lights/0/intensity: -1 is out of range: must be at least 0"},
@@ -262,7 +262,7 @@ TEST_CASE("keys that need or exclude each other", "[scene]") {
         {"/meshes/1/file", "ball.obj", "/meshes/1: a mesh has 'file' and 'primitive': only one may be given"},
         {"/meshes/1/primitive", R"({"type":"box","size":[1,1,1]})",
          "/meshes/1/primitive/type: a box is an object's: an optic is a sphere, a paraboloid, a cylinder, a "
-         "plane, or "
+         "cone, a plane, or "
          "a cage"},
         {"/meshes/1/primitive", R"({"type":"box"})", "/meshes/1/primitive: a box needs 'size'"},
         {"/meshes/1/primitive", R"({"type":"plane","size":[1,1,1]})",

@@ -53,10 +53,12 @@ TEST_CASE("tessellated primitives come to the areas and volumes of the formulas,
         double area, volume;  // 0: not closed
     };
     const double bowl = 8 * M_PI * f * f / 3 * (std::pow(1 + r * r / (4 * f * f), 1.5) - 1);
-    const std::vector<Known> known{{SpherePrimitive{r}, 4 * M_PI * r * r, 4 * M_PI * r * r * r / 3},
-                                   {CylinderPrimitive{r, h}, 2 * M_PI * r * (r + h), M_PI * r * r * h},
-                                   {DiskPrimitive{r}, M_PI * r * r, 0},
-                                   {ParaboloidPrimitive{r, f}, bowl, 0}};
+    const std::vector<Known> known{
+        {SpherePrimitive{r}, 4 * M_PI * r * r, 4 * M_PI * r * r * r / 3},
+        {CylinderPrimitive{r, h}, 2 * M_PI * r * (r + h), M_PI * r * r * h},
+        {ConePrimitive{r, h}, M_PI * r * (r + std::hypot(r, h)), M_PI * r * r * h / 3},
+        {DiskPrimitive{r}, M_PI * r * r, 0},
+        {ParaboloidPrimitive{r, f}, bowl, 0}};
     for (const Known& one : known) {
         INFO(kind_name(shape_of(one.kind, 3)));
         double last = 0;

@@ -150,6 +150,9 @@ std::vector<Change> changes_of_shapes() {
                 s.meshes[0].primitive->kind = CylinderPrimitive{1, 3};
             },
             [](Scene& s) {
+                s.meshes[0].primitive->kind = ConePrimitive{1, 2};
+            },
+            [](Scene& s) {
                 s.meshes[0].primitive->kind = PlanePrimitive{{2, 3}};
             },
             [](Scene& s) { s.meshes[0].cage.points[0].x = 9; },

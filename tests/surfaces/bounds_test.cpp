@@ -101,8 +101,9 @@ Primitive primitive_of(const PrimitiveKind& kind) {
     return {.center = {3, -2, 0.5}, .axis = {0.3, 0.8, -0.4}, .kind = kind};
 }
 
-const std::array<PrimitiveKind, 4> kBoundedKinds = {SpherePrimitive{1.7}, ParaboloidPrimitive{1.7, 0.6},
-                                                    CylinderPrimitive{1.7, 4}, PlanePrimitive{{3, 0.7}}};
+const std::array<PrimitiveKind, 5> kBoundedKinds = {SpherePrimitive{1.7}, ParaboloidPrimitive{1.7, 0.6},
+                                                    CylinderPrimitive{1.7, 4}, ConePrimitive{1.7, 1.1},
+                                                    PlanePrimitive{{3, 0.7}}};
 
 /// An octahedron as a Loop cage: all its vertices have four faces, so none is regular.
 Cage octahedron() {

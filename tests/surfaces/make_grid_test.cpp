@@ -181,8 +181,9 @@ TEST_CASE("Corners lie on the surface where their (u, v) says, whichever face is
 
 TEST_CASE("Facets face the front: counter-clockwise seen from their normals' side", "[surfaces]") {
     std::vector<std::unique_ptr<Surface>> surfaces;
-    for (const PrimitiveKind& kind : std::initializer_list<PrimitiveKind>{
-             SpherePrimitive(), ParaboloidPrimitive(), CylinderPrimitive(), PlanePrimitive()})
+    for (const PrimitiveKind& kind :
+         std::initializer_list<PrimitiveKind>{SpherePrimitive(), ParaboloidPrimitive(), CylinderPrimitive(),
+                                              ConePrimitive(), PlanePrimitive()})
         surfaces.push_back(make_primitive_surface({.kind = kind}));
     for (const char* name : {"cube", "prism 5", "sheet"})
         for (const auto& [other, cage] : small_cages())

@@ -14,8 +14,8 @@ using namespace trilens;
 namespace {
 
 const PrimitiveKind kSphere = SpherePrimitive(), kParaboloid = ParaboloidPrimitive(),
-                    kCylinder = CylinderPrimitive(), kPlane = PlanePrimitive();
-const PrimitiveKind kKinds[] = {kSphere, kParaboloid, kCylinder, kPlane};
+                    kCylinder = CylinderPrimitive(), kCone = ConePrimitive(), kPlane = PlanePrimitive();
+const PrimitiveKind kKinds[] = {kSphere, kParaboloid, kCylinder, kCone, kPlane};
 
 /// A primitive somewhere in space, of a size around `scale`.
 Primitive random_primitive(const PrimitiveKind& kind, double scale, std::mt19937& random) {
@@ -44,6 +44,10 @@ double residual(const ParaboloidPrimitive& p, const Vec3& q) {
 double residual(const CylinderPrimitive& p, const Vec3& q) {
     return std::hypot(q.x, q.y) - p.radius;
 }
+double residual(const ConePrimitive& p, const Vec3& q) {
+    return (std::hypot(q.x, q.y) - std::abs(p.radius * (1 - q.z / p.height))) * p.height /
+           std::hypot(p.radius, p.height);
+}
 double residual(const PlanePrimitive&, const Vec3& q) {
     return q.z;
 }
@@ -57,6 +61,9 @@ bool is_inside(const ParaboloidPrimitive& p, const Vec3& q, double slack) {
 bool is_inside(const CylinderPrimitive& p, const Vec3& q, double slack) {
     return std::abs(q.z) <= p.height / 2 + slack;
 }
+bool is_inside(const ConePrimitive& p, const Vec3& q, double slack) {
+    return q.z >= -slack && q.z <= p.height + slack;
+}
 bool is_inside(const PlanePrimitive& p, const Vec3& q, double slack) {
     return std::abs(q.x) <= p.size.x / 2 + slack && std::abs(q.y) <= p.size.y / 2 + slack;
 }
@@ -69,6 +76,9 @@ Vec3 front(const ParaboloidPrimitive& p, const Vec3& q) {
 }
 Vec3 front(const CylinderPrimitive&, const Vec3& q) {
     return normalize(Vec3(q.x, q.y, 0));
+}
+Vec3 front(const ConePrimitive& p, const Vec3& q) {
+    return normalize(Vec3(p.height * normalize(Vec2(q)), p.radius));
 }
 Vec3 front(const PlanePrimitive&, const Vec3&) {
     return {0, 0, 1};
@@ -84,6 +94,9 @@ double area_of(const ParaboloidPrimitive& p) {
 }
 double area_of(const CylinderPrimitive& p) {
     return 2 * kPi * p.radius * p.height;
+}
+double area_of(const ConePrimitive& p) {
+    return kPi * p.radius * std::hypot(p.radius, p.height);
 }
 double area_of(const PlanePrimitive& p) {
     return p.size.x * p.size.y;
@@ -134,8 +147,11 @@ TEST_CASE("Points of primitives satisfy the equation, with its normal and deriva
                 const SurfacePoint point = surface->eval(face, uv);
                 CHECK(std::abs(residual(primitive, point.position)) < 1e-14 * scale * 10);
                 CHECK(is_inside_bounds(primitive, point.position, 1e-14 * scale * 10));
-                CHECK(length(point.normal - front(primitive, point.position)) < 1e-13);
-                CHECK(length(point.normal - normalize(cross(point.du, point.dv))) < 1e-12);
+                CHECK(length(point.normal) == Approx(1).epsilon(1e-14));
+                if (point.du != Vec3(0)) {  // at a cone's apex each direction has a normal of its own
+                    CHECK(length(point.normal - front(primitive, point.position)) < 1e-13);
+                    CHECK(length(point.normal - normalize(cross(point.du, point.dv))) < 1e-12);
+                }
                 area += length(cross(point.du, point.dv)) / (scale * scale);
 
                 const Vec2 inside = glm::clamp(uv, 0.01, 0.99);

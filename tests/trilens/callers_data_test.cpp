@@ -247,8 +247,9 @@ TEST_CASE("surfaces refuse cages, primitives and grids that are none", "[trilens
         with_cage([&](Cage& cage) {
             cage.corner_indices = {0}, cage.corner_sharpnesses = {static_cast<float>(x)};
         });
-        for (const PrimitiveKind& kind : std::initializer_list<PrimitiveKind>{
-                 SpherePrimitive(), ParaboloidPrimitive(), CylinderPrimitive(), PlanePrimitive()})
+        for (const PrimitiveKind& kind :
+             std::initializer_list<PrimitiveKind>{SpherePrimitive(), ParaboloidPrimitive(),
+                                                  CylinderPrimitive(), ConePrimitive(), PlanePrimitive()})
             for (int field = 0; field < 5; ++field) {
                 Primitive odd{.kind = kind};
                 if (field == 0) odd.center = Vec3(x);

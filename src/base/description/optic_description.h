@@ -91,6 +91,19 @@ void for_each_length(CylinderPrimitive& cylinder, const Use& use) {
     use(height, "height");
 }
 
+/// Its centre is the middle of its base, its axis goes from there to the apex.
+struct ConePrimitive {
+    static constexpr const char* kName = "cone";
+    double radius = 1;  // of its base
+    double height = 2;
+};
+template <typename Use>
+void for_each_length(ConePrimitive& cone, const Use& use) {
+    auto& [radius, height] = cone;
+    use(radius, "radius");
+    use(height, "height");
+}
+
 /// Its axis is its normal.
 struct PlanePrimitive {
     static constexpr const char* kName = "plane";
@@ -103,7 +116,8 @@ void for_each_length(PlanePrimitive& plane, const Use& use) {
     use(size.y, "size");
 }
 
-using PrimitiveKind = std::variant<SpherePrimitive, ParaboloidPrimitive, CylinderPrimitive, PlanePrimitive>;
+using PrimitiveKind =
+    std::variant<SpherePrimitive, ParaboloidPrimitive, CylinderPrimitive, ConePrimitive, PlanePrimitive>;
 
 /// An optic given by a formula instead of a cage; world frame.
 struct Primitive {

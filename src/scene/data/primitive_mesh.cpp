@@ -124,6 +124,17 @@ void add_shape(const CylinderPrimitive& cylinder, const ObjectPrimitive& p, Poly
     add_disk({p.center - up, cylinder.radius, false}, frame, p.segments, mesh);
 }
 
+void add_shape(const ConePrimitive& cone, const ObjectPrimitive& p, PolygonMesh& mesh) {
+    const AxisFrame frame(p);
+    const Patch patch = [&](double u, double v) {
+        const Vec3 out = frame.around(u);
+        return SurfaceCorner{p.center + (1 - v) * cone.radius * out + v * cone.height * frame.axis,
+                             normalize(cone.height * out + cone.radius * frame.axis)};
+    };
+    add_patch(patch, p.segments, 1, {false, true}, mesh);
+    add_disk({p.center, cone.radius, false}, frame, p.segments, mesh);
+}
+
 void add_shape(const PlanePrimitive& plane, const ObjectPrimitive& p, PolygonMesh& mesh) {
     const AxisFrame frame(p);
     add_patch(square(p.center, plane.size.x * frame.tangent, plane.size.y * frame.side), 1, 1, {}, mesh);

@@ -22,11 +22,11 @@ struct DiskPrimitive {
 };
 
 using ObjectPrimitiveKind = std::variant<SpherePrimitive, ParaboloidPrimitive, CylinderPrimitive,
-                                         PlanePrimitive, BoxPrimitive, DiskPrimitive>;
+                                         ConePrimitive, PlanePrimitive, BoxPrimitive, DiskPrimitive>;
 
 /// A primitive as an object has it, in the mesh's own frame.
 struct ObjectPrimitive {
-    Vec3 center{0};                        // paraboloid: its apex
+    Vec3 center{0};                        // paraboloid: its apex; cone: of its base
     Vec3 axis{0, 1, 0}, tangent{1, 0, 0};  // unit, at right angles
     ObjectPrimitiveKind kind = SpherePrimitive();
     int segments = 48;  // of a full circle, 3..1024
@@ -37,7 +37,8 @@ inline const char* kind_name(const ObjectPrimitive& primitive) {
 }
 
 /// Quads and triangles with exact normals and uvs (u around the axis from the tangent, v along it; plane, box
-/// and disk: each side from corner to corner), fronts outwards. Spheres, boxes and cylinders are closed.
+/// and disk: each side from corner to corner), fronts outwards. Spheres, boxes, cylinders and cones are
+/// closed.
 PolygonMesh tessellate(const ObjectPrimitive& primitive);
 
 }  // namespace trilens

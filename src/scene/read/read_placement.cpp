@@ -109,8 +109,9 @@ const std::vector<Field<ObjectPrimitive>>& primitive_fields() {
         });
         return std::vector<Field<P>>{
             type_field<P>(),
-            setting("center", &P::center, ref("vec3"), "paraboloid: its apex."),
-            of_kinds<P>("radius", TRILENS_MEMBER(radius), ref("positive"), "paraboloid: of its rim."),
+            setting("center", &P::center, ref("vec3"), "paraboloid: its apex; cone: of its base."),
+            of_kinds<P>("radius", TRILENS_MEMBER(radius), ref("positive"),
+                        "paraboloid: of its rim; cone: of its base."),
             direction_of("axis", Turns::kAxis),
             direction_of("normal", Turns::kNormal),
             std::move(tangent),
@@ -128,8 +129,9 @@ Json primitive_schema() {
         {.title = "a primitive",
          .description =
              "A mesh given by a formula: of an optic exact (sphere, paraboloid, cylinder without lids, "
-             "plane), of an object cut into polygons (spheres, boxes and cylinders closed). axis: "
-             "paraboloid from apex to focus, cylinder along it; tangent: where u begins.",
+             "cone without its base, plane), of an object cut into polygons (spheres, boxes, cylinders and "
+             "cones closed). axis: paraboloid from apex to focus, cylinder along it, cone from its base to "
+             "its apex; tangent: where u begins.",
          .required = {"type"},
          .kind_title = "a #"},
         primitive_fields());
@@ -179,7 +181,7 @@ Primitive read_primitive(const Node& node, const Transform& transform, const Nod
     std::optional<PrimitiveKind> kind = optic_kind(shape.kind);
     if (!kind)
         node["type"].fail(std::string("a ") + kind_name(shape) + " is an object's: an optic is " +
-                          "a sphere, a paraboloid, a cylinder, a plane, or a cage");
+                          "a sphere, a paraboloid, a cylinder, a cone, a plane, or a cage");
     if (node.has("segments")) node["segments"].fail("are an object's: an optic is exact");
     const std::optional<double> factor = similarity_factor(transform);
     if (!factor) mesh["transform"].fail("a primitive stays exact only under a uniform scale");
