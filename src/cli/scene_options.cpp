@@ -117,8 +117,10 @@ std::vector<Option> scene_argument(SceneOptions& options) {
     return {
         {.names = "SCENE",
          .target = &options.scene,
-         .help = "scene file (JSON), a glTF (.gltf, .glb), an image that carries its scene, or - for "
-                 "standard input",
+         .help =
+             "scene file (JSON), a glTF (.gltf, .glb), a calibrated camera behind its port (Calibmar's "
+             "calibration.yaml, COLMAP's cameras.txt), an image that carries its scene, or - for standard "
+             "input",
          .offer = Offer::kScene,
          .is_required = true},
         {.names = "-n,--resolution",

@@ -11,6 +11,7 @@
 #include "scene/animation/animation_keys.h"
 #include "scene/data/light_objects.h"
 #include "scene/imports/expand_imports.h"
+#include "scene/imports/housing.h"
 #include "scene/read/override.h"
 #include "scene/read/reading.h"
 
@@ -126,7 +127,11 @@ Scene load_scene(const std::string& file, std::span<const SceneOverride> overrid
                                overrides, textures, import);
     }
     const std::string text = read_required_file(file);
-    Scene scene = load_scene_text(text, SceneSource(file), overrides, textures, import);
+    Scene scene = load_scene_text(
+        is_housing_name(file)
+            ? scene_of_housing(text, file).dump(-1, ' ', false, Json::error_handler_t::replace)
+            : text,
+        SceneSource(file), overrides, textures, import);
     scene.files.insert(scene.files.begin(), make_file_read(file, text));
     return scene;
 }

@@ -91,7 +91,7 @@ std::vector<std::string> offered_words(const Option& option, const Command& root
 }
 
 std::vector<std::string> offered_endings(Offer offer) {
-    if (offer == Offer::kScene) return {"json", "gltf", "glb", "exr"};
+    if (offer == Offer::kScene) return {"json", "gltf", "glb", "exr", "yaml", "txt"};
     if (offer == Offer::kImage) return {"exr", "png", "svg"};
     return {};
 }
