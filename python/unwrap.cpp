@@ -174,12 +174,13 @@ FilmMapRequest map_request(const Renderer& self, const TargetArguments& target, 
 void bind_caustic(RendererClass& renderer) {
     renderer.def(
         "caustic",
-        [](const Renderer& self, const std::string& onto, int light, bool back, double tolerance,
+        [](const Renderer& self, const std::string& onto, int light, bool back, bool exact, double tolerance,
            const std::optional<PhotoFile>& file, const py::object& progress) {
             CausticMapRequest request;
             request.light = light < 0 ? self.scene().lights.size() : static_cast<std::size_t>(light);
             request.target = parse_target(onto, self.scene());
             request.back = back;
+            request.exact = exact;
             request.tolerance = tolerance;
             PythonCall call(progress);
             const CausticMap map = call.run([&] {
@@ -202,12 +203,13 @@ void bind_caustic(RendererClass& renderer) {
             return made;
         },
         py::arg("onto"), py::arg("light") = 0, py::kw_only(), py::arg("back") = false,
-        py::arg("tolerance") = CausticMapRequest().tolerance, py::arg("file") = py::none(),
+        py::arg("exact") = false, py::arg("tolerance") = CausticMapRequest().tolerance, py::arg("file") = py::none(),
         py::arg("progress") = py::none(),
         "The light that comes over mirrors and through glass onto an object or a plane.\n\n"
         "onto: \"NAME:WxH\", an object, or \"plane:...\", as in unwrap.\n"
         "light: index of the scene's light, whether it has caustics or not.\n"
         "back: the light on the other side of the surface than its front.\n"
+        "exact: the truth, as trace has it: by exact rays at every pixel, however long it takes.\n"
         "tolerance: how far light may fall from its place, as a share of the scene's size.\n"
         "file: written too: .exr.\n"
         "progress: as in draw.\n"

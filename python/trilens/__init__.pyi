@@ -336,6 +336,7 @@ class Renderer:
         light: int = 0,
         *,
         back: bool = False,
+        exact: bool = False,
         tolerance: float = 0.001,
         file: Optional[_File] = None,
         progress: _Progress = None,

@@ -59,9 +59,6 @@ BeamLight::BeamLight(const LightSpace& space, const BeamSource& source, const Be
         progress(static_cast<double>(i + 1) / static_cast<double>(outlines.size()));
     }
     refined_ = std::make_unique<RefinedBeams>(space_, source_, beams_);
-    parallel_for(beams_.beams.size(), 64, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) refined_->middles(static_cast<Id>(i));
-    });
     tree_ = BeamTree(
         beams_, [&](Id beam) -> const auto& { return refined_->middles(beam); });
 }

@@ -12,6 +12,9 @@ namespace {
 
 constexpr int kBisections = 12;
 
+/// Paths at places on one side of a triangle: where several histories end together they ask for the same.
+using PathsOnSide = std::map<std::pair<double, double>, LightPaths>;
+
 /// The last place at which a history is, on the way between two corners of which one has it.
 struct HistoryBorder {
     Id inside = kNone, outside = kNone;
@@ -19,14 +22,15 @@ struct HistoryBorder {
     Vec2 place{0};
     LightPath path;
 
-    void find(const BeamGrid& grid) {
+    void find(const BeamGrid& grid, PathsOnSide& known) {
         Vec2 low = grid.place(inside), high = grid.place(outside);
         place = low;
         path = *like;
         for (int i = 0; i < kBisections; ++i) {
             const Vec2 middle = 0.5 * (low + high);
-            const LightPaths there = grid.paths_at(middle);
-            const LightPath* same = find_history(there.paths, *like);
+            const auto [at, is_new] = known.try_emplace({middle.x, middle.y});
+            if (is_new) at->second = grid.paths_at(middle);
+            const LightPath* same = find_history(at->second.paths, *like);
             (same ? low : high) = middle;
             if (same) place = middle, path = *same;
         }
@@ -105,8 +109,16 @@ void BeamMaker::find_borders() {
                 if (!border_.try_emplace({inside, outside, history}, borders_.size()).second) continue;
                 borders_.push_back({inside, outside, one ? one : other, {}, {}});
             }
-    parallel_for(borders_.size(), 4, [&](std::size_t from, std::size_t to) {
-        for (std::size_t i = from; i < to; ++i) borders_[i].find(grid_);
+    std::map<std::pair<Id, Id>, std::vector<std::size_t>> by_side;
+    for (std::size_t i = 0; i < borders_.size(); ++i)
+        by_side[std::minmax(borders_[i].inside, borders_[i].outside)].push_back(i);
+    std::vector<const std::vector<std::size_t>*> sides;
+    for (const auto& [side, borders] : by_side) sides.push_back(&borders);
+    parallel_for(sides.size(), 4, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            PathsOnSide known;
+            for (const std::size_t border : *sides[i]) borders_[border].find(grid_, known);
+        }
     });
 }
 

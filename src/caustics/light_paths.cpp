@@ -94,13 +94,16 @@ std::optional<SinglePath> follow_history(const LightSpace& space, const BeamSour
 
 bool is_free(const LightSpace& space, const Ray& ray, const SinglePath& single) {
     Vec3 from = ray.origin;
+    Segments ways;
     for (const Vec3& to : single.corners) {
-        Segments way;
-        way.add(to, (1 - kSamePlace) * (from - to));
-        if (space.objects->occluded(way)) return false;
+        ways.add(to, (1 - kSamePlace) * (from - to));
+        if (ways.count == Segments::kMost) {
+            if (space.objects->occluded(ways)) return false;
+            ways.count = 0;
+        }
         from = to;
     }
-    return true;
+    return ways.count == 0 || !space.objects->occluded(ways);
 }
 
 }  // namespace trilens

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace trilens {
 namespace {
@@ -33,7 +34,33 @@ RefinedBeams::RefinedBeams(const LightSpace& space, const BeamSource& source, co
     : space_(space),
       source_(source),
       beams_(&beams),
-      division_(std::make_unique<Lazy<BeamDivision>[]>(beams.beams.size())) {}
+      division_(std::make_unique<Lazy<BeamDivision>[]>(beams.beams.size())) {
+    find_sides();
+}
+
+void RefinedBeams::find_sides() {
+    struct Side {
+        Id beam, a, b;
+    };
+    std::vector<Side> sides;
+    std::unordered_map<std::uint64_t, Id> known;
+    for (Id i = 0; i < beams_->beams.size(); ++i) {
+        const auto& end = beams_->beams[i].end;
+        std::array<Id, 3>& own = side_.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [a, b] = std::minmax(end[(k + 1) % 3], end[(k + 2) % 3]);
+            const auto [at, is_new] =
+                known.try_emplace((std::uint64_t{a} << 32) | b, static_cast<Id>(sides.size()));
+            if (is_new) sides.push_back({i, a, b});
+            own[k] = at->second;
+        }
+    }
+    side_middle_.resize(sides.size());
+    parallel_for(sides.size(), 64, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            side_middle_[i] = middle(sides[i].beam, beams_->ends[sides[i].a], beams_->ends[sides[i].b]);
+    });
+}
 
 /// Where the history ends between, its border is as straight as the beam has it.
 BeamEnd RefinedBeams::middle(Id beam, const BeamEnd& a, const BeamEnd& b) const {
@@ -66,7 +93,11 @@ std::unique_ptr<BeamDivision> RefinedBeams::divide(Id beam, const Ends& end) con
 }
 
 const BeamDivision& RefinedBeams::division(Id beam) const {
-    return division(beam, corners_of(*beams_, beams_->beams[beam]).end, division_[beam]);
+    return division_[beam].get([&] {
+        auto division = std::make_unique<BeamDivision>();
+        for (std::size_t k = 0; k < 3; ++k) division->middle[k] = side_middle_[side_[beam][k]];
+        return division;
+    });
 }
 
 const BeamDivision& RefinedBeams::division(Id beam, const BeamEnds& end, const Lazy<BeamDivision>& of) const {
@@ -134,7 +165,7 @@ struct RefinedBeams::Visit {
             at[k] = *on;
         }
         if (is_beyond(std::span(at).first(3), guess)) return;
-        const BeamDivision& by = refined.division(beam, end, division);
+        const BeamDivision& by = level == 0 ? refined.division(beam) : refined.division(beam, end, division);
         double bulge = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::optional<Vec2> on = place_on(plane, by.middle[k]);

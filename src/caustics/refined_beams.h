@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "base/util/parallel.h"
 #include "caustics/curved_beam.h"
@@ -50,11 +51,14 @@ class RefinedBeams {
   private:
     struct Visit;
     BeamEnd middle(Id beam, const BeamEnd& a, const BeamEnd& b) const;
+    void find_sides();
     std::unique_ptr<BeamDivision> divide(Id beam, const BeamEnds& end) const;
 
     LightSpace space_;
     BeamSource source_;
     const Beams* beams_ = nullptr;
+    std::vector<std::array<Id, 3>> side_;             // of each beam, across from its ends: of side_middle_
+    std::vector<BeamEnd> side_middle_;                // neighbours share them
     std::unique_ptr<Lazy<BeamDivision>[]> division_;  // by beam
 };
 

@@ -17,7 +17,7 @@ struct CausticOptions {
     std::string onto, output;
     int light = 0;
     double tolerance = CausticMapRequest().tolerance;
-    bool back = false;
+    bool back = false, exact = false;
 };
 
 std::vector<double> numbers_of(const Vec3& light) {
@@ -32,6 +32,7 @@ Answer run_caustic(const CausticOptions& options, Console& console) {
     request.light = static_cast<std::size_t>(options.light);
     request.target = parse_target(options.onto, renderer.scene());
     request.back = options.back;
+    request.exact = options.exact;
     request.tolerance = options.tolerance;
 
     const Stopwatch watch;
@@ -83,6 +84,9 @@ Command caustic_command() {
                  {.names = "--back",
                   .target = &options->back,
                   .help = "the light on the other side of the surface than its front"},
+                 {.names = "--exact",
+                  .target = &options->exact,
+                  .help = "the truth, as trace has it: by exact rays at every pixel, however long it takes"},
                  {.names = "--tolerance",
                   .target = &options->tolerance,
                   .help = "how far light may fall from its place, as a share of the scene's size",

@@ -28,14 +28,15 @@ TriangleScene triangles_of(const FlatRectangle& rectangle) {
 }
 
 CausticPixel pixel_at(const std::vector<std::unique_ptr<BeamLight>>& lights, const Target& target,
-                      const Vec2& pixel, bool back, double lift) {
+                      const Vec2& pixel, const CausticMapRequest& request, double lift) {
     const std::optional<TargetPlace> place = target.place(pixel);
     if (!place) return {};
     // Rows go downward, so the front's normal is dy x dx.
     Vec3 normal = normalize_or_zero(cross(place->dy, place->dx));
-    if (back) normal = -normal;
+    if (request.back) normal = -normal;
     Receiver receiver{place->at, normal, normal, place->at + lift * normal, {place->dx, place->dy}};
     if (target.rectangle()) receiver.triangle = 0;
+    receiver.exact = request.exact;
     return {true, irradiance(lights, receiver), length(cross(place->dx, place->dy))};
 }
 
@@ -72,7 +73,7 @@ CausticMap make_caustic_map(const World& world, const CausticMapRequest& request
             for (std::size_t x = 0; x < width; ++x) {
                 const CausticPixel pixel =
                     pixel_at(lights, target, Vec2(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5),
-                             request.back, kShadowOffset * world.shading.size);
+                             request, kShadowOffset * world.shading.size);
                 map.irradiance[y * width + x] = pixel.irradiance;
                 map.covered[y * width + x] = pixel.covered;
                 row_flux[y] += pixel.area * pixel.irradiance;

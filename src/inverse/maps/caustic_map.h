@@ -16,6 +16,8 @@ struct CausticMapRequest {
     std::size_t light = 0;     // index into Scene::lights; its own `caustics` is not asked
     TargetDescription target;  // a plane or an object
     bool back = false;         // the light that comes to the other side of the surface than its front
+    // The truth, as traced pictures have it: beams divided by exact rays until they are flat at each pixel.
+    bool exact = false;
     // How far light may fall from its place, as a share of the scene's size.
     double tolerance = 1e-3;
 

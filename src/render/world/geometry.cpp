@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "base/raymesh/surface.h"
+#include "scene/data/scene_digest.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
@@ -56,12 +57,33 @@ struct ObjectGeometry {
     Lazy<Tracer> tracer;
 };
 
+/// What is kept of the lights whose light is followed.
+struct CausticGeometry {
+    Lazy<CausticLights> lights;
+    CausticLights* made = nullptr;
+    std::string of;  // the scene's lights and what they meet, when they were made
+};
+
 struct WorldGeometry {
     std::shared_ptr<ObjectGeometry> objects = std::make_shared<ObjectGeometry>();
     Lazy<PathWorld> paths;
-    Lazy<CausticLights> caustics;
+    std::shared_ptr<CausticGeometry> caustics = std::make_shared<CausticGeometry>();
     std::vector<std::shared_ptr<OpticGeometry>> optic;
 };
+
+namespace {
+
+/// A digest of all but meshes that beams are made of.
+std::string light_digest(const Scene& scene) {
+    Scene lit;
+    lit.background = scene.background;
+    lit.materials = scene.materials;
+    lit.lights = scene.lights;
+    lit.render = scene.render;
+    return scene_digest(lit);
+}
+
+}  // namespace
 
 World::World() = default;
 World::~World() = default;
@@ -76,7 +98,14 @@ void keep_geometry(World& world, const std::vector<Id>& kept_optics, bool keeps_
     for (const Id before : kept_optics)
         geometry->optic.push_back(before == kNone ? std::make_shared<OpticGeometry>()
                                                   : world.geometry->optic[before]);
+    bool keeps_optics = world.geometry && kept_optics.size() == world.geometry->optic.size();
+    for (std::size_t i = 0; i < kept_optics.size(); ++i) keeps_optics = keeps_optics && kept_optics[i] == i;
+    const bool keeps_lights = keeps_objects && keeps_optics && world.geometry->caustics->made &&
+                              world.geometry->caustics->of == light_digest(world.scene);
+    if (keeps_lights) geometry->caustics = world.geometry->caustics;
     world.geometry = std::move(geometry);
+    // Beams point to these optics, which point into the scene.
+    if (keeps_lights) world.geometry->caustics->made->optics = optics_for_lights(world);
 }
 
 TriangleScene OpticFacets::scene() const {
@@ -148,8 +177,7 @@ const PathWorld& path_world(const World& world) {
 }
 
 bool has_shadows(const World& world) {
-    return std::any_of(world.scene.lights.begin(), world.scene.lights.end(),
-                       is_hindered);
+    return std::any_of(world.scene.lights.begin(), world.scene.lights.end(), is_hindered);
 }
 
 Segments::Bits casts_shadow(const World& world, const Segments& segments) {
@@ -168,7 +196,13 @@ Segments::Bits meets_anything(const World& world, const Segments& segments) {
 }
 
 const CausticLights& caustic_lights(const World& world) {
-    return world.geometry->caustics.get([&] { return make_caustic_lights(world); });
+    CausticGeometry& kept = *world.geometry->caustics;
+    return kept.lights.get([&] {
+        std::unique_ptr<CausticLights> made = make_caustic_lights(world);
+        kept.made = made.get();
+        kept.of = light_digest(world.scene);
+        return made;
+    });
 }
 
 void prepare_shadows(const World& world) {
