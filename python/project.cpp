@@ -137,8 +137,10 @@ Rows rows_of(const std::vector<PointProjection>& points, std::size_t parameters)
 }
 
 /// One row per start; where there is no image it has no place.
-Rows rows_of(const std::vector<std::optional<WorldImage>>& images, const std::vector<ImageStart>& starts) {
+Rows rows_of(const std::vector<std::optional<WorldImage>>& images, const std::vector<ImageStart>& starts,
+             std::size_t parameters) {
     Rows rows;
+    rows.parameters = parameters;
     for (const ImageStart& start : starts) rows.steps = std::max(rows.steps, start.events.size());
     RowWriter writer(rows, images.size());
     for (std::size_t i = 0; i < images.size(); ++i) {
@@ -227,10 +229,10 @@ py::array project(const Renderer& self, const ProjectArguments& given, ProjectRe
         given.points ? points_of(*given.points, "points") : points_of(*given.directions, "directions");
     PythonCall call(progress);
     if (given.start) {
-        if (!given.points || columns > 0)
-            throw UsageError("start goes with points, and without derivatives by parameters");
+        if (!given.points) throw UsageError("start goes with points");
         const std::vector<ImageStart> starts = starts_of(*given.start);
-        return rows_array(call.run([&] { return rows_of(self.refine(places, starts, request), starts); }));
+        return rows_array(
+            call.run([&] { return rows_of(self.refine(places, starts, request), starts, columns); }));
     }
     return rows_array(call.run([&] {
         const Progress told = call.progress("project");

@@ -107,12 +107,21 @@ std::vector<SceneNumber> find_numbers(const Scene& scene, std::span<const std::s
 }
 
 Scene scene_with(const Scene& scene, const SceneNumber& number) {
+    return scene_with(scene, std::span(&number, 1));
+}
+
+Scene scene_with(const Scene& scene, std::span<const SceneNumber> numbers) {
     const Json root = checked_json(scene);
     std::vector<SceneOverride> changes;
-    const std::string parent = number.pointer.substr(0, number.pointer.rfind('/'));
-    if (part_at(root, parent, scene_title(scene)).is_null() && !default_of(parent).is_null())
-        changes.push_back({parent, default_of(parent).dump()});
-    changes.push_back({number.pointer, text_of(number.value)});
+    std::string begun;
+    for (const SceneNumber& number : numbers) {
+        const std::string parent = number.pointer.substr(0, number.pointer.rfind('/'));
+        if (parent != begun && part_at(root, parent, scene_title(scene)).is_null() &&
+            !default_of(parent).is_null())
+            changes.push_back({parent, default_of(parent).dump()});
+        begun = parent;
+        changes.push_back({number.pointer, text_of(number.value)});
+    }
     const auto blank = std::make_shared<const Texture>();
     const TextureReader no_textures{
         [&](const std::string&) { return blank; },

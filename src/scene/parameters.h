@@ -20,8 +20,9 @@ struct SceneNumber {
 /// they are those of no transform. Throws InputError with the pointer where it names no number.
 std::vector<SceneNumber> find_numbers(const Scene& scene, std::span<const std::string> pointers);
 
-/// The scene with another value for one of its numbers, without its textures. Throws InputError where that is
+/// The scene with other values for some of its numbers, without its textures. Throws InputError where that is
 /// no scene.
+Scene scene_with(const Scene& scene, std::span<const SceneNumber> numbers);
 Scene scene_with(const Scene& scene, const SceneNumber& number);
 
 }  // namespace trilens

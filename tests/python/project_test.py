@@ -223,6 +223,16 @@ def test_derivatives_are_those_of_differences(kind):
     assert max(worst) < 1e-5, list(zip(columns, worst))
 
 
+def test_warm_starts_have_the_derivatives_of_searches():
+    renderer = renderer_of(trilens.scene_examples()["mirror-sphere"])
+    points = np.random.default_rng(3).uniform([-3, -1, 1], [3, 2, 3], (30, 3))
+    pointers = ["/meshes/ball/primitive/center", "/meshes/ball/primitive/radius", "/cameras/0/yfov"]
+    cold = renderer.project(points, path="R", derivatives=pointers)
+    warm = renderer.project(points, start=cold, derivatives=pointers)
+    assert len(warm) > 10 and warm["refined"].all()
+    np.testing.assert_allclose(warm["by_parameter"], cold["by_parameter"], rtol=1e-6, atol=1e-5)
+
+
 def test_pointers_without_numbers_are_refused():
     renderer = renderer_of(scene_of())
     for pointer in ("/meshes/0/primitive/nothing", "/meshes/0/name", "meshes", "/cameras"):

@@ -25,10 +25,15 @@ bool is_length(const std::string& pointer) {
     return false;
 }
 
-double size_of(const Frame& frame) {
+double size_of(const World& world, const Frame& frame) {
     Box box;
     for (const FramedOptic& optic : frame.optics)
         for (const Vec3& point : optic.facets->grid().points) box.include(point);
+    if (frame.optics.empty())  // a frame without facets, of warm starts
+        for (const Optic& optic : world.optics)
+            for (Id face = 0; face < optic.surface->face_count(); ++face)
+                for (const Vec2& uv : {Vec2(0), Vec2(1, 0), Vec2(0, 1)})
+                    box.include(optic.surface->eval(face, uv).position);
     const double size = length(box.size());
     return size > 0 && std::isfinite(size) ? size : 1;
 }
@@ -74,7 +79,7 @@ ParameterDerivatives::ParameterDerivatives(const World& world, const Frame& fram
       camera_media_(frame.camera_media),
       numbers_(find_numbers(world.scene, pointers)),
       now_(std::make_unique<Model>()),
-      size_(size_of(frame)) {
+      size_(size_of(world, frame)) {
     std::vector<std::string> digests;
     now_->camera = frame.camera;
     now_->scene = world.scene;

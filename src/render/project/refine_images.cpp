@@ -1,5 +1,6 @@
 // Warm-started projection: Newton's method on the chain of surfaces from where images were.
 #include <algorithm>
+#include <memory>
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
@@ -51,11 +52,20 @@ class ImageRefiner {
         : world_(world), request_(request), materials_(materials_alone(world)), sight_(world, frame_, true) {
         frame_.camera = make_camera_rays(world.scene, request.frame.camera);
         frame_.camera_media = camera_media_of(world, frame_.camera);
+        if (!request.parameters.empty())
+            parameters_ = std::make_unique<ParameterDerivatives>(world, frame_, request.frame.camera,
+                                                                 request.parameters);
     }
 
-    std::optional<WorldImage> refine(const ImageStart& start, const Vec3& point) const;
+    std::optional<WorldImage> refine(const ImageStart& start, const Vec3& point) const {
+        std::optional<WorldImage> image =
+            start.events.empty() ? refine_direct(point) : refine_chain(start, point);
+        if (image && parameters_) image->by_parameter = parameters_->of(*image, {point});
+        return image;
+    }
 
   private:
+    std::optional<WorldImage> refine_chain(const ImageStart& start, const Vec3& point) const;
     std::optional<WorldImage> refine_direct(const Vec3& point) const;
     bool on_film(const Vec2& pixel) const;
     std::optional<Vec3> weight_of(std::span<const PathEvent> events, const Ray& view,
@@ -67,6 +77,7 @@ class ImageRefiner {
     Frame frame_;  // camera alone
     PathWorld materials_;
     OcclusionQueries sight_;
+    std::unique_ptr<ParameterDerivatives> parameters_;  // where some are asked for
 };
 
 std::optional<Vec3> ImageRefiner::weight_of(std::span<const PathEvent> events, const Ray& view,
@@ -113,8 +124,7 @@ std::optional<WorldImage> ImageRefiner::refine_direct(const Vec3& point) const {
     return image;
 }
 
-std::optional<WorldImage> ImageRefiner::refine(const ImageStart& start, const Vec3& point) const {
-    if (start.events.empty()) return refine_direct(point);
+std::optional<WorldImage> ImageRefiner::refine_chain(const ImageStart& start, const Vec3& point) const {
     // The film place of the start tells a branch of the camera apart, where it has several.
     const PathEvent& first = start.events.front();
     const Vec3 there = world_.optics[first.optic].surface->eval(first.face, first.uv).position;
