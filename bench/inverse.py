@@ -9,6 +9,7 @@ how far it is from an independent answer. Published figures beside them: a proje
 """
 import argparse
 import json
+import pathlib
 import time
 
 import numpy as np
@@ -176,6 +177,84 @@ def row_shoot(count):
     pixels = np.random.default_rng(4).uniform([0, 0], [FILM["width"], FILM["height"]], (count, 2))
     seconds, (rays, events) = best_of(lambda: renderer.shoot(pixels))
     return {"what": "shoot, mirror sphere", "us": 1e6 * seconds / count, "note": f"{len(events)} events"}
+
+
+def row_dome_port(count):
+    """The port of a housing as its calibration is read: a ball of air in a ball of glass, in water."""
+    def ball(name, radius, priority):
+        return {"name": name, "role": "optic", "material": name, "priority": priority, "resolution": 16,
+                "primitive": {"type": "sphere", "center": [0.2, 0.3, 4.52], "radius": radius}}
+
+    def glass(name, ior):
+        return {"name": name, "transmissionFactor": 1, "ior": ior}
+
+    renderer = scene([ball("air", 0.0501, 1), ball("glass", 0.0571, 0)],
+                     [glass("air", 1.003 / 1.333), glass("glass", 1.473 / 1.333)], 1)
+    draw = np.random.default_rng(2)
+    points = np.stack([draw.uniform(-1, 1, count // 10), draw.uniform(-0.7, 0.7, count // 10),
+                       draw.uniform(-3, 2, count // 10)], axis=1)
+    return projected("projection, dome port (air, glass, water)", renderer, points, "TT")
+
+
+def row_fit_cage_pose(count):
+    """Six numbers of a cage's pose from 60 pairs, cold: nothing of the scene is built before."""
+    mesh = {**creased_cage(), "transform": {"translate": [0, 0, 0], "rotate": [0, 0, 0, 1]}}
+    whole = trilens.parse_scene({"version": 1, "film": FILM, "cameras": [CAMERA], "materials": [CHROME],
+                                 "meshes": [mesh], "render": {"maxDepth": 0}}, warn=lambda message: None)
+    images = trilens.Renderer(whole).project(points_around(400), path="R")
+    images = images[images["inside"]][:60]
+    pixels = np.stack([images["x"], images["y"]], axis=1)
+    start = whole.with_overrides({"/meshes/0/transform/translate": [0.05, -0.03, 0.04],
+                                  "/meshes/0/transform/rotate": [0.02, -0.01, 0.015, 1]})
+    seconds, found = best_of(lambda: trilens.fit(
+        start, pixels, points_around(400)[images["point"]],
+        ["/meshes/0/transform/translate", "/meshes/0/transform/rotate"], path="R"))
+    off = max(abs(value) for pointer, value in found.values.items() if "translate" in pointer)
+    return {"what": "fit of a cage's pose, 60 pairs, cold", "us": 1e6 * seconds, "error": off, "unit": "units of length",
+            "note": f"{1e3 * seconds:.1f} ms in all, rms {found.rms:.2g} px"}
+
+
+def row_warp_mesh(count):
+    """A projector, a mirror ball and a dome: how far between its nodes the mesh is off, against rays of its cells."""
+    dome = pathlib.Path(__file__).resolve().parent.parent / "scenes/inverse/dome.json"
+    renderer = trilens.Renderer(trilens.load_scene(dome, warn=lambda message: None))
+    seconds, mesh = best_of(lambda: renderer.warp_mesh("fisheye:1024", proxy="sphere:3", center=(0, 0, 0)), 1)
+    return {"what": "warp mesh of a mirror dome, as fine as 0.5 px need", "us": 1e6 * seconds,
+            "error": mesh["error_p99"], "unit": "px, p99", "note": f"{mesh['nodes'].shape[1]} x {mesh['nodes'].shape[0]} nodes"}
+
+
+def row_there_and_back(count):
+    """From a panorama's pixels to the film by one map and back by the other, at 4K."""
+    renderer = scene([SPHERE], [CHROME])
+    size = (2048, 1024) if count < 100_000 else (4096, 2048)
+    target = f"equirect:{size[0]}x{size[1]}"
+    seconds, there = best_of(lambda: renderer.map(target, proxy="infinity"), 1)
+    more, back = best_of(lambda: renderer.map(target, way="view", proxy="infinity"), 1)
+    rows, columns = np.nonzero(there["valid"])
+    some = np.random.default_rng(3).choice(len(rows), 20000, replace=False)
+    rows, columns = rows[some], columns[some]
+    x, y = there["x"][rows, columns] - 0.5, there["y"][rows, columns] - 0.5
+    i, j = np.floor(x).astype(int), np.floor(y).astype(int)
+    inside = (i >= 1) & (j >= 1) & (i + 2 < FILM["width"]) & (j + 2 < FILM["height"])
+    reach = [(a, b) for a in range(-1, 3) for b in range(-1, 3)]
+    for a, b in reach:
+        inside[inside] &= back["valid"][j[inside] + b, i[inside] + a]
+    # Nothing is interpolated over the panorama's seam.
+    across = np.stack([back["x"][np.clip(j + b, 0, FILM["height"] - 1), np.clip(i + a, 0, FILM["width"] - 1)]
+                       for a, b in reach])
+    inside &= np.ptp(across, axis=0) < size[0] / 2
+    rows, columns, x, y, i, j = (v[inside] for v in (rows, columns, x, y, i, j))
+
+    def cubic(t):
+        return np.stack([-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
+                         (t + 1) * t * (t - 1) / 6], axis=1)
+    wx, wy = cubic(x - i), cubic(y - j)
+    off = np.stack([sum(wx[:, a + 1] * wy[:, b + 1] * back[name][j + b, i + a] for a, b in reach) - place - 0.5
+                    for name, place in (("x", columns), ("y", rows))], axis=1)
+    on_film = np.linalg.norm(np.linalg.solve(back["jacobian"][j, i], off[:, :, None])[:, :, 0], axis=1)
+    return {"what": f"there and back through maps, {size[0]} x {size[1]}", "us": 1e6 * (seconds + more),
+            "error": float(np.quantile(on_film, 0.99)), "unit": "px of the film, p99",
+            "note": f"{seconds:.2f} s there, {more:.2f} s back; median {np.median(on_film):.2g}"}
 
 
 def main():

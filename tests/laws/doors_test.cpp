@@ -120,6 +120,7 @@ const std::map<std::string, std::set<std::string>> kDoors{
     {"Imath/", {"src/image/"}},
     {"imgui", {"src/view/window/"}},
     {"GLFW/", {"src/view/window/gl_screen.cpp"}},
+    {"ceres/", {"src/trilens/ceres.h"}},
 };
 
 bool allowed(const std::set<std::string>& doors, const std::string& file) {
