@@ -1,36 +1,35 @@
-// Caustics beside a light tracer: random rays of a light over facets of the optics, by Embree (Arvo, Backward
-// Ray Tracing, 1986); and beside the complete search for images of a point from the light.
+// Caustics beside a light tracer: random rays of a light over facets of the
+// optics, by Embree (Arvo, Backward Ray Tracing, 1986); and beside the complete
+// search for images of a point from the light.
 //
 //     bench_caustics SCENE.json LIGHT OBJECT WxH RAYS POINTS
 //
-// The object must be flat. JSON on standard output; seconds are of the processor, all threads together.
+// The object must be flat. JSON on standard output; seconds are of the
+// processor, all threads together.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 
 #include "base/util/parallel.h"
 #include "inverse/maps/caustic_map.h"
+#include "light_tracer.h"
 #include "render/project/project.h"
 #include "render/world/world.h"
 #include "scene/load.h"
 #include "shade/shade.h"
-#include "surfaces/surfaces.h"
 
 namespace {
 
 using namespace trilens;
 
-constexpr std::size_t kChunk = 50'000;    // rays with a seed of their own
-constexpr std::size_t kFacets = 300'000;  // of each optic, about
-constexpr double kFewRays = 30;           // a cell of fewer does not know its noise
-constexpr double kFollowed = 1.0 / 200;   // beams leave fainter paths out
+constexpr double kFewRays = 30;          // a cell of fewer does not know its noise
+constexpr double kFollowed = 1.0 / 200;  // beams leave fainter paths out
 
 double cpu_seconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
@@ -38,160 +37,20 @@ double cpu_seconds() {
 
 void ignore(const std::string&) {}
 
-double luminance(const Vec3& light) {
-    return (light.x + light.y + light.z) / 3;
-}
-
-/// Objects and facets of optics in one tree.
-struct FacetWorld {
-    const World& world;
-    PathWorld optics;  // what happens at a meeting
-    std::vector<SurfaceGrid> grids;
-    std::vector<Id> optic_of;  // by object id
-    Id first_facet = 0;
-    std::vector<std::pair<Id, Id>> facet;  // optic and facet of each triangle from there on
-    std::unique_ptr<Tracer> tracer;
-
-    explicit FacetWorld(const World& of) : world(of), optics(optics_for_lights(of)) {
-        TriangleScene scene = world.objects;
-        first_facet = static_cast<Id>(scene.size());
-        for (Id i = 0; i < world.optics.size(); ++i) {
-            const Surface& surface = *world.optics[i].surface;
-            const double per_face =
-                static_cast<double>(kFacets) / (2.0 * static_cast<double>(surface.face_count()));
-            grids.push_back(make_grid(surface, std::clamp(static_cast<int>(std::sqrt(per_face)), 2, 400)));
-            append_facets(grids.back(), world.optics[i].mesh, scene);
-            for (Id f = 0; f < grids.back().facets.size(); ++f) facet.emplace_back(i, f);
-        }
-        tracer = std::make_unique<Tracer>(std::move(scene));
-    }
-
-    std::optional<Meeting> meeting(const Hit& hit, const Ray& ray) const {
-        if (hit.triangle < first_facet) return std::nullopt;
-        const auto [optic, f] = facet[hit.triangle - first_facet];
-        const SurfaceGrid& grid = grids[optic];
-        const IdTriple& corner = grid.facets[f];
-        const Vec3 weights(1 - hit.barycentric.x - hit.barycentric.y, hit.barycentric.x, hit.barycentric.y);
-        Meeting at;
-        at.optic = optic;
-        at.incoming = normalize(ray.direction);
-        at.point = ray.origin + hit.t * ray.direction;
-        at.normal = Vec3(0);
-        for (std::size_t k = 0; k < 3; ++k)
-            at.normal += weights[static_cast<int>(k)] * grid.corner_normal[corner[k]];
-        at.normal = normalize(at.normal);
-        at.front = faces_front(grid, corner, ray.direction);
-        return at;
-    }
-};
-
-/// Where paths end on a rectangle, as counts of light.
-struct Histogram {
-    const FlatRectangle& rectangle;
-    int width = 0, height = 0;
-    std::vector<double> sum, squares;
-    std::vector<std::uint32_t> count;
-    double all = 0;  // of the light that comes to the object, by any cell
-
-    Histogram(const FlatRectangle& of, int w, int h) : rectangle(of), width(w), height(h) {
-        const auto cells = static_cast<std::size_t>(w) * static_cast<std::size_t>(h);
-        sum.resize(cells), squares.resize(cells), count.resize(cells);
-    }
-    void add(const Vec3& point, double light) {
-        const Vec3 way = point - rectangle.origin;
-        const double u = dot(way, rectangle.u) / dot(rectangle.u, rectangle.u),
-                     v = dot(way, rectangle.v) / dot(rectangle.v, rectangle.v);
-        const int x = static_cast<int>(std::floor(u * width)),
-                  y = height - 1 - static_cast<int>(std::floor(v * height));
-        if (x < 0 || y < 0 || x >= width || y >= height) return;
-        const auto cell = static_cast<std::size_t>(y * width + x);
-        sum[cell] += light, squares[cell] += light * light, ++count[cell], all += light;
-    }
-    void add(const Histogram& other) {
-        for (std::size_t i = 0; i < sum.size(); ++i)
-            sum[i] += other.sum[i], squares[i] += other.squares[i], count[i] += other.count[i];
-        all += other.all;
-    }
-};
-
-struct LightTracer {
-    const FacetWorld& scene;
-    const BeamSource& source;
-    std::vector<LightWindow> windows;
-    Id object;  // where light is counted
-    Media around;
-
-    /// One ray, by one way at each meeting, chosen by what it carries.
-    void shoot(std::mt19937_64& random, double share, Histogram& to) const {
-        std::uniform_real_distribution<double> unit(0, 1);
-        const LightWindow& window =
-            windows[static_cast<std::size_t>(unit(random) * static_cast<double>(windows.size()))];
-        const Vec2 place(2 * unit(random) - 1, 2 * unit(random) - 1);
-        Ray ray = window.ray(place);
-        Vec3 light = share * 4 * static_cast<double>(windows.size()) * window.density(place) *
-                     source.strength(ray.direction);
-        Media media = around;
-        Colours colours = kAllColours;
-        double t_min = 0;
-        for (int depth = 0; depth <= scene.optics.max_depth + 1; ++depth) {
-            const Hit hit = scene.tracer->first_hit(ray, t_min);
-            if (!hit.seen()) return;
-            light *= body_transmittance(scene.optics, active_medium(scene.optics, media), hit.t);
-            const std::optional<Meeting> at = scene.meeting(hit, ray);
-            if (!at) {
-                if (depth > 0 && scene.world.objects.object[hit.triangle] == object)
-                    to.add(ray.origin + hit.t * ray.direction, luminance(light));
-                return;
-            }
-            if (depth > scene.optics.max_depth) return;
-            const std::vector<Branch> ways = branches(scene.optics, *at, media, colours);
-            double all = 0;
-            for (const Branch& way : ways) all += luminance(way.weight * light);
-            if (!(all > 0)) return;
-            double chosen = unit(random) * all;
-            const Branch* taken = &ways.back();
-            for (const Branch& way : ways) {
-                const double one = luminance(way.weight * light);
-                if (chosen < one) {
-                    taken = &way;
-                    break;
-                }
-                chosen -= one;
-            }
-            const double chance = luminance(taken->weight * light) / all;
-            light *= taken->weight / chance;
-            media = taken->media, colours = taken->colours;
-            ray = {at->point, taken->direction};
-            t_min = 1e-7 * scene.world.shading.size;
-        }
-    }
-
-    Histogram trace(std::size_t rays, const FlatRectangle& rectangle, int width, int height) const {
-        Histogram total(rectangle, width, height);
-        const std::size_t chunks = (rays + kChunk - 1) / kChunk;
-        std::mutex mutex;
-        parallel_for(chunks, 1, [&](std::size_t first, std::size_t last) {
-            Histogram part(rectangle, width, height);
-            for (std::size_t c = first; c < last; ++c) {
-                std::mt19937_64 random(c);
-                for (std::size_t i = 0; i < kChunk; ++i)
-                    shoot(random, 1 / static_cast<double>(chunks * kChunk), part);
-            }
-            const std::lock_guard lock(mutex);
-            total.add(part);
-        });
-        return total;
-    }
-};
-
-nlohmann::json compare_cells(const CausticMap& map, const Histogram& traced, double cell_area,
-                             std::size_t points) {
+/// Random ones of the cells whose noise is known.
+std::vector<std::size_t> lit_cells(const Histogram& traced, std::size_t count) {
     std::vector<std::size_t> lit;
     for (std::size_t i = 0; i < traced.sum.size(); ++i)
         if (traced.count[i] >= kFewRays) lit.push_back(i);
     std::mt19937 random(1);
     std::shuffle(lit.begin(), lit.end(), random);
-    lit.resize(std::min(lit.size(), points));
+    lit.resize(std::min(lit.size(), count));
+    return lit;
+}
+
+nlohmann::json compare_cells(const CausticMap& map, const Histogram& traced, double cell_area,
+                             std::size_t points) {
+    const std::vector<std::size_t> lit = lit_cells(traced, points);
     std::size_t within[3] = {};
     double z2 = 0, square = 0, noise2 = 0, mean = 0;
     for (const std::size_t i : lit) {
@@ -245,8 +104,8 @@ std::string word_of(const std::vector<Step>& steps) {
     return word;
 }
 
-/// Paths at random points, by beams and by the search for images of the points from the light, in world
-/// `seen`, whose camera stands in the light.
+/// Paths at random points, by beams and by the search for images of the points
+/// from the light, in world `seen`, whose camera stands in the light.
 nlohmann::json compare_paths(const World& seen, const BeamLight& light, const std::vector<Vec3>& points,
                              const Vec3& normal) {
     std::vector<std::map<std::string, std::size_t>> by_beams(points.size());
@@ -282,38 +141,41 @@ nlohmann::json compare_paths(const World& seen, const BeamLight& light, const st
             {"by_word", words}};
 }
 
-/// What beams are off by at random cells, against beams divided by exact rays; and against the tracer in the
-/// same time.
+/// What beams are off by at random lit cells, against beams divided by exact
+/// rays; and both against the tracer.
 nlohmann::json compare_exact(const World& world, const std::vector<std::unique_ptr<BeamLight>>& lights,
-                             const CausticMap& map, const FlatRectangle& rectangle, std::size_t cells) {
-    std::mt19937 random(3);
-    std::vector<std::size_t> chosen(map.irradiance.size());
-    for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = i;
-    std::shuffle(chosen.begin(), chosen.end(), random);
-    chosen.resize(std::min(cells, chosen.size()));
-    std::vector<double> off(chosen.size()), exact(chosen.size());
-    const double start = cpu_seconds();
+                             const CausticMap& map, const Histogram& traced, std::size_t cells) {
+    const std::vector<std::size_t> chosen = lit_cells(traced, cells);
+    const FlatRectangle& rectangle = traced.rectangle;
+    const Vec3 du = rectangle.u / static_cast<double>(map.width),
+               dv = rectangle.v / static_cast<double>(map.height);
+    std::vector<double> exact(chosen.size()), off(chosen.size());
     parallel_for(chosen.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const auto x = static_cast<double>(chosen[i] % static_cast<std::size_t>(map.width)),
                        y = static_cast<double>(chosen[i] / static_cast<std::size_t>(map.width));
-            const Vec3 du = rectangle.u / static_cast<double>(map.width),
-                       dv = rectangle.v / static_cast<double>(map.height);
             Receiver there = receiver_at(
                 world, rectangle.origin + (x + 0.5) * du + (map.height - y - 0.5) * dv, rectangle.normal());
             there.sides = {du, -dv};
             there.exact = true;
             exact[i] = luminance(irradiance(lights, there));
-            off[i] = luminance(map.irradiance[chosen[i]]) - exact[i];
         }
     });
-    double square = 0, mean = 0;
-    for (std::size_t i = 0; i < off.size(); ++i) square += off[i] * off[i], mean += exact[i];
+    double square = 0, z2 = 0, noise2 = 0;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const double area = length(du) * length(dv), noise = std::sqrt(traced.squares[chosen[i]]) / area;
+        off[i] = std::fabs(luminance(map.irradiance[chosen[i]]) - exact[i]);
+        square += off[i] * off[i], noise2 += noise * noise;
+        z2 += std::pow((exact[i] - traced.sum[chosen[i]] / area) / noise, 2);
+    }
+    std::sort(off.begin(), off.end());
     const auto n = static_cast<double>(off.size());
     return {{"cells", off.size()},
-            {"mean", mean / n},
             {"rms_difference", std::sqrt(square / n)},
-            {"seconds", cpu_seconds() - start}};
+            {"median_difference", off[off.size() / 2]},
+            {"most_difference", off.back()},
+            {"exact_in_sigmas_of_tracer", std::sqrt(z2 / n)},
+            {"rms_noise", std::sqrt(noise2 / n)}};
 }
 
 std::unique_ptr<World> world_of(const std::string& file, const std::vector<SceneOverride>& overrides) {
@@ -361,11 +223,8 @@ int main(int count, char** words) {
     const PathWorld optics = optics_for_lights(*world);
     const auto lights = make_beam_lights(*world, optics, light);
     const nlohmann::json cells = compare_cells(map, traced, cell_area, points),
-                         exact = compare_exact(*world, lights, map, rectangle, points);
-    double noise2 = 0;
-    for (const double one : traced.squares) noise2 += one / (cell_area * cell_area);
-    const double noise =
-        std::sqrt(noise2 / static_cast<double>(traced.sum.size())) * std::sqrt(tracer_seconds / map_seconds);
+                         exact = compare_exact(*world, lights, map, traced, points);
+    const double noise = exact["rms_noise"].get<double>() * std::sqrt(tracer_seconds / map_seconds);
     nlohmann::json answer = {
         {"scene", file},
         {"map", {{"seconds", map_seconds}, {"flux", luminance(map.flux_received)}, {"beams", map.beams}}},
