@@ -263,9 +263,11 @@ class Cone final : public PrimitiveShape {
         return point;
     }
 
+    Vec3 equation_center() const override { return {0, 0, height_}; }
+
     std::array<double, 3> equation(const Ray& ray) const override {
         const Vec2 o(ray.origin), d(ray.direction);
-        const double slope = radius_ / height_, wide = radius_ - slope * ray.origin.z,
+        const double slope = radius_ / height_, wide = slope * (height_ - ray.origin.z),
                      grows = -slope * ray.direction.z, distance = length(o);
         return {(distance - wide) * (distance + wide), dot(o, d) - wide * grows, dot(d, d) - grows * grows};
     }

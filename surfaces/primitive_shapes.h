@@ -20,6 +20,8 @@ class PrimitiveShape {
     /// The point with derivatives and unit normal, at (u, v) inside the domain.
     virtual SurfacePoint eval(Id face, const Vec2& uv) const = 0;
 
+    /// Where the equation is known best: a ray that is given to it begins at its point nearest to there.
+    virtual Vec3 equation_center() const { return Vec3(0); }
     /// The equation along a ray: c[0] + 2 c[1] t + c[2] t^2 is zero where the ray meets the uncut shape.
     virtual std::array<double, 3> equation(const Ray& ray) const = 0;
 

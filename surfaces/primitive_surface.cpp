@@ -94,13 +94,13 @@ class PrimitiveSurface final : public Surface {
     template <typename Use>
     void for_each_root(const Ray& ray, double t_min, Use&& use) const {
         // Start from the ray's point nearest to the centre: the equation then has numbers of the shape's own
-        // size.
+        // size. Near the apex of a cone, where both roots are one, they are as small as the distance from it.
         const Mat3 local_from_world = glm::transpose(world_from_local_);
         const Vec3 direction = local_from_world * ray.direction;
         Vec3 origin = local_from_world * (ray.origin - center_);
         const double squared = dot(direction, direction);
         if (!(squared > 0)) return;
-        const double start = -dot(origin, direction) / squared;
+        const double start = dot(shape_->equation_center() - origin, direction) / squared;
         origin += start * direction;
 
         for (double root : solve(shape_->equation({origin, direction}))) {

@@ -32,6 +32,7 @@
 #include <utility>
 #include <vector>
 
+#include "trilens/error.h"
 #include "trilens/project.h"
 #include "trilens/scene.h"
 
@@ -55,7 +56,8 @@ struct CeresMap {
 };
 
 /// The callback and the costs of one problem; both it and the scene's pictures must outlive the problem. One
-/// thread.
+/// thread. Where a step of the solver leads to numbers that make no scene (a radius below zero) the costs say
+/// that they have no value, so that Ceres takes a shorter one.
 class CeresImages final : public ceres::EvaluationCallback {
   public:
     /// `free`: JSON pointers to numbers, or arrays of them (find_numbers). `path`: as ProjectRequest has it.
@@ -107,9 +109,15 @@ class CeresImages final : public ceres::EvaluationCallback {
         if (is_new_point || !is_prepared_) {
             scene_jacobian_.assign(numbers_.size() * block_.size(), 0.0);
             map_numbers(scene_jacobian_.data());
-            renderer_.change(scene_with(scene_, numbers_));
             is_prepared_ = true;
+            try {
+                renderer_.change(scene_with(scene_, numbers_));
+                is_scene_ = true;
+            } catch (const InputError&) {
+                is_scene_ = false;
+            }
         }
+        if (!is_scene_) return;
         std::map<std::size_t, std::vector<std::size_t>> of_camera;
         for (std::size_t i = 0; i < seen_.size(); ++i) of_camera[seen_[i].asked.camera].push_back(i);
         for (const auto& [camera, some] : of_camera) find_images(camera, some, with_jacobians);
@@ -220,6 +228,7 @@ class CeresImages final : public ceres::EvaluationCallback {
     }
 
     bool evaluate(std::size_t index, double* residuals, double** jacobians) const {
+        if (!is_scene_) return false;
         const Seen& one = seen_[index];
         const double scale = 1 / one.asked.sigma;
         for (int row = 0; row < 2; ++row)
@@ -254,7 +263,7 @@ class CeresImages final : public ceres::EvaluationCallback {
     std::vector<double> block_;
     std::vector<double> scene_jacobian_;  // of the numbers by the block
     std::vector<Seen> seen_;
-    bool is_prepared_ = false;
+    bool is_prepared_ = false, is_scene_ = true;  // is_scene_: the present numbers make one
 };
 
 }  // namespace trilens

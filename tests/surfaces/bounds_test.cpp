@@ -159,7 +159,7 @@ TEST_CASE("bounds shrink at least in proportion to the box", "[surfaces][law]") 
     }
     for (const PrimitiveKind& kind : kBoundedKinds)
         surfaces.emplace_back("primitive", make_primitive_surface(primitive_of(kind)));
-    REQUIRE(surfaces.size() == 8);
+    REQUIRE(surfaces.size() == 9);
 
     Boxes boxes(77);
     for (const auto& [name, surface] : surfaces) {
