@@ -167,6 +167,8 @@ TEST_CASE("no header of ours brings an outside library with it, but for the voca
             if (include.file.size() < 2 || include.file.substr(include.file.size() - 2) != ".h") continue;
             for (const auto& [prefix, doors] : kDoors) {
                 if (include.target.rfind(prefix, 0) != 0) continue;
+                // For programs that have Ceres: the one public header that asks for more than trilens.
+                if (include.file == "src/trilens/ceres.h" && prefix == "ceres/") continue;
                 INFO(include.file << " includes " << include.target);
                 CHECK(vocabulary.count(include.file) == 1);
             }

@@ -57,7 +57,9 @@ double worst_port_pixel(const std::string& text, const std::string& file, const 
     std::vector<Vec3> points;
     std::vector<Vec2> pixels;
     for (int i = 0; i < 200; ++i) {
-        pixels.emplace_back(2 * middle.x * unit(random), 2 * middle.y * unit(random));
+        // Not within a pixel of the film's edge: images over several surfaces are found from facets that lie
+        // on the film.
+        pixels.push_back(Vec2(1) + 2.0 * (middle - Vec2(1)) * Vec2(unit(random), unit(random)));
         const Ray ray = ray_through_port(port, Vec3((pixels.back() - middle) / focal, 1));
         points.push_back(ray.origin + (0.2 + 3 * unit(random)) * ray.direction);
     }
