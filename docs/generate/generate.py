@@ -21,7 +21,7 @@ from scene_pages import write_scene_pages
 
 
 MIRROR = """```{raw} html
-<iframe src="mirror.html" title="A mirror to bend" loading="lazy" style="width: 100%; max-width: 660px; height: 590px; border: 0"></iframe>
+<iframe src="mirror.html" title="A mirror to bend" loading="lazy" style="width: 100%; max-width: 660px; height: calc(0.75 * min(100vw, 640px) + 150px); border: 0"></iframe>
 <p><em>The projector itself, compiled for browsers: a mirror to bend, projected anew in each picture. <a href="mirror.html">By itself</a>.</em></p>
 ```"""
 
