@@ -20,8 +20,6 @@ struct CausticMapRequest {
     bool exact = false;
     // How far light may fall from its place, as a share of the scene's size.
     double tolerance = 1e-3;
-
-    bool operator==(const CausticMapRequest&) const = default;
 };
 
 /// Light per colour, linear Rec.709: irradiance in lux, or W/m^2, and flux in lumen, or watt, as the light's
