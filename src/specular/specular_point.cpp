@@ -19,11 +19,11 @@ constexpr double kAngleTolerance =
     1e-13;  // residual of a solution, per n1 + n2: some hundred rounding errors
 constexpr double kRoundingErrors =
     64;  // coordinates carry this many units of rounding through the evaluation
-constexpr double kParameterTolerance =
-    1e-9;  // a remaining step that counts as none: an image on the rim between two
-           // faces then belongs to both, and is one by distinct_images
-/// A law that is missed by more is not missed by rounding, however short the step: at a cone's apex, where a
-/// parameter stands still, none leads anywhere.
+// A remaining step that counts as none: an image on the rim between two faces then belongs to both, and is
+// one by distinct_images.
+constexpr double kParameterTolerance = 1e-9;
+// A law that is missed by more is not kept, whatever rounding and steps are: at a cone's apex a parameter
+// stands still, and curvature has no bound.
 constexpr double kMostAtRest = 1e-3;
 constexpr double kLastStep = 1e-6;        // in (u, v): Newton's error after it is below rounding
 constexpr double kDifferenceStep = 1e-5;  // cube root of the rounding unit, for central differences in (u, v)
@@ -171,7 +171,7 @@ Rest solve_law(const Surface& surface, const Iterate& start, const SpecularQuery
     while (now.regular && std::isfinite(now.residual)) {
         const Mat2 jacobian = metric_jacobian(surface, now, query);
         const double scale = 0.5 * squared_size(jacobian);
-        rest.solved = now.residual <= rounding_floor(now, jacobian, query);
+        rest.solved = now.residual <= std::min(rounding_floor(now, jacobian, query), kMostAtRest);
         if (rest.solved) {
             polish(surface, query, jacobian, now);
             break;
