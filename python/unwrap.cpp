@@ -203,8 +203,8 @@ void bind_caustic(RendererClass& renderer) {
             return made;
         },
         py::arg("onto"), py::arg("light") = 0, py::kw_only(), py::arg("back") = false,
-        py::arg("exact") = false, py::arg("tolerance") = CausticMapRequest().tolerance, py::arg("file") = py::none(),
-        py::arg("progress") = py::none(),
+        py::arg("exact") = false, py::arg("tolerance") = CausticMapRequest().tolerance,
+        py::arg("file") = py::none(), py::arg("progress") = py::none(),
         "The light that comes over mirrors and through glass onto an object or a plane.\n\n"
         "onto: \"NAME:WxH\", an object, or \"plane:...\", as in unwrap.\n"
         "light: index of the scene's light, whether it has caustics or not.\n"

@@ -1,10 +1,36 @@
-#include "trilens/surface.h"
+// The library as callers ask it: which one it is, how many threads it uses, a surface by itself.
+#include <algorithm>
 
 #include "base/util/error.h"
 #include "base/util/format.h"
+#include "base/util/parallel.h"
+#include "image/image_io.h"
+#include "intersect/tracer.h"
+#include "study/libraries.h"
 #include "surfaces/surfaces.h"
+#include "trilens/surface.h"
+#include "trilens/version.h"
 
 namespace trilens {
+
+std::string version() {
+    return kVersion;
+}
+
+std::vector<std::string> library_versions() {
+    return versions_underneath();
+}
+
+void set_threads(int threads) {
+    const int most = std::max(threads, 0);
+    set_thread_count(most);
+    set_tracer_threads(most);
+    set_image_threads(most);
+}
+
+int threads() {
+    return thread_count();
+}
 
 constexpr int kMostSteps = 1024;
 
