@@ -57,9 +57,7 @@ double worst_port_pixel(const std::string& text, const std::string& file, const 
     std::vector<Vec3> points;
     std::vector<Vec2> pixels;
     for (int i = 0; i < 200; ++i) {
-        // Not within a pixel of the film's edge: images over several surfaces are found from facets that lie
-        // on the film.
-        pixels.push_back(Vec2(1) + 2.0 * (middle - Vec2(1)) * Vec2(unit(random), unit(random)));
+        pixels.emplace_back(2 * middle.x * unit(random), 2 * middle.y * unit(random));
         const Ray ray = ray_through_port(port, Vec3((pixels.back() - middle) / focal, 1));
         points.push_back(ray.origin + (0.2 + 3 * unit(random)) * ray.direction);
     }
@@ -71,6 +69,10 @@ double worst_port_pixel(const std::string& text, const std::string& file, const 
         double nearest = 1e9;
         for (const WorldImage& image : found[i].images)
             nearest = std::min(nearest, length(image.pixel - pixels[i]));
+        // Images over several surfaces are looked for from facets that end where the film does, and show
+        // things a little off their place: at its very edge one may be missed, none be wrong.
+        const Vec2 to_edge = glm::min(pixels[i], 2.0 * middle - pixels[i]);
+        if (found[i].images.empty() && std::min(to_edge.x, to_edge.y) < 0.1) continue;
         worst = std::max(worst, nearest);
     }
     return worst;
