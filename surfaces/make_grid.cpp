@@ -10,7 +10,7 @@
 
 #include "base/util/check.h"
 #include "base/util/parallel.h"
-#include "surfaces/face_hulls.h"
+#include "surfaces/grid_parts.h"
 #include "surfaces/surfaces.h"
 
 namespace trilens {
@@ -43,14 +43,6 @@ class Lattice {
     std::array<int, 4> first_middle_{-1, -1, -1, -1};  // per side: its middles' first sample; -1: not split
     std::vector<Vec2> uv_;
 };
-
-/// A diagonal counts as shorter by at least this share of squared length, so that rounding does not decide
-/// ties.
-constexpr double kShorter = 1e-9;
-
-double squared_distance(const Vec3& a, const Vec3& b) {
-    return dot(a - b, a - b);
-}
 
 Lattice::Lattice(FaceDomain domain, int n, const std::array<bool, 4>& split) : domain_(domain), n_(n) {
     const double steps = n;
@@ -105,11 +97,9 @@ void Lattice::add_square(int i, int j, const std::vector<Vec3>& positions,
         if (begin == 0) begin = border.size();
         border.push_back(middles[k]);
     }
-    if (begin == 0) {
-        const double from_first = squared_distance(positions[corner[0]], positions[corner[2]]);
-        const double from_second = squared_distance(positions[corner[1]], positions[corner[3]]);
-        begin = from_second < from_first * (1 - kShorter) ? 1 : 0;
-    }
+    if (begin == 0 && second_diagonal_is_shorter({positions[corner[0]], positions[corner[1]],
+                                                  positions[corner[2]], positions[corner[3]]}))
+        begin = 1;
     std::rotate(border.begin(), border.begin() + static_cast<std::ptrdiff_t>(begin), border.end());
     for (std::size_t k = 1; k + 1 < border.size(); ++k)
         facets.push_back({border[0], border[k], border[k + 1]});
@@ -129,8 +119,6 @@ std::vector<std::array<int, 3>> Lattice::facets(const std::vector<Vec3>& positio
     }
     return facets;
 }
-
-constexpr int kMostSteps = 1024;
 
 /// An edge that faces share: the points along it, in its own direction.
 struct GridEdge {
@@ -307,35 +295,6 @@ void add_facets(const GridFace& face, Id number, CornerNumbers& corners, Surface
 }
 
 }  // namespace
-
-std::vector<Box> face_hulls(const Surface& surface) {
-    std::vector<Box> hulls;
-    const auto* known = dynamic_cast<const HasHulls*>(&surface);
-    for (Id face = 0; known && face < surface.face_count(); ++face) {
-        const std::optional<Box> hull = known->hull(face);
-        if (!hull) return {};
-        hulls.push_back(*hull);
-    }
-    return hulls;
-}
-
-SurfaceGrid make_face_grid(const Surface& surface, Id face, int n) {
-    TRILENS_CHECK(n >= 1 && n <= kMostSteps, "a grid has 1 to 1024 steps");
-    const Lattice lattice(surface.domain(face), n, {});
-    SurfaceGrid grid;
-    for (const Vec2& uv : lattice.uv()) {
-        const SurfacePoint point = surface.eval_first_order(face, uv);
-        grid.corner_point.push_back(static_cast<Id>(grid.points.size()));
-        grid.points.push_back(point.position);
-        grid.corner_normal.push_back(point.normal);
-    }
-    for (const auto& [a, b, c] : lattice.facets(grid.points)) {
-        grid.facets.push_back({static_cast<Id>(a), static_cast<Id>(b), static_cast<Id>(c)});
-        grid.facet_face.push_back(face);
-        grid.facet_uv.push_back({lattice.uv()[a], lattice.uv()[b], lattice.uv()[c]});
-    }
-    return grid;
-}
 
 SurfaceGrid make_grid(const Surface& surface, int n) {
     TRILENS_CHECK(n >= 1 && n <= kMostSteps, "a grid has 1 to 1024 steps");

@@ -15,8 +15,8 @@ namespace trilens {
 
 /// The limit surface of a cage (OpenSubdiv Bfr, double precision): THE door to OpenSubdiv. A surface face is
 /// one quad face of the cage, one sub-face of an n-gon under Catmull-Clark or bilinear (n of them, in corner
-/// order), or one triangle under Loop; holes have none. Without a scheme (kUnsubdivided) it is the cage's triangles with
-/// their own normals: see make_polygon_surface. Front is where the face's corners run
+/// order), or one triangle under Loop; holes have none. Without a scheme (kUnsubdivided) it is the cage's
+/// triangles with their own normals: see make_polygon_surface. Front is where the face's corners run
 /// counter-clockwise.
 ///
 /// `name` is used in messages. `warn` (may be empty) is told of what is repaired or left out: repeated
@@ -40,9 +40,9 @@ std::unique_ptr<Surface> make_limit_surface(const Cage& cage, const std::string&
                                             double memory = machine_memory());
 
 /// The surface of a primitive, exact, with intersect(). Faces: sphere 6 (a cube mapped onto it, equal
-/// angles), cylinder and cone 4 quarters, paraboloid 5 (a square and four sides mapped onto its disk; no singular
-/// point), plane 1. Front is outside of sphere, cylinder and cone, the focus side of the paraboloid, the axis side
-/// of the plane.
+/// angles), cylinder and cone 4 quarters, paraboloid 5 (a square and four sides mapped onto its disk; no
+/// singular point), plane 1. Front is outside of sphere, cylinder and cone, the focus side of the paraboloid,
+/// the axis side of the plane.
 ///
 /// axis and tangent need not be exactly unit or at right angles; the sphere's faces follow them too.
 /// Throws InputError for sizes that are not positive and for axis and tangent that span no plane.
@@ -65,8 +65,21 @@ SurfaceGrid make_grid(const Surface& surface, int n);
 /// Per face a box that holds it, told without preparing it; empty where nothing is known of the faces.
 std::vector<Box> face_hulls(const Surface& surface);
 
-/// The same as make_grid of one face alone, whose points nothing shares.
-SurfaceGrid make_face_grid(const Surface& surface, Id face, int n);
+/// Squares of a face's n x n grid: those from (column, row) on, at most `steps` along either side.
+struct GridPart {
+    Id face = kNone;
+    int column = 0, row = 0, steps = 0;
+};
+
+/// The grids of all faces in parts of at most steps x steps squares, face by face; n in 1..1024, steps >= 1.
+std::vector<GridPart> grid_parts(const Surface& surface, int n, int steps);
+
+/// The facets that make_grid(surface, n) has there, with points of their own that nothing shares; but squares
+/// at split sides have two facets, as all others.
+SurfaceGrid make_part_grid(const Surface& surface, int n, const GridPart& part);
+
+/// Per part a box that holds the surface there; empty where the surface has no bounds. Prepares all faces.
+std::vector<Box> part_boxes(const Surface& surface, int n, const std::vector<GridPart>& parts);
 
 /// make_grid(surface, n).facets.size(), without the grid; n >= 1.
 std::size_t count_facets(const Surface& surface, int n);

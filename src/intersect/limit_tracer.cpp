@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "base/util/parallel.h"
 #include "intersect/box_tree.h"
 #include "intersect/patch_tree.h"
+#include "intersect/ray_patches.h"
 #include "intersect/tracer.h"
 
 namespace trilens {
@@ -22,10 +24,6 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kSelfHit = 1e-9;
 constexpr std::size_t kFacetsPerTask = 256;
 
-// How many times farther than at the samples the surface may stray from a facet. A quadratic patch strays 4/3
-// as far inside a facet as at the middles of its edges; the rest is for terms of higher order.
-constexpr double kRayStraySafety = 2;
-
 // A patch that strays s from a facet of size h turns by about 4 s / h from its middle to its ends; the stray
 // kept is twice what was seen, and rays within twice that angle of the surface may meet the patch twice.
 constexpr double kGrazing = 4;
@@ -33,16 +31,6 @@ constexpr double kGrazing = 4;
 // How much wider than its patches the box around a surface is, as a share of itself: patches stray by what a
 // few samples say.
 constexpr double kRoomAround = 0.01;
-
-/// A facet of the fine grid with the patch of surface that it stands for.
-struct Patch {
-    std::array<Vec3, 3> corner;
-    double stray = 0;  // the surface lies within this distance of the facet
-    double size = 0;   // longest edge
-    std::array<Vec2, 3> uv;
-    Id face = kNone;
-    double reach = 0;  // largest extent in u or v
-};
 
 /// A patch that the ray may meet.
 struct Candidate {
@@ -63,39 +51,6 @@ struct Candidates {
 /// straight through, behind which it seldom goes on without a hit.
 enum class Reach { kToFirst, kAll };
 
-double largest_part(const Vec3& v) {
-    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-}
-
-Patch make_patch(const Surface& surface, const SurfaceGrid& grid, std::size_t facet) {
-    Patch patch;
-    patch.face = grid.facet_face[facet];
-    patch.uv = grid.facet_uv[facet];
-    for (int k = 0; k < 3; ++k) patch.corner[k] = grid.points[grid.corner_point[grid.facets[facet][k]]];
-
-    constexpr double third = 1.0 / 3;
-    constexpr std::array<std::array<double, 3>, 4> samples{
-        {{0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {third, third, third}}};
-    for (const auto& [a, b, c] : samples) {
-        const Vec3 chord = a * patch.corner[0] + b * patch.corner[1] + c * patch.corner[2];
-        const Vec2 uv = a * patch.uv[0] + b * patch.uv[1] + c * patch.uv[2];
-        patch.stray =
-            std::max(patch.stray, length(surface.eval_first_order(patch.face, uv).position - chord));
-    }
-    for (int k = 0; k < 3; ++k) {
-        const Vec2 edge = glm::abs(patch.uv[k] - patch.uv[(k + 1) % 3]);
-        patch.size = std::max(patch.size, length(patch.corner[k] - patch.corner[(k + 1) % 3]));
-        patch.reach = std::max({patch.reach, edge.x, edge.y});
-    }
-    patch.stray = kRayStraySafety * patch.stray + kSurfaceResidual * largest_part(patch.corner[0]);
-    return patch;
-}
-
-Box box_of(const Patch& patch) {
-    const auto& [a, b, c] = patch.corner;
-    return {glm::min(a, glm::min(b, c)) - patch.stray, glm::max(a, glm::max(b, c)) + patch.stray};
-}
-
 /// By the bounds of the faces' parts; without bounds all of space.
 Box box_of_closed_form(const Surface& surface) {
     constexpr int kParts = 8;
@@ -113,50 +68,16 @@ Box box_of_closed_form(const Surface& surface) {
     return box;
 }
 
-Vec3 chord_normal(const Patch& patch) {
+Vec3 chord_normal(const RayPatch& patch) {
     return normalize_or_zero(cross(patch.corner[1] - patch.corner[0], patch.corner[2] - patch.corner[0]));
 }
-
-/// The patches of all faces of a surface, each made when it is first asked for. Thread-safe.
-class FacePatches {
-  public:
-    FacePatches(const Surface& surface, std::function<SurfaceGrid(Id face)> grid)
-        : surface_(surface), grid_(std::move(grid)), faces_(surface.face_count()) {}
-    FacePatches(const FacePatches&) = delete;
-    FacePatches& operator=(const FacePatches&) = delete;
-    ~FacePatches() {
-        for (const auto& face : faces_) delete face.load();
-    }
-
-    const std::vector<Patch>& of(Id face) const {
-        const std::vector<Patch>* known = faces_[face].load(std::memory_order_acquire);
-        if (known) return *known;
-        const SurfaceGrid grid = grid_(face);
-        TRILENS_CHECK(grid.facets.size() <= kMostOfFace, "a face has few facets where it is prepared alone");
-        auto made = std::make_unique<std::vector<Patch>>(grid.facets.size());
-        for (std::size_t f = 0; f < made->size(); ++f) (*made)[f] = make_patch(surface_, grid, f);
-        // Another thread may have made the same meanwhile.
-        if (faces_[face].compare_exchange_strong(known, made.get())) return *made.release();
-        return *known;
-    }
-
-    /// Of the numbers of patches, which are those of a face and then those of the next: face and place in it.
-    static constexpr Id kMostOfFace = 64;
-    static Id number(Id face, std::size_t patch) { return face * kMostOfFace + static_cast<Id>(patch); }
-    const Patch& patch(Id number) const { return of(number / kMostOfFace)[number % kMostOfFace]; }
-
-  private:
-    const Surface& surface_;
-    std::function<SurfaceGrid(Id face)> grid_;
-    mutable std::vector<std::atomic<const std::vector<Patch>*>> faces_;
-};
 
 }  // namespace
 
 struct LimitTracer::Data {
     const Surface& surface;
-    std::vector<Patch> patches;
-    std::unique_ptr<FacePatches> by_face;  // else these, where the tree is one of faces
+    std::vector<RayPatch> patches;
+    std::unique_ptr<PartPatches> by_part;  // else these, where the tree is one of parts
     double largest_patch = 0;              // no patch is longer along any ray, its stray included
     double size = 0;                       // half diagonal of a box about every face's corners and middle
     Box around;                            // holds every hit
@@ -169,37 +90,37 @@ struct LimitTracer::Data {
           size(half_diagonal(exact)),
           around(box_around()),
           tree(boxes(), isa) {}
-    Data(const Surface& exact, const FaceByFace& fine, const std::string& isa)
+    Data(const Surface& exact, const Parts& fine, const std::string& isa)
         : surface(exact),
-          by_face(std::make_unique<FacePatches>(exact, fine.grid)),
-          largest_patch(largest_hull(fine.hulls)),
-          size(0.5 * length(box_of_all(fine.hulls).size())),
-          around(box_of_all(fine.hulls)),
-          tree(fine.hulls, isa) {}
+          by_part(std::make_unique<PartPatches>(exact, fine.boxes.size(), fine.grid)),
+          largest_patch(largest_of(fine.boxes)),
+          size(0.5 * length(box_of_all(fine.boxes).size())),
+          around(box_of_all(fine.boxes)),
+          tree(fine.boxes, isa) {}
 
-    const Patch& patch(Id number) const { return by_face ? by_face->patch(number) : patches[number]; }
+    const RayPatch& patch(Id number) const { return by_part ? by_part->patch(number) : patches[number]; }
 
-    static double largest_hull(const std::vector<Box>& hulls) {
+    static double largest_of(const std::vector<Box>& parts) {
         double largest = 0;
-        for (const Box& hull : hulls) largest = std::max(largest, length(hull.size()));
+        for (const Box& part : parts) largest = std::max(largest, length(part.size()));
         return kRayStraySafety * largest;
     }
-    static Box box_of_all(const std::vector<Box>& hulls) {
+    static Box box_of_all(const std::vector<Box>& parts) {
         Box box;
-        for (const Box& hull : hulls) box.include(hull);
+        for (const Box& part : parts) box.include(part);
         return box;
     }
-    static std::vector<Patch> make_patches(const Surface& surface, const SurfaceGrid& fine) {
+    static std::vector<RayPatch> make_patches(const Surface& surface, const SurfaceGrid& fine) {
         if (surface.has_closed_form()) return {};
-        std::vector<Patch> patches(fine.facets.size());
+        std::vector<RayPatch> patches(fine.facets.size());
         parallel_for(patches.size(), kFacetsPerTask, [&](std::size_t first, std::size_t last) {
-            for (std::size_t f = first; f < last; ++f) patches[f] = make_patch(surface, fine, f);
+            for (std::size_t f = first; f < last; ++f) patches[f] = make_ray_patch(surface, fine, f);
         });
         return patches;
     }
-    static double largest_of(const std::vector<Patch>& patches) {
+    static double largest_of(const std::vector<RayPatch>& patches) {
         double largest = 0;
-        for (const Patch& patch : patches) largest = std::max(largest, patch.size + patch.stray);
+        for (const RayPatch& patch : patches) largest = std::max(largest, patch.size + patch.stray);
         return kRayStraySafety * largest;
     }
     static double half_diagonal(const Surface& surface) {
@@ -214,7 +135,7 @@ struct LimitTracer::Data {
     }
     Box box_around() const {
         Box box;
-        for (const Patch& patch : patches) box.include(box_of(patch));
+        for (const RayPatch& patch : patches) box.include(box_of(patch));
         if (surface.has_closed_form()) box = box_of_closed_form(surface);
         const Vec3 room = kRoomAround * box.size() + Vec3(kSelfHit * size);
         return {box.low - room, box.high + room};
@@ -222,11 +143,11 @@ struct LimitTracer::Data {
     std::vector<Box> boxes() const {
         std::vector<Box> result;
         result.reserve(patches.size());
-        for (const Patch& patch : patches) result.push_back(box_of(patch));
+        for (const RayPatch& patch : patches) result.push_back(box_of(patch));
         return result;
     }
 
-    static std::optional<Candidate> candidate(const RayFrame& frame, const Patch& patch, double t_min);
+    static std::optional<Candidate> candidate(const RayFrame& frame, const RayPatch& patch, double t_min);
     struct Query {
         const Ray& ray;
         const RayFrame& frame;
@@ -238,7 +159,7 @@ struct LimitTracer::Data {
 };
 
 // Keeps the patch if the ray passes within its stray, and some of it lies after t_min.
-std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, const Patch& patch,
+std::optional<Candidate> LimitTracer::Data::candidate(const RayFrame& frame, const RayPatch& patch,
                                                       double t_min) {
     PlaneTriangle seen;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -267,9 +188,10 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
     Candidates candidates;
     std::vector<Candidate>& found = candidates.found;
     double& complete_to = candidates.complete_to;
-    // A ray comes into the box of a candidate no later than so much after its t_near.
-    const double beyond = largest_patch / query.frame.speed;
-    const auto look_at = [&](const Patch& patch, Id number) {
+    // A ray comes into the box of a patch no later than so much after its t_near. The box of a part holds the
+    // surface itself: where the ray has not come into it the part has no hit.
+    const double beyond = by_part ? 0 : largest_patch / query.frame.speed;
+    const auto look_at = [&](const RayPatch& patch, Id number) {
         const auto one = candidate(query.frame, patch, query.t_min);
         if (!one || one->t_near > complete_to) return;
         found.push_back(*one);
@@ -278,11 +200,14 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
             complete_to = std::min(complete_to, one->t_far);
     };
     tree.visit(query.ray, query.t_min, kUnbounded, [&](Id box) {
-        if (!by_face) {
+        if (!by_part) {
             look_at(patches[box], box);
         } else {
-            const std::vector<Patch>& of_face = by_face->of(box);
-            for (std::size_t i = 0; i < of_face.size(); ++i) look_at(of_face[i], FacePatches::number(box, i));
+            const PartPatches::Part& part = by_part->of(box);
+            for (std::uint64_t left = part.may_meet(query.frame); left != 0; left &= left - 1) {
+                const auto i = static_cast<std::size_t>(std::countr_zero(left));
+                look_at(part.patches[i], PartPatches::number(box, i));
+            }
         }
         return complete_to + beyond;
     });
@@ -299,7 +224,7 @@ Candidates LimitTracer::Data::candidates(const Query& query, Reach reach) const 
 template <typename Use>
 void LimitTracer::Data::for_each_hit(const Ray& ray, const RayFrame& frame, const Candidate& candidate,
                                      Use&& use) const {
-    const Patch& patch = this->patch(candidate.patch);
+    const RayPatch& patch = this->patch(candidate.patch);
     const auto solve = [&](const Vec2& uv) {
         const auto hit = solve_surface_hit(surface, frame, {patch.face, uv, patch.reach});
         if (hit) use(*hit);
@@ -324,7 +249,7 @@ void LimitTracer::Data::for_each_hit(const Ray& ray, const RayFrame& frame, cons
 
 LimitTracer::LimitTracer(const Surface& surface, const SurfaceGrid& fine, const std::string& isa)
     : data_(std::make_unique<Data>(surface, fine, isa)) {}
-LimitTracer::LimitTracer(const Surface& surface, const FaceByFace& fine, const std::string& isa)
+LimitTracer::LimitTracer(const Surface& surface, const Parts& fine, const std::string& isa)
     : data_(std::make_unique<Data>(surface, fine, isa)) {}
 LimitTracer::~LimitTracer() = default;
 LimitTracer::LimitTracer(LimitTracer&&) noexcept = default;
@@ -343,7 +268,7 @@ std::optional<SurfaceHit> LimitTracer::first_hit(const Ray& ray, double t_min) c
         for (const Candidate& candidate : candidates.found) {
             if (candidate.t_near <= tried) continue;
             if (first && candidate.t_near > first->t) return first;
-            const Patch& patch = data_->patch(candidate.patch);
+            const RayPatch& patch = data_->patch(candidate.patch);
             data_->for_each_hit(ray, *frame, candidate, [&](const SurfaceHit& hit) {
                 if (!(hit.t > t_min) || (first && !(hit.t < first->t))) return;
                 first = hit;

@@ -30,13 +30,13 @@ class LimitTracer {
     /// is nearly flat (n of 16 or more per face); it is not kept, and not used where the surface has a closed
     /// form. Throws UsageError on an unknown `isa` (see Tracer), ComputationError where Embree fails.
     LimitTracer(const Surface& surface, const SurfaceGrid& fine, const std::string& isa = "");
-    /// For surfaces of so many faces that most of them no ray comes near: the facets of a face are made when
-    /// a ray first meets its hull, by whatever thread.
-    struct FaceByFace {
-        std::vector<Box> hulls;                    // per face a box that holds it, finite and not empty
-        std::function<SurfaceGrid(Id face)> grid;  // of at most 64 facets
+    /// The same, but that the facets of a part of the surface are made when a ray first meets the box that
+    /// holds it, by whatever thread.
+    struct Parts {
+        std::vector<Box> boxes;                    // per part a box that holds it, finite and not empty
+        std::function<SurfaceGrid(Id part)> grid;  // of at most 64 facets
     };
-    LimitTracer(const Surface& surface, const FaceByFace& fine, const std::string& isa = "");
+    LimitTracer(const Surface& surface, const Parts& fine, const std::string& isa = "");
     ~LimitTracer();
     LimitTracer(LimitTracer&&) noexcept;
     LimitTracer& operator=(LimitTracer&&) noexcept;

@@ -1,6 +1,5 @@
 #include "intersect/box_tree.h"
 
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "intersect/local_segments.cpp"
 #include <hwy/foreach_target.h>

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "base/util/parallel.h"
@@ -18,7 +19,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t kNormal = kQuantities;
 using Radii = std::array<double, kQuantities + 1>;
 
-struct Box {
+struct ParameterBox {
     Vec2 low, high;
 };
 
@@ -66,7 +67,7 @@ Face take_apart(const Surface& surface, Id id) {
 
 /// Whether the box and the shape share more than a border; a box without extent along a parameter may lie on
 /// it.
-bool overlap(const PartShape& shape, FaceDomain domain, const Box& box) {
+bool overlap(const PartShape& shape, FaceDomain domain, const ParameterBox& box) {
     for (int axis = 0; axis < 2; ++axis) {
         const double low = std::max(box.low[axis], shape.low()[axis]);
         const double high = std::min(box.high[axis], shape.high()[axis]);
@@ -115,8 +116,31 @@ class PolynomialBounder final : public SurfaceBounder {
         return result;
     }
 
+    Box box(Id face, const Vec2& low, const Vec2& high) const override {
+        std::vector<const FacePart*> parts;
+        collect(face, 0, {low, high}, parts);
+        if (parts.empty()) return SurfaceBounder::box(face, low, high);
+        Box result;
+        for (const FacePart* part : parts) {
+            const Vec3 room(part->slack[0]);
+            if (!part->is_polynomial) {
+                result.include(part->middle.position - room);
+                result.include(part->middle.position + room);
+                continue;
+            }
+            const auto [a, b] = inside_part(*part, {low, high});
+            const BezierNet net = restricted(part->net, a, b);
+            for (const Vec3& point : net.points()) {
+                result.include(part->origin + point - room);
+                result.include(part->origin + point + room);
+            }
+        }
+        return result;
+    }
+
   private:
-    void collect(Id face, std::size_t index, const Box& box, std::vector<const FacePart*>& parts) const {
+    void collect(Id face, std::size_t index, const ParameterBox& box,
+                 std::vector<const FacePart*>& parts) const {
         const Branch& branch = faces_[face].branches[index];
         if (!overlap(branch.shape, surface_.domain(face), box)) return;
         if (branch.is_part) {
@@ -140,7 +164,8 @@ class PolynomialBounder final : public SurfaceBounder {
     }
 
     /// Widens the radii about `middle` by one part's values within the box.
-    static void widen(const FacePart& part, const Box& box, const SurfacePoint& middle, Radii& radius) {
+    static void widen(const FacePart& part, const ParameterBox& box, const SurfacePoint& middle,
+                      Radii& radius) {
         if (part.is_polynomial) {
             widen_by_hulls(part, box, middle, radius);
             return;
@@ -153,11 +178,15 @@ class PolynomialBounder final : public SurfaceBounder {
         radius[kNormal] = std::max(radius[kNormal], turn);
     }
 
-    static void widen_by_hulls(const FacePart& part, const Box& box, const SurfacePoint& middle,
-                               Radii& radius) {
+    /// The box's share of a part, in the part's own parameters.
+    static std::pair<Vec2, Vec2> inside_part(const FacePart& part, const ParameterBox& box) {
         const Vec2 low = glm::max(box.low, part.shape.low()), high = glm::min(box.high, part.shape.high());
-        const Vec2 a = (low - part.shape.corner) / part.shape.size;
-        const Vec2 b = (high - part.shape.corner) / part.shape.size;
+        return {(low - part.shape.corner) / part.shape.size, (high - part.shape.corner) / part.shape.size};
+    }
+
+    static void widen_by_hulls(const FacePart& part, const ParameterBox& box, const SurfacePoint& middle,
+                               Radii& radius) {
+        const auto [a, b] = inside_part(part, box);
         const double scale = 1 / part.shape.size;
         std::array<BezierNet, kQuantities> nets = part_nets(part.net);
         for (std::size_t q = 0; q < kQuantities; ++q) {

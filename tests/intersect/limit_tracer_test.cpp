@@ -371,7 +371,7 @@ TEST_CASE("a surface prepared face by face, as rays come, is met where one prepa
         std::set<Id> made;
         const LimitTracer by_face(*surface, {hulls, [&](Id face) {
                                                  made.insert(face);
-                                                 return make_face_grid(*surface, face, 5);
+                                                 return make_part_grid(*surface, 5, {face, 0, 0, 5});
                                              }});
         CHECK(made.empty());
         int met = 0, unlike = 0;
@@ -385,5 +385,31 @@ TEST_CASE("a surface prepared face by face, as rays come, is met where one prepa
         CHECK(met > 1500);
         CHECK(unlike == 0);
         CHECK(made.size() == surface->face_count());
+
+        // Parts of faces: the same facets, so the same candidates and the same hits but for the rounding of
+        // points that faces share.
+        const std::vector<GridPart> parts = grid_parts(*surface, 16, 4);
+        const std::vector<Box> boxes = part_boxes(*surface, 16, parts);
+        REQUIRE(boxes.size() == parts.size());
+        std::set<Id> parts_made;
+        const LimitTracer by_part(*surface, {boxes, [&](Id part) {
+                                                 parts_made.insert(part);
+                                                 return make_part_grid(*surface, 16, parts[part]);
+                                             }});
+        CHECK(parts_made.empty());
+        int in_parts = 0;
+        for (int i = 0; i < 3000; ++i) {
+            const Vec3 from = 3.0 * random.direction(), at = 0.8 * random.uniform(0, 1) * random.direction();
+            const Ray ray{from, at - from};
+            const auto one = whole.first_hit(ray), other = by_part.first_hit(ray);
+            in_parts += one.has_value();
+            CHECK(one.has_value() == other.has_value());
+            if (one && other) CHECK(std::fabs(one->t - other->t) <= 1e-12);
+        }
+        CHECK(in_parts > 1500);
+        CHECK(parts_made.size() > parts.size() / 2);
+        const std::size_t made_at_once = parts_made.size();
+        by_part.first_hit({{9, 9, 9}, {1, 0, 0}});
+        CHECK(parts_made.size() == made_at_once);
     }
 }

@@ -73,8 +73,11 @@ Outside points_outside(const Surface& surface, unsigned seed, int box_count) {
         const Id face = boxes.face(surface);
         const auto box = boxes.box(surface.domain(face));
         const SurfaceBounds b = bounder->bounds(face, box[0], box[1]);
+        const Box around = bounder->box(face, box[0], box[1]);
         for (int n = 0; n < 12; ++n) {
             const SurfacePoint p = surface.eval(face, boxes.inside(box, surface.domain(face)));
+            if (!around.holds(p.position))
+                ++result.outside, UNSCOPED_INFO("face " << face << ": out of its box");
             const std::array<std::array<double, 2>, 7> pairs = {
                 {{length(p.position - b.middle.position), b.position_radius},
                  {length(p.du - b.middle.du), b.du_radius},

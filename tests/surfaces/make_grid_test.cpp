@@ -158,6 +158,45 @@ TEST_CASE("The count of facets is that of the grid", "[surfaces]") {
         }
 }
 
+TEST_CASE("A grid's parts have its facets, each once", "[surfaces][law]") {
+    for (const auto& [name, cage] : small_cages())
+        for (const auto& [n, steps] : {std::pair(1, 1), std::pair(5, 2), std::pair(6, 3), std::pair(4, 9)}) {
+            CAPTURE(name, n, steps);
+            const auto surface = quietly(cage);
+            using Key = std::pair<Id, std::array<std::pair<double, double>, 3>>;
+            const auto keys_of = [](const SurfaceGrid& grid, std::map<Key, int>& keys) {
+                for (std::size_t f = 0; f < grid.facets.size(); ++f) {
+                    Key key{grid.facet_face[f], {}};
+                    for (std::size_t k = 0; k < 3; ++k)
+                        key.second[k] = {grid.facet_uv[f][k].x, grid.facet_uv[f][k].y};
+                    std::sort(key.second.begin(), key.second.end());
+                    ++keys[key];
+                }
+            };
+            std::map<Key, int> whole, in_parts;
+            keys_of(make_grid(*surface, n), whole);
+            std::size_t facets = 0;
+            for (const GridPart& part : grid_parts(*surface, n, steps)) {
+                const SurfaceGrid grid = make_part_grid(*surface, n, part);
+                facets += grid.facets.size();
+                keys_of(grid, in_parts);
+                for (std::size_t f = 0; f < grid.facets.size(); ++f)
+                    for (int k = 0; k < 3; ++k)
+                        CHECK(grid.points[grid.corner_point[grid.facets[f][k]]] ==
+                              surface->eval_first_order(grid.facet_face[f], grid.facet_uv[f][k]).position);
+            }
+            CHECK(in_parts.size() == facets);
+            // Squares at split sides have more facets in the whole grid; where there is none they are the
+            // same.
+            std::size_t squares = 0;
+            for (Id face = 0; face < surface->face_count(); ++face)
+                squares += (surface->domain(face) == FaceDomain::kSquare ? 2U : 1U) *
+                           static_cast<std::size_t>(n * n);
+            CHECK(facets == squares);
+            if (whole.size() == squares) CHECK(in_parts == whole);
+        }
+}
+
 TEST_CASE("Corners lie on the surface where their (u, v) says, whichever face is asked", "[surfaces]") {
     std::vector<std::pair<std::string, Cage>> cages = small_cages();
     if (data_missing("cages/catmark_pawn.obj"))

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/math/box.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/triangle_scene.h"
 #include "base/util/ids.h"
@@ -77,6 +78,12 @@ class SurfaceBounder {
     /// 0 <= low <= high <= 1, and low inside the domain. A box may be one point: the radii are then what
     /// rounding leaves.
     virtual SurfaceBounds bounds(Id face, const Vec2& low, const Vec2& high) const = 0;
+
+    /// A box that holds all points of that part, often smaller than the one around bounds()' ball.
+    virtual Box box(Id face, const Vec2& low, const Vec2& high) const {
+        const SurfaceBounds part = bounds(face, low, high);
+        return {part.middle.position - part.position_radius, part.middle.position + part.position_radius};
+    }
 };
 
 /// A surface of numbered faces in the world frame: the limit of a cage, or a primitive. Thread-safe to read.

@@ -18,7 +18,9 @@ constexpr int kMinFine = 4, kMaxFine = 256;
 /// Cages of so many faces that kMinFine goes beyond this have small faces, which need less: about 1 GB here.
 constexpr std::size_t kMostFineFacets = 2'000'000;
 
-/// Surfaces of more faces are prepared as far as rays come, with facets of so many steps along each face.
+/// Squares along a side of the parts that are prepared together, when a ray first comes near.
+constexpr int kPartSteps = 4;
+/// Faces of surfaces that have more are such parts themselves, of so many squares along a side.
 constexpr std::size_t kManyFaces = 20'000;
 constexpr int kFineOfMany = 2;
 
@@ -38,6 +40,21 @@ int fine_resolution(const Surface& surface) {
                             (2.0 * static_cast<double>(std::max<std::size_t>(1, surface.face_count())));
     const int n = std::clamp(static_cast<int>(std::sqrt(per_face)), kMinFine, kMaxFine);
     return resolution_within(surface, n, kMostFineFacets);
+}
+
+/// Prepared as far as rays come, where the surface says what holds its parts.
+std::unique_ptr<LimitTracer> make_limit_tracer(const Surface& surface) {
+    if (surface.has_closed_form()) return std::make_unique<LimitTracer>(surface, SurfaceGrid{});
+    const bool has_many = surface.face_count() > kManyFaces;
+    const int n = has_many ? kFineOfMany : fine_resolution(surface), steps = has_many ? n : kPartSteps;
+    std::vector<GridPart> parts = grid_parts(surface, n, steps);
+    std::vector<Box> boxes = has_many ? face_hulls(surface) : part_boxes(surface, n, parts);
+    if (boxes.empty())
+        return std::make_unique<LimitTracer>(surface, make_grid(surface, fine_resolution(surface)));
+    return std::make_unique<LimitTracer>(
+        surface, LimitTracer::Parts{std::move(boxes), [&surface, n, parts = std::move(parts)](Id part) {
+                                        return make_part_grid(surface, n, parts[part]);
+                                    }});
 }
 
 }  // namespace
@@ -136,18 +153,8 @@ const Tracer& object_tracer(const World& world) {
 }
 
 const LimitTracer& limit_tracer(const World& world, std::size_t optic) {
-    return world.geometry->optic[optic]->limit.get([&] {
-        const Surface& surface = *world.optics[optic].surface;
-        if (surface.face_count() > kManyFaces)
-            if (std::vector<Box> hulls = face_hulls(surface); !hulls.empty())
-                return std::make_unique<LimitTracer>(
-                    surface, LimitTracer::FaceByFace{std::move(hulls), [&surface](Id face) {
-                                                         return make_face_grid(surface, face, kFineOfMany);
-                                                     }});
-        const SurfaceGrid fine =
-            surface.has_closed_form() ? SurfaceGrid{} : make_grid(surface, fine_resolution(surface));
-        return std::make_unique<LimitTracer>(surface, fine);
-    });
+    return world.geometry->optic[optic]->limit.get(
+        [&] { return make_limit_tracer(*world.optics[optic].surface); });
 }
 
 const PathWorld& path_world(const World& world) {
