@@ -16,6 +16,7 @@
 #include "report/xml.h"
 #include "support/test.h"
 #include "sweep/fake_scene.h"
+#include "sweep/report/gallery.h"
 #include "sweep/report/sweep_report.h"
 #include "sweep/run/sweep.h"
 #include "sweep/store/machine.h"
@@ -68,6 +69,19 @@ TEST_CASE("sweep: each group of runs has its own order, along the axis that orde
     for (std::size_t i = 0; i < 8; ++i) CHECK(again.runs[i].plan.at == summary.runs[i].plan.at);
     const std::string csv = read_whole_file(fake.params.folder + "/runs.csv").value();
     CHECK(csv.find("classic_n0008,") != std::string::npos);
+}
+
+TEST_CASE("sweep: a gallery tells the order of the run that it shows, once", "[sweep]") {
+    const std::string folder = trilens_test::scratch_dir("axes_gallery");
+    FakeEngines fake(folder + "/two");
+    write_sweep_gallery(folder, std::vector<SweepSummary>{fake.run()});
+    const std::string page = read_whole_file(folder + "/report.html").value();
+    const std::string words = "order of the mean displacement";
+    const std::size_t at = page.find(words);
+    REQUIRE(at != std::string::npos);
+    CHECK(page.find(words, at + 1) == std::string::npos);
+    // The first engine's.
+    CHECK(page.substr(at, 60).find("2") != std::string::npos);
 }
 
 TEST_CASE("sweep: a line per group in one plot, as SVG and PDF", "[sweep]") {

@@ -42,12 +42,15 @@ Facts facts_of(const SweepSummary& summary, const RunRecord& run) {
                                rounded_text(*mean, 3) + " px");
         facts.emplace_back(one.layer + ", measured", measured_text(one.metrics));
     }
-    for (const SweepFit& fit : summary.fits)
-        if (fit.optic == "all" && fit.metric == "disp_mean_px" && fit.order)
-            facts.emplace_back(fit.layer + ", order of the mean displacement", rounded_text(*fit.order, 3));
-    for (const std::string& layer : layers_of(summary))
-        if (const SweepFit* off = find_fit_off_folds(summary.fits, layer, "all"); off && off->order)
-            facts.emplace_back(layer + ", order off the folds", rounded_text(*off->order, 3));
+    // Of the fits, those along the shown run's own group.
+    for (const SweepFit& fit : summary.fits) {
+        if (fit.optic != "all" || fit.metric != "disp_mean_px" || !fit.order) continue;
+        if (fit.group != without_axis(run.plan.at, fit.axis)) continue;
+        facts.emplace_back(fit.layer + ", order of the mean displacement", rounded_text(*fit.order, 3));
+        const SweepFit* const off = find_fit_off_folds(summary.fits, fit.layer, "all", &fit.group);
+        if (off && off->order)
+            facts.emplace_back(fit.layer + ", order off the folds", rounded_text(*off->order, 3));
+    }
     return facts;
 }
 
