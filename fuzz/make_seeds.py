@@ -65,6 +65,50 @@ def tables():
     write("wish", "driver", subprocess.run([PROGRAM, "design", "--example"], check=True, capture_output=True).stdout)
 
 
+def volumes():
+    write("vtk", "cells", """# vtk DataFile Version 3.0
+all shapes
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 9 float
+0 0 0 1 0 0 1 1 0 0 1 0
+0 0 1 1 0 1 1 1 1 0 1 1 .5 .5 2
+CELLS 5 33
+8 0 1 2 3 4 5 6 7
+5 4 5 6 7 8
+6 0 1 3 4 5 7
+4 0 1 3 4
+3 0 1 2
+CELL_TYPES 5
+12 14 13 10 5
+POINT_DATA 9
+VECTORS v float
+0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0
+SCALARS heat float 1
+LOOKUP_TABLE default
+0 1 2 3 4 5 6 7 8e-1
+""")
+    write("vtk", "grid", """# vtk DataFile Version 5.1
+a grid
+ASCII
+DATASET STRUCTURED_POINTS
+DIMENSIONS 2 2 2
+ORIGIN 0 0 -1
+SPACING 1 .5 1
+POINT_DATA 8
+FIELD FieldData 1
+s 1 8 double
+0 1 2 3 4 5 6 7
+METADATA
+INFORMATION 0
+
+""")
+    head = "NRRD0004\n# seed\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nspace origin: (0,0,1)\n"
+    write("nrrd", "raw", (head + "spacings: 1 2 3\nencoding: raw\n\n").encode() + bytes(range(8)))
+    write("nrrd", "text", head + "space directions: (0,1,0) (1,0,0) (0,0,2)\nencoding: ascii\nkey:=value\n\n0 1 2 3 4 5 6 7\n")
+    write("nrrd", "detached", head + "encoding: raw\nbyte skip: 56\ndata file: x.raw\n")
+
+
 def models():
     write("obj", "all", """# a comment
 mtllib a.mtl
@@ -186,5 +230,5 @@ def random_bytes():
         write("laws", f"random{seed:02}", random.Random(seed).randbytes(160))
 
 
-for make in (scenes, tables, models, pictures, studies, random_bytes):
+for make in (scenes, tables, volumes, models, pictures, studies, random_bytes):
     make()

@@ -19,6 +19,7 @@ constexpr std::array kTargets{
     FuzzTarget{"gltf", "glTF, text or binary, as a scene", gltf_file},
     FuzzTarget{"laws", "random scenes, drawn and held against the laws", random_scene},
     FuzzTarget{"mtl", "materials of an OBJ", mtl_text},
+    FuzzTarget{"nrrd", "a volume on a regular grid", nrrd_text},
     FuzzTarget{"obj", "a cage or model", obj_text},
     FuzzTarget{"pairs", "pairs of pixels and points", pairs_text},
     FuzzTarget{"png", "a texture", png_file},
@@ -27,6 +28,7 @@ constexpr std::array kTargets{
     FuzzTarget{"scene", "a scene file", scene_text},
     FuzzTarget{"sweep", "a sweep file", sweep_file},
     FuzzTarget{"test", "a regression test's test.json", test_file},
+    FuzzTarget{"vtk", "a volume in cells", vtk_text},
     FuzzTarget{"wish", "the wish of a freeform mirror", wish_text},
 };
 

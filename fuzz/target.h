@@ -57,6 +57,8 @@ Answer pairs_text(std::string_view bytes);
 Answer wish_text(std::string_view bytes);
 Answer obj_text(std::string_view bytes);
 Answer mtl_text(std::string_view bytes);
+Answer vtk_text(std::string_view bytes);
+Answer nrrd_text(std::string_view bytes);
 Answer gltf_file(std::string_view bytes);
 Answer exr_file(std::string_view bytes);
 Answer png_file(std::string_view bytes);

@@ -1,9 +1,10 @@
-// Fuzz targets of what is read as text: scenes, keyframes, points, pairs, wishes, OBJ and MTL.
+// Fuzz targets of what is read as text: scenes, keyframes, points, pairs, wishes, OBJ, MTL, VTK and NRRD.
 #include <cmath>
 
 #include "fuzz/target.h"
 #include "scene/data/scene_digest.h"
 #include "scene/formats/obj.h"
+#include "scene/formats/volume_file.h"
 #include "trilens/animation.h"
 #include "trilens/design.h"
 #include "trilens/fit.h"
@@ -89,6 +90,37 @@ Answer obj_text(std::string_view bytes) {
         require(corners == mesh.cage.face_vertex_indices.size(), "corners of faces that are none");
         for (const auto vertex : mesh.cage.face_vertex_indices)
             require(static_cast<std::size_t>(vertex) < mesh.cage.points.size(), "a corner that is no point");
+    });
+}
+
+namespace {
+
+/// Cells that are drawn: of positive volume, their corners points with a number each.
+void require_cells(const TetMesh& mesh) {
+    require(mesh.scalars.size() == mesh.points.size(), "a point without a scalar, or a scalar without a point");
+    for (const double scalar : mesh.scalars) require(std::isfinite(scalar), "a scalar that is not finite");
+    for (const Tetrahedron& cell : mesh.cells) {
+        for (const Id corner : cell) require(corner < mesh.points.size(), "a corner that is no point");
+        const Vec3& a = mesh.points[cell[0]];
+        require(dot(cross(mesh.points[cell[1]] - a, mesh.points[cell[2]] - a), mesh.points[cell[3]] - a) > 0,
+                "a cell without a volume");
+    }
+}
+
+}  // namespace
+
+Answer vtk_text(std::string_view bytes) {
+    return answer([&] {
+        VolumeFile file = parse_vtk(std::string(bytes), "fuzzed.vtk", "");
+        if (auto* soup = std::get_if<CellSoup>(&file.cells)) require_cells(make_tet_mesh(std::move(*soup)));
+    });
+}
+
+Answer nrrd_text(std::string_view bytes) {
+    return answer([&] {
+        const RegularGrid grid =
+            parse_nrrd(std::string(bytes), "fuzzed.nrrd", [](const std::string&) { return std::string(64, 'x'); });
+        require(grid.scalars.size() == grid.size[0] * grid.size[1] * grid.size[2], "samples that are missing");
     });
 }
 

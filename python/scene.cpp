@@ -96,6 +96,17 @@ void bind_parts(py::module_& module) {
             "bounds", [](const MeshInfo& info) { return bounds_of(info.bounds); },
             "((x, y, z), (x, y, z)): the lowest and the highest corner of its box, world frame; None where "
             "empty.");
+
+    py::class_<VolumeInfo> volume(module, "Volume", "A volume of the scene.");
+    bind_fields(volume, field("name", &VolumeInfo::name, "Its name."),
+                field("field", &VolumeInfo::field, "Of its file; empty: it has no name."),
+                field("cells", &VolumeInfo::cells, "As its file has them."),
+                field("tetrahedra", &VolumeInfo::tetrahedra, "That they are cut into."),
+                field("points", &VolumeInfo::points, "How many."),
+                field("least", &VolumeInfo::least, "The least scalar."),
+                field("most", &VolumeInfo::most, "The greatest."));
+    volume.def_property_readonly(
+        "bounds", [](const VolumeInfo& info) { return bounds_of(info.bounds); }, "As Mesh.bounds.");
 }
 
 void bind_readers(py::module_& module) {
@@ -172,6 +183,8 @@ void bind_scene(py::module_& module) {
         .def_property_readonly(
             "meshes", [](const Scene& scene) { return make_scene_info(scene).meshes; },
             "In scene order: the index is the object id of images.")
+        .def_property_readonly(
+            "volumes", [](const Scene& scene) { return make_scene_info(scene).volumes; }, "In scene order.")
         .def_property_readonly(
             "bounds", [](const Scene& scene) { return bounds_of(make_scene_info(scene).bounds); },
             "The box around everything, as Mesh.bounds.")

@@ -92,6 +92,21 @@ MaterialInfo make_material_info(Id index, const Scene& scene) {
     return info;
 }
 
+VolumeInfo make_volume_info(const Volume& volume) {
+    VolumeInfo info;
+    info.name = volume.name;
+    info.field = volume.field;
+    info.cells = volume.cells->counts.cells;
+    info.tetrahedra = volume.cells->cells.size();
+    info.points = volume.cells->points.size();
+    const auto [least, most] =
+        std::minmax_element(volume.cells->scalars.begin(), volume.cells->scalars.end());
+    info.least = *least;
+    info.most = *most;
+    for (const Vec3& point : volume.cells->points) info.bounds.include(point);
+    return info;
+}
+
 }  // namespace
 
 SceneInfo make_scene_info(const Scene& scene) {
@@ -108,6 +123,10 @@ SceneInfo make_scene_info(const Scene& scene) {
         info.bounds.include(info.meshes.back().bounds);
     }
     for (Id i = 0; i < scene.materials.size(); ++i) info.materials.push_back(make_material_info(i, scene));
+    for (const Volume& volume : scene.volumes) {
+        info.volumes.push_back(make_volume_info(volume));
+        info.bounds.include(info.volumes.back().bounds);
+    }
     info.lights = scene.lights.size();
     return info;
 }

@@ -32,11 +32,22 @@ struct MaterialInfo {
     std::size_t meshes = 0;  // that name it or have a triangle of it
 };
 
+struct VolumeInfo {
+    std::string name;
+    std::string field;           // of its file; empty: it has no name
+    std::size_t cells = 0;       // as the file has them
+    std::size_t tetrahedra = 0;  // that they are cut into
+    std::size_t points = 0;
+    double least = 0, most = 0;  // of the scalar
+    Box bounds;
+};
+
 struct SceneInfo {
     std::vector<std::string> cameras;       // names
     std::vector<std::string> camera_types;  // "perspective", "fisheye", ...
     std::vector<MeshInfo> meshes;
     std::vector<MaterialInfo> materials;
+    std::vector<VolumeInfo> volumes;
     std::size_t lights = 0;
     std::size_t objects = 0, optics = 0, triangles = 0;
     Box bounds;

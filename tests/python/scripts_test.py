@@ -48,3 +48,11 @@ def test_scenes_that_a_script_makes_are_as_it_makes_them(script, folder, tmp_pat
     assert len(made) > 4
     for file in made:
         assert file.read_text() == (SOURCE / "scenes" / folder / file.name).read_text(), file.name
+
+
+def test_volumes_that_a_script_makes_are_as_it_makes_them(tmp_path):
+    subprocess.run([SOURCE / "scripts/make-volume-scenes", tmp_path], check=True, capture_output=True)
+    made = sorted((tmp_path / "volumes").iterdir())
+    assert [file.name for file in made] == ["benzene.json", "benzene.nrrd", "jet.json", "jet.vtk"]
+    for file in made:
+        assert file.read_bytes() == (SOURCE / "scenes/volumes" / file.name).read_bytes(), file.name

@@ -75,6 +75,22 @@ std::string mesh_line(const MeshInfo& mesh) {
     return line + "\n";
 }
 
+Json volume_json(const VolumeInfo& volume) {
+    return {{"name", volume.name},
+            {"field", volume.field},
+            {"cells", volume.cells},
+            {"tetrahedra", volume.tetrahedra},
+            {"points", volume.points},
+            {"range", {volume.least, volume.most}},
+            {"bounds", box_json(volume.bounds)}};
+}
+
+std::string volume_line(const VolumeInfo& volume) {
+    return fmt::format("  volume  {}: {} cells, {} tetrahedra, {}{:.6g} to {:.6g}\n", volume.name,
+                       volume.cells, volume.tetrahedra, volume.field.empty() ? "" : volume.field + " ",
+                       volume.least, volume.most);
+}
+
 }  // namespace
 
 Answer info_answer(const Scene& scene) {
@@ -111,6 +127,11 @@ Answer info_answer(const Scene& scene) {
     for (const MeshInfo& mesh : found.meshes) {
         fields["meshes"].push_back(mesh_json(mesh));
         answer.text += mesh_line(mesh);
+    }
+    fields["volumes"] = Json::array();
+    for (const VolumeInfo& volume : found.volumes) {
+        fields["volumes"].push_back(volume_json(volume));
+        answer.text += volume_line(volume);
     }
     return answer;
 }

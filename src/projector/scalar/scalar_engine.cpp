@@ -9,8 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "projector/exact/exact_hit.h"
+#include "projector/projector.h"
 #include "projector/scene/bvh.h"
 
 namespace trilens {
@@ -91,6 +93,34 @@ struct RayWalk {
         }
     }
 
+    /// Appends every triangle with 0 <= t <= until.
+    void collect(double until, std::vector<OpenNode>& stack, std::vector<Crossing>& found) {
+        const Bvh& bvh = scene.bvh();
+        const auto push = [&](Id node) {
+            const Box& box = bvh.nodes[node].box;
+            const auto enters = enter_box(ray, {box.low - centre, box.high - centre});
+            if (enters && *enters * (1 - kTimeSlack) <= until) stack.push_back({node, *enters});
+        };
+        stack.clear();
+        if (!bvh.nodes.empty()) push(0);
+        while (!stack.empty()) {
+            const BvhNode& node = bvh.nodes[stack.back().node];
+            stack.pop_back();
+            for (Id i = node.first; i < node.first + node.count; ++i) cross(bvh.order[i], until, found);
+            if (node.count > 0) continue;
+            push(node.first);
+            push(node.first + 1);
+        }
+    }
+
+    void cross(Id triangle, double until, std::vector<Crossing>& found) const {
+        const std::optional<LineHit> hit =
+            exact_hit(ray, {scene.corner(0, triangle, centre), scene.corner(1, triangle, centre),
+                            scene.corner(2, triangle, centre)});
+        if (hit && hit->t >= 0 && hit->t <= until)
+            found.push_back({scene.triangles[triangle].triangle(), hit->t});
+    }
+
     template <typename Pass>
     Hit see(const Pass& pass) {
         pass();
@@ -124,6 +154,39 @@ void draw_scalar(const PreparedScene& scene, const RayMesh& mesh, const FacetSam
             for (std::size_t s = from; s < to; ++s) {
                 const SampleRay ray = facet.at(grid.position(samples[s]));
                 hits[samples[s]] = see_first({scene.data(), ray, facet.centre}, cull, stack);
+            }
+        });
+    }
+}
+
+void find_crossings(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
+                    const SampleGrid& grid, std::span<const double> until, const TakeCrossings& take) {
+    constexpr std::size_t kSamplesTogether = 64;
+    TRILENS_CHECK(until.size() == grid.size(), "one length per sample of the grid");
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        const std::span<const Id> samples = owned.of(f);
+        if (!mesh.has_rays(f) || samples.empty()) continue;
+        const FacetWeights weights = facet_weights(mesh, f);
+        if (weights.edge_on) continue;
+        const FacetRays facet = make_facet_rays({mesh, static_cast<Id>(f), weights});
+        parallel_for(samples.size(), kSamplesTogether, [&](std::size_t from, std::size_t to) {
+            std::vector<OpenNode> stack;
+            std::vector<Crossing> found;
+            for (std::size_t s = from; s < to; ++s) {
+                const Id sample = samples[s];
+                if (!(until[sample] > 0)) continue;
+                const Vec2 position = grid.position(sample);
+                const SampleRay ray = facet.at(position);
+                RayWalk walk{scene.data(), ray, facet.centre};
+                found.clear();
+                walk.collect(until[sample], stack, found);
+                std::sort(found.begin(), found.end(), [](const Crossing& a, const Crossing& b) {
+                    return a.t != b.t ? a.t < b.t : a.triangle < b.triangle;
+                });
+                if (found.empty())
+                    if (const Hit behind = see_first(walk, true, stack); behind.seen())
+                        found.push_back({behind.triangle, behind.t});
+                take(sample, sample_ray(mesh, f, weights, position), found);
             }
         });
     }

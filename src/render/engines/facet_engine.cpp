@@ -67,6 +67,7 @@ class FacetViewer : public Viewer {
     void view_rims(const SampleGrid& grid, SampleViews& views) const;
     void trace_each(std::span<const Id> samples, const SampleGrid& grid, SampleViews& views,
                     std::vector<PathEnds>& ends) const;
+    void view_volumes(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void redraw_direct(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const;
     void describe_optic(std::size_t index, const Hit& hit, SampleView& view, OpticView& on_optic) const;
 
@@ -76,6 +77,7 @@ class FacetViewer : public Viewer {
     DrawMesh draw_objects_;              // objects, as the engine shows them
     DrawMesh draw_paths_;                // the same, for the rays that leave optics
     std::vector<DrawMesh> draw_optics_;  // each optic's facets
+    DrawVolumes draw_volumes_;           // unset: the world has none
     std::vector<SampleGrid> windows_;    // where they may be seen
     bool redraws_direct_ = false;        // draw_objects_ is another engine than draw_first_
     bool has_keys_ = false;
@@ -240,8 +242,23 @@ void FacetViewer::trace_each(std::span<const Id> samples, const SampleGrid& grid
     for (std::size_t i = 0; i < samples.size(); ++i)
         of_optic[views.samples[samples[i]].optic].push_back({samples[i], met[i]});
     for (std::size_t i = 0; i < of_optic.size(); ++i)
-        trace_samples({world_, static_cast<Id>(i), paths_[i].context().camera, grid, reach()}, of_optic[i],
-                      views, ends[i]);
+        trace_samples({world_, static_cast<Id>(i), paths_[i].context().camera, grid, reach(),
+                       static_cast<bool>(draw_volumes_)},
+                      of_optic[i], views, ends[i]);
+}
+
+/// The camera's own rays through the volumes, up to what each sample shows first.
+void FacetViewer::view_volumes(const FacetSamples& owned, const SampleGrid& grid, SampleViews& views) const {
+    std::vector<double> until(grid.size());
+    std::vector<VolumeLight> light(grid.size());
+    for (std::size_t s = 0; s < until.size(); ++s) {
+        const SampleView& view = views.samples[s];
+        const bool is_closed = view.hit.seen() || view.optic != kNone;
+        until[s] = is_closed ? view.depth - frame_.camera.near_depth : reach();
+        if (!is_in_air(world_, views, view)) until[s] = 0;
+    }
+    draw_volumes_(frame_.camera.mesh, owned, grid, until, light);
+    for (std::size_t s = 0; s < until.size(); ++s) views.volumes[s].first = light[s];
 }
 
 void FacetViewer::view(const SampleGrid& grid, SampleViews& views) {
@@ -251,15 +268,18 @@ void FacetViewer::view(const SampleGrid& grid, SampleViews& views) {
     for (std::size_t i = 0; i < frame_.optics.size(); ++i) view_optic(i, owned, grid, views);
     view_rims(grid, views);
     if (redraws_direct_) redraw_direct(owned, grid, views);
+    if (draw_volumes_) views.volumes.assign(grid.size(), SampleVolumes());
     count_from_eye(frame_.camera, views.samples);
     std::vector<PathEnds> ends;
     ends.reserve(frame_.optics.size());
     std::vector<Id> traced;
     for (std::size_t i = 0; i < frame_.optics.size(); ++i)
-        ends.push_back(draw_optic_paths({world_, static_cast<Id>(i), draw_paths_, frame_.optics[i],
-                                         nested_[i].get(), grid, part_in(grid, windows_[i])},
-                                        paths_[i], views, traced));
+        ends.push_back(draw_optic_paths(
+            {world_, static_cast<Id>(i), draw_paths_, draw_volumes_ ? &draw_volumes_ : nullptr,
+             frame_.optics[i], nested_[i].get(), grid, part_in(grid, windows_[i])},
+            paths_[i], views, traced));
     trace_each(traced, grid, views, ends);
+    if (draw_volumes_) view_volumes(owned, grid, views);
     collect_ends(std::move(ends), views);
 }
 
@@ -290,6 +310,7 @@ void FacetViewer::choose_drawers(const EngineChoice& engine, const WatchMesh& wa
         redraws_direct_ = true;
     }
     draw_paths_ = watch ? watched(watch, draw_objects_) : draw_objects_;
+    if (has_volumes(world_)) draw_volumes_ = traces ? trace_volumes(world_) : project_volumes(world_);
 }
 
 FacetViewer::FacetViewer(const World& world, Frame frame, const EngineChoice& engine, const WatchMesh& watch)

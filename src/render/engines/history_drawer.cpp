@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/util/parallel.h"
 #include "render/engines/fragment_keys.h"
@@ -112,25 +113,71 @@ std::vector<char> HistoryDrawer::find_ends(Id index, const FacetSamples& owned, 
     return is_end;
 }
 
+/// By the sample's place between the camera's own corners, which is the same in every node: so the weights
+/// of all ends add up to no more than they do at the corners.
+Vec3 HistoryDrawer::weight_at(Id index, Id facet, const Vec3& share) const {
+    const PathNode& node = paths_.nodes[index];
+    const IdTriple& corner = node.mesh.facets[facet];
+    Vec3 place = share;
+    if (!node.farther.empty())
+        for (int k = 0; k < 3; ++k) place[k] *= node.farther[corner[static_cast<std::size_t>(k)]];
+    place /= place.x + place.y + place.z;
+    Vec3 weight(0);
+    for (int k = 0; k < 3; ++k) weight += place[k] * node.weight[corner[static_cast<std::size_t>(k)]];
+    return glm::max(weight, Vec3(0));
+}
+
+/// The leg of each owned sample through the volumes: up to what it sees where its path ends, else up to the
+/// next optic. In glass there are none.
+void HistoryDrawer::draw_volumes(Id index, const FacetSamples& owned, std::span<const Hit> hits,
+                                 const std::vector<char>& is_end) {
+    const PathNode& node = paths_.nodes[index];
+    std::vector<double>& through = through_[index];
+    through = node.parent == kNone ? std::vector<double>(grid_.size(), 1.0) : through_[node.parent];
+    if (node.medium != kNone) return;
+    std::vector<double> until(grid_.size(), 0.0);
+    std::vector<VolumeLight> light(grid_.size());
+    const auto for_each_owned = [&](const auto& body) {
+        parallel_for(node.mesh.facets.size(), 64, [&](std::size_t from, std::size_t to) {
+            for (std::size_t f = from; f < to; ++f) {
+                if (owned.of(f).empty()) continue;
+                const FacetWeights weights = facet_weights(node.mesh, f);
+                if (weights.edge_on) continue;
+                for (std::size_t i = owned.first[f]; i < owned.first[f + 1]; ++i)
+                    body(static_cast<Id>(f), i, share_of(weights, grid_.position(owned.sample[i])));
+            }
+        });
+    };
+    for_each_owned([&](Id f, std::size_t i, const Vec3& share) {
+        const Id s = owned.sample[i];
+        double next = 0;
+        for (int k = 0; k < 3; ++k)
+            next += share[k] * node.next[node.mesh.facets[f][static_cast<std::size_t>(k)]];
+        if (is_end[i])
+            until[s] = hits[s].seen() ? hits[s].t : std::numeric_limits<double>::infinity();
+        else
+            until[s] = hits[s].seen() ? std::min(next, hits[s].t) : next;
+    });
+    (*engine_.volumes)(node.mesh, owned, grid_, until, light);
+    for_each_owned([&](Id f, std::size_t i, const Vec3& share) {
+        const Id s = owned.sample[i];
+        SampleVolumes& found = (*engine_.found)[s];
+        (node.path == Path::kReflect ? found.reflect : found.refract) +=
+            through[s] * weight_at(index, f, share) * light[s].emission;
+        through[s] *= light[s].transmittance;
+    });
+}
+
 /// Sets the end of a sample over a facet of the node, all but its steps.
 void HistoryDrawer::set_end(Id index, Id facet, const Vec3& share, PathEnd& end) const {
     const PathNode& node = paths_.nodes[index];
-    const IdTriple& corner = node.mesh.facets[facet];
     end.path = node.path;
     end.principal = node.principal[facet];
     end.colours = node.colours;
     end.node = index;
     end.medium = node.medium;
     end.ray = interpolated_ray(node.mesh, facet, share);
-    // By the sample's place between the camera's own corners, which is the same in every node: so the weights
-    // of all ends add up to no more than they do at the corners.
-    Vec3 place = share;
-    if (!node.farther.empty())
-        for (int k = 0; k < 3; ++k) place[k] *= node.farther[corner[static_cast<std::size_t>(k)]];
-    place /= place.x + place.y + place.z;
-    end.weight = Vec3(0);
-    for (int k = 0; k < 3; ++k) end.weight += place[k] * node.weight[corner[static_cast<std::size_t>(k)]];
-    end.weight = glm::max(end.weight, Vec3(0));
+    end.weight = weight_at(index, facet, share);
     if (end.hit.seen()) end.magnification = magnification(node.mesh, facet, share, end.hit.t);
 }
 
@@ -141,8 +188,9 @@ void HistoryDrawer::draw(Id index, PathEnds& out) {
     const FacetSamples owned = group_by_facet(owners_of_node(node, leaf_, came), node.mesh.facets.size());
     if (owned.sample.empty()) return;
     std::vector<Hit> hits(grid_.size());
-    draw_mesh_(node.mesh, owned, grid_, hits);
+    engine_.mesh(node.mesh, owned, grid_, hits);
     const std::vector<char> is_end = find_ends(index, owned, hits);
+    if (engine_.volumes) draw_volumes(index, owned, hits, is_end);
 
     // The history, once for all its ends.
     const std::size_t first_step = out.steps.size();
@@ -165,6 +213,7 @@ void HistoryDrawer::draw(Id index, PathEnds& out) {
                 end.first_step = first_step;
                 end.step_count = node.step_count;
                 set_end(index, static_cast<Id>(f), share_of(weights, grid_.position(s)), end);
+                if (engine_.volumes) end.weight *= through_[index][s];
             }
         }
     });

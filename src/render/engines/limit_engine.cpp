@@ -82,7 +82,8 @@ class LimitViewer : public Viewer {
     [[noreturn]] static void has_none() {
         check_failed("has_facets()", __FILE__, __LINE__, "the limit truth has neither facets nor keys");
     }
-    void view_sample(SampleView& view, OpticView& on_optic, const Media& around, Found& found) const;
+    void view_sample(SampleView& view, OpticView& on_optic, const Media& around, Found& found,
+                     SampleVolumes* volumes) const;
 
     const World& world_;
     CameraRays camera_;
@@ -91,12 +92,16 @@ class LimitViewer : public Viewer {
     const Tracer& objects_ = object_tracer(world_);
 };
 
-void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media& around,
-                              Found& found) const {
+void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media& around, Found& found,
+                              SampleVolumes* volumes) const {
     const double reach = camera_.far_depth - camera_.near_depth;
     const FirstSurface first = first_surface(paths_, objects_, view.ray, reach);
     view.hit = first.object;
     if (view.hit.seen()) view.depth = view.hit.t;
+    if (volumes && !glass_around(world_, around)) {
+        const double until = first.optic != kNone ? first.at.t : view.hit.seen() ? view.hit.t : reach;
+        volumes->first = trace_volumes(world_, view.ray, until);
+    }
     if (first.optic == kNone) return;
     view.optic = first.optic;
     view.depth = first.at.t;
@@ -104,7 +109,7 @@ void LimitViewer::view_sample(SampleView& view, OpticView& on_optic, const Media
     on_optic = {};
     on_optic.uv = first.at.uv;
     on_optic.first_end = found.ends.size();
-    follow_sample(world_, {first.at, around}, view, {on_optic, found.ends, found.steps});
+    follow_sample(world_, {first.at, around}, view, {on_optic, found.ends, found.steps, volumes});
     on_optic.end_count = found.ends.size() - on_optic.first_end;
 }
 
@@ -122,6 +127,7 @@ void LimitViewer::view(const SampleGrid& grid, SampleViews& views) {
     }
 
     set_initial_media(camera_media_, views);
+    if (has_volumes(world_)) views.volumes.resize(grid.size());
     const std::size_t count = owned.sample.size();
     std::vector<Found> found((count + kSamplesPerTask - 1) / kSamplesPerTask);
     const auto samples_of = [&](std::size_t task) {
@@ -132,7 +138,8 @@ void LimitViewer::view(const SampleGrid& grid, SampleViews& views) {
         for (std::size_t task = from; task < to; ++task)
             for (const Id s : samples_of(task)) {
                 SampleView& view = views.samples[s];
-                view_sample(view, views.of_optics[s], views.around_of(view), found[task]);
+                view_sample(view, views.of_optics[s], views.around_of(view), found[task],
+                            views.volumes.empty() ? nullptr : &views.volumes[s]);
             }
     });
     for (std::size_t task = 0; task < found.size(); ++task) {

@@ -220,9 +220,15 @@ void ShownDrawer::draw(const Shown& shown, PathEnds& out) {
     const OpticPaths& paths = shown.builder.paths();
     const std::vector<Id> leaf = leaves_of_samples(paths, shown.owned, grid_);
     PathEnds own;
-    HistoryDrawer drawer(params_.draw, paths, grid_, leaf);
+    std::vector<SampleVolumes> volumes(params_.volumes ? grid_.size() : 0);
+    HistoryDrawer drawer({params_.draw, params_.volumes, &volumes}, paths, grid_, leaf);
     for (const Id node : nodes_in_order(paths)) drawer.draw(node, own);
     note(shown, leaf);
+    if (params_.volumes)
+        for_each_sample(grid_, whole_, [&](std::size_t s, std::size_t of_whole) {
+            views_.volumes[of_whole].reflect += volumes[s].reflect;
+            views_.volumes[of_whole].refract += volumes[s].refract;
+        });
     if (shown.nested && !shown.nested->all().empty()) {
         const std::vector<NestedSamples> taken = take_covered(shown, leaf, own);
         for (std::size_t l = 0; l < taken.size(); ++l) {

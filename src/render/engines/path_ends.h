@@ -16,6 +16,7 @@
 #include "paths/trace/follow.h"
 #include "render/frame/frame.h"
 #include "render/frame/views.h"
+#include "render/volumes/volume_rays.h"
 #include "render/world/world.h"
 
 namespace trilens {
@@ -35,13 +36,26 @@ struct PathEnds {
     std::vector<Step> steps;  // PathEnd::first_step counts here
 };
 
+/// What draws histories. All must live longer.
+struct HistoryEngine {
+    const DrawMesh& mesh;                  // the objects
+    const DrawVolumes* volumes = nullptr;  // null: there are none
+    std::vector<SampleVolumes>* found =
+        nullptr;  // per sample: emission along the legs is added; with volumes
+};
+
 /// One history drawn: for each sample of it what it sees, and whether its path goes on.
 class HistoryDrawer {
   public:
     /// `leaf`: per sample; kNone: it is not drawn. All must live longer.
-    HistoryDrawer(const DrawMesh& draw_mesh, const OpticPaths& paths, const SampleGrid& grid,
+    HistoryDrawer(const HistoryEngine& engine, const OpticPaths& paths, const SampleGrid& grid,
                   const std::vector<Id>& leaf)
-        : draw_mesh_(draw_mesh), paths_(paths), grid_(grid), leaf_(leaf), goes_on_(paths.nodes.size()) {}
+        : engine_(engine),
+          paths_(paths),
+          grid_(grid),
+          leaf_(leaf),
+          goes_on_(paths.nodes.size()),
+          through_(engine.volumes ? paths.nodes.size() : 0) {}
 
     /// Parents first.
     void draw(Id node, PathEnds& out);
@@ -50,12 +64,16 @@ class HistoryDrawer {
     bool ends_before_next(Id node, Id facet, const Hit& hit, const Vec3& share) const;
     std::vector<char> find_ends(Id node, const FacetSamples& owned, std::span<const Hit> hits);
     void set_end(Id node, Id facet, const Vec3& share, PathEnd& end) const;
+    Vec3 weight_at(Id node, Id facet, const Vec3& share) const;
+    void draw_volumes(Id node, const FacetSamples& owned, std::span<const Hit> hits,
+                      const std::vector<char>& is_end);
 
-    const DrawMesh& draw_mesh_;
+    const HistoryEngine engine_;
     const OpticPaths& paths_;
     const SampleGrid& grid_;
     const std::vector<Id>& leaf_;
-    std::vector<std::vector<char>> goes_on_;  // per node and sample
+    std::vector<std::vector<char>> goes_on_;    // per node and sample
+    std::vector<std::vector<double>> through_;  // the same: transmittance of volumes up to the node's end
 };
 
 // The first surface that a ray meets: exact optics among objects.
@@ -79,7 +97,8 @@ struct TraceSamplesParams {
     Id optic = kNone;
     const PathCamera& camera;
     const SampleGrid& grid;
-    double reach = 0;  // of the camera's rays
+    double reach = 0;      // of the camera's rays
+    bool volumes = false;  // emission and absorption along the paths are found, too
 };
 
 /// A sample, and where its ray meets the optic, where that is known.
@@ -105,6 +124,8 @@ struct SamplePaths {
     OpticView& on_optic;  // its incidence, way and cut
     std::vector<PathEnd>& ends;
     std::vector<Step>& steps;
+    SampleVolumes* volumes = nullptr;  // emission along the paths is added, absorption goes into the ends'
+                                       // weights; null: volumes are not asked for
 };
 
 /// Appends the ends of all paths of a sample whose ray meets its optic (view.optic) there, with their steps.
@@ -119,7 +140,8 @@ void follow_sample(const World& world, const FirstOpticHit& first, const SampleV
 struct PathEndsParams {
     const World& world;
     Id optic = kNone;
-    const DrawMesh& draw;  // of the objects
+    const DrawMesh& draw;                  // of the objects
+    const DrawVolumes* volumes = nullptr;  // null: there are none
     const FramedOptic& framed;
     NestedOptics* nested = nullptr;  // optics seen in it; null: none is a nested optic
     SampleGrid grid;                 // of the samples

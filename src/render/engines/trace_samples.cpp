@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "base/util/parallel.h"
@@ -81,8 +82,9 @@ void trace_samples(const TraceSamplesParams& params, std::span<const TracedSampl
                     see_past(params, view);
                     continue;
                 }
-                follow_sample(params.world, {*hit, views.around_of(view)}, view,
-                              {on_optic, own.ends, own.steps});
+                follow_sample(
+                    params.world, {*hit, views.around_of(view)}, view,
+                    {on_optic, own.ends, own.steps, params.volumes ? &views.volumes[sample] : nullptr});
                 view.ray = of_facets;
                 own.sample.resize(own.ends.size(), sample);
             }
@@ -107,9 +109,32 @@ void append_steps(const std::vector<PathSegment>& segments, Id last, std::vector
 
 }  // namespace
 
+namespace {
+
+/// Adds the emission along each segment in the air; the transmittance up to the end of each.
+std::vector<double> add_volumes(const World& world, const std::vector<PathSegment>& segments,
+                                SampleVolumes& found) {
+    std::vector<double> through(segments.size(), 1.0);
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        const PathSegment& segment = segments[i];
+        if (segment.parent != kNone) through[i] = through[segment.parent];
+        if (segment.medium != kNone) continue;
+        const double until = !segment.ends        ? segment.next
+                             : segment.hit.seen() ? segment.hit.t
+                                                  : std::numeric_limits<double>::infinity();
+        const VolumeLight light = trace_volumes(world, segment.ray, until);
+        (segment.path == Path::kReflect ? found.reflect : found.refract) +=
+            through[i] * segment.weight * light.emission;
+        through[i] *= light.transmittance;
+    }
+    return through;
+}
+
+}  // namespace
+
 void follow_sample(const World& world, const FirstOpticHit& first, const SampleView& view,
                    const SamplePaths& found) {
-    auto& [on_optic, ends, steps] = found;
+    auto& [on_optic, ends, steps, volumes] = found;
     const SurfaceHit& hit = first.at;
     const PathWorld& paths = path_world(world);
     const double cosine = dot(normalize_or_zero(view.ray.direction), hit.point.normal);
@@ -120,6 +145,8 @@ void follow_sample(const World& world, const FirstOpticHit& first, const SampleV
                           hit.point.normal, on_optic.incidence.front};
     const FollowedPaths followed =
         follow_paths(paths, {meeting, eye, first.around}, {.objects = &object_tracer(world)});
+    std::vector<double> through;
+    if (volumes) through = add_volumes(world, followed.segments, *volumes);
     for (std::size_t i = 0; i < followed.segments.size(); ++i) {
         const PathSegment& segment = followed.segments[i];
         if (!segment.ends) continue;
@@ -131,7 +158,7 @@ void follow_sample(const World& world, const FirstOpticHit& first, const SampleV
         append_steps(followed.segments, static_cast<Id>(i), steps);
         end.step_count = static_cast<std::uint16_t>(steps.size() - end.first_step);
         end.medium = segment.medium;
-        end.weight = segment.weight;
+        end.weight = volumes ? through[i] * segment.weight : segment.weight;
         end.ray = {segment.ray.origin, eye * segment.ray.direction};
         end.hit = segment.hit;
         end.hit.t /= eye;

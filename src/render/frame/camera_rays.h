@@ -95,6 +95,11 @@ OpticWeights first_weights(const World& world, const SampleViews& views, const S
 /// The glass that a ray inside of these runs in; null: air.
 const Material* glass_around(const World& world, const Media& around);
 
+/// Whether a sample's ray starts in air.
+inline bool is_in_air(const World& world, const SampleViews& views, const SampleView& view) {
+    return view.around == kNone || !glass_around(world, views.around_of(view));
+}
+
 /// An optic's surface for a ray that is inside of `around` before it; of mirrors, too.
 GlassInterface interface_of(const World& world, Id optic, const Media& around, bool front);
 

@@ -257,15 +257,16 @@ PathBuilder make_optic_paths(const World& world, const Frame& frame, std::size_t
 }
 
 std::optional<NestedStage> make_nested_stage(const World& world, const Frame& frame) {
-    if (!frame.camera.linear || frame.camera.linear->parallel || !frame.camera_media.none())
+    // Legs that end on a nested optic are drawn to what lies behind it: no measure of a volume.
+    if (!frame.camera.linear || frame.camera.linear->parallel || !frame.camera_media.none() ||
+        !world.volumes.empty())
         return std::nullopt;
     NestedStage stage;
     stage.world = path_world(world);
     for (std::size_t i = 0; i < world.optics.size(); ++i)
-        stage.optics.push_back(
-            {world.optics[i].surface.get(), &frame.optics[i].facets->grid(),
-             frame.optics[i].rays == CornerRays::kFitted,
-             has_own_normals(world.scene.meshes[world.optics[i].mesh])});
+        stage.optics.push_back({world.optics[i].surface.get(), &frame.optics[i].facets->grid(),
+                                frame.optics[i].rays == CornerRays::kFitted,
+                                has_own_normals(world.scene.meshes[world.optics[i].mesh])});
     stage.camera = path_camera(*frame.camera.linear);
     stage.camera.film = Vec2(world.scene.film.width, world.scene.film.height);
     stage.eye = frame.camera.linear->eye;

@@ -21,6 +21,7 @@ void SampleViews::restart(std::size_t count) {
     ends.clear();
     steps.clear();
     around.clear();
+    volumes.clear();
     projected_facets = 0;
     crowded_out = 0;
     outline_pixels = outline_error = 0;

@@ -7,6 +7,7 @@
 
 #include "paths/trace/follow.h"
 #include "shade/optic_weights.h"
+#include "volume/volume_integral.h"
 
 namespace trilens {
 
@@ -48,15 +49,23 @@ struct SampleColour {
     double coverage = 0;  // 1 where a mesh is seen, 0 on the background
 };
 
+/// What volumes add to a sample.
+struct SampleVolumes {
+    VolumeLight first;  // between where the camera's ray starts and what the sample shows first
+    // Emission along the paths' later legs, summed, in shares of the light that leaves the first optic.
+    Vec3 reflect{0}, refract{0};
+};
+
 /// What the samples of a grid show.
 struct SampleViews {
-    std::vector<SampleView> samples;   // one per sample
-    std::vector<OpticView> of_optics;  // one per sample; where it shows no optic it holds anything
-    std::vector<PathEnd> ends;         // of all samples, those of one side by side
-    std::vector<Step> steps;           // of all ends; ends with one history may share theirs
-    std::vector<Media> around;         // that rays of the camera start in
-    std::size_t projected_facets = 0;  // facets and parts of facets that the optics have by now
-    std::size_t crowded_out = 0;       // facets that are traced for want of room
+    std::vector<SampleView> samples;     // one per sample
+    std::vector<OpticView> of_optics;    // one per sample; where it shows no optic it holds anything
+    std::vector<PathEnd> ends;           // of all samples, those of one side by side
+    std::vector<Step> steps;             // of all ends; ends with one history may share theirs
+    std::vector<Media> around;           // that rays of the camera start in
+    std::vector<SampleVolumes> volumes;  // one per sample; empty: the world has no volumes
+    std::size_t projected_facets = 0;    // facets and parts of facets that the optics have by now
+    std::size_t crowded_out = 0;         // facets that are traced for want of room
     double outline_pixels =
         0;  // pixels that lie between optics' outlines and those of their facets, predicted
     double outline_error = 0;  // pixels: how far these may be off, where an error was asked for
@@ -76,6 +85,10 @@ struct SampleViews {
     }
     std::span<const Step> steps_of(const PathEnd& end) const {
         return {steps.data() + end.first_step, end.step_count};
+    }
+    /// Null where the world has no volumes.
+    const SampleVolumes* volumes_of(const SampleView& sample) const {
+        return volumes.empty() ? nullptr : &volumes[static_cast<std::size_t>(&sample - samples.data())];
     }
     Media around_of(const SampleView& sample) const {
         return sample.around == kNone ? Media() : around[sample.around];

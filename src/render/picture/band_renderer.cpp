@@ -93,8 +93,9 @@ class FilteredSamples {
     std::vector<SampleColour> colours_;
 };
 
-bool makes_fragments(const Viewer& viewer, const LayerRequest& request, int side) {
-    return side > 1 && request.shading == Shading::kFragment && viewer.has_keys();
+/// Volumes are not the same over a fragment's samples.
+bool makes_fragments(const World& world, const Viewer& viewer, const LayerRequest& request, int side) {
+    return side > 1 && world.volumes.empty() && request.shading == Shading::kFragment && viewer.has_keys();
 }
 
 /// How many rows of pixels are drawn together: whole blocks where they are many, one for every two threads at
@@ -263,7 +264,7 @@ LayerStatistics put_band(const BandSource& source, const Band& band, std::size_t
 Image draw_layers(const World& world, Viewer& viewer, const LayerRequest& request, const Progress& progress,
                   LayerStatistics* statistics, const StripSink* sink) {
     const int side = world.scene.film.spp, width = request.x1 - request.x0, height = request.y1 - request.y0;
-    const bool by_fragments = makes_fragments(viewer, request, side);
+    const bool by_fragments = makes_fragments(world, viewer, request, side);
     const int rows =
         band_rows(static_cast<std::size_t>(width * side * side), by_fragments ? kMostKeys : kMostBandSamples);
     const std::size_t bands = static_cast<std::size_t>((height + rows - 1) / rows);

@@ -337,7 +337,7 @@ void shade_fragments(const FragmentShading& shading, std::span<const ShownFragme
     FragmentContributions contributions(shading);
     for (std::size_t f = 0; f < fragments.size(); ++f) {
         const SampleView& view = *fragments[f].view;
-        shaded[f].colour = unlit_colour(view);
+        shaded[f].colour = unlit_colour(shading.world, shading.views, view);
         for_each_contribution(shading.world, shading.views, view, [&](const Contribution& contribution) {
             contributions.add({shading, fragments[f], contribution}, shaded[f]);
         });

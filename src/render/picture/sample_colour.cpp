@@ -53,7 +53,7 @@ class Contributions {
 
 void Contributions::add_sample(std::size_t index) {
     const SampleView& view = views_.samples[first_ + index];
-    colours_[index] = unlit_colour(view);
+    colours_[index] = unlit_colour(world_, views_, view);
     for_each_contribution(world_, views_, view, [&](const Contribution& contribution) {
         if (count_ == kMost) shade();
         seen_[count_] = contribution.seen;
@@ -87,9 +87,19 @@ void Contributions::shade() {
 
 }  // namespace
 
-SampleColour unlit_colour(const SampleView& view) {
+SampleColour unlit_colour(const World& world, const SampleViews& views, const SampleView& view) {
     SampleColour colour;
-    if (view.ray.direction != Vec3(0)) colour.coverage = view.hit.seen() || view.optic != kNone ? 1 : 0;
+    if (view.ray.direction == Vec3(0)) return colour;
+    colour.coverage = view.hit.seen() || view.optic != kNone ? 1 : 0;
+    const SampleVolumes* volumes = views.volumes_of(view);
+    if (!volumes) return colour;
+    if (view.optic == kNone && !world.scene.render.direct) return colour;
+    if (world.scene.render.direct) colour.direct = volumes->first.emission;
+    colour.coverage = std::max(colour.coverage, 1 - volumes->first.transmittance);
+    if (view.optic == kNone || (volumes->reflect == Vec3(0) && volumes->refract == Vec3(0))) return colour;
+    const OpticWeights weights = first_weights(world, views, view);
+    colour.reflect = volumes->first.transmittance * weights.reflect * volumes->reflect;
+    colour.refract = volumes->first.transmittance * weights.refract * volumes->refract;
     return colour;
 }
 

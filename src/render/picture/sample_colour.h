@@ -32,6 +32,12 @@ struct Contribution {
     std::optional<double> mean_length = std::nullopt;
 };
 
+/// What volumes let through between the camera and what the sample shows first.
+inline double through_volumes(const SampleViews& views, const SampleView& view) {
+    const SampleVolumes* volumes = views.volumes_of(view);
+    return volumes ? volumes->first.transmittance : 1;
+}
+
 /// Calls body(contribution) for all that a sample shows.
 template <typename Body>
 void for_each_contribution(const World& world, const SampleViews& views, const SampleView& view,
@@ -39,18 +45,22 @@ void for_each_contribution(const World& world, const SampleViews& views, const S
     if (view.ray.direction == Vec3(0)) return;  // the camera has no ray there
     if (view.optic == kNone) {
         if (world.scene.render.direct)
-            body(Contribution{{&view.hit, &view.ray}, light_of_view(world, views, view)});
+            body(Contribution{{&view.hit, &view.ray},
+                              through_volumes(views, view) * light_of_view(world, views, view)});
         return;
     }
-    const OpticWeights weights = first_weights(world, views, view);
+    OpticWeights weights = first_weights(world, views, view);
+    weights.reflect *= through_volumes(views, view);
+    weights.refract *= through_volumes(views, view);
     for (const PathEnd& end : views.ends_of(view)) {
         const Vec3 weight = (end.path == Path::kReflect ? weights.reflect : weights.refract) * end.weight;
         if (weight != Vec3(0)) body(Contribution{{&end.hit, &end.ray}, weight, &end});
     }
 }
 
-/// A sample's colour before light is added: where it shows a mesh.
-SampleColour unlit_colour(const SampleView& view);
+/// A sample's colour before light is added: where it shows a mesh, and what volumes emit on the way to all
+/// that it shows.
+SampleColour unlit_colour(const World& world, const SampleViews& views, const SampleView& view);
 
 /// Adds the light that is seen along a contribution's ray.
 void add_light(const World& world, const Contribution& from, Vec3 light, SampleColour& colour);

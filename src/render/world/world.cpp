@@ -4,6 +4,7 @@
 
 #include "base/math/box.h"
 #include "base/util/error.h"
+#include "render/world/volume_geometry.h"
 #include "scene/data/scene_digest.h"
 #include "shade/optic_weights.h"
 #include "surfaces/memory_budget.h"
@@ -17,6 +18,8 @@ namespace {
 constexpr std::size_t kMaxFacets = 100'000'000;
 /// What drawing holds per facet of a mirror at its most: measured, rounded up.
 constexpr double kBytesPerFacet = 350;
+/// What drawing holds per tetrahedron of a volume: measured, rounded up.
+constexpr double kBytesPerCell = 800;
 
 /// What a mesh has per triangle; those of earlier meshes that have none get zeros, those after the last mesh
 /// that has some get nothing.
@@ -160,6 +163,26 @@ void set_up_shading(World& world) {
     };
 }
 
+/// The scene's volumes, those that the world has already as they are.
+void set_up_volumes(World& world) {
+    double cells = 0;
+    for (const Volume& volume : world.scene.volumes) cells += static_cast<double>(volume.cells->cells.size());
+    if (cells > 0)
+        check_memory({kBytesPerCell * cells,
+                      "drawing the volumes' " + std::to_string(static_cast<long long>(cells)) + " tetrahedra",
+                      "take fewer samples or cells"},
+                     {machine_memory(), scene_title(world.scene)});
+    std::vector<std::shared_ptr<const VolumeGeometry>> volumes;
+    for (const Volume& volume : world.scene.volumes) {
+        const auto same = std::find_if(world.volumes.begin(), world.volumes.end(), [&](const auto& kept) {
+            return &kept->cells() == volume.cells.get() || kept->cells() == *volume.cells;
+        });
+        volumes.push_back(same != world.volumes.end() ? *same
+                                                      : std::make_shared<VolumeGeometry>(volume.cells));
+    }
+    world.volumes = std::move(volumes);
+}
+
 std::vector<std::string> digests_of(const Scene& scene) {
     std::vector<std::string> digests;
     for (const Mesh& mesh : scene.meshes) digests.push_back(mesh_digest(mesh));
@@ -177,6 +200,7 @@ std::unique_ptr<World> make_world(Scene scene, const Warn& warn) {
     gather_objects(*world);
     prepare_geometry(*world);
     set_up_shading(*world);
+    set_up_volumes(*world);
     return world;
 }
 
@@ -215,6 +239,7 @@ SceneReuse change_scene(World& world, Scene scene, const Warn& warn) {
     if (!kept.objects) gather_objects(world);
     keep_geometry(world, kept_optics, kept.objects);
     set_up_shading(world);
+    set_up_volumes(world);
     return kept;
 }
 

@@ -1,5 +1,5 @@
-// The world: a scene made of triangles to look at, and optics to look through; with its acceleration structures, grids
-// and lights.
+// The world: a scene made of triangles to look at, and optics to look through; with its acceleration
+// structures, grids and lights.
 #pragma once
 
 #include <cstddef>
@@ -23,6 +23,7 @@
 namespace trilens {
 
 struct CausticLights;
+class VolumeGeometry;
 
 /// One optic: its exact surface and what it does to light.
 struct Optic {
@@ -47,7 +48,8 @@ struct World {
     TriangleScene objects;  // every triangle of the meshes that are objects
     ShadeScene shading;     // of `objects`
     std::vector<Optic> optics;
-    std::vector<std::string> names;  // object id -> name
+    std::vector<std::string> names;                              // object id -> name
+    std::vector<std::shared_ptr<const VolumeGeometry>> volumes;  // of scene.volumes
     std::unique_ptr<WorldGeometry> geometry;
     std::vector<std::string> mesh_digests;  // of scene.meshes, once change_scene has asked for them
 };
@@ -116,8 +118,8 @@ bool has_shadows(const World& world);
 /// The segments that an object, or the exact surface of a mirror, meets. Glass lets the light through.
 Segments::Bits casts_shadow(const World& world, const Segments& segments);
 
-/// The segments that an object or an optic of any kind meets: where light that is followed over optics does not
-/// come straight.
+/// The segments that an object or an optic of any kind meets: where light that is followed over optics does
+/// not come straight.
 Segments::Bits meets_anything(const World& world, const Segments& segments);
 
 /// The beams of lights with caustics, made when first asked for.

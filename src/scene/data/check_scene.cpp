@@ -32,6 +32,7 @@ class SceneCheck {
     void materials() const;
     void lights() const;
     void meshes() const;
+    void volumes() const;
 
   private:
     [[noreturn]] void fail(const std::string& place, const std::string& message) const {
@@ -169,6 +170,30 @@ void SceneCheck::meshes() const {
     }
 }
 
+void SceneCheck::volumes() const {
+    for (std::size_t v = 0; v < scene_.volumes.size(); ++v) {
+        const Volume& volume = scene_.volumes[v];
+        const std::string place = "/volumes/" + std::to_string(v);
+        require(volume.cells && !volume.cells->cells.empty(), place, "has no cells");
+        const TetMesh& mesh = *volume.cells;
+        finite(mesh.points, place + "/points");
+        finite(mesh.scalars, place + "/scalars");
+        require(mesh.scalars.size() == mesh.points.size(), place + "/scalars", "needs one entry per point");
+        for (const Tetrahedron& cell : mesh.cells)
+            for (const Id corner : cell)
+                if (corner >= mesh.points.size()) fail(place + "/cells", "has a corner that is no point");
+        const std::vector<TransferPoint>& points = volume.transfer.points;
+        require(!points.empty(), place + "/transferFunction", "has no points");
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            require(is_finite(points[i].value) && is_finite(points[i].color) && points[i].extinction >= 0 &&
+                        is_finite(points[i].extinction),
+                    place + "/transferFunction", "has a point that is not finite, or is negative");
+            require(i == 0 || points[i].value > points[i - 1].value, place + "/transferFunction",
+                    "has values that do not rise");
+        }
+    }
+}
+
 }  // namespace
 
 void check_scene(const Scene& scene) {
@@ -178,6 +203,7 @@ void check_scene(const Scene& scene) {
     check.materials();
     check.lights();
     check.meshes();
+    check.volumes();
 }
 
 }  // namespace trilens

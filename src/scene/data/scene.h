@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@
 #include "base/description/optic_description.h"
 #include "base/math/vec.h"
 #include "base/raymesh/triangle_scene.h"
+#include "volume/tet_mesh.h"
+#include "volume/transfer_function.h"
 
 namespace trilens {
 
@@ -23,7 +26,7 @@ inline constexpr int kMostFilmSide = 32768;          // pixels
 inline constexpr double kLargestCoordinate = 1e30;
 inline constexpr int kMaxSpp = 64;
 inline constexpr int kMaxResolution = 1024;
-inline constexpr int kMostDepth = 64;          // optic hits after the first
+inline constexpr int kMostDepth = 64;  // optic hits after the first
 inline constexpr int kMostLightSamples = 4096;
 inline constexpr double kMostMaxError = 1000;  // pixels
 
@@ -105,6 +108,14 @@ inline bool has_own_normals(const Mesh& optic) {
            (optic.primitive || optic.cage.scheme != SubdivisionScheme::kUnsubdivided);
 }
 
+/// One entry of the file's `volumes`: what shines and absorbs within cells.
+struct Volume {
+    std::string name;
+    std::string field;                     // the scalars' name in the file; empty: they have none
+    std::shared_ptr<const TetMesh> cells;  // world frame, transform applied
+    TransferFunction transfer;
+};
+
 struct RenderSettings {
     int max_depth = 8;  // optic hits after the first
     bool direct = true, reflect = true, refract = true;
@@ -130,6 +141,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Mesh> meshes;
     std::vector<Light> lights;
+    std::vector<Volume> volumes;
     RenderSettings render;
     std::vector<FileRead> files;  // every file that the scene was made of, each once, in order of reading
     std::vector<std::string> warnings;

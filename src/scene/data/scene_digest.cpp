@@ -212,6 +212,19 @@ void add(const Mesh& mesh, Digest& digest) {
     add(cage, digest);
 }
 
+void add(const TransferPoint& point, Digest& digest) {
+    const auto& [value, color, extinction] = point;
+    digest.add_all(value, color, extinction);
+}
+
+void add(const Volume& volume, Digest& digest) {
+    const auto& [name, field, cells, transfer] = volume;
+    digest.add_all(name, field, transfer.points.size());
+    for (const TransferPoint& point : transfer.points) add(point, digest);
+    digest.add(cells != nullptr);
+    if (cells) digest.add_all(cells->points, cells->scalars, cells->cells);
+}
+
 template <typename T>
 void add(const std::vector<T>& list, Digest& digest) {
     digest.add(list.size());
@@ -228,7 +241,7 @@ std::string mesh_digest(const Mesh& mesh) {
 
 std::string scene_digest(const Scene& scene) {
     [[maybe_unused]] const auto& [file, folder, label, resolved, film, cameras, own_camera, background,
-                                  materials, meshes, lights, render, files, warnings] = scene;
+                                  materials, meshes, lights, volumes, render, files, warnings] = scene;
     Digest digest;
     const auto& [width, height, spp, filter] = film;
     digest.add_all(width, height, spp, filter, own_camera);
@@ -237,6 +250,7 @@ std::string scene_digest(const Scene& scene) {
     add(materials, digest);
     add(meshes, digest);
     add(lights, digest);
+    add(volumes, digest);
     const auto& [max_depth, direct, reflect, refract, fresnel, max_error] = render;
     digest.add_all(max_depth, direct, reflect, refract, fresnel, max_error);
     return digest.digits();

@@ -71,6 +71,8 @@ Vec3 read_direction(const Node& direction);
 CameraDescription read_camera(const Node& camera, std::size_t index, Reading& reading);
 Film read_film(const Node& scene);
 Background read_background(const Node& scene, Reading& reading);
+/// Adds the volumes, in order.
+void read_volumes(const Node& scene, Reading& reading);
 /// Adds the lights, in order.
 void read_lights(const Node& scene, Reading& reading);
 RenderSettings read_render(const Node& scene);
@@ -115,6 +117,8 @@ const std::vector<Field<Background>>& background_fields();
 const std::vector<Field<Material>>& material_fields();
 const std::vector<Field<Light>>& light_fields();
 const std::vector<Field<RenderSettings>>& render_fields();
+const std::vector<Field<Volume>>& volume_entry_fields();
+const std::vector<Field<TransferPoint>>& transfer_point_fields();
 const std::vector<Field<Mesh>>& mesh_fields();
 const std::vector<Field<Cage>>& subdivision_fields();  // keys of a mesh, too
 const std::vector<Field<ObjectPrimitive>>& primitive_fields();
@@ -132,6 +136,10 @@ Json material_schema();
 Json texture_schema();
 Json light_schema();
 Json render_schema();
+Json volume_schema();
+Json volume_grid_schema();  // of a volume
+Json transfer_schema();     // of a volume
+Json transfer_point_schema();
 Json mesh_schema();
 Json primitive_schema();
 Json normals_schema();

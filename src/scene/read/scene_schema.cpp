@@ -28,6 +28,7 @@ constexpr const char* kFrame = R"json({
   "background": { "$ref": "#/definitions/background" },
   "materials": { "type": "array", "items": { "$ref": "#/definitions/material" } },
   "meshes": { "type": "array", "items": { "$ref": "#/definitions/mesh" } },
+  "volumes": { "type": "array", "items": { "$ref": "#/definitions/volume" } },
   "lights": { "type": "array", "items": { "$ref": "#/definitions/light" } },
   "render": { "$ref": "#/definitions/render" },
   "animation": { "$ref": "#/definitions/animation" }
@@ -171,6 +172,10 @@ Json make_schema() {
     definitions["primitive"] = primitive_schema();
     definitions["normals"] = normals_schema();
     definitions["light"] = light_schema();
+    definitions["volume"] = volume_schema();
+    definitions["volumeGrid"] = volume_grid_schema();
+    definitions["transferFunction"] = transfer_schema();
+    definitions["transferPoint"] = transfer_point_schema();
     definitions["render"] = render_schema();
     check_keywords(schema);
     return schema;

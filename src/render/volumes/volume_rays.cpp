@@ -1,0 +1,95 @@
+#include "render/volumes/volume_rays.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/util/parallel.h"
+#include "render/world/volume_geometry.h"
+
+namespace trilens {
+namespace {
+
+constexpr std::size_t kVolumeRaysPerTask = 64;
+
+RayThroughVolume through(const World& world, std::size_t volume, const Ray& ray,
+                         std::span<const CellStretch> cells) {
+    const VolumeGeometry& geometry = *world.volumes[volume];
+    return {&world.scene.volumes[volume].transfer,
+            scalars_along(geometry.cells(), geometry.gradients(), ray, cells)};
+}
+
+}  // namespace
+
+std::vector<CellStretch> trace_cells(const VolumeGeometry& volume, const Ray& ray, double until) {
+    std::vector<CellStretch> cells;
+    volume.cell_boxes().visit(ray, 0, until, [&](Id cell) {
+        if (const std::optional<CellStretch> stretch = clip_line(volume.cells(), cell, ray))
+            if (stretch->t_out > 0 && stretch->t_in < until) cells.push_back(*stretch);
+        return until;
+    });
+    order_cells(until, cells);
+    return cells;
+}
+
+VolumeLight trace_volumes(const World& world, const Ray& ray, double until) {
+    std::vector<RayThroughVolume> rays;
+    for (std::size_t v = 0; v < world.volumes.size(); ++v)
+        rays.push_back(through(world, v, ray, trace_cells(*world.volumes[v], ray, until)));
+    return integrate(rays);
+}
+
+void project_cells(const VolumeGeometry& volume, const RayMesh& mesh, const FacetSamples& owned,
+                   const SampleGrid& grid, std::span<const double> until, const TakeCells& take) {
+    const CrossedCells crossed(volume.cells(), volume.faces());
+    find_crossings(volume.prepared_faces(), mesh, owned, grid, until,
+                   [&](Id sample, const Ray& ray, std::span<const Crossing> crossings) {
+                       std::vector<FaceCrossing> faces;
+                       faces.reserve(crossings.size());
+                       for (const Crossing& one : crossings) faces.push_back({one.triangle, one.t});
+                       take(sample, ray, crossed.find(ray, until[sample], faces));
+                   });
+}
+
+DrawVolumes project_volumes(const World& world) {
+    return [&world](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                    std::span<const double> until, std::span<VolumeLight> light) {
+        if (world.volumes.size() == 1) {
+            project_cells(*world.volumes[0], mesh, owned, grid, until,
+                          [&](Id sample, const Ray& ray, const std::vector<CellStretch>& cells) {
+                              const RayThroughVolume one = through(world, 0, ray, cells);
+                              light[sample] = integrate({&one, 1});
+                          });
+            return;
+        }
+        std::vector<std::vector<RayThroughVolume>> rays(grid.size());
+        for (std::size_t v = 0; v < world.volumes.size(); ++v)
+            project_cells(*world.volumes[v], mesh, owned, grid, until,
+                          [&](Id sample, const Ray& ray, const std::vector<CellStretch>& cells) {
+                              rays[sample].push_back(through(world, v, ray, cells));
+                          });
+        parallel_for(rays.size(), kVolumeRaysPerTask, [&](std::size_t from, std::size_t to) {
+            for (std::size_t s = from; s < to; ++s)
+                if (!rays[s].empty()) light[s] = integrate(rays[s]);
+        });
+    };
+}
+
+DrawVolumes trace_volumes(const World& world) {
+    return [&world](const RayMesh& mesh, const FacetSamples& owned, const SampleGrid& grid,
+                    std::span<const double> until, std::span<VolumeLight> light) {
+        for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+            if (!mesh.has_rays(f) || owned.of(f).empty()) continue;
+            const FacetWeights weights = facet_weights(mesh, f);
+            if (weights.edge_on) continue;
+            const std::span<const Id> samples = owned.of(f);
+            parallel_for(samples.size(), kVolumeRaysPerTask, [&](std::size_t from, std::size_t to) {
+                for (const Id s : samples.subspan(from, to - from))
+                    if (until[s] > 0)
+                        light[s] =
+                            trace_volumes(world, sample_ray(mesh, f, weights, grid.position(s)), until[s]);
+            });
+        }
+    };
+}
+
+}  // namespace trilens
