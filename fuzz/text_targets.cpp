@@ -97,7 +97,8 @@ namespace {
 
 /// Cells that are drawn: of positive volume, their corners points with a number each.
 void require_cells(const TetMesh& mesh) {
-    require(mesh.scalars.size() == mesh.points.size(), "a point without a scalar, or a scalar without a point");
+    require(mesh.scalars.size() == mesh.points.size(),
+            "a point without a scalar, or a scalar without a point");
     for (const double scalar : mesh.scalars) require(std::isfinite(scalar), "a scalar that is not finite");
     for (const Tetrahedron& cell : mesh.cells) {
         for (const Id corner : cell) require(corner < mesh.points.size(), "a corner that is no point");
@@ -118,9 +119,10 @@ Answer vtk_text(std::string_view bytes) {
 
 Answer nrrd_text(std::string_view bytes) {
     return answer([&] {
-        const RegularGrid grid =
-            parse_nrrd(std::string(bytes), "fuzzed.nrrd", [](const std::string&) { return std::string(64, 'x'); });
-        require(grid.scalars.size() == grid.size[0] * grid.size[1] * grid.size[2], "samples that are missing");
+        const RegularGrid grid = parse_nrrd(std::string(bytes), "fuzzed.nrrd",
+                                            [](const std::string&) { return std::string(64, 'x'); });
+        require(grid.scalars.size() == grid.size[0] * grid.size[1] * grid.size[2],
+                "samples that are missing");
     });
 }
 

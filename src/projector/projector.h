@@ -39,8 +39,9 @@ using TakeCrossings = std::function<void(Id sample, const Ray& ray, std::span<co
 
 /// Every triangle along the facet's interpolated ray, by the decisions of draw(), for every sample that
 /// `owned` gives to a facet with rays and an area on the screen, and whose until[sample] > 0: those with
-/// 0 <= t <= until[sample], in order of t, then of the scene's triangles; where there are none, the first one
-/// behind, alone, or nothing. `ray`: the sample's. until.size() == grid.size().
+/// 0 <= t <= until[sample], in order of t, then of the scene's triangles; where there are none and the ray
+/// starts within the scene's bounds, the first one behind, alone, or nothing. `ray`: the sample's.
+/// until.size() == grid.size().
 void find_crossings(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
                     const SampleGrid& grid, std::span<const double> until, const TakeCrossings& take);
 

@@ -11,7 +11,7 @@
 #include "base/math/box.h"
 #include "base/raymesh/ray_mesh.h"
 #include "base/raymesh/triangle_scene.h"
-#include "volume/tet_mesh.h"
+#include "volume/volume_data.h"
 #include "volume/volume_integral.h"
 
 namespace trilens {

@@ -5,17 +5,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/math/vec.h"
 #include "base/util/ids.h"
+#include "volume/volume_data.h"
 
 namespace trilens {
-
-/// Corners of a tetrahedron: indices into TetMesh::points.
-using Tetrahedron = std::array<Id, 4>;
 
 /// Cells as files have them; corners in the order of VTK's cells of the same names.
 enum class CellShape : std::uint8_t { kTetrahedron, kPyramid, kWedge, kHexahedron };
@@ -40,31 +37,10 @@ struct CellSoup {
 /// International Meshing Roundtable, 1999. corners.size() == corner_count(shape).
 void split_cell(CellShape shape, std::span<const Id> corners, std::vector<Tetrahedron>& tetrahedra);
 
-/// What was found while a mesh was made.
-struct CellCounts {
-    std::size_t cells = 0;     // as the file has them
-    std::size_t inverted = 0;  // tetrahedra of the file whose corners were swapped
-    std::size_t flat = 0;      // tetrahedra without a volume, left out
-    std::size_t folded = 0;    // other cells, some of whose tetrahedra are inverted: they overlap others
-    std::size_t crowded = 0;   // faces that more than two cells have
-    std::size_t open = 0;      // faces of one cell where another cell touches without having that face
-};
-
-/// Tetrahedra of positive volume, dot(cross(b - a, c - a), d - a) > 0, all in one frame.
-struct TetMesh {
-    std::vector<Vec3> points;
-    std::vector<double> scalars;     // one per point, finite
-    std::vector<Tetrahedron> cells;  // ids of cells count here
-    CellCounts counts;
-
-    bool operator==(const TetMesh& other) const {
-        return points == other.points && scalars == other.scalars && cells == other.cells;
-    }
-};
-
 /// Splits, turns and counts. The soup's corners are points, its scalars finite, its points within coordinates
 /// whose products of three fit in a double. A tetrahedron is flat whose volume is no more than 1e-14 times
-/// the cube of its longest edge. `open` and `crowded` are counted by count_faces.
+/// the cube of its longest edge. `crowded` and `open` are counted by find_faces and
+/// count_open_faces.
 TetMesh make_tet_mesh(CellSoup soup);
 
 /// A regular grid of size[0] x size[1] x size[2] points, x fastest, at origin + steps * index, each of its

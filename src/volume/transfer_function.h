@@ -1,31 +1,13 @@
-// Transfer functions: which colour and extinction a scalar has, piecewise linear.
+// The colours of named maps, for transfer functions.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "base/math/vec.h"
+#include "volume/volume_data.h"
 
 namespace trilens {
-
-/// What a volume is like where its scalar has this value.
-struct TransferPoint {
-    double value = 0;
-    Vec3 color{1};          // radiance that an opaque volume of it has, linear Rec.709
-    double extinction = 0;  // per world unit: how much of the light is lost over a short way, divided by it
-
-    bool operator==(const TransferPoint&) const = default;
-};
-
-/// Linear between its points, constant beyond the first and the last.
-struct TransferFunction {
-    std::vector<TransferPoint> points;  // at least one; their values rise
-
-    bool operator==(const TransferFunction&) const = default;
-
-    /// The colour and extinction at this value.
-    TransferPoint at(double value) const;
-};
 
 /// The names of the colour maps: "grey", "heat", "viridis".
 const std::vector<std::string>& color_map_names();

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/math/vec.h"
-#include "volume/transfer_function.h"
+#include "volume/volume_data.h"
 
 namespace trilens {
 

@@ -6,6 +6,7 @@
 #include "base/util/error.h"
 #include "support/draw.h"
 #include "support/test.h"
+#include "volume/transfer_function.h"
 #include "volume/volume_integral.h"
 
 using namespace trilens;

@@ -44,6 +44,39 @@ std::optional<double> enter_box(const SampleRay& ray, const Box& box) {
     return first;
 }
 
+/// enter_box() of many boxes of one scene: what does not depend on the box is worked out once.
+class RaySlabs {
+  public:
+    RaySlabs(const SampleRay& ray, const Vec3& centre, const Box& bounds)
+        : weight_(ray.weight), origin_(ray.origin + ray.weight * centre) {
+        constexpr double kLeast = 1e-300;  // instead of 0, whose inverse times 0 is no number
+        slack_ = kBoxSlack *
+                 (2 * std::fabs(weight_) *
+                      (std::max(largest_part(bounds.low), largest_part(bounds.high)) + largest_part(centre)) +
+                  largest_part(ray.origin));
+        for (int axis = 0; axis < 3; ++axis)
+            inverse_[axis] = 1 / (ray.direction[axis] == 0 ? kLeast : ray.direction[axis]);
+    }
+
+    /// Whether the ray may be in the box at some 0 <= t <= until.
+    bool meets(const Box& box, double until) const {
+        double first = 0, last = until;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double a = weight_ * box.low[axis] - origin_[axis],
+                         b = weight_ * box.high[axis] - origin_[axis];
+            const double t0 = (std::min(a, b) - slack_) * inverse_[axis],
+                         t1 = (std::max(a, b) + slack_) * inverse_[axis];
+            first = std::max(first, std::min(t0, t1));
+            last = std::min(last, std::max(t0, t1));
+        }
+        return first * (1 - kTimeSlack) <= last;
+    }
+
+  private:
+    double weight_, slack_ = 0;
+    Vec3 origin_, inverse_{0};
+};
+
 /// A node of the tree that waits, and the smallest t at which the ray is in it.
 struct OpenNode {
     Id node = 0;
@@ -96,15 +129,15 @@ struct RayWalk {
     /// Appends every triangle with 0 <= t <= until.
     void collect(double until, std::vector<OpenNode>& stack, std::vector<Crossing>& found) {
         const Bvh& bvh = scene.bvh();
+        if (bvh.nodes.empty()) return;
+        const RaySlabs slabs(ray, centre, bvh.nodes[0].box);
         const auto push = [&](Id node) {
-            const Box& box = bvh.nodes[node].box;
-            const auto enters = enter_box(ray, {box.low - centre, box.high - centre});
-            if (enters && *enters * (1 - kTimeSlack) <= until) stack.push_back({node, *enters});
+            if (slabs.meets(bvh.nodes[node].box, until)) stack.push_back({node, 0});
         };
         stack.clear();
-        if (!bvh.nodes.empty()) push(0);
+        push(0);
         while (!stack.empty()) {
-            const BvhNode& node = bvh.nodes[stack.back().node];
+            const BvhNode node = bvh.nodes[stack.back().node];
             stack.pop_back();
             for (Id i = node.first; i < node.first + node.count; ++i) cross(bvh.order[i], until, found);
             if (node.count > 0) continue;
@@ -162,6 +195,13 @@ void draw_scalar(const PreparedScene& scene, const RayMesh& mesh, const FacetSam
 void find_crossings(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
                     const SampleGrid& grid, std::span<const double> until, const TakeCrossings& take) {
     constexpr std::size_t kSamplesTogether = 64;
+    constexpr double kRoom = 1e-9;  // of the scene's size
+    Box bounds;
+    if (!scene.data().bvh().nodes.empty()) bounds = scene.data().bvh().nodes[0].box;
+    const Vec3 room = kRoom * bounds.size();
+    const auto may_start_inside = [&](const Vec3& start) {
+        return Box{bounds.low - room, bounds.high + room}.holds(start);
+    };
     TRILENS_CHECK(until.size() == grid.size(), "one length per sample of the grid");
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
         const std::span<const Id> samples = owned.of(f);
@@ -183,7 +223,7 @@ void find_crossings(const PreparedScene& scene, const RayMesh& mesh, const Facet
                 std::sort(found.begin(), found.end(), [](const Crossing& a, const Crossing& b) {
                     return a.t != b.t ? a.t < b.t : a.triangle < b.triangle;
                 });
-                if (found.empty())
+                if (found.empty() && may_start_inside(facet.centre + ray.origin / ray.weight))
                     if (const Hit behind = see_first(walk, true, stack); behind.seen())
                         found.push_back({behind.triangle, behind.t});
                 take(sample, sample_ray(mesh, f, weights, position), found);

@@ -179,9 +179,14 @@ void SceneCheck::volumes() const {
         finite(mesh.points, place + "/points");
         finite(mesh.scalars, place + "/scalars");
         require(mesh.scalars.size() == mesh.points.size(), place + "/scalars", "needs one entry per point");
-        for (const Tetrahedron& cell : mesh.cells)
+        for (const Tetrahedron& cell : mesh.cells) {
             for (const Id corner : cell)
                 if (corner >= mesh.points.size()) fail(place + "/cells", "has a corner that is no point");
+            const Vec3& a = mesh.points[cell[0]];
+            const Vec3 normal = cross(mesh.points[cell[1]] - a, mesh.points[cell[2]] - a);
+            if (!(dot(normal, mesh.points[cell[3]] - a) > 0))
+                fail(place + "/cells", "has a cell that is flat or inverted");
+        }
         const std::vector<TransferPoint>& points = volume.transfer.points;
         require(!points.empty(), place + "/transferFunction", "has no points");
         for (std::size_t i = 0; i < points.size(); ++i) {

@@ -14,8 +14,7 @@
 #include "base/description/optic_description.h"
 #include "base/math/vec.h"
 #include "base/raymesh/triangle_scene.h"
-#include "volume/tet_mesh.h"
-#include "volume/transfer_function.h"
+#include "volume/volume_data.h"
 
 namespace trilens {
 

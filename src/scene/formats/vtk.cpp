@@ -1,4 +1,4 @@
-// A scanner of words over the legacy VTK format's keywords.
+// Reads the legacy VTK format by its keywords.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -13,78 +13,6 @@ namespace {
 
 // Numbers of VTK's cells (vtkCellType.h).
 constexpr int kVtkTetra = 10, kVtkVoxel = 11, kVtkHexahedron = 12, kVtkWedge = 13, kVtkPyramid = 14;
-
-std::string upper(std::string_view word) {
-    std::string text(word);
-    for (char& letter : text)
-        if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
-    return text;
-}
-
-/// Words of a text, one after the other, with the line of the last one.
-class WordScanner {
-  public:
-    WordScanner(std::string_view text, const std::string& file) : text_(text), file_(file) {}
-
-    [[noreturn]] void fail(const std::string& message) const {
-        throw InputError(file_, "line " + std::to_string(line_), message);
-    }
-    /// The next line from here on.
-    std::string_view rest_of_line() {
-        const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-        std::string_view line = text_.substr(at_, end - at_);
-        at_ = std::min(end + 1, text_.size());
-        ++line_;
-        if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-        return line;
-    }
-    /// Empty at the end.
-    std::string_view word() {
-        while (at_ < text_.size() && is_space(text_[at_])) line_ += text_[at_++] == '\n';
-        const std::size_t begin = at_;
-        while (at_ < text_.size() && !is_space(text_[at_])) ++at_;
-        return text_.substr(begin, at_ - begin);
-    }
-    std::string_view peek() {
-        const std::size_t at = at_, line = line_;
-        const std::string_view next = word();
-        at_ = at;
-        line_ = line;
-        return next;
-    }
-    double number() {
-        const std::string_view next = word();
-        const std::optional<double> value = parse_number(next);
-        if (!value)
-            fail(next.empty() ? "the file ends where a number must stand"
-                              : "a number must stand where '" + std::string(next) + "' does");
-        return *value;
-    }
-    std::size_t count(const char* what) {
-        const double value = number();
-        if (!(value >= 0 && value <= 4e9 && value == std::floor(value)))
-            fail(std::string("the number of ") + what + " must be a whole number");
-        return static_cast<std::size_t>(value);
-    }
-    /// That many numbers may still follow: each takes two letters at the least.
-    void expect(std::size_t numbers, const std::string& what) const {
-        if (numbers > (text_.size() - at_ + 1) / 2)
-            fail("says that " + what + " follow, for which the rest of the file is too short");
-    }
-    void keyword(const char* wanted) {
-        const std::string_view next = word();
-        if (upper(next) != wanted)
-            fail("'" + std::string(wanted) + "' must stand where '" + std::string(next) + "' does");
-    }
-    std::size_t line() const { return line_; }
-
-  private:
-    static bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
-
-    std::string_view text_;
-    const std::string& file_;
-    std::size_t at_ = 0, line_ = 1;
-};
 
 class VtkReader {
   public:
@@ -123,7 +51,7 @@ class VtkReader {
 };
 
 void VtkReader::read_points() {
-    const std::size_t count = scan_.count("points");
+    const std::size_t count = scan_.count("how many points");
     scan_.word();  // their type
     scan_.expect(3 * count, std::to_string(count) + " points");
     if (count >= kNone) scan_.fail("more points than can be numbered");
@@ -155,17 +83,17 @@ void VtkReader::read_offsets(std::size_t offsets, std::size_t connectivity) {
 }
 
 void VtkReader::read_cells() {
-    const std::size_t first = scan_.count("cells"), second = scan_.count("entries");
+    const std::size_t first = scan_.count("how many cells"), second = scan_.count("how many entries");
     if (first > kMostCells)
         scan_.fail(std::to_string(first) + " cells are more than the " + std::to_string(kMostCells) +
                    " that are held");
-    if (upper(scan_.peek()) == "OFFSETS") {
+    if (in_capitals(scan_.peek()) == "OFFSETS") {
         read_offsets(first, second);
     } else {
         scan_.expect(second, std::to_string(first) + " cells");
         first_corner_.push_back(0);
         for (std::size_t i = 0; i < first; ++i) {
-            const std::size_t corners = scan_.count("corners");
+            const std::size_t corners = scan_.count("how many corners");
             if (corners_.size() + corners + i + 1 > second)
                 scan_.fail("cell " + std::to_string(i) + " has more corners than the " +
                            std::to_string(second) + " entries have room for");
@@ -181,7 +109,7 @@ void VtkReader::read_cells() {
 }
 
 void VtkReader::read_types() {
-    const std::size_t count = scan_.count("types");
+    const std::size_t count = scan_.count("how many types");
     scan_.expect(count, std::to_string(count) + " types");
     types_.resize(count);
     for (int& type : types_) type = static_cast<int>(scan_.count("a type"));
@@ -221,8 +149,8 @@ void VtkReader::read_scalars() {
     const std::string name(scan_.word());
     scan_.word();  // type
     std::size_t components = 1;
-    if (parse_integer(scan_.peek())) components = scan_.count("components");
-    if (upper(scan_.peek()) == "LOOKUP_TABLE") {
+    if (parse_integer(scan_.peek())) components = scan_.count("how many components");
+    if (in_capitals(scan_.peek()) == "LOOKUP_TABLE") {
         scan_.word();
         scan_.word();
     }
@@ -231,14 +159,15 @@ void VtkReader::read_scalars() {
 
 void VtkReader::read_field() {
     scan_.word();  // its name
-    const std::size_t arrays = scan_.count("arrays");
+    const std::size_t arrays = scan_.count("how many arrays");
     for (std::size_t a = 0; a < arrays; ++a) {
-        while (upper(scan_.peek()) == "METADATA")
+        while (in_capitals(scan_.peek()) == "METADATA")
             while (!scan_.rest_of_line().empty()) {
             }
         const std::string name(scan_.word());
         if (name.empty()) scan_.fail("the file ends within a field");
-        const std::size_t components = scan_.count("components"), tuples = scan_.count("tuples");
+        const std::size_t components = scan_.count("how many components"),
+                          tuples = scan_.count("how many tuples");
         scan_.word();
         if (components > 1000) scan_.fail("an array has more than 1000 components");
         take_field(name, components, tuples);
@@ -246,13 +175,13 @@ void VtkReader::read_field() {
 }
 
 void VtkReader::read_point_data() {
-    point_data_ = scan_.count("points");
+    point_data_ = scan_.count("how many points");
     const std::size_t points = is_grid_ ? grid_.size[0] * grid_.size[1] * grid_.size[2] : soup_.points.size();
     if (point_data_ != points)
         scan_.fail("has data of " + std::to_string(point_data_) + " points, but " + std::to_string(points) +
                    " points");
     while (true) {
-        const std::string key = upper(scan_.peek());
+        const std::string key = in_capitals(scan_.peek());
         if (key.empty() || key == "CELL_DATA") return;
         scan_.word();
         if (key == "SCALARS") {
@@ -265,7 +194,7 @@ void VtkReader::read_point_data() {
             take_field(name, key == "TENSORS" ? 9 : 3, point_data_);
         } else if (key == "LOOKUP_TABLE") {
             scan_.word();
-            skip(4 * scan_.count("colours"), "a table of colours");
+            skip(4 * scan_.count("how many colours"), "a table of colours");
         } else if (key == "METADATA") {
             while (!scan_.rest_of_line().empty()) {
             }
@@ -278,7 +207,7 @@ void VtkReader::read_point_data() {
 /// What stands after the points' data changes nothing; before them, its length must be known.
 void VtkReader::skip_cell_data() {
     has_cell_data_ = true;
-    while (!scan_.peek().empty() && upper(scan_.peek()) != "POINT_DATA") scan_.word();
+    while (!scan_.peek().empty() && in_capitals(scan_.peek()) != "POINT_DATA") scan_.word();
 }
 
 void VtkReader::read_geometry(const std::string& keyword) {
@@ -289,7 +218,7 @@ void VtkReader::read_geometry(const std::string& keyword) {
     }
     if (!is_grid_ && keyword == "CELL_TYPES") return read_types();
     if (is_grid_ && keyword == "DIMENSIONS") {
-        for (std::size_t& side : grid_.size) side = scan_.count("points along an axis");
+        for (std::size_t& side : grid_.size) side = scan_.count("how many points along an axis");
         checked_point_count(grid_.size, file_, "line " + std::to_string(scan_.line()));
         return;
     }
@@ -354,16 +283,16 @@ VolumeFile VtkReader::read() {
     if (!magic.starts_with("# vtk DataFile Version"))
         throw InputError(file_, "line 1", "is no legacy VTK file: those begin with '# vtk DataFile Version'");
     scan_.rest_of_line();  // the title
-    const std::string encoding = upper(scan_.word());
+    const std::string encoding = in_capitals(scan_.word());
     if (encoding != "ASCII")
         scan_.fail("is a VTK file in " + encoding + "; ASCII is read: write it again as that");
     scan_.keyword("DATASET");
-    const std::string kind = upper(scan_.word());
+    const std::string kind = in_capitals(scan_.word());
     if (kind != "UNSTRUCTURED_GRID" && kind != "STRUCTURED_POINTS")
         scan_.fail("holds " + kind + "; UNSTRUCTURED_GRID and STRUCTURED_POINTS are read");
     is_grid_ = kind == "STRUCTURED_POINTS";
     while (true) {
-        const std::string key = upper(scan_.word());
+        const std::string key = in_capitals(scan_.word());
         if (key.empty()) break;
         if (key == "POINT_DATA") {
             if (is_grid_ && grid_.size[0] == 0) scan_.fail("POINT_DATA must come after DIMENSIONS");

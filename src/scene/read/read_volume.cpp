@@ -12,6 +12,7 @@
 #include "scene/formats/volume_file.h"
 #include "scene/read/reading.h"
 #include "volume/cell_checks.h"
+#include "volume/transfer_function.h"
 
 namespace trilens {
 
