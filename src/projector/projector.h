@@ -1,7 +1,6 @@
 // Draws a scene through a RayMesh: the exact engine.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 
@@ -27,23 +26,6 @@ void draw(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& o
 /// decisions, but not where on the triangle. Takes less time and memory.
 void find_visible(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
                   const SampleGrid& grid, std::span<Visible> visible);
-
-/// A triangle that a sample's ray crosses.
-struct Crossing {
-    Id triangle = kNone;  // index into the scene
-    double t = 0;         // in units of the ray's direction, >= 0
-};
-
-/// Told what one sample crosses, from many threads at once, each sample by one of them.
-using TakeCrossings = std::function<void(Id sample, const Ray& ray, std::span<const Crossing>)>;
-
-/// Every triangle along the facet's interpolated ray, by the decisions of draw(), for every sample that
-/// `owned` gives to a facet with rays and an area on the screen, and whose until[sample] > 0: those with
-/// 0 <= t <= until[sample], in order of t, then of the scene's triangles; where there are none and the ray
-/// starts within the scene's bounds, the first one behind, alone, or nothing. `ray`: the sample's.
-/// until.size() == grid.size().
-void find_crossings(const PreparedScene& scene, const RayMesh& mesh, const FacetSamples& owned,
-                    const SampleGrid& grid, std::span<const double> until, const TakeCrossings& take);
 
 // Switches of the exact engine that tests and benchmarks turn; none changes a bit of what it draws.
 

@@ -129,7 +129,7 @@ std::size_t cell_count(const RegularGrid& grid) {
 }
 
 TetMesh make_tet_mesh(RegularGrid grid) {
-    const auto [nx, ny, nz] = grid.size;
+    const std::size_t nx = grid.size[0], ny = grid.size[1], nz = grid.size[2];
     TRILENS_CHECK(nx >= 2 && ny >= 2 && nz >= 2 && grid.scalars.size() == nx * ny * nz,
                   "a grid has at least two points along each axis, and a scalar at each");
     TetMesh mesh;

@@ -20,14 +20,14 @@ namespace {
 constexpr const char* kEven = R"({"points": [{"value": 0, "color": [1, 1, 1], "extinction": 1}]})";
 constexpr const char* kTet = R"("points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], "scalars": [0, 1, 2, 3])";
 
-std::string scene_with(const std::string& volume, const std::string& transfer = kEven) {
+std::string volume_scene(const std::string& volume, const std::string& transfer = kEven) {
     return R"({"version": 1, "cameras": [{"yfov": 40, "lookAt": {"eye": [0, 1, 4], "at": [0, 0, 0]}}],
         "volumes": [{)" +
            volume + R"(, "transferFunction": )" + transfer + "}]}";
 }
 
-std::string refusal(const std::string& volume, const std::string& transfer = kEven) {
-    return error_of(scene_with(volume, transfer));
+std::string volume_refusal(const std::string& volume, const std::string& transfer = kEven) {
+    return error_of(volume_scene(volume, transfer));
 }
 
 /// A file in a folder of the test's own, and a scene beside it.
@@ -38,7 +38,7 @@ std::string file_with(const std::string& name, const std::string& bytes) {
 }
 
 std::string message_of(const std::string& name, const std::string& bytes, const std::string& more = "") {
-    return refusal("\"file\": \"" + file_with(name, bytes) + "\"" + more);
+    return volume_refusal("\"file\": \"" + file_with(name, bytes) + "\"" + more);
 }
 
 std::string vtk(const std::string& cells, const std::string& data) {
@@ -54,8 +54,8 @@ constexpr const char* kData = "POINT_DATA 5\nSCALARS heat float\nLOOKUP_TABLE de
 
 TEST_CASE("inline cells of all shapes are read, in the world", "[scene]") {
     const Scene scene = load_text(
-        scene_with(std::string(kTet) +
-                   R"(, "cells": [[0,1,2,3]], "name": "cloud", "transform": {"scale": [-1, 2, 1]})"));
+        volume_scene(std::string(kTet) +
+                     R"(, "cells": [[0,1,2,3]], "name": "cloud", "transform": {"scale": [-1, 2, 1]})"));
     REQUIRE(scene.volumes.size() == 1);
     const Volume& volume = scene.volumes[0];
     CHECK(volume.name == "cloud");
@@ -66,8 +66,8 @@ TEST_CASE("inline cells of all shapes are read, in the world", "[scene]") {
               volume.cells->points[cell[3]] - a) > 0);
     CHECK(scene.warnings.empty());
 
-    const Scene boxes = load_text(
-        scene_with(R"("points": [[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1],[0.5,0.5,2]],
+    const Scene boxes = load_text(volume_scene(
+        R"("points": [[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1],[0.5,0.5,2]],
         "scalars": [0,0,0,0,1,1,1,1,5], "cells": [[0,1,2,3,4,5,6,7],[4,5,6,7,8]], "fit": {"size": 4})"));
     CHECK(boxes.volumes[0].cells->cells.size() == 8);
     CHECK(boxes.volumes[0].cells->counts.cells == 2);
@@ -76,27 +76,30 @@ TEST_CASE("inline cells of all shapes are read, in the world", "[scene]") {
 }
 
 TEST_CASE("bad inline cells are refused with their place", "[scene]") {
-    CHECK(contains(refusal(std::string(kTet) + R"(, "cells": [[0,1,2,4]])"), "/volumes/0/cells/0/3"));
-    CHECK(contains(refusal(std::string(kTet) + R"(, "cells": [[0,1,2,3,3,3,3]])"), "4, 5, 6 or 8 corners"));
+    CHECK(contains(volume_refusal(std::string(kTet) + R"(, "cells": [[0,1,2,4]])"), "/volumes/0/cells/0/3"));
+    CHECK(contains(volume_refusal(std::string(kTet) + R"(, "cells": [[0,1,2,3,3,3,3]])"),
+                   "4, 5, 6 or 8 corners"));
     CHECK(contains(
-        refusal(
+        volume_refusal(
             R"("points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], "scalars": [0,1,2,3,4], "cells": [[0,1,2,3]])"),
         "/volumes/0/scalars"));
     CHECK(contains(
-        refusal(R"("points": [[0,0,0],[1,0,0],[0,1,0],[1,1,0]], "scalars": [0,1,2,3], "cells": [[0,1,2,3]])"),
+        volume_refusal(
+            R"("points": [[0,0,0],[1,0,0],[0,1,0],[1,1,0]], "scalars": [0,1,2,3], "cells": [[0,1,2,3]])"),
         "no cell with a volume"));
-    CHECK(contains(refusal(R"("name": "empty")"), "/volumes/0"));
-    CHECK(contains(refusal(std::string(kTet) + R"(, "cells": [[0,1,2,3]], "file": "x.vtk")"), "/volumes/0"));
+    CHECK(contains(volume_refusal(R"("name": "empty")"), "/volumes/0"));
+    CHECK(contains(volume_refusal(std::string(kTet) + R"(, "cells": [[0,1,2,3]], "file": "x.vtk")"),
+                   "/volumes/0"));
 }
 
 TEST_CASE("cells that are turned, flat or apart are warned of by number", "[scene]") {
-    const Scene scene = load_text(scene_with(
+    const Scene scene = load_text(volume_scene(
         R"("points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,0]], "scalars": [0,1,2,3,4], "cells": [[0,2,1,3],[0,1,2,4]])"));
     REQUIRE(scene.warnings.size() == 2);
     CHECK(contains(scene.warnings[0], "1 tetrahedra are inverted"));
     CHECK(contains(scene.warnings[1], "1 tetrahedra have no volume"));
     // Two cells with a seam: points of their own where they touch.
-    const Scene seam = load_text(scene_with(
+    const Scene seam = load_text(volume_scene(
         R"("points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[0,0,0],[1,0,0],[0,1,0],[0,0,-1]], "scalars": [0,1,2,3,0,1,2,3],
            "cells": [[0,1,2,3],[4,6,5,7]])"));
     REQUIRE(seam.warnings.size() == 1);
@@ -105,43 +108,46 @@ TEST_CASE("cells that are turned, flat or apart are warned of by number", "[scen
 
 TEST_CASE("transfer functions are points or a map, and their values rise", "[scene]") {
     const std::string cells = std::string(kTet) + R"(, "cells": [[0,1,2,3]])";
-    const Scene scene = load_text(scene_with(cells, R"({"map": "heat", "extinction": 6})"));
+    const Scene scene = load_text(volume_scene(cells, R"({"map": "heat", "extinction": 6})"));
     const std::vector<TransferPoint>& points = scene.volumes[0].transfer.points;
     REQUIRE(points.size() == 4);
     CHECK(points.front().value == 0);
     CHECK(points.back().value == 3);
     CHECK(points[1].color == Vec3(1, 0, 0));
     CHECK(points[1].extinction == Approx(2));
-    CHECK(contains(refusal(cells, R"({"map": "jet", "extinction": 6})"), "/volumes/0/transferFunction/map"));
-    CHECK(contains(refusal(cells, R"({"map": "heat"})"), "/volumes/0/transferFunction"));
-    CHECK(contains(refusal(cells, R"({"map": "heat", "extinction": 1, "range": [2, 2]})"), "must rise"));
-    CHECK(contains(refusal(cells, R"({"points": [{"value": 1, "color": [1,1,1], "extinction": 1},
+    CHECK(contains(volume_refusal(cells, R"({"map": "jet", "extinction": 6})"),
+                   "/volumes/0/transferFunction/map"));
+    CHECK(contains(volume_refusal(cells, R"({"map": "heat"})"), "/volumes/0/transferFunction"));
+    CHECK(
+        contains(volume_refusal(cells, R"({"map": "heat", "extinction": 1, "range": [2, 2]})"), "must rise"));
+    CHECK(contains(volume_refusal(cells, R"({"points": [{"value": 1, "color": [1,1,1], "extinction": 1},
                                                  {"value": 1, "color": [1,1,1], "extinction": 2}]})"),
                    "/volumes/0/transferFunction/points/1/value"));
-    CHECK(contains(refusal(cells, R"({"points": [{"value": 1, "color": [1,1,1], "extinction": -1}]})"),
+    CHECK(contains(volume_refusal(cells, R"({"points": [{"value": 1, "color": [1,1,1], "extinction": -1}]})"),
                    "/volumes/0/transferFunction/points/0/extinction"));
 }
 
 TEST_CASE("grids are read inline, and their sizes hold", "[scene]") {
-    const Scene scene = load_text(scene_with(
+    const Scene scene = load_text(volume_scene(
         R"("grid": {"size": [2,2,2], "origin": [1,0,0], "spacing": [2,1,1], "scalars": [0,1,2,3,4,5,6,7]})"));
     CHECK(scene.volumes[0].cells->cells.size() == 6);
     CHECK(scene.volumes[0].cells->points[1] == Vec3(3, 0, 0));
-    CHECK(contains(refusal(R"("grid": {"size": [2,2,3], "scalars": [0,1,2,3,4,5,6,7]})"),
+    CHECK(contains(volume_refusal(R"("grid": {"size": [2,2,3], "scalars": [0,1,2,3,4,5,6,7]})"),
                    "/volumes/0/grid/scalars"));
-    CHECK(contains(refusal(R"("grid": {"size": [1,2,2], "scalars": [0,1,2,3,4,5,6,7]})"),
+    CHECK(contains(volume_refusal(R"("grid": {"size": [1,2,2], "scalars": [0,1,2,3,4,5,6,7]})"),
                    "/volumes/0/grid/size"));
-    CHECK(contains(refusal(R"("grid": {"size": [2,2,2], "type": "uint8"})"), "/volumes/0/grid/type"));
+    CHECK(contains(volume_refusal(R"("grid": {"size": [2,2,2], "type": "uint8"})"), "/volumes/0/grid/type"));
     // What would not fit is refused before anything is read.
-    CHECK(contains(refusal(R"("file": "none.raw", "grid": {"size": [4000,4000,4000], "type": "uint8"})"),
-                   "more than 50000000"));
+    CHECK(
+        contains(volume_refusal(R"("file": "none.raw", "grid": {"size": [4000,4000,4000], "type": "uint8"})"),
+                 "more than 50000000"));
 }
 
 TEST_CASE("samples as they lie in memory are read in every type", "[scene]") {
     const std::string bytes("\x00\x01\x00\x02\x00\x03\x00\x04\x00\x05\x00\x06\x00\x07\x80\x08", 16);
     const std::string file = "\"file\": \"" + file_with("numbers.raw", bytes) + "\"";
     const auto scalars = [&](const std::string& grid) {
-        return load_text(scene_with(file + R"(, "grid": {"size": [2,2,2], )" + grid + "}"))
+        return load_text(volume_scene(file + R"(, "grid": {"size": [2,2,2], )" + grid + "}"))
             .volumes[0]
             .cells->scalars;
     };
@@ -149,8 +155,9 @@ TEST_CASE("samples as they lie in memory are read in every type", "[scene]") {
     CHECK(scalars(R"("type": "int16", "endian": "big")")[7] == 0x8008 - 0x10000);
     CHECK(scalars(R"("type": "uint16")")[0] == 0x0100);
     CHECK(scalars(R"("type": "uint8", "skip": 8)")[1] == 5);
-    CHECK(contains(refusal(file + R"(, "grid": {"size": [2,2,2], "type": "uint8"})"), "16 bytes of samples"));
-    CHECK(contains(refusal(file + R"(, "grid": {"size": [2,2,2], "type": "float"})"), "are 32"));
+    CHECK(contains(volume_refusal(file + R"(, "grid": {"size": [2,2,2], "type": "uint8"})"),
+                   "16 bytes of samples"));
+    CHECK(contains(volume_refusal(file + R"(, "grid": {"size": [2,2,2], "type": "float"})"), "are 32"));
 }
 
 TEST_CASE("VTK's legacy files are read, of both ways to write cells", "[scene]") {
@@ -205,7 +212,11 @@ TEST_CASE("bad VTK files are refused with the line", "[scene]") {
         "data of cells are not read"));
     CHECK(contains(
         message_of("a.vtk", vtk(kCells, "POINT_DATA 5\nSCALARS heat float\nLOOKUP_TABLE default\n0 1 2\n")),
-        "ends where a number must stand"));
+        "too short"));
+    CHECK(contains(message_of("a.vtk", vtk(kCells,
+                                           "POINT_DATA 5\nSCALARS heat float\nLOOKUP_TABLE default\n"
+                                           "0.125 1.125 2.125\n")),
+                   "ends where a number must stand"));
     CHECK(contains(message_of("a.vtu", "<VTKFile>"), "XML"));
     CHECK(contains(message_of("a.obj", "v 0 0 0"), "neither .vtk nor"));
 }

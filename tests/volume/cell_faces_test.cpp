@@ -6,6 +6,7 @@
 #include "support/draw.h"
 #include "support/test.h"
 #include "volume/cell_faces.h"
+#include "volume/tet_mesh.h"
 
 using namespace trilens;
 using namespace trilens_test;

@@ -7,6 +7,7 @@
 #include "support/test.h"
 #include "volume/cell_checks.h"
 #include "volume/cell_faces.h"
+#include "volume/tet_mesh.h"
 
 using namespace trilens;
 using namespace trilens_test;

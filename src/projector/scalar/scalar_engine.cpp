@@ -12,7 +12,6 @@
 #include "base/util/check.h"
 #include "base/util/parallel.h"
 #include "projector/exact/exact_hit.h"
-#include "projector/projector.h"
 #include "projector/scene/bvh.h"
 
 namespace trilens {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/util/parallel.h"
+#include "projector/scalar/scalar_engine.h"
 #include "render/world/volume_geometry.h"
 
 namespace trilens {

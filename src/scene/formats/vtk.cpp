@@ -29,6 +29,7 @@ class VtkReader {
     void read_scalars();
     void read_field();
     void skip_cell_data();
+    void skip_metadata();
     void take_field(const std::string& name, std::size_t components, std::size_t tuples);
     void skip(std::size_t numbers, const std::string& what);
     void read_geometry(const std::string& keyword);
@@ -161,9 +162,7 @@ void VtkReader::read_field() {
     scan_.word();  // its name
     const std::size_t arrays = scan_.count("how many arrays");
     for (std::size_t a = 0; a < arrays; ++a) {
-        while (in_capitals(scan_.peek()) == "METADATA")
-            while (!scan_.rest_of_line().empty()) {
-            }
+        while (in_capitals(scan_.peek()) == "METADATA") skip_metadata();
         const std::string name(scan_.word());
         if (name.empty()) scan_.fail("the file ends within a field");
         const std::size_t components = scan_.count("how many components"),
@@ -196,8 +195,7 @@ void VtkReader::read_point_data() {
             scan_.word();
             skip(4 * scan_.count("how many colours"), "a table of colours");
         } else if (key == "METADATA") {
-            while (!scan_.rest_of_line().empty()) {
-            }
+            skip_metadata();
         } else {
             scan_.fail("data of the kind '" + key + "' are not known here");
         }
@@ -208,6 +206,13 @@ void VtkReader::read_point_data() {
 void VtkReader::skip_cell_data() {
     has_cell_data_ = true;
     while (!scan_.peek().empty() && in_capitals(scan_.peek()) != "POINT_DATA") scan_.word();
+}
+
+/// It ends with an empty line.
+void VtkReader::skip_metadata() {
+    scan_.rest_of_line();
+    while (!scan_.rest_of_line().empty()) {
+    }
 }
 
 void VtkReader::read_geometry(const std::string& keyword) {
@@ -300,8 +305,7 @@ VolumeFile VtkReader::read() {
         } else if (key == "CELL_DATA") {
             skip_cell_data();
         } else if (key == "METADATA") {
-            while (!scan_.rest_of_line().empty()) {
-            }
+            skip_metadata();
         } else if (key == "FIELD") {  // of the whole data set: time and the like
             const std::size_t before = std::exchange(point_data_, ~std::size_t{0});
             read_field();
