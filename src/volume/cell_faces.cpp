@@ -10,7 +10,8 @@ namespace trilens {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kTouching = 1e-9;  // of t: as far apart as rounding puts one plane of two cells
+constexpr double kAlongPlane = 1e-9;  // sine of the angle between a ray and a plane that it runs along
+constexpr double kTouching = 1e-9;    // of t: as far apart as rounding puts one plane of two cells
 
 /// A cell's side of a face, sorted by the face.
 struct FaceSide {
@@ -27,21 +28,35 @@ struct FaceSide {
 struct PlaneCrossing {
     double ahead = 0;  // distance to the plane, times the speed's unit
     double speed = 0;  // towards the outside
+    double most = 0;   // that the speed could be
+
+    /// Whether the ray does not run along the plane, to rounding.
+    bool is_crossed() const { return std::fabs(speed) > kAlongPlane * most; }
 };
 
+/// In the order of the corners' numbers: the cells on both sides of a face get the same bits but for the
+/// signs, so that no rounding parts them.
 PlaneCrossing cross_plane(const TetMesh& mesh, const Tetrahedron& cell, std::size_t k, const Ray& ray) {
-    const std::array<Id, 3> corner = face_corners(cell, k);
+    std::array<Id, 3> corner = face_corners(cell, k);
+    double sign = 1;
+    const auto order = [&](std::size_t i, std::size_t j) {
+        if (corner[i] < corner[j]) return;
+        std::swap(corner[i], corner[j]);
+        sign = -sign;
+    };
+    order(0, 1), order(1, 2), order(0, 1);
     const Vec3& a = mesh.points[corner[0]];
-    const Vec3 normal = cross(mesh.points[corner[1]] - a, mesh.points[corner[2]] - a);
-    return {dot(normal, a - ray.origin), dot(normal, ray.direction)};
+    const Vec3 normal = sign * cross(mesh.points[corner[1]] - a, mesh.points[corner[2]] - a);
+    return {dot(normal, a - ray.origin), dot(normal, ray.direction), length(normal) * length(ray.direction)};
 }
 
-/// Where the ray leaves a cell that it came into at `t`: the nearest plane behind.
-double exit_behind(const TetMesh& mesh, Id cell, const Ray& ray) {
+/// Where the ray leaves a cell that it came into at `entry`: the nearest plane behind.
+double exit_behind(const TetMesh& mesh, Id cell, const Ray& ray, double entry) {
     double exit = kNever;
     for (std::size_t k = 0; k < 4; ++k) {
         const PlaneCrossing at = cross_plane(mesh, mesh.cells[cell], k, ray);
-        if (at.speed > 0) exit = std::min(exit, at.ahead / at.speed);
+        if (at.is_crossed() && at.speed > 0 && at.ahead / at.speed > entry)
+            exit = std::min(exit, at.ahead / at.speed);
     }
     return exit;
 }
@@ -51,7 +66,7 @@ double entry_before(const TetMesh& mesh, Id cell, const Ray& ray) {
     double entry = 0;
     for (std::size_t k = 0; k < 4; ++k) {
         const PlaneCrossing at = cross_plane(mesh, mesh.cells[cell], k, ray);
-        if (at.speed < 0) entry = std::max(entry, at.ahead / at.speed);
+        if (at.is_crossed() && at.speed < 0) entry = std::max(entry, at.ahead / at.speed);
     }
     return entry;
 }
@@ -140,10 +155,11 @@ std::vector<CellStretch> CrossedCells::find(const Ray& ray, double until,
                                             std::span<const FaceCrossing> crossings) const {
     struct Side {
         Id cell;
-        bool enters;
+        bool leaves;
         double t;
     };
     std::vector<Side> sides;
+    sides.reserve(2 * crossings.size());
     for (const FaceCrossing& crossing : crossings) {
         const IdTriple& corner = faces_.triangles.triangles[crossing.face];
         const Vec3& a = mesh_.points[corner[0]];
@@ -151,21 +167,25 @@ std::vector<CellStretch> CrossedCells::find(const Ray& ray, double until,
         const auto [behind, before] = faces_.cells[crossing.face];
         const bool along = dot(normal, ray.direction) > 0;
         const Id left = along ? behind : before, entered = along ? before : behind;
-        if (left != kNone) sides.push_back({left, false, crossing.t});
-        if (entered != kNone) sides.push_back({entered, true, crossing.t});
+        if (left != kNone) sides.push_back({left, true, crossing.t});
+        if (entered != kNone) sides.push_back({entered, false, crossing.t});
     }
     // A line meets a cell once: of faces that it meets in a common edge the first one counts.
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
         if (a.cell != b.cell) return a.cell < b.cell;
-        if (a.enters != b.enters) return a.enters;
+        if (a.leaves != b.leaves) return b.leaves;
         return a.t < b.t;
     });
     std::vector<CellStretch> cells;
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-        if (i > 0 && sides[i].cell == sides[i - 1].cell) continue;
+    for (std::size_t i = 0; i < sides.size();) {
         const Id cell = sides[i].cell;
-        const double t_in = sides[i].enters ? sides[i].t : entry_before(mesh_, cell, ray);
-        cells.push_back({cell, t_in, exit_behind(mesh_, cell, ray)});
+        CellStretch stretch{cell, sides[i].t, sides[i].t};
+        if (sides[i].leaves) stretch.t_in = entry_before(mesh_, cell, ray);
+        while (i < sides.size() && sides[i].cell == cell && !sides[i].leaves) ++i;
+        const bool leaves = i < sides.size() && sides[i].cell == cell;
+        stretch.t_out = leaves ? sides[i].t : exit_behind(mesh_, cell, ray, stretch.t_in);
+        while (i < sides.size() && sides[i].cell == cell) ++i;
+        cells.push_back(stretch);
     }
     order_cells(until, cells);
     return cells;

@@ -52,11 +52,12 @@ struct FaceCrossing {
 };
 
 /// The cells that a ray passes between t = 0 and t = until, in order of where it comes in, from the faces
-/// that it crosses: it comes into a cell where it crosses a face toward it, and leaves by the nearest plane
-/// behind that; a cell that it leaves without having come in holds its start. `crossings`: all between 0 and
-/// `until`, in any order, and where there are none, the first one behind, if any. Source: Weiler, Kraus,
-/// Ertl, Hardware-Based View-Independent Cell Projection, IEEE Symposium on Volume Visualization and
-/// Graphics, 2002.
+/// that it crosses: it comes into a cell where it crosses a face toward it, and leaves where it crosses
+/// another, or, where that lies beyond what is asked for, by the nearest plane behind; a cell that it leaves
+/// without having come in holds its start. `crossings`: all between 0 and `until`, in any order, and where
+/// there are none, the first one behind, if any. Source: Weiler, Kraus, Ertl, Hardware-Based View-Independent
+/// Cell Projection, IEEE Symposium on Volume Visualization and Graphics, 2002, with the far face projected,
+/// too: a ray that runs along a face is then in no doubt about where it leaves.
 class CrossedCells {
   public:
     CrossedCells(const TetMesh& mesh, const CellFaces& faces) : mesh_(mesh), faces_(faces) {}

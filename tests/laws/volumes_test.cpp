@@ -159,6 +159,39 @@ TEST_CASE("cells by projection are cells by rays, in order, also where rays star
     }
 }
 
+TEST_CASE("rays that run along faces of cells see what rays beside them see", "[volumes][law]") {
+    // A cube before a camera on its axis: rays of both diagonals of the film run in planes that cut its
+    // boxes.
+    const std::string transfer = R"({"map": "viridis", "extinction": 3})";
+    const std::string cube =
+        cube_volume(17, 2, transfer, [](const Vec3& p) { return std::max(0.0, 1 - length(p)); });
+    std::string room = volume_room("[" + cube + "]");
+    room.replace(room.find("[0.1, 0.7, 5]"), 13, "[0, 0, 4]");
+    const auto world = world_from("along", room, 14);
+    const VolumeGeometry& volume = *world->volumes[0];
+    const CameraRays camera = make_camera_rays(world->scene, 0);
+    for (const int side : {1, 2, 3}) {
+        const SampleGrid film{0, 0, kVolumeWidth, kVolumeHeight, side};
+        const FacetSamples owned = rasterize_facets(camera.mesh, film);
+        const std::vector<double> until(film.size(), std::numeric_limits<double>::infinity());
+        std::vector<double> lost(film.size(), 0.0);
+        project_cells(volume, camera.mesh, owned, film, until,
+                      [&](Id s, const Ray& ray, const std::vector<CellStretch>& cells) {
+                          const std::vector<CellStretch> traced = trace_cells(volume, ray, until[s]);
+                          Ray beside = ray;
+                          beside.direction += Vec3(3e-7, -1e-7, 0);
+                          double projected_way = 0, traced_way = 0, beside_way = 0;
+                          for (const CellStretch& one : cells) projected_way += one.t_out - one.t_in;
+                          for (const CellStretch& one : traced) traced_way += one.t_out - one.t_in;
+                          for (const CellStretch& one : trace_cells(volume, beside, until[s]))
+                              beside_way += one.t_out - one.t_in;
+                          lost[s] = std::max(std::fabs(projected_way - beside_way),
+                                             std::fabs(traced_way - beside_way));
+                      });
+        CHECK(*std::max_element(lost.begin(), lost.end()) < 1e-4);
+    }
+}
+
 TEST_CASE("a volume in the truth is what small steps along closed forms see, directly and in a ball",
           "[volumes][law]") {
     // A linear scalar is the same in every cell: the field is known without cells.

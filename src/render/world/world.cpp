@@ -19,7 +19,7 @@ constexpr std::size_t kMaxFacets = 100'000'000;
 /// What drawing holds per facet of a mirror at its most: measured, rounded up.
 constexpr double kBytesPerFacet = 350;
 /// What drawing holds per tetrahedron of a volume: measured, rounded up.
-constexpr double kBytesPerCell = 1000;
+constexpr double kBytesPerCell = 700;
 
 /// What a mesh has per triangle; those of earlier meshes that have none get zeros, those after the last mesh
 /// that has some get nothing.
